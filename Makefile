@@ -1,0 +1,68 @@
+# make        environment, then the default study (config/paper.yaml)
+# make test   what the tests need, then the tests
+# make lint   ruff and snakefmt, changing nothing
+# make lock   new pins for every package (needs uv)
+
+STUDY  ?= config/paper.yaml
+CORES  ?= all
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet --require-virtualenv
+SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default --cores $(CORES)
+
+# A killed run leaves Snakemake's lock behind. flock knows whether that run is still alive, so the
+# stale lock is taken away and a living one respected; where there is no flock, Snakemake asks.
+FLOCK := $(shell command -v flock 2>/dev/null)
+ifneq ($(FLOCK),)
+GUARD := $(FLOCK) --nonblock --no-fork .snakemake.guard
+UNLOCK = $(BIN)/snakemake --configfile $(STUDY) --unlock --quiet all &&
+else
+GUARD :=
+UNLOCK :=
+endif
+
+.PHONY: all study smoke test lint format lock clean
+all: study
+
+study: $(VENV)/installed
+	@$(GUARD) sh -c '$(UNLOCK) $(SNAKEMAKE) --configfile $(STUDY)' \
+	  || { s=$$?; echo "make: the study did not finish; what is done is kept, and 'make' goes on from there." >&2; exit $$s; }
+
+smoke:
+	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
+
+test: $(VENV)/tests-installed
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/tests-installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/snakefmt --check Snakefile workflow/rules
+
+format: $(VENV)/tests-installed
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+	$(BIN)/snakefmt Snakefile workflow/rules
+
+$(VENV)/bin/python:
+	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit(f"fractalcontact needs Python 3.11 or later, {sys.executable} is {sys.version.split()[0]}: make PYTHON=python3.12")'
+	$(PYTHON) -m venv $(VENV)
+
+# Bytecode is compiled now: without it every job pays the imports three times over.
+$(VENV)/installed: requirements.lock pyproject.toml | $(VENV)/bin/python
+	$(PIP) install --require-hashes --compile -r requirements.lock
+	$(PIP) install --no-deps --no-build-isolation --no-index -e .
+	@touch $@
+
+$(VENV)/tests-installed: requirements-test.lock $(VENV)/installed
+	$(PIP) install --require-hashes --compile -r requirements-test.lock
+	@touch $@
+
+COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet pyproject.toml
+lock:
+	$(COMPILE) --extra install -o requirements.lock
+	$(COMPILE) --extra install --extra test -c requirements.lock -o requirements-test.lock
+
+clean:
+	rm -rf results .snakemake .snakemake.guard

@@ -1,0 +1,9 @@
+"""What this package raises when the user, not the program, has to change something."""
+
+
+class InputError(ValueError):
+    """A scan, a sidecar or a study that cannot be used as it stands.
+
+    The message is written for the person who owns the file: it names the file, key or cell, says
+    what was expected and what to write instead. Programs show it without a traceback.
+    """

@@ -1,0 +1,181 @@
+"""The elastic half-space: normal displacement of a free surface under a pressure, by FFT.
+
+Free space: the window stands alone on an infinite half-space, so the convolution is zero padded and
+there are no periodic images.
+"""
+
+from functools import cached_property
+
+import numpy as np
+from scipy import fft
+
+#: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
+#: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
+RIGID_PLATE_SELF_TERMS = {
+    "rigid square": 1 / 1.1523,
+    "equal-area disc": np.sqrt(np.pi) / 2,
+    "inscribed disc": 1.0,
+}
+
+
+def love_displacement(x, y, dx, dy):
+    """Displacement at (x, y) under uniform pressure on a rectangle centred at the origin.
+
+    Parameters
+    ----------
+    x, y : array_like
+        Where the displacement is wanted, mm.
+    dx, dy : float
+        Sides of the loaded rectangle, mm.
+
+    Returns
+    -------
+    ndarray
+        E* u / p in mm.
+
+    Notes
+    -----
+    A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377: pi E* u / p is the sum over the four
+    corners, signed, of X asinh(Y/|X|) + Y asinh(X/|Y|).
+    """
+    total = 0.0
+    for sign_x in (1, -1):
+        for sign_y in (1, -1):
+            corner = _love_corner(x + sign_x * dx / 2, y + sign_y * dy / 2)
+            total = total + sign_x * sign_y * corner
+    return total / np.pi
+
+
+def _love_corner(x, y):
+    """X asinh(Y/|X|) + Y asinh(X/|Y|), continued by its limit where X or Y vanishes."""
+    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+    first, second = np.zeros(x.shape), np.zeros(x.shape)
+    np.divide(y, np.abs(x), out=first, where=x != 0)
+    np.divide(x, np.abs(y), out=second, where=y != 0)
+    return x * np.arcsinh(first) + y * np.arcsinh(second)
+
+
+def rectangle_mean_displacement(a, b):
+    """Mean of E* u / p over a uniformly loaded rectangle a x b, in the unit of a and b.
+
+    Notes
+    -----
+    Love's displacement integrated over the rectangle itself. For a square of side b it is
+    b [4 ln(1 + sqrt 2) - (4/3)(sqrt 2 - 1)] / pi = 0.946402 b.
+    """
+    diagonal = np.hypot(a, b)
+    return (
+        2 * a**2 * b * np.arcsinh(b / a)
+        + 2 * a * b**2 * np.arcsinh(a / b)
+        + 2 / 3 * (a**3 + b**3 - diagonal**3)
+    ) / (np.pi * a * b)
+
+
+class HalfSpace:
+    """The elastic operator on a grid of rectangular cells.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Cells (ny, nx).
+    spacing : (float, float)
+        Cell sides (dy, dx), mm.
+    modulus : float
+        E*, MPa: 1/E* = sum over both bodies of (1 - nu^2)/E.
+    kernel : str
+        ``"love"`` (default): uniform pressure on each cell, displacement at its centre. Or one of
+        the readings of the paper's rigid plate, ``"rigid square"``, ``"equal-area disc"``,
+        ``"inscribed disc"``: that self-term, and a point load on every other cell.
+
+    Raises
+    ------
+    ValueError
+        If the shape, spacing, modulus or kernel makes no sense.
+    """
+
+    def __init__(self, shape, spacing, modulus, *, kernel="love"):
+        ny, nx = (int(n) for n in shape)
+        dy, dx = (float(d) for d in spacing)
+        if ny < 1 or nx < 1:
+            raise ValueError(f"shape {shape}: expected at least one cell each way")
+        if not (np.isfinite([dy, dx, modulus]).all() and min(dy, dx, modulus) > 0):
+            raise ValueError(f"spacing {spacing} and modulus {modulus} must be positive and finite")
+        if kernel != "love" and kernel not in RIGID_PLATE_SELF_TERMS:
+            names = ", ".join(["love", *RIGID_PLATE_SELF_TERMS])
+            raise ValueError(f"kernel {kernel!r}: expected one of {names}")
+        if kernel != "love" and not np.isclose(dx, dy, rtol=1e-9, atol=0):
+            raise ValueError("the rigid-plate kernels are known for square cells only")
+        self.shape = (ny, nx)
+        self.spacing = (dy, dx)
+        self.modulus = float(modulus)
+        self.kernel = kernel
+        #: Side of the square as large as a cell: the solver's unit of length in the plane.
+        self.cell = float(np.sqrt(dy * dx))
+        self._padded = (fft.next_fast_len(2 * ny - 1), fft.next_fast_len(2 * nx - 1, real=True))
+
+    @property
+    def cell_area(self):
+        """Area of one cell, mm2."""
+        return self.spacing[0] * self.spacing[1]
+
+    def displacement(self, pressure):
+        """Normal displacement of the surface, mm, under a pressure (ny, nx), MPa."""
+        return self.convolve(np.asarray(pressure, float)) * (self.cell / self.modulus)
+
+    def influence(self):
+        """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx)."""
+        dy, dx = (d / self.cell for d in self.spacing)
+        y = np.arange(self.shape[0])[:, None] * dy
+        x = np.arange(self.shape[1])[None, :] * dx
+        if self.kernel == "love":
+            return love_displacement(x, y, dx, dy)
+        distance = np.hypot(x, y)
+        distance[0, 0] = 1.0
+        influence = 1 / (np.pi * distance)
+        influence[0, 0] = RIGID_PLATE_SELF_TERMS[self.kernel]
+        return influence
+
+    def convolve(self, values):
+        """Dimensionless operator K: (ny, nx) to (ny, nx), in the precision of ``values``.
+
+        The transforms skip what zero padding makes known: rows are transformed before the columns
+        are padded, and only the wanted rows are transformed back.
+        """
+        (ny, nx), (padded_y, padded_x) = self.shape, self._padded
+        single = values.dtype == np.float32
+        spectrum = self._spectrum_single if single else self._spectrum
+        work = fft.rfft(values, n=padded_x, axis=1)
+        work = fft.fft(work, n=padded_y, axis=0, overwrite_x=True)
+        work *= spectrum
+        work = fft.ifft(work, axis=0, overwrite_x=True)[:ny]
+        return fft.irfft(work, n=padded_x, axis=1)[:, :nx]
+
+    def precondition(self, values):
+        """Approximate inverse of K: the half-space's own |q|/2 on the unpadded grid."""
+        transform = fft.rfft2(values)
+        transform *= self._wavenumber.astype(values.dtype, copy=False)
+        return fft.irfft2(transform, s=self.shape)
+
+    @cached_property
+    def _spectrum(self):
+        (ny, nx), (padded_y, padded_x) = self.shape, self._padded
+        influence = self.influence()
+        # Even in both directions, so the circulant's spectrum is real.
+        rows = np.minimum(np.arange(padded_y), padded_y - np.arange(padded_y))
+        columns = np.minimum(np.arange(padded_x), padded_x - np.arange(padded_x))
+        circulant = influence[np.minimum(rows, ny - 1)][:, np.minimum(columns, nx - 1)]
+        return np.ascontiguousarray(fft.rfft2(circulant).real)
+
+    @cached_property
+    def _spectrum_single(self):
+        return self._spectrum.astype(np.float32)
+
+    @cached_property
+    def _wavenumber(self):
+        (ny, nx), (dy, dx) = self.shape, (d / self.cell for d in self.spacing)
+        qy = 2 * np.pi * fft.fftfreq(ny, dy)[:, None]
+        qx = 2 * np.pi * fft.rfftfreq(nx, dx)[None, :]
+        half = np.hypot(qy, qx) / 2
+        # A uniform pressure settles the window by its mean deflection, not by infinity.
+        half[0, 0] = 1 / rectangle_mean_displacement(ny * dy, nx * dx)
+        return half.astype(np.float32)

@@ -1,0 +1,90 @@
+"""Quantities as people write them ("20 GPa", "80 um") to the program's own mm, N and MPa."""
+
+from functools import cache
+
+import pint
+
+from .errors import InputError
+
+#: The program's unit for each kind of quantity.
+PROGRAM_UNITS = {"length": "mm", "force": "N", "pressure": "MPa"}
+
+_EXAMPLES = {"length": "20 mm", "force": "10 kN", "pressure": "25 MPa"}
+
+
+@cache
+def _registry() -> pint.UnitRegistry:
+    return pint.UnitRegistry(cache_folder=None)
+
+
+def quantity(text, kind: str, where: str) -> float:
+    """Read one quantity with its unit.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit, such as ``"0.1 mm"``.
+    kind : {"length", "force", "pressure"}
+        What it must be.
+    where : str
+        The file and key it stands under, for the error.
+
+    Returns
+    -------
+    float
+        The value in mm, N or MPa.
+
+    Raises
+    ------
+    InputError
+        If the unit is missing, unknown, or of another kind.
+    """
+    unit = PROGRAM_UNITS[kind]
+    wanted = f"expected a {kind} with its unit, such as '{_EXAMPLES[kind]}'"
+    if not isinstance(text, str):
+        raise InputError(f"{where}: {text!r} has no unit; {wanted}")
+    try:
+        value = _registry()(text)
+    except Exception as error:  # pint raises half a dozen unrelated types for malformed text
+        raise InputError(f"{where}: cannot read {text!r} ({error}); {wanted}") from None
+    if not isinstance(value, pint.Quantity):
+        raise InputError(f"{where}: {text!r} has no unit; {wanted}")
+    if not value.check(f"[{kind}]"):
+        raise InputError(f"{where}: {text!r} is not a {kind}; {wanted}")
+    return float(value.to(unit).magnitude)
+
+
+def load(text, where: str) -> tuple[float, str]:
+    """Read a load given as a force or as a nominal pressure.
+
+    Returns
+    -------
+    value : float
+        In N or MPa.
+    kind : {"force", "pressure"}
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    for kind in ("force", "pressure"):
+        try:
+            return quantity(text, kind, where), kind
+        except InputError:
+            continue
+    raise InputError(
+        f"{where}: {text!r} is neither a force nor a nominal pressure; "
+        "write for example '10 kN' or '25 MPa'"
+    )
+
+
+def length_factor(unit: str, where: str) -> float:
+    """Millimetres in one ``unit`` of length ("um", "m", ...).
+
+    Raises
+    ------
+    InputError
+        If ``unit`` is no unit of length.
+    """
+    return quantity(f"1 {unit}", "length", where)
