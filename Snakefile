@@ -1,0 +1,24 @@
+# From scans of cracks to the figures of Borri-Brunetto, Carpinteri and Chiaia (1999).
+# A study is its configuration: snakemake --cores all --configfile config/paper.yaml
+from snakemake.utils import min_version
+
+min_version("9.0")
+
+if "study" not in config:
+
+    configfile: "config/paper.yaml"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/specimens.smk"
+include: "workflow/rules/joints.smk"
+include: "workflow/rules/contact.smk"
+include: "workflow/rules/scaling.smk"
+include: "workflow/rules/figures.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        f"{RESULTS}/atlas.nc",
+        collect_figures,

@@ -1,0 +1,239 @@
+"""Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
+
+import hashlib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ..catalogue import split_file_name
+from ..errors import InputError
+from ..units import length_factor
+from .arrays import read_npy, read_npz
+from .faces import Measured, grid_one, grid_pair
+from .instruments import instrument_formats, read_instrument
+from .mesh import read_mesh
+from .options import MATRIX_KEYS, POINT_KEYS, ScanOptions, length_mm, parse_options, spacing_mm
+from .raw import RawScan
+from .text import is_text, read_text
+from .x3p import read_x3p
+
+__all__ = ["read_faces", "read_scan"]
+
+LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to
+_TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
+_MESH = (".obj", ".ply", ".stl")
+_ARRAY = (".npy", ".npz")
+
+
+def read_scan(path, options=None) -> xr.DataArray:
+    """Read one scan file.
+
+    Parameters
+    ----------
+    path : path-like
+        A matrix, a point cloud, a mesh or an instrument's file; its extension says which.
+    options : mapping, optional
+        Keys of the sidecar: ``unit``, ``unit_xy``, ``unit_z``, ``spacing``, ``layout``,
+        ``first_row``, ``variable``, ``columns``, ``missing``, ``grid``. They win over the file.
+
+    Returns
+    -------
+    DataArray
+        ``height`` (y, x) in mm, NaN where missing; x and y in mm, ascending, cell centres. A tilt
+        is left in.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, lacks a unit or spacing, or cannot be the scan of a rough surface.
+    """
+    return grid_one(_measure(Path(path), options))
+
+
+def read_faces(lower_path, upper_path=None, options=None):
+    """Read the faces of one joint onto one common grid.
+
+    Points are gridded at the coarser of the two spacings over the area both cover; matrices must
+    have the same spacing and are cropped to the rectangle both cover.
+
+    Parameters
+    ----------
+    lower_path : path-like
+    upper_path : path-like or None
+        None if one face was scanned.
+    options : mapping, optional
+        As for `read_scan`, for both faces.
+
+    Returns
+    -------
+    lower : DataArray
+    upper : DataArray or None
+
+    Raises
+    ------
+    InputError
+        As `read_scan`; also if the two grids differ or share no area.
+    """
+    if upper_path is None:
+        return read_scan(lower_path, options), None
+    return grid_pair(_measure(Path(lower_path), options), _measure(Path(upper_path), options))
+
+
+def _measure(path: Path, options) -> Measured:
+    """Read a file and convert it to mm, with what the sidecar says."""
+    options = parse_options(options, str(path))
+    _check_size(path)
+    raw = _read_raw(path, options)
+    _refuse_idle_keys(raw, options, path)
+    notes = list(raw.notes)
+    unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, notes)
+    unit_z = _choose_unit("unit_z", raw.unit_z, options, notes)
+    _require_units(raw, options, unit_xy, unit_z, path)
+    values = _without_missing(raw, options) if raw.layout == "matrix" else raw.values.copy()
+    if raw.layout == "matrix":
+        values *= length_factor(unit_z, f"{path}: unit_z")
+        if (options.first_row or raw.first_row) == "top":
+            values = values[::-1].copy()
+        spacing = _choose_spacing(raw, options, unit_xy, path, notes)
+    else:
+        values[:, 2] = _without_missing(raw, options)[:, 2]
+        values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
+        values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
+        spacing = None
+    grid = options.grid and length_mm(options.grid, unit_xy, f"{path}: key 'grid'")
+    provenance = {
+        "source": path.name,
+        "sha256": _sha256(path),
+        "reader": raw.reader,
+        "file_unit": unit_z if unit_xy in (None, unit_z) else f"x, y {unit_xy}; z {unit_z}",
+        "layout": raw.layout,
+        "notes": "; ".join(notes),
+    }
+    return Measured(path, raw.layout, values, spacing, grid, provenance)
+
+
+def _read_raw(path: Path, options: ScanOptions) -> RawScan:
+    """Choose the reader by extension, and by content where one extension serves two formats."""
+    extension = path.suffix.lower()
+    if extension == ".npy":
+        return read_npy(path, options)
+    if extension == ".npz":
+        return read_npz(path, options)
+    if extension in _MESH:
+        return read_mesh(path)
+    if extension == ".x3p":
+        return read_x3p(path)
+    if extension in _TEXT and is_text(path):
+        return read_text(path, options)
+    if extension.lstrip(".") in instrument_formats():
+        return read_instrument(path, options)
+    if extension in _TEXT:
+        raise InputError(f"{path}: not a text file; damaged, or the wrong extension?")
+    known = sorted({*_TEXT, *_MESH, *_ARRAY, ".x3p", *(f".{e}" for e in instrument_formats())})
+    raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
+
+
+def _check_size(path: Path) -> None:
+    """Refuse files that are absent, empty or far too large, before anything is unpacked."""
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    size = path.stat().st_size
+    if size == 0:
+        raise InputError(f"{path}: the file is empty")
+    if size <= LARGEST_FILE and zipfile.is_zipfile(path):
+        try:
+            with zipfile.ZipFile(path) as archive:
+                size = max(size, sum(member.file_size for member in archive.infolist()))
+        except zipfile.BadZipFile as error:
+            raise InputError(f"{path}: a damaged archive ({error})") from error
+    if size > LARGEST_FILE:
+        raise InputError(
+            f"{path}: {size / 1024**3:.1f} GiB to read, more than the {LARGEST_FILE / 1024**3:g} "
+            "GiB allowed; export a part of it or a coarser grid"
+        )
+
+
+def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
+    """A key that would change nothing was meant to change something."""
+    idle = POINT_KEYS if raw.layout == "matrix" else MATRIX_KEYS
+    for key in idle:
+        if getattr(options, key) is not None:
+            hint = "'grid'" if key == "spacing" else "'spacing'" if key == "grid" else "'layout'"
+            raise InputError(
+                f"{path}: key '{key}' has no meaning for a scan read as {raw.layout}; "
+                f"remove it (did you mean {hint}?)"
+            )
+
+
+def _choose_unit(key: str, stated: str | None, options: ScanOptions, notes: list) -> str | None:
+    """The sidecar's unit, else the file's; noted where they differ."""
+    given = getattr(options, key) or options.unit
+    if given and stated and length_factor(given, key) != length_factor(stated, key):
+        notes.append(f"{key} {given} from the sidecar, the file says {stated}")
+    return given or stated
+
+
+def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Path) -> None:
+    """Ask for everything the file lacks in one message, ready to be copied."""
+    stated_spacing = options.spacing if options.spacing is not None else raw.spacing
+    lacks_spacing = raw.layout == "matrix" and stated_spacing is None
+    if raw.layout == "matrix":
+        given = options.spacing if isinstance(options.spacing, tuple) else (options.spacing,)
+        numbers_only = options.spacing is None or not all(isinstance(s, str) for s in given)
+        lacks_unit = unit_z is None or (numbers_only and not lacks_spacing and unit_xy is None)
+    else:
+        lacks_unit = unit_z is None or unit_xy is None
+    if not (lacks_unit or lacks_spacing):
+        return
+    what = " and ".join(
+        word for word, lacks in (("unit", lacks_unit), ("spacing", lacks_spacing)) if lacks
+    )
+    lines = []
+    if lacks_unit:
+        lines.append("    unit: mm          # of its lengths; unit_xy and unit_z where they differ")
+    if lacks_spacing:
+        lines.append("    spacing: 0.1 mm   # between neighbouring cells")
+    name, _ = split_file_name(path.name)
+    raise InputError(
+        f"{path}: the file states no {what}. Write into {path.with_name(name + '.yaml')}, "
+        "with your own values:\n" + "\n".join(lines)
+    )
+
+
+def _choose_spacing(raw, options, unit_xy, path: Path, notes: list) -> tuple[float, float]:
+    """The sidecar's spacing, else the file's, in mm; noted where they differ."""
+    stated = None
+    if raw.spacing is not None and unit_xy is not None:
+        factor = length_factor(unit_xy, f"{path}: unit_xy")
+        stated = tuple(factor * spacing for spacing in raw.spacing)
+    if options.spacing is not None:
+        spacing = spacing_mm(options.spacing, unit_xy, f"{path}: key 'spacing'")
+        if stated and not np.allclose(spacing, stated, rtol=1e-6, atol=0):
+            notes.append(
+                f"spacing {spacing[0]:.6g} x {spacing[1]:.6g} mm from the sidecar, the file says "
+                f"{stated[0]:.6g} x {stated[1]:.6g} mm"
+            )
+        return spacing
+    if not (np.isfinite(stated).all() and min(stated) > 0):
+        raise InputError(
+            f"{path}: the file states a cell spacing of {stated[0]:g} x {stated[1]:g} mm; write "
+            "the right one in the sidecar, such as 'spacing: 0.1 mm'"
+        )
+    return stated
+
+
+def _without_missing(raw: RawScan, options: ScanOptions) -> np.ndarray:
+    """Values in file units with the missing number and infinities as NaN."""
+    missing = options.missing if options.missing is not None else raw.missing
+    absent = ~np.isfinite(raw.values)
+    if missing is not None:
+        # Markers such as 3.4e38 come back from text and float32 not quite the same.
+        absent |= np.isclose(raw.values, missing, rtol=1e-6, atol=0)
+    return np.where(absent, np.nan, raw.values)
+
+
+def _sha256(path: Path) -> str:
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

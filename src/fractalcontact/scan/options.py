@@ -1,0 +1,123 @@
+"""The keys of a sidecar that say how a scan file is to be read."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+from ..errors import InputError
+from ..units import length_factor, quantity
+
+
+@dataclass(frozen=True)
+class ScanOptions:
+    """What the user says about a scan file; None where the file or its content decides."""
+
+    unit: str | None = None
+    unit_xy: str | None = None
+    unit_z: str | None = None
+    spacing: float | str | tuple | None = None
+    layout: str | None = None
+    first_row: str | None = None
+    variable: str | None = None
+    columns: tuple | None = None
+    missing: float | None = None
+    grid: float | str | None = None
+
+
+#: Keys that mean nothing for the other layout, and what is meant by them.
+MATRIX_KEYS = ("spacing", "first_row")
+POINT_KEYS = ("columns", "grid")
+
+
+def parse_options(options: Mapping | None, where: str) -> ScanOptions:
+    """Check the scan keys of a sidecar.
+
+    Parameters
+    ----------
+    options : mapping or None
+        See `ScanOptions`; every key is optional.
+    where : str
+        The scan file, for errors.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or a value is of the wrong kind.
+    """
+    options = dict(options or {})
+    known = [field.name for field in fields(ScanOptions)]
+    if unknown := sorted(set(options) - set(known), key=str):
+        raise InputError(f"{where}: unknown scan key {unknown[0]!r}; known: {', '.join(known)}")
+    for key in ("unit", "unit_xy", "unit_z"):
+        if (unit := options.get(key)) is not None:
+            _require(isinstance(unit, str), where, key, unit, "a unit of length, such as 'mm'")
+            length_factor(unit, f"{where}: {key}")
+    _one_of(options, "layout", ("matrix", "points"), where)
+    _one_of(options, "first_row", ("bottom", "top"), where)
+    if (variable := options.get("variable")) is not None:
+        _require(isinstance(variable, str), where, "variable", variable, "the name of an array")
+    if (missing := options.get("missing")) is not None:
+        _require(_is_number(missing), where, "missing", missing, "a number, such as -9999")
+    if (columns := options.get("columns")) is not None:
+        options["columns"] = _columns(columns, where)
+    if isinstance(options.get("spacing"), list):
+        options["spacing"] = tuple(options["spacing"])
+    return ScanOptions(**options)
+
+
+def length_mm(value, unit_xy: str | None, where: str) -> float:
+    """Read a spacing: a text with its own unit, or a number in ``unit_xy``.
+
+    Raises
+    ------
+    InputError
+        If it has no unit, or is not a finite number above zero.
+    """
+    if isinstance(value, str):
+        length = quantity(value, "length", where)
+    elif not _is_number(value):
+        raise InputError(f"{where}: {value!r} is no length; write for example '0.1 mm'")
+    elif unit_xy is None:
+        raise InputError(f"{where}: {value!r} has no unit; write for example '{value} mm'")
+    else:
+        length = value * length_factor(unit_xy, where)
+    if not (math.isfinite(length) and length > 0):
+        raise InputError(f"{where}: {value!r} must be a finite length above zero")
+    return length
+
+
+def spacing_mm(spacing, unit_xy: str | None, where: str) -> tuple[float, float]:
+    """Read one spacing, or a pair (dx, dy), in mm."""
+    pair = spacing if isinstance(spacing, tuple) else (spacing, spacing)
+    if len(pair) != 2:
+        raise InputError(f"{where}: expected one spacing or a pair [dx, dy], not {list(pair)!r}")
+    dx, dy = (length_mm(value, unit_xy, where) for value in pair)
+    return dx, dy
+
+
+def _columns(columns, where: str) -> tuple:
+    valid = (
+        isinstance(columns, list | tuple)
+        and len(columns) == 3
+        and all(isinstance(c, str) or _is_index(c) for c in columns)
+    )
+    _require(valid, where, "columns", columns, "three names or numbers from 0: [x, y, z]")
+    return tuple(columns)
+
+
+def _one_of(options: dict, key: str, allowed: tuple, where: str) -> None:
+    value = options.get(key)
+    _require(value is None or value in allowed, where, key, value, " or ".join(allowed))
+
+
+def _is_number(value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _is_index(value) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _require(valid: bool, where: str, key: str, value, expected: str) -> None:
+    if not valid:
+        raise InputError(f"{where}: key '{key}' is {value!r}; expected {expected}")

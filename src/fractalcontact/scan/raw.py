@@ -1,0 +1,97 @@
+"""What every reader of a file format hands over, in the file's own units."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import InputError
+
+#: A matrix or grid needs at least this many cells along each side to hold any roughness.
+SMALLEST_SIDE = 8
+
+
+@dataclass(frozen=True)
+class RawScan:
+    """The numbers of one file, before units.
+
+    Attributes
+    ----------
+    values : ndarray
+        A matrix (rows, columns) of heights, or points (n, 3).
+    layout : {"matrix", "points", "mesh"}
+    reader : str
+        Software or method that read the file.
+    unit_xy, unit_z : str or None
+        Units the file states.
+    spacing : (float, float) or None
+        dx, dy the file states, in ``unit_xy``.
+    first_row : {"bottom", "top"}
+        Where the first row of a matrix lies.
+    missing : float or None
+        Number the file states for a missing cell.
+    notes : tuple of str
+        What a user should know about the reading.
+    """
+
+    values: np.ndarray
+    layout: str
+    reader: str
+    unit_xy: str | None = None
+    unit_z: str | None = None
+    spacing: tuple[float, float] | None = None
+    first_row: str = "bottom"
+    missing: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+def table_to_raw(table, names, options, where, **stated) -> RawScan:
+    """Decide whether a table of numbers is a matrix of heights or a list of points.
+
+    Parameters
+    ----------
+    table : ndarray, shape (rows, columns)
+    names : list of str or None
+        Column names, where the file has them.
+    options : ScanOptions
+    where : str
+        The file, for errors.
+    **stated
+        Further fields of `RawScan`.
+
+    Raises
+    ------
+    InputError
+        If neither its width nor its column names tell, or a wanted column is absent.
+    """
+    columns = options.columns or _named_xyz(names)
+    n_columns = table.shape[1]
+    layout = options.layout or ("points" if columns or n_columns == 3 else "matrix")
+    if layout == "matrix":
+        if options.layout is None and n_columns < SMALLEST_SIDE and len(table) > n_columns:
+            raise InputError(
+                f"{where}: {n_columns} columns without names are neither x, y, z nor a matrix; say "
+                "which columns are x, y and z in the sidecar, for example 'columns: [0, 1, 2]'"
+            )
+        return RawScan(table, "matrix", **stated)
+    chosen = [_column_index(c, names, n_columns, where) for c in columns or (0, 1, 2)]
+    return RawScan(np.ascontiguousarray(table[:, chosen]), "points", **stated)
+
+
+def _named_xyz(names) -> list[int] | None:
+    """Find columns called x, y and z, whatever their case or unit in brackets."""
+    plain = [name.split("(")[0].split("[")[0].strip().lower() for name in names or ()]
+    return [plain.index(axis) for axis in "xyz"] if {"x", "y", "z"} <= set(plain) else None
+
+
+def _column_index(column, names, n_columns: int, where: str) -> int:
+    if isinstance(column, str):
+        if column not in (names or ()):
+            has = f"its columns are {', '.join(names)}" if names else "it names no columns"
+            raise InputError(f"{where}: no column {column!r} (key 'columns'); {has}")
+        return names.index(column)
+    if column >= n_columns:
+        raise InputError(
+            f"{where}: no column {column} (columns are counted from 0; it has {n_columns}); set "
+            "key 'columns' to three that exist"
+        )
+    return column

@@ -1,0 +1,164 @@
+"""Writing and reading what a study keeps: netCDF-4, whole or not at all, and the atlas.
+
+Nothing that differs between two runs of one study (times, host names, paths) is written, so that
+the same configuration, scans, versions and machine give the same bytes.
+"""
+
+import contextlib
+import json
+import os
+import tempfile
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+#: Stages of the atlas, one group each, holding one group a specimen.
+STAGES = {
+    "specimens": "levelled faces, mask, window and where they came from",
+    "surface_dimension": "Delta_g of each face by several estimators",
+    "joints": "offsets and composite topographies",
+    "contact": "contact domains",
+    "closure": "closure curves, stiffness, real contact area",
+    "dilatancy": "rigid and elastic dilatancy",
+    "domains": "box counts, Delta_sigma and clusters of the contact domains",
+    "scaling": "renormalisation over resolutions",
+}
+
+#: Libraries whose version can change a number.
+_NUMBER_MAKERS = ("fractalcontact", "numpy", "scipy", "numba", "xarray")
+
+
+@contextlib.contextmanager
+def written_whole(path):
+    """A temporary path beside ``path`` that takes its place when the block ends without error.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Yields
+    ------
+    pathlib.Path
+        Same folder and same ending as ``path``.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _umask():
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def write(dataset, path):
+    """Write a dataset as netCDF-4, compressed, whole or not at all.
+
+    Parameters
+    ----------
+    dataset : xr.Dataset
+    path : path-like
+    """
+    with written_whole(path) as temporary:
+        dataset.to_netcdf(temporary, engine="netcdf4", encoding=_encoding(dataset))
+
+
+def read(path):
+    """A dataset written by :func:`write`, in memory."""
+    with xr.open_dataset(path, engine="netcdf4") as dataset:
+        return dataset.load()
+
+
+def _encoding(dataset):
+    return {
+        name: {"zlib": True, "complevel": 4, "shuffle": True}
+        for name, variable in dataset.variables.items()
+        if variable.ndim > 0 and variable.dtype.kind in "fiub"
+    }
+
+
+def write_atlas(parts, path, *, study, configuration):
+    """Put everything a study made into one file.
+
+    Parameters
+    ----------
+    parts : mapping of str to mapping of str to xr.Dataset
+        Stage to specimen to dataset; stages are those of :data:`STAGES`.
+    path : path-like
+    study : str
+        Its name.
+    configuration : mapping
+        The study's configuration, kept word for word as JSON.
+
+    Raises
+    ------
+    ValueError
+        If a variable has no unit or no long name: nothing unlabelled enters the atlas.
+    """
+    root = xr.Dataset(
+        attrs={
+            "title": f"fractalcontact study {study}",
+            "study": study,
+            "configuration": json.dumps(configuration, sort_keys=True),
+            "versions": json.dumps({name: metadata.version(name) for name in _NUMBER_MAKERS}),
+            "scan_checksums": json.dumps(_checksums(parts["specimens"]), sort_keys=True),
+        }
+    )
+    nodes = {"/": root}
+    encoding = {}
+    for stage, specimens in parts.items():
+        nodes[f"/{stage}"] = xr.Dataset(attrs={"description": STAGES[stage]})
+        for name, dataset in specimens.items():
+            _demand_labels(dataset, f"{stage}/{name}")
+            nodes[f"/{stage}/{name}"] = dataset
+            encoding[f"/{stage}/{name}"] = _encoding(dataset)
+    tree = xr.DataTree.from_dict(nodes)
+    with written_whole(path) as temporary:
+        tree.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+
+
+def open_atlas(path):
+    """The atlas as an xarray DataTree, loaded on use; close it when done."""
+    return xr.open_datatree(path, engine="netcdf4")
+
+
+def _checksums(specimens):
+    """The checksums each specimen's provenance states, by specimen."""
+    return {name: dataset.attrs.get("provenance", "") for name, dataset in specimens.items()}
+
+
+def _demand_labels(dataset, where):
+    for name, variable in dataset.data_vars.items():
+        missing = [key for key in ("units", "long_name") if key not in variable.attrs]
+        if missing:
+            raise ValueError(f"{where}: variable {name} has no {' and no '.join(missing)}")
+
+
+def padded(arrays, length=None):
+    """Arrays of different length as rows of one table, the rest NaN.
+
+    Parameters
+    ----------
+    arrays : sequence of (n_i,) array_like
+    length : int, optional
+
+    Returns
+    -------
+    (len(arrays), length) float64 ndarray
+    """
+    length = max((len(a) for a in arrays), default=0) if length is None else length
+    table = np.full((len(arrays), length), np.nan)
+    for row, values in zip(table, arrays, strict=True):
+        row[: len(values)] = values
+    return table

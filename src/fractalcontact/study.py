@@ -1,0 +1,294 @@
+"""A study as its configuration file states it, checked and turned into mm, N and MPa."""
+
+import difflib
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import jsonschema
+import yaml
+
+from .errors import InputError
+from .units import load, quantity
+
+#: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
+_SCAN_DEFINITION, _SETTINGS_DEFINITION = "scan", "settings"
+
+#: What a study that does not mention it gets; everything else must be stated.
+SOLVER = {"rtol": 1e-6, "kernel": "love"}
+
+
+def read_yaml(path):
+    """Mapping in a YAML file.
+
+    Raises
+    ------
+    InputError
+        If the file is no YAML, or not a mapping.
+    """
+    try:
+        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not readable as YAML: {error}") from None
+    if document is None:
+        return {}
+    if not isinstance(document, dict):
+        raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
+    return document
+
+
+def check_study(config, schema, source):
+    """Check a study against its schema.
+
+    Parameters
+    ----------
+    config : mapping
+        The study as read from YAML.
+    schema : mapping
+        config/schema/study.schema.yaml.
+    source : str
+        The file it came from, for errors.
+
+    Raises
+    ------
+    InputError
+        For the first thing found wrong: the file, the key, what was expected.
+    """
+    _validate(config, schema, source)
+    for name in config.get("specimens", {}):
+        resolve_settings(config, name, {}, source)
+    resolve_settings(config, None, {}, source)
+    for name, recipe in config.get("embedded", {}).items():
+        resolve_embedded(recipe, f"{source}: embedded.{name}")
+
+
+def read_sidecar(path, schema):
+    """Scan keys and settings of a sidecar, checked.
+
+    Returns
+    -------
+    scan : dict
+        How to read the file, for :func:`fractalcontact.scan.read_faces`.
+    settings : dict
+        What differs from the study's defaults.
+
+    Raises
+    ------
+    InputError
+    """
+    if path is None:
+        return {}, {}
+    document = read_yaml(path)
+    definitions = schema["$defs"]
+    scan_keys = definitions[_SCAN_DEFINITION]["properties"]
+    properties = {**scan_keys, **definitions[_SETTINGS_DEFINITION]["properties"]}
+    sidecar_schema = {
+        "$defs": definitions,
+        "type": "object",
+        "additionalProperties": False,
+        "properties": properties,
+    }
+    _validate(document, sidecar_schema, str(path))
+    scan = {key: value for key, value in document.items() if key in scan_keys}
+    settings = {key: value for key, value in document.items() if key not in scan_keys}
+    return scan, settings
+
+
+def resolve_settings(config, name, sidecar, source):
+    """Settings of one specimen: the defaults, then the study's own for it, then its sidecar's.
+
+    Parameters
+    ----------
+    config : mapping
+        A study that passed the schema.
+    name : str or None
+        The specimen; None for the defaults alone.
+    sidecar : mapping
+        Settings of its sidecar.
+    source : str
+        For errors.
+
+    Returns
+    -------
+    dict
+        Plain numbers in mm, N and MPa; ``None`` stands for "auto". Loads are pairs (value, kind).
+
+    Raises
+    ------
+    InputError
+        If a quantity has the wrong unit, a material no definition, or a needed key is missing.
+    """
+    of_study = config.get("specimens", {}).get(name, {})
+    merged = {**config["defaults"], **of_study, **sidecar}
+
+    def where(key):
+        if key in sidecar:
+            return f"sidecar of {name}: {key}"
+        return f"{source}: " + (f"specimens.{name}.{key}" if key in of_study else f"defaults.{key}")
+
+    for key in ("material", "loads", "resolutions"):
+        if key not in merged:
+            raise InputError(f"{source}: missing key 'defaults.{key}'")
+    loads = [load(text, where("loads")) for text in merged["loads"]]
+    flat = merged.get("opposite", "match") == "flat"
+    directions = merged.get("directions", ["E", "N", "W", "S"])
+    settings = {
+        "label": merged.get("label", name or ""),
+        "material": _material(config, merged["material"], where("material")),
+        "opposite": merged.get("opposite", "match"),
+        "window": _optional(merged.get("window", "auto"), where("window")),
+        "window_centre": None,
+        "directions": ["none"] if flat else directions,
+        "contact_directions": ["none"] if flat else merged.get("contact_directions", directions),
+        "offsets": [0.0] if flat else _optional(merged.get("offsets", "auto"), where("offsets")),
+        "loads": loads,
+        "resolutions": sorted(merged["resolutions"]),
+        "dilatancy_loads": _chosen_loads(merged, "dilatancy_loads", loads, where),
+        "map_load": _chosen_loads(merged, "map_load", loads, where)[-1],
+        "map_offset": None,
+        "hyperbola_range": None,
+    }
+    for key in ("surface_range", "box_range", "scaling_range"):
+        settings[key] = _optional(merged.get(key, "auto"), where(key))
+    if merged.get("hyperbola_range", "auto") != "auto":
+        settings["hyperbola_range"] = [
+            load(text, where("hyperbola_range")) for text in merged["hyperbola_range"]
+        ]
+    if "window_centre" in merged:
+        settings["window_centre"] = _lengths(merged["window_centre"], where("window_centre"))
+    if "map_offset" in merged and not flat:
+        settings["map_offset"] = quantity(merged["map_offset"], "length", where("map_offset"))
+    for direction in settings["contact_directions"]:
+        if direction not in settings["directions"]:
+            raise InputError(
+                f"{where('contact_directions')}: {direction} is not among the directions "
+                f"{settings['directions']}; add it there, the rigid dilatancy is needed too"
+            )
+    for offset in settings["offsets"] or ():
+        if offset < 0:
+            raise InputError(f"{where('offsets')}: {offset} mm is negative; slide the other way")
+    for value, kind in loads:
+        if value <= 0:
+            raise InputError(f"{where('loads')}: a {kind} of {value}; loads must be positive")
+    return settings
+
+
+def window_arguments(settings):
+    """Where :func:`fractalcontact.specimen.make_specimen` is to place the window.
+
+    The window is cut to whole cells of the coarsest pre-fractal, so that all resolutions cover the
+    same area, and placed where the offsets of the study can slide it.
+    """
+    centre = settings["window_centre"]
+    reach = max(settings["offsets"] or [0.0])
+    flat = settings["opposite"] == "flat"
+    return {
+        "opposite": settings["opposite"],
+        "window": settings["window"],
+        "window_centre": None if centre is None else (centre[1], centre[0]),
+        "multiple": math.lcm(*settings["resolutions"]),
+        "reach": 0.0 if flat else dict.fromkeys(settings["directions"], reach),
+    }
+
+
+def resolve_embedded(recipe, where):
+    """Numbers of an embedded specimen: lengths in mm.
+
+    Raises
+    ------
+    InputError
+        If a length has no unit of length or is not positive.
+    """
+    numbers = dict(recipe)
+    for key in ("size", "spacing", "rms", "roll_off"):
+        if recipe.get(key) is not None:
+            numbers[key] = quantity(recipe[key], "length", f"{where}.{key}")
+            if numbers[key] <= 0:
+                raise InputError(f"{where}.{key}: {recipe[key]!r} must be positive")
+    numbers.setdefault("outline", "square")
+    numbers.setdefault("roll_off", None)
+    return numbers
+
+
+def solver_settings(config):
+    """Tolerance and kernel of the contact solver."""
+    return {**SOLVER, **config.get("solver", {})}
+
+
+def _material(config, material, where):
+    """Name, modulus E (MPa), Poisson's ratio and composite modulus E* of two like bodies (MPa)."""
+    if isinstance(material, Mapping):
+        label, definition, where = "own", material, f"{where}"
+    else:
+        if material not in config["materials"]:
+            raise InputError(
+                f"{where}: no material {material!r}{_near(material, config['materials'])}"
+            )
+        label, definition = material, config["materials"][material]
+        where = f"materials.{material}"
+    modulus = quantity(definition["modulus"], "pressure", f"{where}.modulus")
+    if modulus <= 0:
+        raise InputError(f"{where}.modulus: {definition['modulus']!r} must be positive")
+    poisson = float(definition["poisson"])
+    e_star = modulus / (2 * (1 - poisson**2))
+    return {"name": label, "modulus": modulus, "poisson": poisson, "e_star": e_star}
+
+
+def _chosen_loads(merged, key, loads, where):
+    """Loads picked for a figure: those named, which must be solved, or the largest three."""
+    if key not in merged:
+        return loads[-3:]
+    named = merged[key] if isinstance(merged[key], list) else [merged[key]]
+    chosen = [load(text, where(key)) for text in named]
+    for pair, text in zip(chosen, named, strict=True):
+        if pair not in loads:
+            raise InputError(f"{where(key)}: {text!r} is not among the loads {merged['loads']}")
+    return chosen
+
+
+def _optional(value, where):
+    """None for "auto", one length, or a list of lengths."""
+    if value == "auto":
+        return None
+    return _lengths(value, where) if isinstance(value, list) else quantity(value, "length", where)
+
+
+def _lengths(values, where):
+    return [quantity(text, "length", where) for text in values]
+
+
+def _validate(document, schema, source):
+    errors = list(jsonschema.Draft202012Validator(schema).iter_errors(document))
+    if not errors:
+        return
+    first = min(errors, key=lambda error: [str(part) for part in error.absolute_path])
+    others = f" ({len(errors) - 1} more to see after this one)" if len(errors) > 1 else ""
+    raise InputError(f"{source}: {_explain(first)}{others}")
+
+
+def _explain(error):
+    """One sentence for one schema error: the key, what was expected, the nearest known key."""
+    key = ".".join(str(part) for part in error.absolute_path)
+    if error.validator == "additionalProperties":
+        known = error.schema["properties"]
+        unknown = sorted(set(error.instance) - set(known))[0]
+        full = f"{key}.{unknown}" if key else unknown
+        return f"unknown key '{full}'{_near(unknown, known)}"
+    if error.validator == "required":
+        missing = next(name for name in error.validator_value if name not in error.instance)
+        full = f"{key}.{missing}" if key else missing
+        expected = error.schema["properties"].get(missing, {})
+        return f"missing key '{full}'{_expected(expected)}"
+    return f"{key}: {error.instance!r} is not right{_expected(error.schema)}"
+
+
+def _expected(schema):
+    if schema.get("$ref", "").endswith("quantity"):
+        return "; expected a number with its unit, such as 20 mm, 10 kN or 25 GPa"
+    return f"; expected {schema['description']}" if "description" in schema else ""
+
+
+def _near(word, known):
+    """The nearest known word, for a hint."""
+    near = difflib.get_close_matches(str(word), [str(k) for k in known], n=1)
+    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(map(str, known))}"

@@ -1,0 +1,176 @@
+"""Contact states over offsets, loads and resolutions: what one job of a study computes."""
+
+import numpy as np
+import xarray as xr
+
+from .contact import NotConverged, solve_contact
+from .halfspace import HalfSpace
+from .joint import composite_topography, prefractal
+
+#: Scalars kept of every state: name, unit, long name.
+SCALARS = {
+    "closure": ("mm", "closure w from first touch"),
+    "force": ("N", "normal force F"),
+    "area": ("mm2", "real contact area A_r"),
+    "stiffness": ("N/mm", "normal stiffness dF/dw"),
+    "residual": ("1", "largest violation of the contact conditions, share of the closure"),
+    "iterations": ("1", "applications of the elastic operator"),
+}
+
+
+def window_sides(specimen):
+    """Sides (y, x) of the window, mm."""
+    return tuple(specimen.attrs[f"window_n{a}"] * specimen.attrs[f"spacing_{a}"] for a in "yx")
+
+
+def nominal_area(specimen):
+    """A_0 of the window, mm2."""
+    side_y, side_x = window_sides(specimen)
+    return side_y * side_x
+
+
+def forces_of(loads, area):
+    """Loads as forces, N, ascending: pressures are nominal, on ``area`` in mm2.
+
+    Parameters
+    ----------
+    loads : sequence of (float, str)
+        Value and kind, "force" (N) or "pressure" (MPa).
+    area : float
+
+    Returns
+    -------
+    (n,) ndarray
+    """
+    return np.unique([value * area if kind == "pressure" else value for value, kind in loads])
+
+
+def force_range(loads, specimen):
+    """Smallest and largest force, N, of a range of loads; None for all."""
+    return None if loads is None else tuple(forces_of(loads, nominal_area(specimen))[[0, -1]])
+
+
+def contact_states(specimen, direction, cells, settings, resolutions, solver):
+    """Solve the contact at some offsets and resolutions, under every load of the study.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    direction : str
+    cells : (n,) int array_like
+        Offsets in cells; may be empty.
+    settings : dict
+        From :func:`fractalcontact.study.resolve_settings`.
+    resolutions : sequence of int
+        Multiples k of the scan's spacing.
+    solver : dict
+        ``rtol`` and ``kernel``.
+
+    Returns
+    -------
+    xr.Dataset
+        The scalars of :data:`SCALARS` over (direction, offset, resolution, load) and, for each
+        resolution k, the contact domain ``in_contact_k`` over (direction, offset, load, y_k, x_k).
+
+    Raises
+    ------
+    NotConverged
+        If any state could not be verified; the message names it.
+    """
+    forces = forces_of(settings["loads"], nominal_area(specimen))
+    cells = np.asarray(cells, int)
+    shape = (1, len(cells), len(resolutions), len(forces))
+    scalars = {name: np.full(shape, np.nan) for name in SCALARS}
+    fields = {}
+    for k, factor in enumerate(resolutions):
+        space = _space(specimen, factor, settings, solver)
+        touching = np.zeros((1, len(cells), len(forces), *space.shape), bool)
+        for i, n in enumerate(cells):
+            composite = prefractal(composite_topography(specimen, direction, n), factor)
+            state = None
+            for j, force in enumerate(forces):
+                try:
+                    state = solve_contact(
+                        composite, space, force=force, start=state, rtol=solver["rtol"]
+                    )
+                except NotConverged as error:
+                    error.add_note(
+                        f"specimen {specimen.attrs['name']}, direction {direction}, offset {n} "
+                        f"cells, resolution {factor}, F = {force:g} N"
+                    )
+                    raise
+                touching[0, i, j] = state.in_contact
+                for name, values in scalars.items():
+                    values[0, i, k, j] = getattr(state, name)
+        fields[f"in_contact_{factor}"] = (
+            ("direction", "offset", "load", f"y_{factor}", f"x_{factor}"),
+            touching,
+            {"units": "1", "long_name": f"contact domain at {factor} times the scan's spacing"},
+        )
+    dims = ("direction", "offset", "resolution", "load")
+    spacing = specimen.attrs["spacing_x" if direction in ("E", "W", "none") else "spacing_y"]
+    variables = {
+        name: (dims, values, {"units": SCALARS[name][0], "long_name": SCALARS[name][1]})
+        for name, values in scalars.items()
+    }
+    return xr.Dataset(
+        {**variables, **fields},
+        coords={
+            "direction": [direction],
+            "offset": ("offset", cells * spacing, {"units": "mm", "long_name": "shear offset v"}),
+            "resolution": (
+                "resolution",
+                np.array(resolutions),
+                {"units": "1", "long_name": "multiple k of the scan's spacing"},
+            ),
+            "load": ("load", forces, {"units": "N", "long_name": "normal force F"}),
+        },
+    )
+
+
+def combine(parts):
+    """One dataset from the parts that several jobs solved, in the order of their coordinates.
+
+    Parameters
+    ----------
+    parts : sequence of xr.Dataset
+        From :func:`contact_states`; empty ones are passed over.
+
+    Returns
+    -------
+    xr.Dataset
+    """
+    groups = {}
+    for part in parts:
+        if part.sizes["offset"]:
+            key = (part.direction.item(), tuple(part.resolution.values))
+            groups.setdefault(key, []).append(part)
+    by_direction = {}
+    for (direction, _), members in sorted(groups.items()):
+        whole = xr.concat(members, "offset", data_vars="minimal").sortby("offset")
+        by_direction.setdefault(direction, []).append(whole)
+    return xr.concat(
+        [_join_resolutions(members) for members in by_direction.values()],
+        "direction",
+        data_vars="minimal",
+        join="override",
+    )
+
+
+def domains_of(states):
+    """The contact domains alone, without the scalars."""
+    return states.drop_vars([*SCALARS, "resolution"])
+
+
+def _join_resolutions(parts):
+    """Parts that differ in resolution alone: scalars side by side, fields each their own."""
+    scalars = xr.concat([part[list(SCALARS)] for part in parts], "resolution")
+    fields = [part.drop_vars([*SCALARS, "resolution"]) for part in parts]
+    return xr.merge([scalars, *fields], compat="identical", join="exact").sortby("resolution")
+
+
+def _space(specimen, factor, settings, solver):
+    attrs = specimen.attrs
+    shape = tuple(-(-attrs[f"window_n{axis}"] // factor) for axis in "yx")
+    spacing = tuple(attrs[f"spacing_{axis}"] * factor for axis in "yx")
+    return HalfSpace(shape, spacing, settings["material"]["e_star"], kernel=solver["kernel"])

@@ -1,0 +1,72 @@
+# Contact solves, the costly part. One job takes one specimen and direction, and as many offsets and
+# resolutions as the study's `grain` says, with all their loads.
+
+
+def parts_of(specimen):
+    """Slices of offsets and of resolutions that the jobs of a specimen take."""
+    settings = SETTINGS[specimen]
+    # How many offsets "auto" finds is known only later; a job without any writes an empty part.
+    n_offsets = len(settings["offsets"]) if settings["offsets"] else AUTOMATIC_OFFSETS + 1
+    return grain("offsets", n_offsets), grain("resolutions", len(settings["resolutions"]))
+
+
+rule contact:
+    input:
+        specimen=rules.specimen.output[0],
+        joint=rules.joint.output[0],
+    output:
+        f"{RESULTS}/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.nc",
+    params:
+        settings=settings_of,
+        solver=SOLVER,
+        offsets=lambda wc: parts_of(wc.specimen)[0][int(wc.part)],
+        resolutions=lambda wc: SETTINGS[wc.specimen]["resolutions"][
+            slice(*parts_of(wc.specimen)[1][int(wc.level)])
+        ],
+        code=code("sweep", "store"),
+    log:
+        f"{RESULTS}/logs/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.tsv"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=60,
+    conda:
+        "../../environment.yml"
+    script:
+        "../scripts/contact.py"
+
+
+def contact_parts(wildcards):
+    offsets, resolutions = parts_of(wildcards.specimen)
+    return expand(
+        rules.contact.output,
+        specimen=wildcards.specimen,
+        direction=SETTINGS[wildcards.specimen]["contact_directions"],
+        part=range(len(offsets)),
+        level=range(len(resolutions)),
+    )
+
+
+rule closure:
+    input:
+        specimen=rules.specimen.output[0],
+        joint=rules.joint.output[0],
+        contact=contact_parts,
+    output:
+        closure=f"{RESULTS}/closure/{{specimen}}.nc",
+        dilatancy=f"{RESULTS}/dilatancy/{{specimen}}.nc",
+    params:
+        settings=settings_of,
+        code=code("closure", "sweep", "store"),
+    log:
+        f"{RESULTS}/logs/closure/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/closure/{{specimen}}.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    conda:
+        "../../environment.yml"
+    script:
+        "../scripts/closure.py"

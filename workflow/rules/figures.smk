@@ -1,0 +1,2 @@
+def collect_figures(wildcards):
+    return []

@@ -1,0 +1,74 @@
+# From scan files, a user's or the study's own, to levelled specimens and their surface dimension.
+
+
+rule embedded:
+    output:
+        scan=f"{RESULTS}/embedded/{{specimen}}.npy",
+        sidecar=f"{RESULTS}/embedded/{{specimen}}.yaml",
+    params:
+        recipe=lambda wc: resolve_embedded(config["embedded"][wc.specimen], "embedded"),
+        code=code("synthesis"),
+    log:
+        f"{RESULTS}/logs/embedded/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/embedded/{{specimen}}.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    conda:
+        "../../environment.yml"
+    script:
+        "../scripts/embedded.py"
+
+
+def scan_files(wildcards):
+    """The faces of a specimen and its sidecar, wherever they come from."""
+    name = wildcards.specimen
+    if name not in SCANS:
+        return {"lower": rules.embedded.output.scan, "sidecar": rules.embedded.output.sidecar}
+    scan = SCANS[name]
+    files = {"lower": scan.lower, "upper": scan.upper, "sidecar": scan.sidecar}
+    return {role: str(path) for role, path in files.items() if path is not None}
+
+
+rule specimen:
+    input:
+        unpack(scan_files),
+        schema=SCHEMA_FILE,
+    output:
+        f"{RESULTS}/specimens/{{specimen}}.nc",
+    params:
+        settings=settings_of,
+        code=code("scan", "specimen", "study", "store"),
+    log:
+        f"{RESULTS}/logs/specimen/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/specimen/{{specimen}}.tsv"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=15,
+    conda:
+        "../../environment.yml"
+    script:
+        "../scripts/specimen.py"
+
+
+rule surface_dimension:
+    input:
+        rules.specimen.output,
+    output:
+        f"{RESULTS}/surface_dimension/{{specimen}}.nc",
+    params:
+        settings=settings_of,
+        code=code("roughness", "store"),
+    log:
+        f"{RESULTS}/logs/surface_dimension/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/surface_dimension/{{specimen}}.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    conda:
+        "../../environment.yml"
+    script:
+        "../scripts/surface_dimension.py"

@@ -1,0 +1,22 @@
+"""Solve the contact of one specimen and direction at some offsets and resolutions."""
+
+from _job import reported
+
+from fractalcontact import store
+from fractalcontact.sweep import contact_states
+
+with reported(snakemake.log) as log:
+    params = snakemake.params
+    direction = snakemake.wildcards.direction
+    joint = store.read(snakemake.input.joint)
+    cells = joint.offset_cells.sel(contact_direction=direction).values[slice(*params.offsets)]
+    states = contact_states(
+        store.read(snakemake.input.specimen),
+        direction,
+        cells,
+        params.settings,
+        params.resolutions,
+        params.solver,
+    )
+    store.write(states, snakemake.output[0])
+    log.info("%d states, largest residual %s", states.closure.size, states.residual.max().item())

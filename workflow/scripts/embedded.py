@@ -1,0 +1,14 @@
+"""Make an embedded specimen: a scan file like any other, with its sidecar."""
+
+from pathlib import Path
+
+from _job import reported
+
+from fractalcontact.synthesis import embedded_surface, write_scan
+
+with reported(snakemake.log) as log:
+    recipe = snakemake.params.recipe
+    heights = embedded_surface(recipe)
+    sidecar = {"label": recipe["label"]}
+    write_scan(Path(snakemake.output.scan), heights, recipe["spacing"], sidecar=sidecar)
+    log.info("%s nodes, %s", heights.shape, recipe)
