@@ -38,9 +38,7 @@ def test_a_missing_folder_holds_no_scans(tmp_path):
     assert find_scans(tmp_path / "nowhere") == {}
 
 
-@pytest.mark.parametrize(
-    "original", ["--rock", "a b/c", "Stein Nr. 3 (über)", "{x}", "-.-a", "..b"]
-)
+@pytest.mark.parametrize("original", ["--rock", "a b/c", "Stein 3 (über)", "{x}", "-.-a", "..b"])
 def test_names_are_safe_for_paths_and_wildcards(original):
     assert re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", specimen_name(original))
 

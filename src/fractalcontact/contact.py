@@ -147,11 +147,10 @@ def solve_contact(composite, space, *, closure=None, force=None, start=None, rto
         If the conditions are not met to ``rtol``.
     """
     height = np.asarray(composite, float)
-    load = _check(height, space, closure, force, start, rtol)
+    load = checked_load(height, space, closure, force, start, rtol)
     clearance = height.max() - height
     if load == 0:
-        zero = np.zeros(space.shape)
-        return ContactState(zero, zero.copy(), clearance, 0.0, 0.0, 0.0, 0, space)
+        return unloaded_state(space, clearance)
     problem = _Problem(space, clearance, load, force is not None)
     if start is not None:
         pressure = start.pressure / problem.pressure_unit
@@ -165,8 +164,8 @@ def solve_contact(composite, space, *, closure=None, force=None, start=None, rto
     return state
 
 
-def _check(height, space, closure, force, start, rtol):
-    """The load, after every argument was found sound."""
+def checked_load(height, space, closure, force, start, rtol):
+    """The closure or force given, after every argument of `solve_contact` was found sound."""
     if height.shape != space.shape:
         raise ValueError(f"composite topography {height.shape} on a half-space of {space.shape}")
     if not np.isfinite(height).all():
@@ -184,6 +183,12 @@ def _check(height, space, closure, force, start, rtol):
     return load
 
 
+def unloaded_state(space, clearance):
+    """The state of first touch: no pressure, no closure."""
+    zero = np.zeros(space.shape)
+    return ContactState(zero, zero.copy(), clearance, 0.0, 0.0, 0.0, 0, space)
+
+
 class _Problem:
     """The contact problem in units in which loads are near one: nothing depends on mm or MPa."""
 
@@ -199,6 +204,14 @@ class _Problem:
             self.pressure_unit = load * stress_per_length
             self.load = 1.0
         self.clearance = clearance / self.length_unit
+
+    def first_touch(self):
+        """The given force on the nodes that touch first, where nothing better is known.
+
+        Forces so small that the depths of all other nodes drown theirs leave no other start.
+        """
+        touching = self.clearance == 0
+        return touching * (self.load / np.count_nonzero(touching))
 
 
 @dataclass
@@ -235,7 +248,8 @@ def _newton(problem, pressure, rtol):
     pressure = np.maximum(pressure, 0.0)
     closure = load
     if problem.by_force:
-        pressure = pressure * (load / pressure.sum())
+        loaded = pressure if pressure.any() else problem.first_touch()
+        pressure = loaded * (load / loaded.sum())
         closure = None
     best, iterations = None, 0
     for _ in range(MAX_CORRECTIONS):
@@ -247,9 +261,10 @@ def _newton(problem, pressure, rtol):
         if problem.by_force and (closure is None or abs(lacking) <= FORCE_ROUNDING * load):
             closure = gap[contact].mean()
         gap -= closure
+        # A step may overshoot to w < 0, which no state has: u >= 0, so its gaps then exceed |w|.
         residual = max(
-            np.abs(gap[contact]).max(initial=0.0) / closure,
-            -gap.min() / closure,
+            np.abs(gap[contact]).max(initial=0.0) / abs(closure),
+            -gap.min() / abs(closure),
             abs(lacking) / load,
         )
         if best is None or residual < best.residual:
@@ -270,6 +285,8 @@ def _newton(problem, pressure, rtol):
         pressure[contact] += step.solution
         np.maximum(pressure, 0.0, out=pressure)
         if problem.by_force:
+            if not pressure.any():
+                pressure = problem.first_touch()
             # Dropping much tension asks for more than a common factor; the next step restores F.
             factor = load / pressure.sum()
             if abs(factor - 1) < RESCALED:

@@ -7,18 +7,16 @@ import numpy as np
 import scipy.ndimage
 import xarray as xr
 
-from .fitting import fit_line
+from .fitting import LineFit, fit_line
 
-#: Box sizes whose grid overhangs the extent by more than this part are not used: N(r) there counts
-#: boxes that are mostly outside, and lifts the curve by twice as much.
-LARGEST_OVERHANG = 0.03
+#: Box sizes in each doubling.
+SIZES_PER_OCTAVE = 4
 
-#: Neighbouring box sizes differ by at least this factor, so that no part of the axis has more
-#: weight in the fit than another.
-SMALLEST_STEP = 2**0.25
+#: Whole ratios by which a deterministic set may repeat itself; their powers are among the sizes.
+RATIOS = (2, 3, 4, 5)
 
-#: Fewest boxes along the extent: with one box nothing is counted.
-FEWEST_BOXES = 2
+#: Sizes in one such ratio replace all sizes where they scatter this much less about their line.
+LADDER_GAIN = 1 / 3
 
 #: A dimension needs this many scales that say something.
 FEWEST_SCALES = 4
@@ -41,10 +39,11 @@ class BoxDimension:
 
 
 def box_sizes(n: int) -> np.ndarray:
-    """Box sides in cells for an extent of `n` cells: geometric, and fitting the extent.
+    """Box sides in cells that divide an extent of `n` cells exactly.
 
-    From 1 up to n / `FEWEST_BOXES`; of the sizes that overhang the extent by no more than
-    `LARGEST_OVERHANG`, each at least `SMALLEST_STEP` times the one before.
+    Each is n / k for a whole k, from n / 2 down to 2, then 1: about `SIZES_PER_OCTAVE` in each
+    doubling, and the powers of `RATIOS`. Sides that are whole numbers of cells instead overhang
+    most extents, and a filled square then seems to have a dimension other than 2.
 
     Parameters
     ----------
@@ -53,80 +52,83 @@ def box_sizes(n: int) -> np.ndarray:
 
     Returns
     -------
-    (k,) int64
-        Ascending; ``[1]`` for an extent too short to divide.
+    (k,) float64
+        Ascending; ``[1.]`` for an extent too short to divide.
     """
-    candidates = np.arange(1, max(n // FEWEST_BOXES, 1) + 1)
-    overhang = -(-n // candidates) * candidates / n - 1
-    sizes = []
-    for size in candidates[overhang <= LARGEST_OVERHANG]:
-        if not sizes or size >= SMALLEST_STEP * sizes[-1]:
-            sizes.append(size)
-    return np.array(sizes)
+    most = n // 2
+    octaves = np.arange(SIZES_PER_OCTAVE, np.log2(max(most, 1)) * SIZES_PER_OCTAVE + 1)
+    parts = set(np.round(2 ** (octaves / SIZES_PER_OCTAVE)).astype(int).tolist())
+    parts |= {ratio**k for ratio in RATIOS for k in range(1, most.bit_length())}
+    return n / np.array([n, *sorted((k for k in parts if 2 <= k <= most), reverse=True)], float)
 
 
-def box_count(domain: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Fewest boxes of each size that cover a domain, over every origin of the grid of boxes.
+def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) -> np.ndarray:
+    """Fewest boxes of each size that meet a domain, over origins of the grid of boxes.
 
     Parameters
     ----------
     domain : (ny, nx) bool array_like
-        Nodes in contact.
-    sizes : (k,) int array_like
-        Box sides in cells, at least 1.
+        Nodes in contact. A node is in the box that holds its centre.
+    sizes : (k,) array_like
+        Box sides in cells, at least 1, not necessarily whole.
+    max_shifts : int
+        Origins tried along each axis, evenly spaced over a box; never more than cells in its side.
 
     Returns
     -------
     (k,) int64
-        N(r), the least over all r x r shifts of the origin by whole cells. Time grows with the
-        number of cells for each size, whatever the number of shifts.
+        N(r). Time grows with the number of cells for each size, no more than that.
 
     Raises
     ------
     ValueError
         If a size is below 1 or the domain is not a (y, x) grid.
     """
-    domain = np.ascontiguousarray(domain, dtype=bool)
-    sizes = np.asarray(sizes, dtype=np.int64)
+    domain = np.asarray(domain, dtype=bool)
+    sizes = np.asarray(sizes, dtype=float)
     if domain.ndim != 2:
         raise ValueError(f"a contact domain is a (y, x) grid, not of shape {domain.shape}")
     if sizes.size and sizes.min() < 1:
-        raise ValueError(f"box sizes are whole numbers of cells from 1, not {sizes.min()}")
-    return np.array([_fewest_boxes(domain, size) for size in sizes], dtype=np.int64)
+        raise ValueError(f"a box is at least one cell wide, not {sizes.min()}")
+    # Nodes below and left of each corner: four look-ups then tell how many are in a box.
+    nodes = np.zeros((domain.shape[0] + 1, domain.shape[1] + 1), np.int32)
+    np.cumsum(np.cumsum(domain, axis=0, dtype=np.int32), axis=1, out=nodes[1:, 1:])
+    return np.array(
+        [
+            _fewest_boxes(nodes, *(_edges(n, size, max_shifts) for n in domain.shape))
+            for size in sizes
+        ],
+        dtype=np.int64,
+    )
+
+
+def _edges(n: int, size: float, max_shifts: int) -> np.ndarray:
+    """First cell of each box along one axis, a row for each origin of the grid."""
+    shifts = max(min(int(np.ceil(size)), max_shifts), 1)
+    origins = -size * np.arange(shifts) / shifts
+    boxes = int(np.ceil(n / size)) + 2
+    edges = origins[:, np.newaxis] + size * np.arange(boxes)
+    # The cell whose centre is the first beyond the edge; the small number keeps n/k * k at n.
+    return np.clip(np.ceil(edges - 0.5 - 1e-9), 0, n).astype(np.int64)
 
 
 @numba.njit(cache=True)
-def _fewest_boxes(domain, size):
-    """N(r) over all origins, in one pass over the windows of `size` cells.
-
-    The window that ends at cell (y, x) is a box of exactly one grid, the one whose origin is
-    (y, x) modulo `size`: marking each occupied window in that grid's counter counts all size^2
-    grids at once.
-    """
-    ny, nx = domain.shape
-    grids = np.zeros((size, size), np.int64)
-    nodes_above = np.zeros(nx, np.int64)  # nodes of each column within the rows of the window
-    for y in range(ny + size - 1):
-        if y < ny:
-            for x in range(nx):
-                nodes_above[x] += domain[y, x]
-        if y >= size:
-            for x in range(nx):
-                nodes_above[x] -= domain[y - size, x]
-        counter = grids[y % size]
-        inside = 0
-        column = 0
-        for x in range(nx + size - 1):
-            if x < nx:
-                inside += nodes_above[x]
-            if x >= size:
-                inside -= nodes_above[x - size]
-            if inside:
-                counter[column] += 1
-            column += 1
-            if column == size:
-                column = 0
-    return grids.min()
+def _fewest_boxes(nodes, edges_y, edges_x):
+    """N(r) over all pairs of origins: rows of edges along y and x."""
+    fewest = nodes[-1, -1]  # no more boxes than nodes
+    for ys in edges_y:
+        for xs in edges_x:
+            count = 0
+            for i in range(ys.size - 1):
+                bottom, top = nodes[ys[i]], nodes[ys[i + 1]]
+                for j in range(xs.size - 1):
+                    left, right = xs[j], xs[j + 1]
+                    if top[right] - bottom[right] != top[left] - bottom[left]:
+                        count += 1
+                if count >= fewest:
+                    break
+            fewest = min(fewest, count)
+    return fewest
 
 
 def box_dimension(
@@ -150,9 +152,9 @@ def box_dimension(
         In mm.
     fit_range : (float, float), optional
         Smallest and largest box side of the fit, mm; by default all that say something.
-    sizes : (k,) int array_like, optional
-        Box sides in cells; by default `box_sizes` of the domain's own extent. Give them where
-        several domains are to share one axis.
+    sizes : (k,) array_like, optional
+        Box sides in cells, ascending; by default `box_sizes` of the domain's own extent. Give them
+        where several domains are to share one axis.
 
     Returns
     -------
@@ -165,12 +167,17 @@ def box_dimension(
     The scales are counts of one and the same set, so the regression's t-interval alone is too
     narrow. The interval given spans it and the slopes fitted to every run of neighbouring scales
     that covers half of the range or more: how much the value depends on the range chosen.
+
+    A set that repeats itself in a fixed ratio has a staircase for N(r), on which only sizes in that
+    ratio lie on one line. Where the sizes extent / ratio^k scatter `LADDER_GAIN` times less about
+    their line than all sizes about theirs, the value comes from them, and the interval still spans
+    the slopes of all sizes. `n` and `used` tell.
     """
     domain = np.asarray(domain, dtype=bool)
     extent = _cropped(domain)
-    if sizes is None:
-        sizes = box_sizes(max(extent.shape))
-    sizes = np.asarray(sizes, dtype=np.int64)
+    # A single node has no extent to divide: it is seen at the scales of the window.
+    side = max(extent.shape if extent.size > 1 else domain.shape)
+    sizes = box_sizes(side) if sizes is None else np.asarray(sizes, dtype=float)
     count = box_count(extent, sizes)
     r = sizes * float(spacing)
     nodes = int(extent.sum())
@@ -180,7 +187,7 @@ def box_dimension(
     ny, nx = domain.shape
     alone = (count == nodes) & (sizes > 1)
     alone |= (sizes == 1) & alone.any()
-    full = count == -(-ny // sizes) * -(-nx // sizes)
+    full = count >= np.round(ny / sizes) * np.round(nx / sizes)
     if nodes == 1 or nodes == domain.size:
         used = np.ones(sizes.size, dtype=bool)
     else:
@@ -196,9 +203,12 @@ def box_dimension(
             f"({alone.sum()} with every node alone, {full.sum()} with every box occupied)",
         )
 
-    log_r, log_count = np.log(r[used]), np.log(count[used])
-    line = fit_line(log_r, log_count)
-    slopes = [line.slope_low, line.slope_high, *_slopes_of_parts(log_r, log_count)]
+    line = _line(r, count, used)
+    parts = _slopes_of_parts(np.log(r[used]), np.log(count[used]))
+    slopes = [line.slope_low, line.slope_high, *parts]
+    used = _best_scales(sizes, side, count, used)
+    line = _line(r, count, used)
+    slopes += [line.slope_low, line.slope_high]
     return BoxDimension(
         dimension=-line.slope,
         low=-max(slopes),
@@ -211,6 +221,30 @@ def box_dimension(
         used=used,
         reason="",
     )
+
+
+def _line(r: np.ndarray, count: np.ndarray, used: np.ndarray) -> LineFit:
+    """The line through log N against log r."""
+    return fit_line(np.log(r[used]), np.log(count[used]))
+
+
+def _best_scales(sizes: np.ndarray, side: int, count: np.ndarray, used: np.ndarray) -> np.ndarray:
+    """All usable scales, or those in one whole ratio if they lie much better on a line."""
+    # Less a little: where all sizes lie on one line there is nothing to gain but rounding.
+    best, least = used, LADDER_GAIN * _scatter(sizes, count, used) - 1e-9
+    for ratio in RATIOS:
+        power = np.log(side / sizes) / np.log(ratio)
+        ladder = used & (np.abs(power - np.round(power)) < 1e-9)
+        if ladder.sum() >= FEWEST_SCALES and _scatter(sizes, count, ladder) < least:
+            best, least = ladder, _scatter(sizes, count, ladder)
+    return best
+
+
+def _scatter(sizes: np.ndarray, count: np.ndarray, used: np.ndarray) -> float:
+    """Standard deviation of log N about its line."""
+    line = _line(sizes, count, used)
+    residual = np.log(count[used]) - line.intercept - line.slope * np.log(sizes[used])
+    return np.sqrt(np.sum(residual**2) / (line.n - 2))
 
 
 def _cropped(domain: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Straight lines through points, with the interval that belongs to them."""
+"""Straight lines through points, with the interval that belongs to them, and mean planes."""
 
 from typing import NamedTuple
 
@@ -70,3 +70,36 @@ def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
         n=n,
         r2=float(1 - residual / syy) if syy > 0 else np.nan,
     )
+
+
+def without_mean_plane(heights: np.ndarray) -> np.ndarray:
+    """Heights less the least-squares plane through the cells that were measured.
+
+    Parameters
+    ----------
+    heights : (ny, nx) array_like
+        NaN where missing.
+
+    Returns
+    -------
+    (ny, nx) float64
+        All NaN where the measured cells do not span a plane: fewer than three, or in one line.
+    """
+    heights = np.asarray(heights, float)
+    known = np.isfinite(heights)
+    if not known.any():
+        return np.full(heights.shape, np.nan)
+    y, x = np.indices(heights.shape, dtype=float)
+    y -= y[known].mean()
+    x -= x[known].mean()
+    mean = heights[known].mean()
+    # Sums, not a matrix product: the last bit must not depend on the number of cores.
+    dy, dx, dz = y[known], x[known], heights[known] - mean
+    yy, xx, xy = np.sum(dy * dy), np.sum(dx * dx), np.sum(dx * dy)
+    determinant = yy * xx - xy**2
+    if determinant <= 1e-12 * yy * xx or yy * xx == 0:
+        return np.full(heights.shape, np.nan)
+    zy, zx = np.sum(dz * dy), np.sum(dz * dx)
+    slope_y = (zy * xx - zx * xy) / determinant
+    slope_x = (zx * yy - zy * xy) / determinant
+    return heights - mean - slope_y * y - slope_x * x

@@ -13,6 +13,8 @@ import numpy as np
 import scipy.fft
 import yaml
 
+from .fitting import without_mean_plane
+
 #: Sides of the grid a surface is made on, in sides of the patch cut from it. The Fourier series is
 #: periodic on that grid; with two, opposite edges of the patch are as far apart as they look.
 EMBEDDING = 2
@@ -82,7 +84,7 @@ def self_affine(
     spectrum *= np.sqrt(_power_spectral_density(side, spacing, hurst, roll_off))
     surface = scipy.fft.irfft2(spectrum, s=(side, side), workers=1)
 
-    patch = _without_mean_plane(surface[: shape[0], : shape[1]])
+    patch = without_mean_plane(surface[: shape[0], : shape[1]])
     return patch * (rms / np.sqrt(np.mean(patch**2)))
 
 
@@ -98,17 +100,6 @@ def _power_spectral_density(
     q[0, 0] = np.inf
     floor = 1.0 if roll_off is not None else 0.0
     return np.maximum(q, floor) ** (-2 * (1 + hurst))
-
-
-def _without_mean_plane(heights: np.ndarray) -> np.ndarray:
-    """Heights less their least-squares plane."""
-    ny, nx = heights.shape
-    # On a full grid the two centred coordinates are orthogonal: three separate projections.
-    y = np.arange(ny)[:, np.newaxis] - (ny - 1) / 2
-    x = np.arange(nx)[np.newaxis, :] - (nx - 1) / 2
-    slope_y = np.sum(y * heights) / (nx * np.sum(y**2))
-    slope_x = np.sum(x * heights) / (ny * np.sum(x**2))
-    return heights - heights.mean() - slope_y * y - slope_x * x
 
 
 def disc_outline(shape: tuple[int, int], spacing: float, diameter: float) -> np.ndarray:
@@ -164,7 +155,9 @@ def write_scan(path: Path, heights: np.ndarray, spacing: float, *, sidecar: dict
 
 def _write_whole(path: Path, write) -> None:
     """Let `write` fill a file beside `path`, then put it in place in one step."""
-    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
+    with tempfile.NamedTemporaryFile(
+        dir=path.parent, prefix=f".{path.name}.", delete=False
+    ) as file:
         temporary = Path(file.name)
         try:
             write(file)

@@ -102,7 +102,9 @@ def _measure(path: Path, options) -> Measured:
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
-    grid = options.grid and length_mm(options.grid, unit_xy, f"{path}: key 'grid'")
+    grid = options.grid
+    if grid is not None:
+        grid = length_mm(grid, unit_xy, f"{path}: key 'grid'")
     provenance = {
         "source": path.name,
         "sha256": _sha256(path),

@@ -130,12 +130,12 @@ def _placed_heights(scan, points, lattice) -> xr.DataArray:
 
 def _interpolated_heights(scan, points, lattice) -> xr.DataArray:
     points = points[np.isfinite(points[:, 2])]
-    farthest = cloud.hole_distance(points)
+    circle = cloud.largest_circle(points)
     gridding = (
         f"{len(points)} points interpolated linearly on their Delaunay triangles at a spacing of "
-        f"{lattice.dx:.6g} mm; cells farther than {farthest:.4g} mm from every point are missing"
+        f"{lattice.dx:.6g} mm; where a circle of {circle:.4g} mm holds no point, cells are missing"
     )
-    heights = cloud.interpolate_points(points, lattice, farthest, str(scan.path))
+    heights = cloud.interpolate_points(points, lattice, circle, str(scan.path))
     return _label(heights, lattice, scan, gridding)
 
 
@@ -175,7 +175,7 @@ def _check_surface(heights: np.ndarray, lattice: cloud.Lattice, path: Path) -> N
         raise InputError(f"{path}: all cells are missing")
     if np.ptp(present) <= ROUNDING * np.abs(present).max():
         raise InputError(
-            f"{path}: a constant surface: every height is {present[0]:g} mm; this is no height map"
+            f"{path}: a constant surface: every height is {present[0]:g} mm, so this is no scan"
         )
     field = max(lattice.dx * lattice.nx, lattice.dy * lattice.ny)
     low, high = np.percentile(present, [1, 99])  # a few spikes do not make a unit wrong

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator
-from scipy.spatial import QhullError, cKDTree
+from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from ..errors import InputError
 
@@ -12,9 +12,9 @@ from ..errors import InputError
 LATTICE_TOLERANCE = 0.1
 #: Points rounded coarsely lie on a lattice too, but leave most of its nodes empty.
 LATTICE_MIN_FILL = 0.2
-#: A grid cell is missing if every point is farther than this multiple of the usual distance from a
-#: point to its sixth neighbour. That distance is 1.1 to 1.4 times the root of the area per point,
-#: for lattices and random clouds alike; a random cloud leaves 3 cells in a million farther away.
+#: Nothing was measured where a circle without points has a radius above this multiple of the usual
+#: distance from a point to its sixth neighbour. That distance is 1.1 to 1.4 times the root of the
+#: area per point, for lattices and random clouds alike; chance leaves such a circle once in 10^4.
 HOLE_FACTOR = 1.5
 _SIXTH = 6
 #: Far above any profilometer; a stray point would otherwise ask for all memory.
@@ -65,8 +65,8 @@ def neighbour_distance(points: np.ndarray) -> float:
     return float(np.median(distances[:, 1]))
 
 
-def hole_distance(points: np.ndarray) -> float:
-    """Distance in mm from the nearest point beyond which nothing was measured."""
+def largest_circle(points: np.ndarray) -> float:
+    """Radius in mm of the largest circle without points that is no hole."""
     distances, _ = cKDTree(points[:, :2]).query(points[:, :2], k=[_SIXTH + 1])
     return HOLE_FACTOR * float(np.median(distances))
 
@@ -152,12 +152,13 @@ def covering_lattice(clouds: list[np.ndarray], spacing: float, where: str) -> La
 
 
 def interpolate_points(
-    points: np.ndarray, lattice: Lattice, farthest: float, where: str
+    points: np.ndarray, lattice: Lattice, largest_circle: float, where: str
 ) -> np.ndarray:
     """Interpolate heights linearly on the Delaunay triangles of the points.
 
-    Cells farther than ``farthest`` (mm) from every point are missing, and so are those outside the
-    points' hull.
+    Triangles whose circumcircle, which holds no other point, has a radius above ``largest_circle``
+    (mm) span holes or the outside (alpha shape: Edelsbrunner, Kirkpatrick & Seidel 1983); cells in
+    them are missing.
 
     Returns
     -------
@@ -170,13 +171,22 @@ def interpolate_points(
     """
     centre = points[:, :2].mean(axis=0)  # far from the origin, triangulation loses digits
     try:
-        surface = LinearNDInterpolator(points[:, :2] - centre, points[:, 2])
+        triangles = Delaunay(points[:, :2] - centre)
     except QhullError as error:
         raise InputError(f"{where}: the points span no area (do they lie on one line?)") from error
     x = lattice.x0 + lattice.dx * np.arange(lattice.nx) - centre[0]
     y = lattice.y0 + lattice.dy * np.arange(lattice.ny) - centre[1]
     nodes = np.stack(np.meshgrid(x, y), axis=-1)
-    distances, _ = cKDTree(points[:, :2] - centre).query(nodes, distance_upper_bound=farthest)
-    heights = surface(nodes)
-    heights[np.isinf(distances)] = np.nan
-    return heights
+    triangle = triangles.find_simplex(nodes)
+    measured = (_circumradius(triangles) <= largest_circle)[triangle] & (triangle >= 0)
+    heights = LinearNDInterpolator(triangles, points[:, 2])(nodes)
+    return np.where(measured, heights, np.nan)
+
+
+def _circumradius(triangles: Delaunay) -> np.ndarray:
+    """R = abc/(4 area) of each triangle; infinite where the corners lie on one line."""
+    a, b, c = np.moveaxis(triangles.points[triangles.simplices], 1, 0)
+    edges = [np.hypot(*(end - start).T) for start, end in ((a, b), (b, c), (c, a))]
+    twice_area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    flat = np.full(len(a), np.inf)
+    return np.divide(np.prod(edges, axis=0), 2 * twice_area, out=flat, where=twice_area > 0)

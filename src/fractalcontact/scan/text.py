@@ -114,6 +114,9 @@ def _uniform(data, delimiter: str, path: Path):
         data = [(number, line.removesuffix(delimiter)) for number, line in data]
     widths = [len(_split(line, delimiter)) for _, line in data]
     width = Counter(widths).most_common(1)[0][0]
+    for i, (number, line) in enumerate(data):
+        if widths[i] == width + 1 and line.endswith(delimiter):
+            data[i], widths[i] = (number, line.removesuffix(delimiter)), width
     notes = ()
     if len(data) > 1 and widths[-1] < width:
         notes = (f"the last line ({data[-1][0]}) was cut short and is left out",)
