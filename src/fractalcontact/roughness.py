@@ -106,9 +106,12 @@ def surface_dimension(
     result = xr.concat(results, "estimator", join="outer", coords="minimal", compat="override")
     result["estimator"] = list(ESTIMATORS)
     result["used"] = result["used"].fillna(False).astype(bool)
-    result["length_kind"] = ("estimator", [e.length for e in ESTIMATORS.values()])
-    result["measure_kind"] = ("estimator", [e.measure for e in ESTIMATORS.values()])
-    result["measure_units"] = ("estimator", [e.units for e in ESTIMATORS.values()])
+    for name, words, values in (
+        ("length_kind", "what the length is", [e.length for e in ESTIMATORS.values()]),
+        ("measure_kind", "what was measured", [e.measure for e in ESTIMATORS.values()]),
+        ("measure_units", "unit of what was measured", [e.units for e in ESTIMATORS.values()]),
+    ):
+        result[name] = ("estimator", values, {"units": "1", "long_name": words})
     return _described(result)
 
 

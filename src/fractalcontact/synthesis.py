@@ -168,3 +168,33 @@ def _write_whole(path: Path, write) -> None:
         except BaseException:
             temporary.unlink()
             raise
+
+
+def embedded_surface(recipe) -> np.ndarray:
+    """Heights of an embedded specimen, NaN outside its outline.
+
+    Parameters
+    ----------
+    recipe : mapping
+        ``size``, ``spacing``, ``rms`` and ``roll_off`` (or None) in mm, ``dimension`` Delta_g,
+        ``outline`` ("square" or "disc") and ``seed``, as
+        :func:`fractalcontact.study.resolve_embedded` gives them.
+
+    Returns
+    -------
+    (n, n) float64 ndarray
+        mm.
+    """
+    n = round(recipe["size"] / recipe["spacing"])
+    heights = self_affine(
+        (n, n),
+        recipe["spacing"],
+        3 - recipe["dimension"],
+        seed=recipe["seed"],
+        roll_off=recipe["roll_off"],
+        rms=recipe["rms"],
+    )
+    if recipe["outline"] == "disc":
+        inside = disc_outline((n, n), recipe["spacing"], recipe["size"])
+        heights = np.where(inside, heights, np.nan)
+    return heights

@@ -10,7 +10,7 @@ rule domains:
         contact=f"{RESULTS}/contact/{{specimen}}.nc",
     params:
         settings=settings_of,
-        code=code("domain", "sweep", "store"),
+        code=code("analysis", "sweep", "store"),
     log:
         f"{RESULTS}/logs/domains/{{specimen}}.log",
     benchmark:
@@ -33,7 +33,7 @@ rule scaling:
         f"{RESULTS}/scaling/{{specimen}}.nc",
     params:
         settings=settings_of,
-        code=code("scaling", "store"),
+        code=code("analysis", "store"),
     log:
         f"{RESULTS}/logs/scaling/{{specimen}}.log",
     benchmark:

@@ -3,7 +3,7 @@
 from _job import reported
 
 from fractalcontact import store
-from fractalcontact.domain import analyse_domains
+from fractalcontact.analysis import analyse_domains
 from fractalcontact.sweep import combine, domains_of
 
 with reported(snakemake.log) as log:

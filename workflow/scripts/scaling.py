@@ -3,7 +3,7 @@
 from _job import reported
 
 from fractalcontact import store
-from fractalcontact.scaling import scaling_over_resolutions
+from fractalcontact.analysis import scaling_over_resolutions
 
 with reported(snakemake.log) as log:
     specimen = store.read(snakemake.input.specimen)

@@ -1,0 +1,141 @@
+"""One table over all contact states of a specimen: box counts, clusters, renormalisation."""
+
+import numpy as np
+import xarray as xr
+
+from .domain import box_dimension, box_sizes, clusters
+from .scaling import compare_dimensions, renormalisation
+from .store import padded
+
+#: Numbers kept of every contact domain: name, unit, long name.
+DOMAIN_FIELDS = {
+    "delta_sigma": ("1", "box-counting dimension Delta_sigma of the contact domain"),
+    "delta_sigma_low": ("1", "Delta_sigma, lower end of the 95 % interval"),
+    "delta_sigma_high": ("1", "Delta_sigma, upper end of the 95 % interval"),
+    "fit_min": ("mm", "smallest box fitted"),
+    "fit_max": ("mm", "largest box fitted"),
+    "fit_n": ("1", "box sizes fitted"),
+    "clusters": ("1", "contact clusters, neighbours by side or corner"),
+    "largest_share": ("1", "share of the largest cluster in the contact area"),
+}
+
+
+def analyse_domains(fields, spacing, *, fit_range=None):
+    """Box counts, Delta_sigma and clusters of every contact domain.
+
+    Parameters
+    ----------
+    fields : xr.Dataset
+        ``in_contact_k`` over (direction, offset, load, y_k, x_k), as
+        :func:`fractalcontact.sweep.domains_of` gives them.
+    spacing : float
+        Of the scan, mm; a domain at resolution k has k times this.
+    fit_range : (float, float), optional
+        Smallest and largest box of the fits, mm; by default all that say something.
+
+    Returns
+    -------
+    xr.Dataset
+        :data:`DOMAIN_FIELDS` and ``reason`` (why there is no dimension) over (direction, offset,
+        resolution, load); ``box_count`` and ``box_used`` with a last dimension scale; ``box_side``
+        (resolution, scale) in mm.
+    """
+    factors = sorted(int(name.removeprefix("in_contact_")) for name in fields.data_vars)
+    domains = {k: fields[f"in_contact_{k}"].values for k in factors}
+    sizes = {k: box_sizes(max(domains[k].shape[-2:])) for k in factors}
+    n_scales = max(len(s) for s in sizes.values())
+    n_direction, n_offset, n_load = domains[factors[0]].shape[:3]
+    shape = (n_direction, n_offset, len(factors), n_load)
+    table = {name: np.full(shape, np.nan) for name in DOMAIN_FIELDS}
+    reason = np.full(shape, "", object)
+    count = np.full((*shape, n_scales), np.nan)
+    used = np.zeros(count.shape, bool)
+    for d, o, k, j in np.ndindex(shape):
+        factor = factors[k]
+        domain = domains[factor][d, o, j]
+        box = box_dimension(domain, factor * spacing, fit_range=fit_range, sizes=sizes[factor])
+        found = clusters(domain)
+        row = {
+            "delta_sigma": box.dimension,
+            "delta_sigma_low": box.low,
+            "delta_sigma_high": box.high,
+            "fit_min": box.r_min,
+            "fit_max": box.r_max,
+            "fit_n": box.n,
+            "clusters": found["clusters"].item(),
+            "largest_share": found["largest_share"].item(),
+        }
+        for name, value in row.items():
+            table[name][d, o, k, j] = value
+        reason[d, o, k, j] = box.reason
+        count[d, o, k, j, : len(box.count)] = box.count
+        used[d, o, k, j, : len(box.used)] = box.used
+    dims = ("direction", "offset", "resolution", "load")
+    units = {name: {"units": u, "long_name": words} for name, (u, words) in DOMAIN_FIELDS.items()}
+    return xr.Dataset(
+        {
+            **{name: (dims, values, units[name]) for name, values in table.items()},
+            "reason": (dims, reason.astype(str), _about("1", "why there is no dimension")),
+            "box_count": ((*dims, "scale"), count, _about("1", "boxes that meet the domain, N(r)")),
+            "box_used": ((*dims, "scale"), used, _about("1", "box size used in the fit")),
+            "box_side": (
+                ("resolution", "scale"),
+                padded([sizes[k] * k * spacing for k in factors]),
+                _about("mm", "side of the boxes r"),
+            ),
+        },
+        coords={
+            **{name: fields[name] for name in ("direction", "offset", "load")},
+            "resolution": (
+                "resolution",
+                factors,
+                _about("1", "multiple k of the scan's spacing"),
+            ),
+        },
+    )
+
+
+def scaling_over_resolutions(curves, domains, spacing, *, fit_range=None):
+    """What changes with the resolution: Delta_sigma from A_r(s) beside that of the box counts.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        With ``area`` over (direction, offset, resolution, load).
+    domains : xr.Dataset
+        From :func:`analyse_domains`.
+    spacing : float
+        Of the scan, mm.
+    fit_range : (float, float), optional
+        Smallest and largest spacing s of the fits, mm; all by default.
+
+    Returns
+    -------
+    xr.Dataset
+        The renormalisation of :func:`fractalcontact.scaling.renormalisation` over (direction,
+        offset, load), and both estimates of Delta_sigma with their difference; the box counts are
+        those at the scan's own resolution.
+    """
+    s = (curves["resolution"] * spacing).assign_attrs(_about("mm", "spacing s"))
+    area = curves["area"]
+    if fit_range is not None:
+        tolerance = 1e-9 * spacing
+        area = area.where((s >= fit_range[0] - tolerance) & (s <= fit_range[1] + tolerance))
+    result = renormalisation(s, area, curves["load"])
+    finest = domains.sel(resolution=domains["resolution"].min())
+    both = compare_dimensions(
+        result["delta_sigma"],
+        result["delta_sigma_low"],
+        result["delta_sigma_high"],
+        finest["delta_sigma"],
+        finest["delta_sigma_low"],
+        finest["delta_sigma_high"],
+    )
+    result = result.merge(both, compat="override", join="exact")
+    result["spacing"] = s
+    result["area"] = curves["area"]
+    return result.drop_vars([n for n in result.coords if n not in result.dims])
+
+
+def _about(units, long_name):
+    return {"units": units, "long_name": long_name}

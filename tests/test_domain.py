@@ -1,0 +1,216 @@
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from fractalcontact.domain import box_count, box_dimension, box_sizes, clusters
+from fractalcontact.synthesis import self_affine
+
+CARPET = np.log(8) / np.log(3)
+DUST = np.log(4) / np.log(3)
+
+
+def ternary_digits(n, levels):
+    """Base-3 digits of the places of n cell centres in the unit interval, (levels, n)."""
+    place = ((2 * np.arange(n) + 1) * 3**levels) // (2 * n)
+    return np.array([(place // 3**level) % 3 for level in range(levels)])
+
+
+def levels_of(n):
+    """Generations that n cells resolve: the last one is at least a cell wide."""
+    return int(np.floor(np.log(n) / np.log(3) + 1e-9))
+
+
+def sierpinski_carpet(n):
+    middle = ternary_digits(n, levels_of(n)) == 1
+    return ~(middle[:, :, np.newaxis] & middle[:, np.newaxis, :]).any(axis=0)
+
+
+def cantor_dust(n):
+    line = (ternary_digits(n, levels_of(n)) != 1).all(axis=0)
+    return line[:, np.newaxis] & line[np.newaxis, :]
+
+
+def embedded(shape, rows, columns):
+    domain = np.zeros(shape, dtype=bool)
+    domain[rows, columns] = True
+    return domain
+
+
+# -- exact -----------------------------------------------------------------------------------------
+
+EXACT = {
+    "window": (np.ones((512, 512), dtype=bool), 2),
+    "odd window": (np.ones((257, 257), dtype=bool), 2),
+    "square": (embedded((512, 512), slice(100, 300), slice(50, 250)), 2),
+    "rectangle": (embedded((400, 400), slice(100, 297), slice(50, 150)), 2),
+    "row": (embedded((512, 512), 100, slice(None)), 1),
+    "column": (embedded((500, 500), slice(None), 3), 1),
+    "diagonal": (np.eye(512, dtype=bool), 1),
+    "other diagonal": (np.eye(500, dtype=bool)[::-1], 1),
+    "piece of a row": (embedded((512, 512), 7, slice(40, 190)), 1),
+    "point": (embedded((512, 512), 17, 400), 0),
+}
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_euclidean_sets(name):
+    domain, exact = EXACT[name]
+    result = box_dimension(domain, 0.1)
+    assert result.dimension == pytest.approx(exact, abs=0.02)
+    assert result.reason == ""
+
+
+@pytest.mark.parametrize("n", [81, 243, 729, 200, 256, 300, 400, 500, 512, 1000])
+def test_sierpinski_carpet(n):
+    result = box_dimension(sierpinski_carpet(n), 0.1)
+    assert result.dimension == pytest.approx(CARPET, abs=0.03)
+    assert result.low <= CARPET <= result.high
+
+
+@pytest.mark.parametrize("n", [243, 729, 200, 256, 300, 400, 500, 512, 1000])
+def test_cantor_dust(n):
+    result = box_dimension(cantor_dust(n), 0.1)
+    assert result.dimension == pytest.approx(DUST, abs=0.03)
+    assert result.low <= DUST <= result.high
+
+
+def test_carpet_cut_off_by_the_window():
+    for n in (200, 512):
+        result = box_dimension(sierpinski_carpet(729)[:n, :n], 0.1)
+        assert result.dimension == pytest.approx(CARPET, abs=0.03)
+
+
+# -- independent -----------------------------------------------------------------------------------
+
+
+def counted_by_hand(domain, size):
+    """N(r) for whole sizes by putting every node in its box, at every origin."""
+    y, x = np.nonzero(domain)
+    return min(
+        len(set(zip((y + sy) // size, (x + sx) // size, strict=True)))
+        for sy in range(size)
+        for sx in range(size)
+    )
+
+
+@given(arrays(bool, st.tuples(st.integers(1, 14), st.integers(1, 14))), st.integers(1, 9))
+@settings(max_examples=60, deadline=None)
+def test_counts_agree_with_counting_by_hand(domain, size):
+    expected = counted_by_hand(domain, size)
+    assert box_count(domain, [size]).tolist() == [expected]
+
+
+# -- properties ------------------------------------------------------------------------------------
+
+
+@given(arrays(bool, (24, 24)))
+@settings(max_examples=40, deadline=None)
+def test_counts_are_bounded_and_do_not_see_direction(domain):
+    sizes = box_sizes(24)
+    count = box_count(domain, sizes)
+    assert count[0] == domain.sum()
+    assert (count <= domain.sum()).all()
+    assert (count <= np.round(24 / sizes) ** 2).all()
+    whole = np.array([1, 2, 3, 4, 6, 8])  # all origins are tried: mirrored origins among them
+    for turned in (domain.T, domain[::-1], np.pad(domain, 5)):
+        np.testing.assert_array_equal(box_count(turned, whole), box_count(domain, whole))
+
+
+def test_sizes_divide_the_extent():
+    for n in (20, 81, 200, 257, 512, 4096):
+        sizes = box_sizes(n)
+        np.testing.assert_allclose(n / sizes, np.round(n / sizes), rtol=1e-12)
+        assert (np.diff(sizes) > 0).all()
+        assert sizes[0] == 1
+        assert sizes[-1] == pytest.approx(n / 2)
+        assert np.diff(np.log2(sizes[sizes > 4])).max() <= np.log2(1.5) + 1e-9
+
+
+def test_unit_of_length_changes_only_the_range():
+    domain = self_affine((128, 128), 1.0, 0.7, rms=1.0, seed=0) > 1.0
+    mm, um = box_dimension(domain, 0.1), box_dimension(domain, 100.0)
+    assert um.dimension == pytest.approx(mm.dimension)
+    assert (um.low, um.high) == (pytest.approx(mm.low), pytest.approx(mm.high))
+    assert um.r_max == pytest.approx(1e3 * mm.r_max)
+
+
+def test_more_load_makes_a_denser_domain():
+    heights = self_affine((256, 256), 1.0, 0.8, rms=1.0, seed=0)
+    found = [box_dimension(heights > np.quantile(heights, 1 - q), 1.0) for q in (0.01, 0.1, 0.4)]
+    dimensions = [result.dimension for result in found]
+    assert dimensions == sorted(dimensions)
+    assert all(r.low < r.dimension < r.high for r in found)
+    assert 0 < dimensions[0] < dimensions[-1] < 2
+
+
+def test_scales_that_say_nothing_are_left_out():
+    rng = np.random.default_rng(0)
+    sparse = box_dimension(rng.random((512, 512)) < 5e-4, 1.0)
+    alone = sparse.count == sparse.count[0]
+    assert alone.sum() > 1
+    assert not sparse.used[alone].any()
+    dense = box_dimension(rng.random((512, 512)) < 0.3, 1.0)
+    full = dense.count == np.round(512 / dense.r) ** 2
+    assert full.sum() > 5
+    assert not dense.used[full].any()
+
+
+def test_range_asked_for_is_kept():
+    domain = self_affine((256, 256), 1.0, 0.8, rms=1.0, seed=1) > 1.0
+    result = box_dimension(domain, 0.1, fit_range=(0.4, 3.2))
+    assert 0.4 <= result.r_min < result.r_max <= 3.2
+    assert result.used.sum() == result.n
+    assert len(box_dimension(domain, 0.1, sizes=box_sizes(256)).r) == len(box_sizes(256))
+
+
+@pytest.mark.parametrize(
+    ("domain", "why"),
+    [
+        (np.zeros((64, 64), dtype=bool), "no node"),
+        (np.random.default_rng(0).random((512, 512)) < 0.99, "every box occupied"),
+        (embedded((64, 64), [3, 50, 20], [9, 10, 60]), "every node alone"),
+        (np.ones((2, 2), dtype=bool), "1 of 1"),
+    ],
+    ids=["empty", "nearly full", "three points", "tiny"],
+)
+def test_no_dimension_is_said_with_its_reason(domain, why):
+    result = box_dimension(domain, 1.0)
+    assert np.isnan([result.dimension, result.low, result.high]).all()
+    assert result.n == 0
+    assert why in result.reason
+
+
+def test_bad_arguments_are_refused():
+    with pytest.raises(ValueError, match="at least one cell"):
+        box_count(np.ones((4, 4), dtype=bool), [0])
+    with pytest.raises(ValueError, match="grid"):
+        box_count(np.ones(4, dtype=bool), [1])
+
+
+def test_counting_is_fast_enough_for_every_state_of_a_study():
+    domain = np.random.default_rng(0).random((512, 512)) < 0.05
+    box_count(domain[:8, :8], [2.0])  # compiled
+    start = time.perf_counter()
+    box_count(domain, box_sizes(512))
+    assert time.perf_counter() - start < 0.5
+
+
+def test_clusters_join_over_corners():
+    domain = np.zeros((6, 6), dtype=bool)
+    domain[0, 0] = domain[1, 1] = domain[2, 1] = True
+    domain[5, 5] = True
+    result = clusters(domain)
+    assert result.clusters.item() == 2
+    assert result.mean_size.item() == 2
+    assert result.largest_share.item() == 0.75
+
+
+def test_no_clusters_in_an_empty_domain():
+    result = clusters(np.zeros((6, 6), dtype=bool))
+    assert result.clusters.item() == 0
+    assert np.isnan(result.mean_size.item())
+    assert np.isnan(result.largest_share.item())
