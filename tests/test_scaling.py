@@ -69,7 +69,8 @@ def test_more_dimensions_than_load():
     area = AREA.expand_dims(offset=2).transpose("offset", "resolution", "load")
     result = renormalisation(S, area, FORCE)
     assert set(result.delta_sigma.dims) == {"offset", "load"}
-    assert result.sigma_star.shape == (2, 3)
+    assert result.sigma_star.transpose("offset", "load").shape == (2, 3)
+    np.testing.assert_allclose(result.delta_sigma.sel(offset=1), DELTA)
 
 
 def test_negative_areas_and_spacings_are_refused():

@@ -134,8 +134,15 @@ def open_atlas(path):
 
 
 def _checksums(specimens):
-    """The checksums each specimen's provenance states, by specimen."""
-    return {name: dataset.attrs.get("provenance", "") for name, dataset in specimens.items()}
+    """SHA-256 of every scan file, by specimen and face."""
+    return {
+        name: {
+            face: json.loads(dataset.attrs[f"{face}_scan"])["sha256"]
+            for face in ("lower", "upper")
+            if f"{face}_scan" in dataset.attrs
+        }
+        for name, dataset in specimens.items()
+    }
 
 
 def _demand_labels(dataset, where):

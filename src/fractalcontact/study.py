@@ -133,7 +133,7 @@ def resolve_settings(config, name, sidecar, source):
     flat = merged.get("opposite", "match") == "flat"
     directions = merged.get("directions", ["E", "N", "W", "S"])
     settings = {
-        "label": merged.get("label", name or ""),
+        "label": merged.get("label", config.get("embedded", {}).get(name, {}).get("label", name)),
         "material": _material(config, merged["material"], where("material")),
         "opposite": merged.get("opposite", "match"),
         "window": _optional(merged.get("window", "auto"), where("window")),

@@ -1,0 +1,100 @@
+"""What the figures share: style, what a drawing is, how it is written, what the study asked for."""
+
+import contextlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..store import written_whole
+from ..sweep import forces_of, nominal_area
+
+#: Okabe and Ito's colours, told apart by colour-blind readers; black first.
+COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
+#: Markers go with the colours, so that a print in grey can be read too.
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+LINES = ("-", "--", "-.", ":")
+
+#: Width of a figure across two columns of a journal, inches.
+WIDTH = 7.2
+
+_STYLE = {
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 4,
+    "axes.prop_cycle": matplotlib.cycler(color=COLOURS),
+    "image.origin": "lower",
+    "figure.constrained_layout.use": True,
+    # The same figure twice is the same file twice.
+    "svg.hashsalt": "fractalcontact",
+    "svg.fonttype": "none",
+}
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure, the numbers drawn in it, and its caption.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+    data : pd.DataFrame
+        One row a point drawn; column names carry the units.
+    caption : str
+        With the paper's figure number, and plain words where a claim of the paper does not hold.
+    """
+
+    figure: Figure
+    data: pd.DataFrame
+    caption: str
+
+
+@contextlib.contextmanager
+def print_style():
+    """Style of every figure."""
+    with matplotlib.rc_context(_STYLE):
+        yield
+
+
+def save(drawing, folder, name):
+    """Write a drawing as NAME.png, NAME.svg, NAME.csv, each whole or not at all."""
+    folder = Path(folder)
+    for ending, options in (("png", {"dpi": 200}), ("svg", {"metadata": {"Date": None}})):
+        with written_whole(folder / f"{name}.{ending}") as path:
+            drawing.figure.savefig(path, format=ending, **options)
+    with written_whole(folder / f"{name}.csv") as path:
+        drawing.data.to_csv(path, index=False, float_format="%.8g", lineterminator="\n")
+
+
+def settings_of(atlas, specimen):
+    """Settings of a specimen as the study stated them, numbers in mm, N and MPa."""
+    return json.loads(atlas.attrs["configuration"])["settings"][specimen]
+
+
+def group(atlas, stage, specimen):
+    """Dataset of one stage of a specimen, in memory."""
+    return atlas[f"{stage}/{specimen}"].to_dataset().load()
+
+
+def force_of(load, specimen):
+    """A load of the settings, (value, kind), as a force in N."""
+    return float(forces_of([load], nominal_area(specimen))[0])
+
+
+def map_offset(settings, offsets):
+    """The offset whose contact domains are drawn: the study's, else the third; mm."""
+    wanted = settings["map_offset"]
+    if wanted is None:
+        return float(offsets[min(2, len(offsets) - 1)])
+    return float(min(offsets, key=lambda offset: abs(offset - wanted)))
+
+
+def force_label(force):
+    """A force in words: N below 1 kN, kN above."""
+    return f"{force:.3g} N" if force < 1000 else f"{force / 1000:.3g} kN"

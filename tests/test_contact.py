@@ -1,0 +1,474 @@
+"""The contact solver: exact solutions, properties, and states verified by other means.
+
+The comparison with direct elimination on rough scenes stands in methods/test_dense.py.
+"""
+
+import pickle
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.signal import fftconvolve
+
+from fractalcontact import HalfSpace, NotConverged, contact, solve_contact
+from fractalcontact.contact import ContactState
+from fractalcontact.fitting import fit_line
+from fractalcontact.halfspace import love_displacement
+from fractalcontact.synthesis import self_affine
+
+SPACING = 0.1
+MODULUS = 20e3
+
+
+def rough(shape=(64, 64), hurst=0.8, seed=0, rms=0.1):
+    """Composite topography in mm and its half-space."""
+    height = self_affine(shape, SPACING, hurst, rms=rms, seed=seed)
+    return height, HalfSpace(shape, (SPACING, SPACING), MODULUS)
+
+
+def assert_same(state, other, rtol=1e-6):
+    assert state.force == pytest.approx(other.force, rel=rtol)
+    assert state.closure == pytest.approx(other.closure, rel=rtol)
+    np.testing.assert_array_equal(state.in_contact, other.in_contact)
+    peak = other.pressure.max()
+    np.testing.assert_allclose(state.pressure, other.pressure, rtol=0, atol=100 * rtol * peak)
+
+
+# Exact solutions
+
+
+def axisymmetric(profile, cells, centre, closure, modulus=1.0):
+    """State of a rigid indenter z = -profile(r) at a closure counted from its true apex.
+
+    ``cells`` span the contact radius, here 1 mm; the apex lies ``centre`` cells off a node, and the
+    closure given to the solver counts from the first touch of a node.
+    """
+    spacing = 1.0 / cells
+    node = np.arange(-int(1.25 * cells) - 1, int(1.25 * cells) + 2)
+    y, x = (spacing * (node - c) for c in centre)
+    height = -profile(np.hypot(y[:, None], x[None, :]))
+    space = HalfSpace(height.shape, (spacing, spacing), modulus)
+    return solve_contact(height, space, closure=closure + height.max())
+
+
+CENTRES = [(y, x) for y in (-0.35, 0.05, 0.4) for x in (-0.2, 0.15, 0.45)]
+
+
+def order_of(cells, errors):
+    """Order in s of the root mean square error over the positions of the centre, as a fitted line.
+
+    One position alone is noisy: the contact domain is a staircase whose area jumps.
+    """
+    rms = np.sqrt(np.mean(np.square(errors), axis=1))
+    return fit_line(-np.log(cells), np.log(rms))
+
+
+HERTZ_RADIUS = 8.0  # of curvature, mm; the contact radius is 1 mm at w = 1/R
+HERTZ_EXACT = np.array([4 / 3 / HERTZ_RADIUS, 1.0, 2 / (np.pi * HERTZ_RADIUS)])
+
+
+def hertz_errors(cells, centre):
+    state = axisymmetric(
+        lambda r: r**2 / (2 * HERTZ_RADIUS), cells, centre, closure=1 / HERTZ_RADIUS
+    )
+    found = [state.force, np.sqrt(state.area / np.pi), state.pressure.max()]
+    return found / HERTZ_EXACT - 1
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (0.5, 0.5), (0.5, 0.0), *CENTRES])
+def test_hertz_within_one_percent_at_twenty_cells_across_the_radius(centre):
+    force, radius, peak = np.abs(hertz_errors(20, centre))
+    assert force < 5e-4
+    assert radius < 1e-2
+    assert peak < 2e-3
+
+
+def test_hertz_errors_fall_with_the_spacing_at_known_orders():
+    """Measured: 1.95 for the force, 1.0 for the radius of the domain, 2.0 for the peak pressure."""
+    cells = np.array([5, 8, 12, 20, 32])
+    errors = np.array([[hertz_errors(n, c) for c in CENTRES] for n in cells])
+    force, radius, peak = (order_of(cells, errors[:, :, k]) for k in range(3))
+    assert 1.8 < force.slope < 2.1
+    assert 0.8 < radius.slope < 1.2
+    assert 1.8 < peak.slope < 2.2
+
+
+def test_cone_within_one_percent_and_at_known_orders():
+    """Sneddon 1965: a = 2 w / (pi tan b), F = 2 E* w^2 / (pi tan b). Measured: orders 2.0, 1.0."""
+    slope = 0.3
+    closure = np.pi * slope / 2
+    exact = 2 * closure**2 / (np.pi * slope)
+
+    def errors_at(n, centre):
+        state = axisymmetric(lambda r: slope * r, n, centre, closure)
+        return state.force / exact - 1, np.sqrt(state.area / np.pi) - 1
+
+    cells = np.array([5, 8, 12, 20, 32])
+    errors = np.array([[errors_at(n, c) for c in CENTRES] for n in cells])
+    at_twenty = np.abs(errors[3])
+    assert at_twenty[:, 0].max() < 5e-4
+    assert at_twenty[:, 1].max() < 1e-2
+    assert 1.8 < order_of(cells, errors[:, :, 0]).slope < 2.2
+    assert 0.8 < order_of(cells, errors[:, :, 1]).slope < 1.2
+
+
+def test_flat_square_punch_at_known_order():
+    """F = 1.1523 E* b w; the edge singularity leaves order 1 (measured 0.97) in s."""
+    side, closure = 3.0, 0.01
+    cells, errors = np.array([10, 20, 40, 80, 160]), []
+    for n in cells:
+        space = HalfSpace((n, n), (side / n, side / n), MODULUS)
+        state = solve_contact(np.zeros((n, n)), space, closure=closure)
+        assert state.in_contact.all()
+        errors.append([state.force / (1.1523 * MODULUS * side * closure) - 1])
+    # 20 cells across the half side
+    assert abs(errors[2][0]) < 1e-2
+    assert 0.9 < order_of(cells, errors).slope < 1.05
+
+
+def test_flat_disc_punch():
+    """F = 2 a E* w, on nodes of which only those within the disc are near the plane."""
+    state = axisymmetric(lambda r: np.where(r <= 1, 0.0, 10.0), 40, (0.3, 0.1), closure=0.1)
+    assert state.force == pytest.approx(2 * 0.1, rel=0.02)
+
+
+def test_stiffness_of_hertz_is_twice_modulus_times_radius():
+    state = axisymmetric(
+        lambda r: r**2 / (2 * HERTZ_RADIUS), 40, (0.2, 0.4), closure=1 / HERTZ_RADIUS
+    )
+    assert state.stiffness == pytest.approx(2.0, rel=1e-2)
+
+
+@pytest.mark.parametrize("load", [{"closure": 1e-5}, {"closure": 10.0}, {"force": 1e-3}])
+def test_flat_faces_touch_everywhere_at_any_load(load):
+    space = HalfSpace((33, 20), (SPACING, SPACING), MODULUS)
+    state = solve_contact(np.full((33, 20), 7.0), space, **load)
+    assert state.in_contact.all()
+    assert np.abs(state.gap).max() <= 1e-6 * state.closure
+
+
+@pytest.mark.parametrize("load", [{"closure": 0.0}, {"force": 0.0}])
+def test_no_load_is_first_touch(load):
+    height, space = rough()
+    state = solve_contact(height, space, **load)
+    assert state.force == state.closure == state.area == state.stiffness == state.residual == 0.0
+    assert state.gap.min() == 0.0
+
+
+def test_single_node_is_a_spring():
+    space = HalfSpace((1, 1), (SPACING, SPACING), MODULUS)
+    per_force = space.influence()[0, 0] / (MODULUS * SPACING)
+    assert solve_contact([[5.0]], space, force=3.0).closure == pytest.approx(3 * per_force)
+    assert solve_contact([[5.0]], space, closure=0.1).force == pytest.approx(0.1 / per_force)
+
+
+# Properties
+
+
+@pytest.mark.parametrize("control", ["closure", "force"])
+def test_units_that_differ_by_powers_of_two_give_the_same_bits(control):
+    height, space = rough()
+    load = {"closure": 0.2, "force": 3e3}[control]
+    length, stress = 2.0**-20, 2.0**7
+    state = solve_contact(height, space, **{control: load})
+    scaled_space = HalfSpace(space.shape, (SPACING * length, SPACING * length), MODULUS * stress)
+    unit = length if control == "closure" else stress * length**2
+    scaled = solve_contact(height * length, scaled_space, **{control: load * unit})
+    np.testing.assert_array_equal(scaled.pressure, state.pressure * stress)
+    np.testing.assert_array_equal(scaled.displacement, state.displacement * length)
+    assert scaled.closure == state.closure * length
+    assert scaled.stiffness == state.stiffness * length * stress
+
+
+@pytest.mark.parametrize("control", ["closure", "force"])
+@pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1.0), (1e6, 1e-3)])
+def test_metres_and_micrometres_give_the_same_physics(length, stress, control):
+    height, space = rough()
+    load = {"closure": 0.2, "force": 3e3}[control]
+    state = solve_contact(height, space, rtol=1e-11, **{control: load})
+    scaled_space = HalfSpace(space.shape, (SPACING * length, SPACING * length), MODULUS * stress)
+    unit = length if control == "closure" else stress * length**2
+    scaled = solve_contact(height * length, scaled_space, rtol=1e-11, **{control: load * unit})
+    assert scaled.force == pytest.approx(state.force * stress * length**2, rel=1e-9)
+    assert scaled.closure == pytest.approx(state.closure * length, rel=1e-9)
+    assert scaled.area == pytest.approx(state.area * length**2, rel=1e-12)
+    assert scaled.stiffness == pytest.approx(state.stiffness * length * stress, rel=1e-5)
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.8])
+def test_force_area_and_stiffness_rise_with_closure_and_no_contact_is_lost(hurst):
+    height, space = rough(hurst=hurst)
+    states = [solve_contact(height, space, closure=w) for w in np.geomspace(5e-3, 3.0, 12)]
+    assert (np.diff([s.force for s in states]) > 0).all()
+    assert (np.diff([s.area for s in states]) >= 0).all()
+    assert (np.diff([s.stiffness for s in states]) >= 0).all()
+    for lower, higher in pairwise(states):
+        assert higher.in_contact[lower.in_contact].all()
+
+
+@pytest.mark.parametrize("closure", [0.01, 0.1, 0.5, 2.0])
+def test_force_control_and_closure_control_give_the_same_state(closure):
+    height, space = rough(seed=3)
+    by_closure = solve_contact(height, space, closure=closure, rtol=1e-8)
+    by_force = solve_contact(height, space, force=by_closure.force, rtol=1e-8)
+    assert_same(by_force, by_closure, rtol=1e-8)
+    assert by_force.force == pytest.approx(by_closure.force, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "turn",
+    [
+        lambda a: a[::-1],
+        lambda a: a[:, ::-1],
+        lambda a: a[::-1, ::-1],
+        lambda a: a.T,
+        lambda a: np.rot90(a),
+    ],
+)
+def test_turned_topography_gives_the_turned_state(turn):
+    height, _ = rough(shape=(40, 56), seed=4)
+    spacing = np.array([0.13, 0.1])
+    state = solve_contact(height, HalfSpace((40, 56), spacing, MODULUS), closure=0.2)
+    shape = turn(height).shape
+    turned_space = HalfSpace(shape, spacing if shape == (40, 56) else spacing[::-1], MODULUS)
+    turned = solve_contact(turn(height), turned_space, closure=0.2)
+    assert turned.force == pytest.approx(state.force, rel=1e-6)
+    np.testing.assert_array_equal(turned.in_contact, turn(state.in_contact))
+
+
+def test_only_differences_of_height_matter():
+    height, space = rough()
+    height = np.round(height * 2**20) / 2**20  # so that adding a constant rounds nothing
+    state = solve_contact(height, space, closure=0.2)
+    raised = solve_contact(height + 1024.0, space, closure=0.2)
+    np.testing.assert_array_equal(raised.pressure, state.pressure)
+
+
+def test_state_depends_on_force_over_modulus_alone():
+    height, space = rough()
+    stiffer = HalfSpace(space.shape, space.spacing, 2 * MODULUS)
+    state, stiff = (solve_contact(height, s, closure=0.2) for s in (space, stiffer))
+    assert stiff.force == 2 * state.force
+    np.testing.assert_array_equal(stiff.gap, state.gap)
+
+
+@pytest.mark.parametrize("closure", [0.05, 0.4, 2.0])
+def test_stiffness_is_the_slope_of_force_against_closure(closure):
+    height, space = rough(seed=5)
+    state = solve_contact(height, space, closure=closure, rtol=1e-10)
+    step = 1e-5 * closure
+    above, below = (
+        solve_contact(height, space, closure=closure + d, rtol=1e-10, start=state)
+        for d in (step, -step)
+    )
+    np.testing.assert_array_equal(above.in_contact, below.in_contact)
+    assert state.stiffness == pytest.approx((above.force - below.force) / (2 * step), rel=1e-4)
+
+
+def wrong_starts(state):
+    generator = np.random.default_rng(0)
+    pressure = state.pressure
+    yield "itself", pressure
+    yield "nothing", np.zeros_like(pressure)
+    yield "everywhere", np.full_like(pressure, pressure.mean())
+    yield "mirrored", pressure[::-1, ::-1].copy()
+    yield "where nothing touches", pressure.max() - pressure
+    yield "half of it", pressure * (generator.random(pressure.shape) < 0.5)
+    yield "a million times too much", 1e6 * pressure
+    yield (
+        "one wrong node",
+        np.where(np.arange(pressure.size) == 7, 1.0, 0.0).reshape(pressure.shape),
+    )
+
+
+@pytest.mark.parametrize("control", ["closure", "force"])
+def test_any_start_leads_to_the_same_state(control):
+    height, space = rough(seed=6)
+    cold = solve_contact(height, space, closure=0.3, rtol=1e-8)
+    for name, pressure in wrong_starts(cold):
+        start = ContactState(pressure, pressure, pressure, 1.0, 1.0, 1.0, 1, space)
+        load = {control: getattr(cold, control)}
+        warm = solve_contact(height, space, rtol=1e-8, start=start, **load)
+        assert_same(warm, cold, rtol=1e-8)
+        if name == "itself":
+            assert warm.iterations <= 2
+
+
+@pytest.mark.parametrize("control", ["closure", "force"])
+def test_load_steps_may_start_from_first_touch_and_from_each_other(control):
+    height, space = rough(seed=7)
+    state = solve_contact(height, space, closure=0.0)
+    for closure in (0.05, 0.2, 0.1, 0.8):
+        cold = solve_contact(height, space, closure=closure)
+        state = solve_contact(height, space, start=state, **{control: getattr(cold, control)})
+        assert_same(state, cold, rtol=5e-6)
+
+
+@pytest.mark.parametrize("power", [-290, -40, -16, -9])
+def test_forces_too_small_for_the_depths_of_other_nodes(power):
+    height, space = rough(seed=8)
+    first = np.unravel_index(height.argmax(), height.shape)
+    state = solve_contact(height, space, force=10.0**power)
+    assert np.argwhere(state.in_contact).tolist() == [list(first)]
+    per_force = space.influence()[0, 0] / (MODULUS * SPACING)
+    assert state.closure == pytest.approx(per_force * 10.0**power, rel=1e-6)
+
+
+def test_state_reports_what_its_pressure_implies():
+    height, space = rough()
+    state = solve_contact(height, space, closure=0.2)
+    assert state.force == pytest.approx(state.pressure.sum() * SPACING**2, rel=1e-12)
+    assert state.area == pytest.approx(np.count_nonzero(state.pressure) * SPACING**2, rel=1e-12)
+    expected = space.displacement(state.pressure)
+    np.testing.assert_allclose(state.displacement, expected, rtol=0, atol=1e-12)
+    expected = state.displacement - (state.closure - (height.max() - height))
+    np.testing.assert_allclose(state.gap, expected, rtol=0, atol=1e-12)
+    assert state.iterations > 0
+
+
+def test_tolerance_asked_for_is_reached():
+    height, space = rough()
+    for rtol in (1e-2, 1e-4, 1e-8, 1e-12):
+        for load in ({"closure": 0.2}, {"force": 3e3}):
+            assert solve_contact(height, space, rtol=rtol, **load).residual <= rtol
+
+
+# Refusals
+
+
+@pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])
+def test_missing_cells_are_refused_and_counted(hole):
+    height, space = rough(shape=(16, 16))
+    height[3, 4:6] = hole
+    with pytest.raises(ValueError, match="2 missing"):
+        solve_contact(height, space, closure=0.1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({}, "either closure= or force="),
+        ({"closure": 1.0, "force": 1.0}, "either closure= or force="),
+        ({"closure": -1.0}, "closure -1.0"),
+        ({"force": -1.0}, "force -1.0"),
+        ({"force": np.nan}, "force nan"),
+        ({"closure": np.inf}, "closure inf"),
+        ({"closure": 1.0, "rtol": 0.0}, "rtol"),
+        ({"closure": 1.0, "rtol": np.nan}, "rtol"),
+    ],
+)
+def test_senseless_loads_are_refused(arguments, message):
+    height, space = rough(shape=(16, 16))
+    with pytest.raises(ValueError, match=message):
+        solve_contact(height, space, **arguments)
+
+
+def test_other_grids_are_refused():
+    height, space = rough(shape=(16, 16))
+    with pytest.raises(ValueError, match="composite topography"):
+        solve_contact(height[1:], space, closure=0.1)
+    other = solve_contact(*rough(shape=(16, 17)), closure=0.1)
+    with pytest.raises(ValueError, match="start of shape"):
+        solve_contact(height, space, closure=0.1, start=other)
+
+
+@pytest.mark.parametrize("load", [{"closure": 0.3}, {"force": 3e3}])
+def test_unconverged_fields_are_never_returned(monkeypatch, load):
+    height, space = rough()
+    converged = solve_contact(height, space, **load)
+    monkeypatch.setattr(contact, "MAX_CORRECTIONS", 1)
+    with pytest.raises(NotConverged, match="contact set still changed") as caught:
+        solve_contact(height, space, **load)
+    error = caught.value
+    assert error.residual == error.state.residual > 1e-6
+    assert error.state.pressure.shape == space.shape
+    assert error.state.force != converged.force
+
+
+def test_error_and_state_survive_the_way_between_processes(monkeypatch):
+    height, space = rough(shape=(24, 24))
+    state = solve_contact(height, space, closure=0.3)
+    copy = pickle.loads(pickle.dumps(state))
+    np.testing.assert_array_equal(copy.pressure, state.pressure)
+    assert copy.stiffness == state.stiffness
+    error = NotConverged("a reason", state, 0.5)
+    copy = pickle.loads(pickle.dumps(error))
+    assert str(copy) == str(error)
+    assert copy.residual == 0.5
+    np.testing.assert_array_equal(copy.state.pressure, state.pressure)
+
+
+# Random scenes, each verified with another convolution
+
+SHAPES = [(17, 17), (31, 37), (16, 128), (128, 16), (64, 64), (47, 53), (1, 97), (97, 97), (75, 60)]
+KINDS = ["rough", "spikes", "plateau", "ties", "single peak", "raised", "noise", "checkerboard"]
+
+
+def random_scene(seed):
+    """Topography, half-space, load, and the rounding of its heights, all of random size."""
+    generator = np.random.default_rng(seed)
+    shape = SHAPES[seed % len(SHAPES)]
+    kind = KINDS[seed % len(KINDS)]
+    height = self_affine(
+        (max(shape), max(shape)), 1.0, generator.uniform(0.1, 0.99), rms=1.0, seed=seed
+    )[: shape[0], : shape[1]]
+    if kind == "spikes":
+        spikes = generator.integers(height.size, size=8)
+        height.flat[spikes] += generator.uniform(1, 20, size=8)
+    elif kind == "plateau":
+        height = np.minimum(height, np.quantile(height, generator.uniform(0.3, 0.99)))
+    elif kind == "ties":
+        height = np.round(4 * height) / 4
+    elif kind == "single peak":
+        height.flat[generator.integers(height.size)] = height.max() + 3
+    elif kind == "noise":
+        height = generator.standard_normal(shape)
+    elif kind == "checkerboard":
+        height = (np.indices(shape).sum(axis=0) % 2).astype(float)
+
+    cell = 10 ** generator.uniform(-6, 3)  # from nm to m, in mm
+    stretch = 1.0 if generator.random() < 0.5 else 10 ** generator.uniform(-0.7, 0.7)
+    space = HalfSpace(shape, (cell * stretch, cell), 10 ** generator.uniform(-3, 9))
+    slope = 10 ** generator.uniform(-4, 1)
+    height = height * (slope * cell / np.abs(np.diff(height, axis=1)).mean())
+    span = np.ptp(height)
+    if kind == "raised":
+        height = height + 1e6 * span
+
+    # From the first nodes up to full contact.
+    closure = span * 10 ** generator.uniform(-4, 2.5)
+    force = space.modulus * np.sqrt(height.size) * space.cell * closure
+    load = {"closure": closure} if generator.random() < 0.5 else {"force": force}
+    return height, space, load
+
+
+@pytest.mark.parametrize("seed", range(72))
+def test_random_scene_satisfies_the_conditions(seed):
+    height, space, load = random_scene(seed)
+    rtol = 1e-6
+    state = solve_contact(height, space, rtol=rtol, **load)
+
+    (ny, nx), (dy, dx) = space.shape, space.spacing
+    y, x = np.arange(1 - ny, ny)[:, None] * dy, np.arange(1 - nx, nx)[None, :] * dx
+    kernel = love_displacement(x, y, dx, dy) / space.modulus
+    displacement = fftconvolve(state.pressure, kernel, mode="full")[ny - 1 :, nx - 1 :][:ny, :nx]
+    gap = displacement + (height.max() - height) - state.closure
+    tolerance = 1.01 * rtol * state.closure + 4 * np.spacing(np.abs(height).max())
+
+    assert state.pressure.min() >= 0
+    assert gap.min() >= -tolerance
+    assert np.abs(gap[state.pressure > 0]).max() <= tolerance
+    if "force" in load:
+        assert state.pressure.sum() * dy * dx == pytest.approx(load["force"], rel=rtol)
+    else:
+        assert state.closure == load["closure"]
+
+
+def test_random_scenes_span_few_contacts_to_full_contact():
+    share = []
+    for seed in range(72):
+        height, space, load = random_scene(seed)
+        share.append(solve_contact(height, space, **load).in_contact.mean())
+    assert min(share) < 0.01
+    assert sum(0.6 < s < 1 for s in share) >= 3
+    assert sum(s == 1 for s in share) >= 3
