@@ -42,7 +42,7 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     """
     factors = sorted(int(name.removeprefix("in_contact_")) for name in fields.data_vars)
     domains = {k: fields[f"in_contact_{k}"].values for k in factors}
-    sizes = {k: box_sizes(max(domains[k].shape[-2:])) for k in factors}
+    sizes = {k: box_sizes(domains[k].shape[-2:]) for k in factors}
     n_scales = max(len(s) for s in sizes.values())
     n_direction, n_offset, n_load = domains[factors[0]].shape[:3]
     shape = (n_direction, n_offset, len(factors), n_load)

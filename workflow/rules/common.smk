@@ -9,6 +9,7 @@ from snakemake.exceptions import WorkflowError
 
 from fractalcontact.catalogue import find_scans
 from fractalcontact.errors import InputError
+from fractalcontact.figures import figures_of
 from fractalcontact.joint import AUTOMATIC_OFFSETS
 from fractalcontact.study import (
     check_study,
@@ -53,8 +54,13 @@ SOLVER = solver_settings(config)
 SPECIMENS = sorted(SETTINGS)
 
 
+def one_of(names):
+    """Pattern that matches these names and no others; no specimen at all matches nothing."""
+    return "|".join(map(re.escape, names)) or "(?!)"
+
+
 wildcard_constraints:
-    specimen="|".join(map(re.escape, SPECIMENS)) or "none",
+    specimen=one_of(SPECIMENS),
     direction="E|N|W|S|none",
     part=r"\d+",
     level=r"\d+",
@@ -62,6 +68,15 @@ wildcard_constraints:
 
 def settings_of(wildcards):
     return SETTINGS[wildcards.specimen]
+
+
+def is_pair(specimen):
+    """Whether both faces of a specimen were scanned."""
+    return specimen in SCANS and SCANS[specimen].upper is not None
+
+
+def figure_modules(opposite):
+    return [f"figures/{name}" for name in figures_of(opposite)]
 
 
 def grain(key, n):

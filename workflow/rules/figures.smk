@@ -1,48 +1,71 @@
-# Figures of every specimen, each from its own atlas; PNG, SVG, and the numbers as CSV beside them.
+# Figures of every specimen, each from its own atlas: PNG, SVG, and the numbers as CSV beside them.
+
+FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and not is_pair(name)]
+SLIDING = [name for name in SPECIMENS if name not in FLAT]
 
 
-def figure_files(specimen, ending):
-    opposite = SETTINGS[specimen]["opposite"]
-    if specimen in SCANS and SCANS[specimen].upper is not None:
-        opposite = "scanned"
+def pictures(opposite):
+    """The PNG files of a specimen, each with its place in the report."""
+    return [picture(name) for name in figures_of(opposite)]
+
+
+def picture(name):
+    path = f"{RESULTS}/figures/{{specimen}}/{name}.png"
+    caption = f"../report/{name}.rst"
+    # On a line of its own, `report` would be read as the directive.
+    return report(path, category="{specimen}", labels={"figure": name}, caption=caption)
+
+
+def beside(opposite):
+    """Vector drawings and numbers that go with the pictures."""
     return expand(
-        f"{RESULTS}/figures/{specimen}/{{name}}.{ending}", name=figures_of(opposite)
+        f"{RESULTS}/figures/{{{{specimen}}}}/{{name}}.{{ending}}",
+        name=figures_of(opposite),
+        ending=("svg", "csv"),
     )
 
 
+rule figures:
+    input:
+        rules.specimen_atlas.output[0],
+    output:
+        *pictures("match"),
+        *beside("match"),
+    wildcard_constraints:
+        specimen=one_of(SLIDING),
+    params:
+        names=figures_of("match"),
+        code=code("figures", *figure_modules("match")),
+    log:
+        f"{RESULTS}/logs/figures/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    conda:
+        "../../environment.yml"
+    script:
+        "../scripts/figures.py"
+
+
+# A surface against a plane does not slide: fewer figures, else the same.
+use rule figures as figures_against_plane with:
+    output:
+        *pictures("flat"),
+        *beside("flat"),
+    wildcard_constraints:
+        specimen=one_of(FLAT),
+    params:
+        names=figures_of("flat"),
+        code=code("figures", *figure_modules("flat")),
+    log:
+        f"{RESULTS}/logs/figures/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
+
+
 def collect_figures(wildcards):
-    return [path for specimen in SPECIMENS for path in figure_files(specimen, "png")]
-
-
-# One rule a specimen, because the files differ: a surface against a plane has no dilatancy.
-for specimen in SPECIMENS:
-
-    rule:
-        name:
-            f"figures_of_{re.sub(r'[^A-Za-z0-9_]', '_', specimen)}"
-        input:
-            expand(rules.specimen_atlas.output, specimen=specimen),
-        output:
-            report(
-                figure_files(specimen, "png"),
-                category=specimen,
-                labels=figure_labels,
-                caption="../report/figure.rst",
-            ),
-            [figure_files(specimen, ending) for ending in ("svg", "csv")],
-        params:
-            folder=f"{RESULTS}/figures/{specimen}",
-            specimen=specimen,
-            names=[Path(path).stem for path in figure_files(specimen, "png")],
-            code=code("figures"),
-        log:
-            f"{RESULTS}/logs/figures/{specimen}.log",
-        benchmark:
-            f"{RESULTS}/benchmarks/figures/{specimen}.tsv"
-        resources:
-            mem_mb=2000,
-            runtime=10,
-        conda:
-            "../../environment.yml"
-        script:
-            "../scripts/figures.py"
+    return expand(
+        f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=SLIDING, name=figures_of("match")
+    ) + expand(f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=FLAT, name=figures_of("flat"))

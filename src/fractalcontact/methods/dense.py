@@ -19,7 +19,7 @@ ROUNDING = 1e-12
 # Whole-set exchanges allowed without progress before single ones, which cannot cycle, take over
 # (Judice & Pires 1994 use about ten).
 PATIENCE = 10
-# Closures tried before giving up on a force: trials needed at most eight.
+# Closures tried before giving up on a force: trials needed at most five.
 MAX_CLOSURES = 100
 # Contact sets solved for at one closure before giving up: finite in theory, this in practice.
 MAX_SETS = 10_000
