@@ -83,6 +83,12 @@ def test_cantor_dust(n):
     assert result.low <= DUST <= result.high
 
 
+@pytest.mark.parametrize("n", [200, 500])
+def test_sizes_given_for_the_window_do_as_well(n):
+    dust = box_dimension(cantor_dust(n), 0.1, sizes=box_sizes((n, n)))
+    assert dust.dimension == pytest.approx(DUST, abs=0.03)
+
+
 def test_carpet_cut_off_by_the_window():
     for n in (200, 512):
         result = box_dimension(sierpinski_carpet(729)[:n, :n], 0.1)

@@ -24,9 +24,6 @@ INNER_REDUCTION = 0.1
 SINGLE_REACHES = 1e-5
 # A total this close to F is F: the closure is then read from the gap itself.
 FORCE_ROUNDING = 1e-12
-# Up to this much of F a common factor restores the total after tension was dropped; larger factors
-# were seen to make the set swing between too large and too small for ever.
-RESCALED = 0.01
 # Inner iterations for one correction; on an exact set 14-27 reach 1e-6.
 MAX_INNER = 200
 # Aim this far below the tolerance, so that one correction too many is rarer than one too few.
@@ -287,9 +284,10 @@ def _newton(problem, pressure, rtol):
         if problem.by_force:
             if not pressure.any():
                 pressure = problem.first_touch()
-            # Dropping much tension asks for more than a common factor; the next step restores F.
+            # A common factor restores F where it disturbs the gap less than the tolerance. Larger
+            # ones were seen to make the set swing for ever: there the next step restores F.
             factor = load / pressure.sum()
-            if abs(factor - 1) < RESCALED:
+            if abs(factor - 1) < SAFETY * rtol:
                 pressure *= factor
     best.iterations = iterations
     return best

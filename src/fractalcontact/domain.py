@@ -1,5 +1,6 @@
 """The contact domain D: box counts, its dimension Delta_sigma, and its clusters."""
 
+import itertools
 from dataclasses import dataclass
 
 import numba
@@ -38,23 +39,24 @@ class BoxDimension:
     reason: str
 
 
-def box_sizes(n: int) -> np.ndarray:
-    """Box sides in cells that divide an extent of `n` cells exactly.
+def box_sizes(extent: int | tuple[int, int]) -> np.ndarray:
+    """Box sides in cells that divide an extent exactly.
 
-    Each is n / k for a whole k, from n / 2 down to 2, then 1: about `SIZES_PER_OCTAVE` in each
-    doubling, and the powers of `RATIOS`. (Whole numbers of cells overhang most extents, and a
-    filled square then seems to have a dimension other than 2.)
+    Each is n / k for its longer side n and a whole k, from n / 2 down to 2, then 1: about
+    `SIZES_PER_OCTAVE` in each doubling, and the powers of `RATIOS`. (Whole numbers of cells
+    overhang most extents, and a filled square then seems to have a dimension other than 2.)
 
     Parameters
     ----------
-    n : int
-        Cells along the longer side of what is to be covered.
+    extent : int or (ny, nx)
+        Cells along the sides of what is to be covered, a window or a domain.
 
     Returns
     -------
     (k,) float64
         Ascending; ``[1.]`` for an extent too short to divide.
     """
+    n = int(np.max(extent))
     most = n // 2
     octaves = np.arange(SIZES_PER_OCTAVE, np.log2(max(most, 1)) * SIZES_PER_OCTAVE + 1)
     parts = set(np.round(2 ** (octaves / SIZES_PER_OCTAVE)).astype(int).tolist())
@@ -184,8 +186,8 @@ def box_dimension(
     domain = np.asarray(domain, dtype=bool)
     extent = _cropped(domain)
     # A single node has no extent to divide: it is seen at the scales of the window.
-    side = max(extent.shape if extent.size > 1 else domain.shape)
-    sizes = box_sizes(side) if sizes is None else np.asarray(sizes, dtype=float)
+    shape = extent.shape if extent.size > 1 else domain.shape
+    sizes = box_sizes(shape) if sizes is None else np.asarray(sizes, dtype=float)
     count = box_count(extent, sizes)
     r = sizes * float(spacing)
     nodes = int(extent.sum())
@@ -214,7 +216,7 @@ def box_dimension(
     line = _line(r, count, used)
     parts = _slopes_of_parts(np.log(r[used]), np.log(count[used]))
     slopes = [line.slope_low, line.slope_high, *parts]
-    used = _best_scales(sizes, side, count, used)
+    used = _best_scales(sizes, {max(extent.shape), max(domain.shape)}, count, used)
     line = _line(r, count, used)
     slopes += [line.slope_low, line.slope_high]
     return BoxDimension(
@@ -236,11 +238,13 @@ def _line(r: np.ndarray, count: np.ndarray, used: np.ndarray) -> LineFit:
     return fit_line(np.log(r[used]), np.log(count[used]))
 
 
-def _best_scales(sizes: np.ndarray, side: int, count: np.ndarray, used: np.ndarray) -> np.ndarray:
-    """All usable scales, or those in one whole ratio if they lie much better on a line."""
+def _best_scales(
+    sizes: np.ndarray, sides: set[int], count: np.ndarray, used: np.ndarray
+) -> np.ndarray:
+    """All usable scales, or those side / ratio^k that lie much better on a line."""
     # Less a little: where all sizes lie on one line there is nothing to gain but rounding.
     best, least = used, LADDER_GAIN * _scatter(sizes, count, used) - 1e-9
-    for ratio in RATIOS:
+    for side, ratio in itertools.product(sorted(sides), RATIOS):
         power = np.log(side / sizes) / np.log(ratio)
         ladder = used & (np.abs(power - np.round(power)) < 1e-9)
         if ladder.sum() >= FEWEST_SCALES and _scatter(sizes, count, ladder) < least:

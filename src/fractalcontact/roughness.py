@@ -312,7 +312,8 @@ def _windows_rms(heights: np.ndarray, side: int) -> float:
     y, x = (a.ravel() - (side - 1) / 2 for a in np.mgrid[:side, :side])
     basis = np.stack([np.ones(side**2), y, x])
     values = np.where(known, windows, 0.0)
-    normal = np.einsum("ip,wp,jp->wij", basis, known, basis, optimize=True)
+    products = (basis[:, np.newaxis] * basis).reshape(9, -1)
+    normal = (known.astype(float) @ products.T).reshape(-1, 3, 3)
     plane = np.linalg.solve(normal, (values @ basis.T)[..., np.newaxis])[..., 0]
     residual = np.where(known, values - plane @ basis, 0.0)
     # Three degrees of freedom went into the plane.
