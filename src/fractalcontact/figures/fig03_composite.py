@@ -1,1 +1,265 @@
-"""x."""
+"""The joint slid: window, profile with dilatancy, composite topography (Fig. 3)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..joint import STEPS
+from ..specimen import faces, window_slices
+from ..sweep import window_sides
+from ._mechanics import (
+    HALO,
+    PAPER,
+    draw_map,
+    length_unit,
+    letter,
+    missing_patch,
+    place,
+    scan_extent,
+    window_outline,
+)
+from .common import COLOURS, WIDTH, Drawing, group, settings_of
+
+#: Below this the faces under the window are said to be no longer correlated: they share less than
+#: 1 % of their variance.
+UNCORRELATED = 0.1
+
+
+@dataclass(frozen=True)
+class Slid:
+    """The joint at its largest offset in the first direction whose contact is solved.
+
+    Attributes
+    ----------
+    specimen : xr.Dataset
+    direction : str
+    offset : float
+        v, mm.
+    dilatancy : float
+        delta_r, mm.
+    composite : (ny, nx) ndarray
+        h, mm.
+    """
+
+    specimen: xr.Dataset
+    direction: str
+    offset: float
+    dilatancy: float
+    composite: np.ndarray
+
+    @classmethod
+    def of(cls, atlas, name):
+        """The slid joint of a specimen."""
+        joint = group(atlas, "joints", name)
+        direction = str(joint["contact_direction"].values[0])
+        last = int(joint["offset"].argmax())
+        cells = int(joint["offset_cells"].values[0, last])
+        # The n-th rigid offset is n cells along the first contact direction.
+        dilatancy = joint["rigid_dilatancy"].sel(direction=direction).values[cells]
+        return cls(
+            group(atlas, "specimens", name),
+            direction,
+            float(joint["offset"].values[last]),
+            float(dilatancy),
+            joint["composite"].values[last],
+        )
+
+    @property
+    def touch(self):
+        """Node (y, x) of the window that touches first."""
+        return np.unravel_index(self.composite.argmax(), self.composite.shape)
+
+    @property
+    def slid(self):
+        """How far (y, x) the upper block has slid, mm."""
+        return tuple(self.offset * step for step in STEPS[self.direction])
+
+    @property
+    def axis(self):
+        """Axis along which it slides."""
+        return "y" if STEPS[self.direction][0] else "x"
+
+    def profiles(self):
+        """Both faces along the line of sliding through the point of first touch.
+
+        Returns
+        -------
+        pd.DataFrame
+            Distances from the corner of the scan, of the whole line.
+        """
+        lower, upper = faces(self.specimen)
+        window = window_slices(self.specimen)
+        across, along = (1, 0) if self.axis == "y" else (0, 1)
+        line = window[across].start + self.touch[across]
+        lower, upper = (np.take(face, line, axis=across) for face in (lower, upper))
+        spacing = self.specimen.attrs[f"spacing_{self.axis}"]
+        cells = window[along]
+        moved = round(self.slid[along] / spacing)
+        lift = self.composite.max()
+        table = pd.DataFrame({f"{self.axis}_mm": (np.arange(lower.size) + 0.5) * spacing})
+        table["lower_mm"] = lower
+        table["upper_before_mm"] = np.nan
+        table["upper_after_mm"] = np.nan
+        before, after = (
+            slice(cells.start, cells.stop),
+            slice(cells.start + moved, cells.stop + moved),
+        )
+        table.loc[table.index[before], "upper_before_mm"] = upper[cells] + lift - self.dilatancy
+        table.loc[table.index[after], "upper_after_mm"] = upper[cells] + lift
+        first, last = min(before.start, after.start), max(before.stop, after.stop)
+        margin = (last - first) // 20
+        return table.iloc[max(first - margin, 0) : last + margin].reset_index(drop=True)
+
+    def correlation(self):
+        """Correlation of the two faces' heights under the window."""
+        _, upper = faces(self.specimen)
+        under = upper[window_slices(self.specimen)]
+        return float(np.corrcoef((self.composite + under).ravel(), under.ravel())[0, 1])
+
+
+def draw(atlas, name):
+    """Plan, profile and composite topography at the largest offset.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+        Its data are the profiles.
+    """
+    slid = Slid.of(atlas, name)
+    label = settings_of(atlas, name)["label"]
+    profiles = slid.profiles()
+    figure = Figure(figsize=(WIDTH, 5.6))
+    grid = figure.add_gridspec(2, 2, height_ratios=[1.5, 1])
+    plan, composite = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
+    profile = figure.add_subplot(grid[1, :])
+    _draw_plan(figure, plan, slid)
+    _draw_profile(profile, slid, profiles)
+    _draw_composite(figure, composite, slid)
+    letter(plan, "a", "lower face and window")
+    letter(profile, "b", "profile through the point of first touch")
+    letter(composite, "c", "composite topography $h$")
+    figure.suptitle(f"{label}, {place(slid.direction)}, $v$ = {slid.offset:.3g} mm")
+    return Drawing(figure, profiles, _caption(label, slid))
+
+
+def _draw_plan(figure, axes, slid):
+    specimen = slid.specimen
+    sides = scan_extent(specimen)
+    unit = length_unit(max(sides))
+    heights = specimen["lower"].values
+    height_unit = length_unit(np.nanmax(heights) - np.nanmin(heights))
+    image = draw_map(axes, heights / height_unit[1], sides, unit, cmap="Greys_r")
+    figure.colorbar(image, ax=axes, shrink=0.8, label=f"height ({height_unit[0]})")
+    outlines = [
+        window_outline(specimen, unit[1], edgecolor=COLOURS[1], lw=1.5, ls="--", label="before"),
+        window_outline(specimen, unit[1], slid.slid, edgecolor=COLOURS[2], lw=1.5, label="after"),
+    ]
+    for outline in outlines:
+        axes.add_patch(outline)
+    handles = outlines + ([missing_patch()] if np.isnan(heights).any() else [])
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
+
+
+def _draw_profile(axes, slid, profiles):
+    along = profiles[f"{slid.axis}_mm"].values
+    unit, size = length_unit(along[-1])
+    height_unit, height_size = length_unit(
+        np.nanmax(profiles.iloc[:, 1:]) - profiles["lower_mm"].min()
+    )
+    lower, before, after = (
+        profiles[f"{key}_mm"] / height_size for key in ("lower", "upper_before", "upper_after")
+    )
+    x = along / size
+    axes.fill_between(x, lower, lower.min(), color="0.85", lw=0)
+    axes.plot(x, lower, color=COLOURS[0], lw=0.9, label="lower face")
+    if slid.specimen.attrs["opposite"] == "scanned":
+        axes.plot(
+            x, before, color=COLOURS[1], lw=0.7, ls="--", label="upper face at first touch, $v$ = 0"
+        )
+    axes.plot(
+        x,
+        after,
+        color=COLOURS[2],
+        lw=0.9,
+        label=r"upper face, slid by $v$ and lifted by $\delta_r$",
+    )
+
+    axis = "yx".index(slid.axis)
+    spacing = slid.specimen.attrs[f"spacing_{slid.axis}"]
+    start = (window_slices(slid.specimen)[axis].start + slid.touch[axis] + 0.5) * spacing
+    end = start + slid.slid[axis]
+    top = np.interp(end, along, after)
+    bottom = top - slid.dilatancy / height_size
+    start, end = start / size, end / size
+    arrow = {"arrowstyle": "<->", "color": COLOURS[3], "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
+    for tip, tail in (((end, bottom), (start, bottom)), ((end, top), (end, bottom))):
+        axes.annotate("", tip, tail, arrowprops=arrow)
+    words = {"color": COLOURS[3], "path_effects": HALO, "textcoords": "offset points"}
+    axes.annotate(
+        f"$v$ = {slid.offset:.3g} mm", ((start + end) / 2, bottom), (0, -10), ha="center", **words
+    )
+    side = -1 if end < start else 1
+    axes.annotate(
+        rf"$\delta_r$ = {slid.dilatancy:.3g} mm",
+        (end, (top + bottom) / 2),
+        (5 * side, 0),
+        ha="left" if side > 0 else "right",
+        va="center",
+        **words,
+    )
+    axes.plot(
+        end, top, marker="o", ms=6, mfc="none", mec=COLOURS[3], ls="none", label="first touch"
+    )
+    axes.set_xlabel(f"${slid.axis}$ ({unit})")
+    axes.set_ylabel(f"height ({height_unit})")
+    axes.margins(x=0)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=4)
+
+
+def _draw_composite(figure, axes, slid):
+    sides = window_sides(slid.specimen)
+    unit = length_unit(max(sides))
+    height_unit, size = length_unit(np.ptp(slid.composite))
+    image = draw_map(axes, slid.composite / size, sides, unit, cmap="cividis")
+    figure.colorbar(image, ax=axes, shrink=0.8, label=f"$h$ ({height_unit})")
+    y, x = ((np.array(slid.touch) + 0.5) * np.divide(sides, slid.composite.shape)) / unit[1]
+    (mark,) = axes.plot(
+        x,
+        y,
+        "o",
+        ms=7,
+        mfc="none",
+        mec=COLOURS[2],
+        mew=1.5,
+        path_effects=HALO,
+        ls="none",
+        label="first touch",
+    )
+    axes.legend(handles=[mark], loc="upper center", bbox_to_anchor=(0.5, -0.16))
+
+
+def _caption(label, slid):
+    correlation = slid.correlation()
+    verdict = (
+        "hardly any correlation is left, as the paper says of its largest offset"
+        if abs(correlation) < UNCORRELATED
+        else "the faces are still correlated, unlike the paper's at its largest offset"
+    )
+    return (
+        f"After Fig. 3 of {PAPER}: {label}, {place(slid.direction)}. (a) Window before and after "
+        f"an offset v = {slid.offset:.3g} mm, the largest solved. (b) The faces along the line of "
+        f"sliding through the point of first touch, the upper one lifted by the rigid dilatancy "
+        f"delta_r = {slid.dilatancy:.3g} mm; heights are stretched. (c) Composite topography h over "
+        f"the window, its largest value touching first; standard deviation "
+        f"{slid.composite.std():.3g} mm. The heights of the two faces under the window correlate "
+        f"with r = {correlation:.2f}: {verdict}."
+    )

@@ -1,1 +1,257 @@
-"""x."""
+"""Closure curves with their hyperbolas, and real contact area against force (Figs. 4 and 5)."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..fitting import FEWEST_POINTS, fit_line
+from ..sweep import nominal_area
+from ._mechanics import (
+    PAPER,
+    colour_of,
+    estimate,
+    force_unit,
+    letter,
+    place,
+    slope_text,
+    spread,
+    state_label,
+)
+from .common import LINES, MARKERS, WIDTH, Drawing, group, settings_of
+
+CURVES = 5
+
+#: A domain of fewer nodes is left out of the fits of area: one node more or less is 10 % of it.
+FEWEST_NODES = 10
+
+#: An exponent this near to 1 is what a plot shows as "nearly linear", the paper's words.
+NEARLY = 0.1
+
+#: An asymptote beyond this many times the largest closure is told, not drawn.
+FARTHEST_ASYMPTOTE = 1.5
+
+
+def draw(atlas, name):
+    """Closure and contact area at about five offsets, at the finest resolution.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+    """
+    settings = settings_of(atlas, name)
+    specimen = group(atlas, "specimens", name)
+    direction = settings["contact_directions"][0]
+    closure = group(atlas, "closure", name)
+    curves = closure.sel(direction=direction, resolution=closure["resolution"].min())
+    node = float(
+        curves["resolution"] ** 2 * specimen.attrs["spacing_x"] * specimen.attrs["spacing_y"]
+    )
+    fits = [_area_law(curves.isel(offset=i), node) for i in range(curves.sizes["offset"])]
+    drawn = spread(curves.sizes["offset"], CURVES)
+
+    figure = Figure(figsize=(WIDTH, 4.2))
+    left, right = figure.subplots(1, 2)
+    _draw_closure(left, curves, drawn, direction, nominal_area(specimen))
+    _draw_area(right, curves, drawn, direction, fits, nominal_area(specimen))
+    letter(left, "a", "closure")
+    letter(right, "b", "real contact area")
+    figure.suptitle(f"{settings['label']}, {place(direction)}")
+    caption = _caption(settings["label"], direction, curves, closure.attrs, fits, drawn)
+    return Drawing(figure, _table(curves, drawn, fits), caption)
+
+
+def _area_law(curve, node):
+    """Line of log A_r over log F, and the loads it was fitted to."""
+    fitted = curve["area"].values > (FEWEST_NODES - 0.5) * node
+    force, area = curve["load"].values[fitted], curve["area"].values[fitted]
+    return fit_line(np.log(force), np.log(area)), fitted
+
+
+def _hyperbola(curve, pressure):
+    """w_int in mm of the fitted hyperbola sigma = k_ni w / (1 - w / w_m)."""
+    k_ni, w_m = float(curve["hyperbola_k_ni"]), float(curve["hyperbola_w_m"])
+    return pressure * w_m / (k_ni * w_m + pressure)
+
+
+def _draw_closure(axes, curves, drawn, direction, area):
+    unit, size = force_unit(curves["load"].max())
+    low, high = curves["nominal_pressure"].values[[0, -1]]
+    pressure = np.linspace(0, high, 200)
+    largest = float(curves["interface_closure"].isel(offset=drawn).max())
+    limit = largest
+    for n, i in enumerate(drawn):
+        curve = curves.isel(offset=i)
+        w_m = float(curve["hyperbola_w_m"])
+        fit = (
+            f"$w_m$ = {_asymptote(curve)}"
+            if np.isfinite(w_m)
+            else f"no fit: {curve['hyperbola_reason'].item()}"
+        )
+        style = {"color": colour_of(n)}
+        axes.plot(
+            curve["interface_closure"],
+            curve["load"] / size,
+            MARKERS[n],
+            label=f"{state_label(direction, float(curve['offset']))}: {fit}",
+            **style,
+        )
+        if not np.isfinite(w_m):
+            continue
+        axes.plot(_hyperbola(curve, pressure), pressure * area / size, lw=0.7, **style)
+        if w_m <= FARTHEST_ASYMPTOTE * largest:
+            axes.axvline(w_m, ls=":", lw=0.8, **style)
+            limit = max(limit, w_m)
+    axes.set_xlim(0, 1.05 * limit)
+    axes.set_ylim(0, 1.05 * high * area / size)
+    axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
+    axes.set_ylabel(f"normal force $F$ ({unit})")
+    per_unit = size / area
+    second = axes.secondary_yaxis(
+        "right", functions=(lambda f: f * per_unit, lambda p: p / per_unit)
+    )
+    second.set_ylabel("nominal pressure $F/A_0$ (MPa)")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18))
+
+
+def _asymptote(curve):
+    ends = (float(curve[f"hyperbola_w_m{end}"]) for end in ("", "_low", "_high"))
+    return estimate(*ends, "mm")
+
+
+def _draw_area(axes, curves, drawn, direction, fits, area):
+    unit, size = force_unit(curves["load"].max())
+    force = curves["load"].values
+    for n, i in enumerate(drawn):
+        line, fitted = fits[i]
+        share = 100 * curves["area_share"].values[i]
+        offset = float(curves["offset"][i])
+        exponent = f"exponent {slope_text(line)}" if np.isfinite(line.slope) else _no_law(line)
+        style = {"color": colour_of(n), "ls": "none", "marker": MARKERS[n]}
+        axes.plot(
+            force[fitted] / size,
+            share[fitted],
+            label=f"{state_label(direction, offset)}: {exponent}",
+            **style,
+        )
+        axes.plot(force[~fitted] / size, share[~fitted], mfc="none", **style)
+        if np.isfinite(line.slope):
+            ends = np.array([line.x_min, line.x_max])
+            law = 100 * np.exp(line.intercept + line.slope * ends) / area
+            axes.plot(np.exp(ends) / size, law, color=colour_of(n), lw=0.7, ls=LINES[n % 4])
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel(f"normal force $F$ ({unit})")
+    axes.set_ylabel("real contact area $A_r/A_0$ (%)")
+    per_cent = area / 100
+    second = axes.secondary_yaxis(
+        "right", functions=(lambda s: s * per_cent, lambda a: a / per_cent)
+    )
+    second.set_ylabel("$A_r$ (mm$^2$)")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18))
+
+
+def _no_law(line):
+    return f"no fit: {line.n} of {FEWEST_POINTS} points needed"
+
+
+def _table(curves, drawn, fits):
+    """Points drawn, with the numbers fitted to their curve."""
+    rows = []
+    for i in drawn:
+        curve, (line, fitted) = curves.isel(offset=i), fits[i]
+        rows.append(
+            pd.DataFrame(
+                {
+                    "offset_mm": float(curve["offset"]),
+                    "force_N": curve["load"].values,
+                    "nominal_pressure_MPa": curve["nominal_pressure"].values,
+                    "interface_closure_mm": curve["interface_closure"].values,
+                    "area_mm2": curve["area"].values,
+                    "area_share": curve["area_share"].values,
+                    "w_m_mm": float(curve["hyperbola_w_m"]),
+                    "w_m_low_mm": float(curve["hyperbola_w_m_low"]),
+                    "w_m_high_mm": float(curve["hyperbola_w_m_high"]),
+                    "area_fitted": fitted,
+                    "area_exponent": line.slope,
+                    "area_exponent_low": line.slope_low,
+                    "area_exponent_high": line.slope_high,
+                }
+            )
+        )
+    return pd.concat(rows, ignore_index=True)
+
+
+def _caption(label, direction, curves, attrs, fits, drawn):
+    ranges = f"{attrs['hyperbola_force_low']:.4g} to {attrs['hyperbola_force_high']:.4g} N"
+    sentences = [
+        f"After Figs. 4 and 5 of {PAPER}: {label}, {place(direction)}, at the finest resolution. "
+        f"(a) Force against interface closure; lines are hyperbolas fitted over {ranges}, dotted "
+        f"their asymptotes w_m with 95 % intervals. (b) Real contact area against force and "
+        f"power laws fitted to the domains of {FEWEST_NODES} nodes or more (filled).",
+        _hyperbola_words(curves.isel(offset=drawn)),
+        _linearity_words([fits[i][0] for i in drawn]),
+    ]
+    if direction != "none":
+        sentences.append(_compliance_words(curves))
+    return " ".join(sentences)
+
+
+def _hyperbola_words(curves):
+    fitted = np.isfinite(curves["hyperbola_w_m"].values)
+    if not fitted.any():
+        return f"No hyperbola could be fitted ({curves['hyperbola_reason'].values[0]})."
+    beyond = int(
+        (curves["interface_closure"].max("load") > curves["hyperbola_w_m"]).values[fitted].sum()
+    )
+    misfit = 100 * float(curves["hyperbola_misfit"].max())
+    words = f"The hyperbolas miss the closures by up to {misfit:.2g} % of the largest (rms)"
+    if beyond:
+        return (
+            f"{words}, and {beyond} of {fitted.sum()} computed curves pass beyond their own "
+            "asymptote, which is then no complete closure."
+        )
+    return f"{words}; no computed curve passes its asymptote."
+
+
+def _linearity_words(lines):
+    known = [line for line in lines if np.isfinite(line.slope)]
+    if not known:
+        return "Too few domains are large enough to tell whether A_r grows as F."
+    slopes = [line.slope for line in known]
+    exact = sum(line.slope_low <= 1 <= line.slope_high for line in known)
+    near = all(abs(slope - 1) <= NEARLY for slope in slopes)
+    verdict = (
+        "nearly linear, as the paper says"
+        if near
+        else f"not all within {NEARLY:g} of linear, which the paper claims"
+    )
+    return (
+        f"The exponents of A_r over F are {min(slopes):.3g} to {max(slopes):.3g}: {verdict}; the "
+        f"intervals of {exact} of {len(known)} hold 1."
+    )
+
+
+def _compliance_words(curves):
+    """Whether the joint closes more, under the largest load, the farther it has slid."""
+    slid = curves.isel(load=-1, offset=curves["offset"].values > 0)
+    line = fit_line(np.log(slid["offset"].values), slid["interface_closure"].values)
+    load = f"F = {float(curves['load'][-1]):.4g} N"
+    if not np.isfinite(line.slope):
+        return f"Too few offsets to tell how closure under {load} changes with v."
+    closures = slid["interface_closure"].values
+    trend = "rises" if line.slope_low > 0 else "falls" if line.slope_high < 0 else None
+    words = (
+        f"Over all {line.n} offsets the closure under {load} changes by "
+        f"{slope_text(line, 'mm')} for each e-fold of v"
+    )
+    if trend is None:
+        return f"{words}: no trend beyond its interval, where the paper has it rise."
+    as_paper = "as in the paper" if trend == "rises" else "unlike the paper's"
+    peak = slid["offset"].values[closures.argmax()]
+    return f"{words}: it {trend}, {as_paper}, with its largest value at v = {peak:.3g} mm."
