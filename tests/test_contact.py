@@ -215,6 +215,18 @@ def test_force_control_and_closure_control_give_the_same_state(closure):
     assert by_force.force == pytest.approx(by_closure.force, rel=1e-12)
 
 
+def test_force_control_costs_no_more_than_closure_control_near_half_contact():
+    """Restoring the force by a common factor once made the set swing for ever on this scene."""
+    n = 512
+    height = self_affine((n, n), 1 / n, 0.5, rms=1e-3, seed=n)
+    space = HalfSpace((n, n), (1 / n, 1 / n), 1.0)
+    by_closure = solve_contact(height, space, closure=0.025)
+    by_force = solve_contact(height, space, force=by_closure.force)
+    assert 0.4 < by_closure.in_contact.mean() < 0.6
+    assert by_force.closure == pytest.approx(by_closure.closure, rel=1e-6)
+    assert by_force.iterations < 1.5 * by_closure.iterations
+
+
 @pytest.mark.parametrize(
     "turn",
     [

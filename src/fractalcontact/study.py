@@ -134,7 +134,7 @@ def resolve_settings(config, name, sidecar, source):
     directions = merged.get("directions", ["E", "N", "W", "S"])
     settings = {
         "label": merged.get("label", config.get("embedded", {}).get(name, {}).get("label", name)),
-        "material": _material(config, merged["material"], where("material")),
+        "material": _material(config, merged["material"], where("material"), source),
         "opposite": merged.get("opposite", "match"),
         "window": _optional(merged.get("window", "auto"), where("window")),
         "window_centre": None,
@@ -215,17 +215,17 @@ def solver_settings(config):
     return {**SOLVER, **config.get("solver", {})}
 
 
-def _material(config, material, where):
+def _material(config, material, where, source):
     """Name, modulus E (MPa), Poisson's ratio and composite modulus E* of two like bodies (MPa)."""
     if isinstance(material, Mapping):
-        label, definition, where = "own", material, f"{where}"
+        label, definition = "own", material
     else:
         if material not in config["materials"]:
             raise InputError(
                 f"{where}: no material {material!r}{_near(material, config['materials'])}"
             )
         label, definition = material, config["materials"][material]
-        where = f"materials.{material}"
+        where = f"{source}: materials.{material}"
     modulus = quantity(definition["modulus"], "pressure", f"{where}.modulus")
     if modulus <= 0:
         raise InputError(f"{where}.modulus: {definition['modulus']!r} must be positive")

@@ -1,5 +1,6 @@
-"""What the figures of contact domains share: the states drawn, both estimates, size-effect lines."""
+"""What the figures of contact domains share: states drawn, both estimates, size effect."""
 
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,14 +10,13 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 from ..fitting import FEWEST_POINTS
 from ..scaling import RESOLUTION, hausdorff_measure, nominal_pressure
 from ..sweep import window_sides
+from ._mechanics import TOWARDS, spread
 from .common import COLOURS, MARKERS, force_label, group, map_offset, settings_of
 
 PAPER = "Borri-Brunetto, Carpinteri and Chiaia (1999)"
 
 #: Domains of fewer nodes than this get rings: their nodes are too small to be seen in print.
-FEW_NODES = 30
-
-_TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
+FEW_NODES = 100
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Estimate:
     ----------
     key : str
         "area" or "box".
-    label : str
-        What it is estimated from, for legends and captions.
+    label, symbol : str
+        What it is estimated from, for captions and for legends.
     value, low, high : (n_load,) ndarray
         NaN where there is none.
     reason : list of str
@@ -37,6 +37,7 @@ class Estimate:
 
     key: str
     label: str
+    symbol: str
     value: np.ndarray
     low: np.ndarray
     high: np.ndarray
@@ -45,6 +46,10 @@ class Estimate:
     def text(self, i):
         """Delta_sigma under the i-th load in words."""
         return self.reason[i] or interval(self.value[i], self.low[i], self.high[i])
+
+    def entry(self, i):
+        """Delta_sigma under the i-th load for a legend."""
+        return wrapped(self.reason[i]) if self.reason[i] else rf"$\Delta_\sigma$ = {self.text(i)}"
 
     @property
     def style(self):
@@ -119,15 +124,16 @@ class Loading:
         """Where the contact is, in words."""
         if self.direction == "none":
             return "against a rigid plane"
-        return f"at an offset v = {self.offset:.3g} mm towards {_TOWARDS[self.direction]}"
+        return f"at an offset v = {short(self.offset)} mm towards {TOWARDS[self.direction]}"
 
     @property
     def estimates(self):
         """Both estimates of Delta_sigma; that of the box counts at the finest resolution."""
         area, box = self.scaling, self.domains.sel(resolution=self.finest)
         too_few = [
-            "" if np.isfinite(value) else f"no fit: {n} resolutions in contact, {FEWEST_POINTS} "
-            "needed"
+            ""
+            if np.isfinite(value)
+            else f"no fit: A_r at {n} of the {FEWEST_POINTS} resolutions needed"
             for value, n in zip(area["delta_sigma"].values, area["n"].values, strict=True)
         ]
         no_dimension = [f"no dimension: {text}" if text else "" for text in box["reason"].values]
@@ -135,14 +141,34 @@ class Loading:
             Estimate(
                 key,
                 label,
+                symbol,
                 *(data[f"delta_sigma{end}"].values for end in ("", "_low", "_high")),
                 reason,
             )
-            for key, label, data, reason in (
-                ("area", "A_r(s)", area, too_few),
-                ("box", "box counting", box, no_dimension),
+            for key, label, symbol, data, reason in (
+                ("area", "A_r(s)", "$A_r(s)$", area, too_few),
+                ("box", "box counting", "box counting", box, no_dimension),
             )
         )
+
+    def fit_ranges(self, load=None):
+        """In words: what the estimates are fitted over, under one load, or the widest of all."""
+        which = slice(None) if load is None else [load]
+        scaling = self.scaling.isel(load=which)
+        box = self.domains.sel(resolution=self.finest).isel(load=which)
+        used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")
+        spacing = scaling["spacing"].where(used)
+        spans = (
+            ("A_r(s) over s", spacing, spacing),
+            ("box counts over r", box.fit_min, box.fit_max),
+        )
+        words = [
+            f"{what} = {short(low.min())} to {short(high.max())} mm"
+            for what, low, high in spans
+            if np.isfinite(low).any()
+        ]
+        widest = ", at most" if load is None else ""
+        return f"fitted{widest}: {' and '.join(words)}" if words else "no fits"
 
     def domain(self, factor, load):
         """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""
@@ -157,10 +183,12 @@ class Loading:
         """Index of the load nearest to a force in N."""
         return int(np.argmin(np.abs(self.forces - force)))
 
-    def spread_loads(self, most):
-        """Indices of up to ``most`` loads, first and last among them, evenly between."""
-        n = len(self.forces)
-        return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))
+    def spread_loads(self, most, including=None):
+        """Indices of up to ``most`` loads: first and last, evenly between, and a given one."""
+        chosen = spread(len(self.forces), most)
+        if including is not None:
+            chosen[np.argmin(np.abs(chosen - including))] = including
+        return np.unique(chosen)
 
 
 def opening(number, loading):
@@ -171,6 +199,21 @@ def opening(number, loading):
 def number(value, digits=2):
     """A number to some decimals, never a negative zero."""
     return f"{round(float(value), digits) + 0.0:.{digits}f}"
+
+
+def short(value):
+    """Three digits of a number, without an exponent up to a million."""
+    return f"{float(f'{float(value):.3g}'):g}"
+
+
+def wrapped(text):
+    """Text broken into lines that fit under one panel of two."""
+    return textwrap.fill(text, 56)
+
+
+def legend_below(axes):
+    """A legend under the axes, where it hides nothing."""
+    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.17), borderaxespad=0)
 
 
 def interval(value, low, high):
@@ -192,7 +235,7 @@ def draw_domain(axes, domain, sides):
     nodes = np.argwhere(domain)
     if len(nodes) < FEW_NODES:
         y, x = ((nodes + 0.5) * np.divide(sides, domain.shape)).T
-        axes.plot(x, y, "o", ms=5, mfc="none", mec=COLOURS[2], mew=0.7)
+        axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
 
@@ -200,7 +243,7 @@ def draw_domain(axes, domain, sides):
 def label_spacings(axes, spacings):
     """A logarithmic axis of few spacings s, each with its own tick."""
     axes.set_xscale("log")
-    axes.set_xticks(spacings, [f"{s:.3g}" for s in spacings])
+    axes.set_xticks(spacings, [short(s) for s in spacings])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
 
@@ -254,7 +297,7 @@ def size_effect(loading, estimate, i, sides):
 
 
 def trend(forces, value, low, high, *, rising):
-    """In words: whether a value rises, or falls, with the load.
+    """In words: whether a value rises, or falls, with the load as the paper claims.
 
     Parameters
     ----------
@@ -262,22 +305,26 @@ def trend(forces, value, low, high, *, rising):
         F in N; the value and its interval, NaN where there is none.
     rising : bool
         The paper's claim.
+
+    Returns
+    -------
+    str
+        Holds if the value moves the right way by more than the intervals at both ends.
     """
     known = np.flatnonzero(np.isfinite(value))
     if len(known) < 2:
-        return "cannot be told: fewer than two loads have a value"
+        return "this cannot be told, as fewer than two loads have a value"
     first, last = known[0], known[-1]
     steps = np.diff(np.asarray(value)[known]) * (1 if rising else -1)
     ends = " to ".join(
         f"{interval(value[i], low[i], high[i])} at {force_label(forces[i])}" for i in (first, last)
     )
-    verb = "rises" if rising else "falls"
     if steps.sum() <= 0:
-        return f"does not {verb[:-1]}: {ends}"
-    every = "at every step" if (steps > 0).all() else f"at {(steps > 0).sum()} of {len(steps)} steps"
+        return f"this does not hold ({ends})"
     apart = low[last] > high[first] if rising else high[last] < low[first]
-    unsure = "" if apart else ", ends' intervals overlapping"
-    return f"{verb} from {ends}, {every}{unsure}"
+    verdict = "this holds" if apart else "this is not established, the intervals overlap"
+    every = "every step" if (steps > 0).all() else f"{(steps > 0).sum()} of {len(steps)} steps"
+    return f"{verdict} ({ends}; {'up' if rising else 'down'} at {every})"
 
 
 def disagreement(scaling):

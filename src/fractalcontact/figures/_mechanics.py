@@ -8,7 +8,6 @@ from matplotlib.ticker import MaxNLocator
 from ..specimen import window_slices
 from .common import COLOURS
 
-PAPER = "Borri-Brunetto, Carpinteri and Chiaia (1999)"
 TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
 
 #: Grey of cells that were not measured.
@@ -50,7 +49,9 @@ def spread(n, most):
 
 def place(direction):
     """Where the contact is, in words."""
-    return "against a rigid plane" if direction == "none" else f"sliding {TOWARDS[direction]}"
+    return (
+        "against a rigid plane" if direction == "none" else f"sliding towards {TOWARDS[direction]}"
+    )
 
 
 def state_label(direction, offset):
@@ -118,9 +119,9 @@ def missing_patch():
     return Patch(facecolor=MISSING, edgecolor="none", label="not measured")
 
 
-def letter(axes, which, title=""):
+def letter(axes, which, title):
     """Letter of a panel as the paper has it, at its upper left, before a title."""
-    axes.set_title(f"({which}) {title}".rstrip(), loc="left")
+    axes.set_title(f"({which}) {title}", loc="left")
 
 
 def colour_of(i):

@@ -10,11 +10,10 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 
 from ..sweep import window_sides
+from ._domains import PAPER, interval
 from ._mechanics import (
     MISSING,
-    PAPER,
     draw_map,
-    estimate,
     length_unit,
     letter,
     missing_patch,
@@ -65,7 +64,7 @@ def draw(atlas, name):
     letter(axes[-1], "abc"[len(faces)], r"$\Delta_g$ of the lower face")
     handles = [outline] + ([missing_patch()] if any(missing) else [])
     figure.legend(handles=handles, loc="outside lower left", ncols=2)
-    figure.suptitle(label)
+    figure.suptitle(f"{label}\n{_size_words(specimen, sides)}", fontsize=9)
     return Drawing(figure, _table(dimension), _caption(label, specimen, faces, sides, dimension))
 
 
@@ -123,7 +122,8 @@ def _draw_dimensions(axes, dimension):
     rows = np.arange(len(values))
     fitted = np.isfinite(values)
     words = [
-        f"{estimator.replace('_', ' ')}\n{estimate(*numbers)}"
+        f"{estimator.replace('_', ' ')}\n"
+        + (interval(*numbers) if np.isfinite(numbers[0]) else "no fit")
         for estimator, *numbers in zip(
             dimension["estimator"].values, values, low, high, strict=True
         )
@@ -165,12 +165,22 @@ def _table(dimension):
     )
 
 
+def _size_words(specimen, sides):
+    """Size and spacing of the scan; one number for the spacing where both agree."""
+    name, size = length_unit(max(sides))
+    spacings = {f"{specimen.attrs[f'spacing_{axis}']:.4g}" for axis in "xy"}
+    return (
+        f"{sides[1] / size:.4g} × {sides[0] / size:.4g} {name}, "
+        f"spacing {' and '.join(sorted(spacings))} mm"
+    )
+
+
 def _caption(label, specimen, faces, sides, dimension):
     shape, window = specimen["lower"].shape, window_sides(specimen)
     spacing = specimen.attrs["spacing_x"], specimen.attrs["spacing_y"]
+    ranges = {face: (float(specimen[face].min()), float(specimen[face].max())) for face in faces}
     heights = "; ".join(
-        f"{face} face from {float(specimen[face].min()):.3g} to {float(specimen[face].max()):.3g} mm"
-        for face in faces
+        f"{face} face from {low:.3g} to {high:.3g} mm" for face, (low, high) in ranges.items()
     )
     absent = 1 - float(specimen["valid"].mean())
     return (

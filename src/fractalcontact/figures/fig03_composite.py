@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from ..joint import STEPS
 from ..specimen import faces, window_slices
 from ..sweep import window_sides
+from ._domains import PAPER
 from ._mechanics import (
     HALO,
-    PAPER,
     draw_map,
     length_unit,
     letter,
@@ -23,9 +23,9 @@ from ._mechanics import (
 )
 from .common import COLOURS, WIDTH, Drawing, group, settings_of
 
-#: Below this the faces under the window are said to be no longer correlated: they share less than
-#: 1 % of their variance.
-UNCORRELATED = 0.1
+#: Up to this the faces under the window are said to be uncorrelated. A window holds few features of
+#: the size of the roll-off length, and their chance alone gives an r of this order.
+UNCORRELATED = 0.2
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Slid:
         """The slid joint of a specimen."""
         joint = group(atlas, "joints", name)
         direction = str(joint["contact_direction"].values[0])
-        last = int(joint["offset"].argmax())
+        last = int(joint["offset"].values.argmax())
         cells = int(joint["offset_cells"].values[0, last])
         # The n-th rigid offset is n cells along the first contact direction.
         dilatancy = joint["rigid_dilatancy"].sel(direction=direction).values[cells]
@@ -88,7 +88,8 @@ class Slid:
         Returns
         -------
         pd.DataFrame
-            Distances from the corner of the scan, of the whole line.
+            Heights at distances from the corner of the scan, over the windows before and after
+            and a little beyond.
         """
         lower, upper = faces(self.specimen)
         window = window_slices(self.specimen)
@@ -103,10 +104,7 @@ class Slid:
         table["lower_mm"] = lower
         table["upper_before_mm"] = np.nan
         table["upper_after_mm"] = np.nan
-        before, after = (
-            slice(cells.start, cells.stop),
-            slice(cells.start + moved, cells.stop + moved),
-        )
+        before, after = cells, slice(cells.start + moved, cells.stop + moved)
         table.loc[table.index[before], "upper_before_mm"] = upper[cells] + lift - self.dilatancy
         table.loc[table.index[after], "upper_after_mm"] = upper[cells] + lift
         first, last = min(before.start, after.start), max(before.stop, after.stop)
@@ -147,7 +145,7 @@ def draw(atlas, name):
     letter(plan, "a", "lower face and window")
     letter(profile, "b", "profile through the point of first touch")
     letter(composite, "c", "composite topography $h$")
-    figure.suptitle(f"{label}, {place(slid.direction)}, $v$ = {slid.offset:.3g} mm")
+    figure.suptitle(f"{label}, {place(slid.direction)}, $v$ = {slid.offset:.3g} mm", fontsize=9)
     return Drawing(figure, profiles, _caption(label, slid))
 
 
@@ -179,7 +177,6 @@ def _draw_profile(axes, slid, profiles):
         profiles[f"{key}_mm"] / height_size for key in ("lower", "upper_before", "upper_after")
     )
     x = along / size
-    axes.fill_between(x, lower, lower.min(), color="0.85", lw=0)
     axes.plot(x, lower, color=COLOURS[0], lw=0.9, label="lower face")
     if slid.specimen.attrs["opposite"] == "scanned":
         axes.plot(
@@ -197,7 +194,7 @@ def _draw_profile(axes, slid, profiles):
     spacing = slid.specimen.attrs[f"spacing_{slid.axis}"]
     start = (window_slices(slid.specimen)[axis].start + slid.touch[axis] + 0.5) * spacing
     end = start + slid.slid[axis]
-    top = np.interp(end, along, after)
+    top = after[np.argmin(np.abs(along - end))]
     bottom = top - slid.dilatancy / height_size
     start, end = start / size, end / size
     arrow = {"arrowstyle": "<->", "color": COLOURS[3], "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
@@ -221,7 +218,10 @@ def _draw_profile(axes, slid, profiles):
     )
     axes.set_xlabel(f"${slid.axis}$ ({unit})")
     axes.set_ylabel(f"height ({height_unit})")
-    axes.margins(x=0)
+    axes.margins(x=0, y=0.15)
+    floor, ceiling = axes.get_ylim()
+    axes.fill_between(x, lower, floor, color="0.9", lw=0, zorder=0)
+    axes.set_ylim(floor, ceiling)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=4)
 
 
@@ -251,15 +251,15 @@ def _caption(label, slid):
     correlation = slid.correlation()
     verdict = (
         "hardly any correlation is left, as the paper says of its largest offset"
-        if abs(correlation) < UNCORRELATED
-        else "the faces are still correlated, unlike the paper's at its largest offset"
+        if abs(correlation) <= UNCORRELATED
+        else "some correlation is left, unlike in the paper at its largest offset"
     )
     return (
         f"After Fig. 3 of {PAPER}: {label}, {place(slid.direction)}. (a) Window before and after "
         f"an offset v = {slid.offset:.3g} mm, the largest solved. (b) The faces along the line of "
         f"sliding through the point of first touch, the upper one lifted by the rigid dilatancy "
-        f"delta_r = {slid.dilatancy:.3g} mm; heights are stretched. (c) Composite topography h over "
-        f"the window, its largest value touching first; standard deviation "
+        f"delta_r = {slid.dilatancy:.3g} mm; heights are stretched. (c) Composite topography h "
+        f"over the window, its largest value touching first; standard deviation "
         f"{slid.composite.std():.3g} mm. The heights of the two faces under the window correlate "
         f"with r = {correlation:.2f}: {verdict}."
     )

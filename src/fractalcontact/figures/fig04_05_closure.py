@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from ..fitting import FEWEST_POINTS, fit_line
 from ..sweep import nominal_area
+from ._domains import PAPER
 from ._mechanics import (
-    PAPER,
     colour_of,
     estimate,
     force_unit,
@@ -17,7 +17,7 @@ from ._mechanics import (
     spread,
     state_label,
 )
-from .common import LINES, MARKERS, WIDTH, Drawing, group, settings_of
+from .common import LINES, MARKERS, WIDTH, Drawing, force_label, group, settings_of
 
 CURVES = 5
 
@@ -61,7 +61,7 @@ def draw(atlas, name):
     _draw_area(right, curves, drawn, direction, fits, nominal_area(specimen))
     letter(left, "a", "closure")
     letter(right, "b", "real contact area")
-    figure.suptitle(f"{settings['label']}, {place(direction)}")
+    figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
     caption = _caption(settings["label"], direction, curves, closure.attrs, fits, drawn)
     return Drawing(figure, _table(curves, drawn, fits), caption)
 
@@ -81,7 +81,7 @@ def _hyperbola(curve, pressure):
 
 def _draw_closure(axes, curves, drawn, direction, area):
     unit, size = force_unit(curves["load"].max())
-    low, high = curves["nominal_pressure"].values[[0, -1]]
+    high = float(curves["nominal_pressure"][-1])
     pressure = np.linspace(0, high, 200)
     largest = float(curves["interface_closure"].isel(offset=drawn).max())
     limit = largest
@@ -111,12 +111,14 @@ def _draw_closure(axes, curves, drawn, direction, area):
     axes.set_ylim(0, 1.05 * high * area / size)
     axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
     axes.set_ylabel(f"normal force $F$ ({unit})")
-    per_unit = size / area
-    second = axes.secondary_yaxis(
-        "right", functions=(lambda f: f * per_unit, lambda p: p / per_unit)
-    )
+    second = _second_axis(axes, size / area)
     second.set_ylabel("nominal pressure $F/A_0$ (MPa)")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18))
+
+
+def _second_axis(axes, factor):
+    """The left axis times a factor, at the right."""
+    return axes.secondary_yaxis("right", functions=(lambda y: y * factor, lambda y: y / factor))
 
 
 def _asymptote(curve):
@@ -148,10 +150,7 @@ def _draw_area(axes, curves, drawn, direction, fits, area):
     axes.set_yscale("log")
     axes.set_xlabel(f"normal force $F$ ({unit})")
     axes.set_ylabel("real contact area $A_r/A_0$ (%)")
-    per_cent = area / 100
-    second = axes.secondary_yaxis(
-        "right", functions=(lambda s: s * per_cent, lambda a: a / per_cent)
-    )
+    second = _second_axis(axes, area / 100)
     second.set_ylabel("$A_r$ (mm$^2$)")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18))
 
@@ -188,11 +187,11 @@ def _table(curves, drawn, fits):
 
 
 def _caption(label, direction, curves, attrs, fits, drawn):
-    ranges = f"{attrs['hyperbola_force_low']:.4g} to {attrs['hyperbola_force_high']:.4g} N"
+    ends = (force_label(attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
     sentences = [
         f"After Figs. 4 and 5 of {PAPER}: {label}, {place(direction)}, at the finest resolution. "
-        f"(a) Force against interface closure; lines are hyperbolas fitted over {ranges}, dotted "
-        f"their asymptotes w_m with 95 % intervals. (b) Real contact area against force and "
+        f"(a) Force against interface closure; lines are hyperbolas fitted from "
+        f"{' to '.join(ends)}, dotted their asymptotes w_m with 95 % intervals. (b) Real contact area against force and "
         f"power laws fitted to the domains of {FEWEST_NODES} nodes or more (filled).",
         _hyperbola_words(curves.isel(offset=drawn)),
         _linearity_words([fits[i][0] for i in drawn]),
@@ -206,15 +205,16 @@ def _hyperbola_words(curves):
     fitted = np.isfinite(curves["hyperbola_w_m"].values)
     if not fitted.any():
         return f"No hyperbola could be fitted ({curves['hyperbola_reason'].values[0]})."
-    beyond = int(
-        (curves["interface_closure"].max("load") > curves["hyperbola_w_m"]).values[fitted].sum()
+    largest = curves["interface_closure"].max("load")
+    beyond, clearly = (
+        int((largest > curves[f"hyperbola_w_m{end}"]).values[fitted].sum()) for end in ("", "_high")
     )
     misfit = 100 * float(curves["hyperbola_misfit"].max())
     words = f"The hyperbolas miss the closures by up to {misfit:.2g} % of the largest (rms)"
     if beyond:
         return (
             f"{words}, and {beyond} of {fitted.sum()} computed curves pass beyond their own "
-            "asymptote, which is then no complete closure."
+            f"asymptote ({clearly} of them beyond its interval), which is then no complete closure."
         )
     return f"{words}; no computed curve passes its asymptote."
 
@@ -224,16 +224,21 @@ def _linearity_words(lines):
     if not known:
         return "Too few domains are large enough to tell whether A_r grows as F."
     slopes = [line.slope for line in known]
-    exact = sum(line.slope_low <= 1 <= line.slope_high for line in known)
-    near = all(abs(slope - 1) <= NEARLY for slope in slopes)
+    holding = sum(line.slope_low <= 1 <= line.slope_high for line in known)
     verdict = (
         "nearly linear, as the paper says"
-        if near
-        else f"not all within {NEARLY:g} of linear, which the paper claims"
+        if all(abs(slope - 1) <= NEARLY for slope in slopes)
+        else f"not all within {NEARLY:g} of 1, where the paper has a nearly linear law"
     )
+    if len(known) == 1:
+        held = "includes" if holding else "leaves out"
+        return (
+            f"A_r grows as F to the power {slope_text(known[0])}: {verdict}; its interval {held} 1."
+        )
     return (
-        f"The exponents of A_r over F are {min(slopes):.3g} to {max(slopes):.3g}: {verdict}; the "
-        f"intervals of {exact} of {len(known)} hold 1."
+        f"A_r grows as F to powers from {min(slopes):.3g} to {max(slopes):.3g}: "
+        f"{verdict}; the intervals "
+        f"of {holding} of {len(known)} include 1."
     )
 
 
@@ -241,7 +246,7 @@ def _compliance_words(curves):
     """Whether the joint closes more, under the largest load, the farther it has slid."""
     slid = curves.isel(load=-1, offset=curves["offset"].values > 0)
     line = fit_line(np.log(slid["offset"].values), slid["interface_closure"].values)
-    load = f"F = {float(curves['load'][-1]):.4g} N"
+    load = f"F = {force_label(float(curves['load'][-1]))}"
     if not np.isfinite(line.slope):
         return f"Too few offsets to tell how closure under {load} changes with v."
     closures = slid["interface_closure"].values

@@ -3,13 +3,13 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from ..fitting import fit_line
 from ..sweep import window_sides
-from ._domains import draw_domain
-from ._mechanics import PAPER, TOWARDS, colour_of, letter, place, slope_text, spread
+from ._domains import PAPER, draw_domain
+from ._mechanics import HALO, TOWARDS, colour_of, letter, place, slope_text, spread
 from .common import (
-    COLOURS,
     LINES,
     MARKERS,
     WIDTH,
@@ -20,8 +20,8 @@ from .common import (
     settings_of,
 )
 
-DOMAINS = 6
-#: The main axes of (b) show the first offsets, this part of the largest, and at least so many.
+DOMAINS, COLUMNS = 6, 3
+#: (b) shows the offsets up to this part of the largest, and at least so many, apart from the rest.
 INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
 #: A change over the second half below this share of the mean there is called nearly flat.
 NEARLY_FLAT = 0.1
@@ -55,29 +55,19 @@ def draw(atlas, name):
     points = spread(closure.sizes["offset"], DOMAINS)
     plateaus = {str(d): _plateau(dilatancy, d) for d in dilatancy["direction"].values}
 
-    columns = min(3, len(points))
-    rows = -(-len(points) // columns)
+    rows = -(-len(points) // COLUMNS)
     figure = Figure(figsize=(WIDTH, 3.2 + 2.3 * rows))
     top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.3 * rows])
-    rigid, elastic = top.subplots(1, 2)
-    _draw_rigid(rigid, dilatancy, plateaus)
-    _draw_elastic(elastic, dilatancy, direction, shown, mapped, points)
+    left, right = top.subfigures(1, 2, width_ratios=[0.85, 1])
+    _draw_rigid(left.subplots(), dilatancy, plateaus)
+    _draw_elastic(right, dilatancy, direction, shown, mapped, points)
     domains = group(atlas, "contact", name)[f"in_contact_{finest}"].sel(direction=direction)
-    panels = np.atleast_1d(bottom.subplots(rows, columns)).ravel()
-    for k, (panel, i) in enumerate(zip(panels, points, strict=False)):
-        draw_domain(panel, domains.isel(offset=i, load=mapped).values, window_sides(specimen))
-        panel.set_xlabel("$x$ (mm)")
-        panel.set_ylabel("$y$ (mm)")
-        percent = 100 * float(share[i, mapped])
-        panel.set_title(
-            f"{chr(65 + k)}: $v$ = {float(share['offset'][i]):.3g} mm, $A_r/A_0$ = {percent:.2g} %"
-        )
-    for panel in panels[len(points) :]:
-        panel.set_visible(False)
-    letter(rigid, "a", "rigid dilatancy")
-    letter(elastic, "b", f"elastic dilatancy, {place(direction)}")
-    bottom.suptitle(f"(c) contact domains at $F$ = {force_label(loads[mapped])}", x=0.01, ha="left")
-    figure.suptitle(settings["label"])
+    panels = bottom.subplots(rows, COLUMNS, squeeze=False)
+    _draw_domains(panels, domains[:, mapped], share[:, mapped], points, window_sides(specimen))
+    bottom.suptitle(
+        f"(c) contact domains at $F$ = {force_label(loads[mapped])}", x=0.01, ha="left", fontsize=8
+    )
+    figure.suptitle(settings["label"], fontsize=9)
     table = _table(dilatancy, direction, shown, share)
     caption = _caption(settings["label"], direction, loads[mapped], share[:, mapped], plateaus)
     return Drawing(figure, table, caption)
@@ -100,7 +90,7 @@ def _draw_rigid(axes, dilatancy, plateaus):
     v = dilatancy["rigid_offset"].values
     for n, (direction, (line, _)) in enumerate(plateaus.items()):
         opened = dilatancy["rigid_dilatancy"].sel(direction=direction)
-        slope = f"slope {slope_text(line)}" if np.isfinite(line.slope) else "no fit"
+        slope = f"slope {slope_text(line, 'mm/mm')}" if np.isfinite(line.slope) else "no fit"
         name = TOWARDS.get(direction, "plane")
         axes.plot(v, opened, color=colour_of(n), ls=LINES[n % 4], label=f"{name}: {slope}")
         if np.isfinite(line.slope):
@@ -110,53 +100,79 @@ def _draw_rigid(axes, dilatancy, plateaus):
     axes.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
     axes.set_ylim(bottom=min(0, float(dilatancy["rigid_dilatancy"].min())))
     axes.set_xlim(left=0)
+    letter(axes, "a", "rigid dilatancy")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
 
 
-def _draw_elastic(axes, dilatancy, direction, shown, mapped, points):
+def _draw_elastic(figure, dilatancy, direction, shown, mapped, points):
+    """The first offsets, and beside them, on another scale, the others."""
     offsets = dilatancy["offset"].values
     limit = max(INITIAL_PART * offsets[-1], offsets[min(INITIAL_OFFSETS, len(offsets)) - 1])
-    elastic = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)
-    _elastic_curves(axes, dilatancy, direction, elastic, shown)
-    _mark_points(axes, offsets, elastic[:, mapped].values, points, limit)
-    axes.set_xlim(0, 1.05 * limit)
-    axes.set_xlabel("offset $v$ (mm)")
-    axes.set_ylabel(r"dilatancy $\delta$ (mm)")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
-    if limit >= offsets[-1]:
-        return
-    inset = axes.inset_axes([0.62, 0.08, 0.36, 0.36])
-    _elastic_curves(inset, dilatancy, direction, elastic, shown, ms=2, lw=0.7)
-    _mark_points(inset, offsets, elastic[:, mapped].values, points, np.inf)
-    inset.tick_params(labelsize=6)
+    ranges = [(0, limit)] + ([(limit, offsets[-1])] if limit < offsets[-1] else [])
+    panels = figure.subplots(
+        1, len(ranges), sharey=True, squeeze=False, width_ratios=[1.5, 1][: len(ranges)]
+    )[0]
+    for panel, (first, last) in zip(panels, ranges, strict=True):
+        _elastic_curves(panel, dilatancy, direction, shown)
+        _mark_points(panel, dilatancy, direction, mapped, points, (first, last))
+        margin = 0.06 * (last - first) or None
+        panel.set_xlim(first, margin and last + margin)
+        panel.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        panel.set_xlabel("offset $v$ (mm)")
+    panels[0].set_ylabel(r"dilatancy $\delta$ (mm)")
+    letter(panels[0], "b", f"elastic dilatancy, {place(direction)}")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2)
 
 
-def _elastic_curves(axes, dilatancy, direction, elastic, shown, **style):
+def _elastic_curves(axes, dilatancy, direction, shown):
     rigid = dilatancy["rigid_dilatancy"].sel(direction=direction)
-    axes.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=style.get("lw", 1), label="rigid")
+    axes.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=1, label="rigid, $F$ = 0")
+    elastic = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)
     for n, j in enumerate(shown):
         axes.plot(
             elastic["offset"],
             elastic[:, j],
-            marker=MARKERS[n],
+            marker=MARKERS[n % len(MARKERS)],
             color=colour_of(n + 1),
             label=f"$F$ = {force_label(float(elastic['load'][j]))}",
-            **style,
         )
 
 
-def _mark_points(axes, offsets, values, points, limit):
+def _mark_points(axes, dilatancy, direction, mapped, points, shown_range):
+    """Letters of the domains at their points of the curve, where these axes show them."""
+    curve = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)[:, mapped]
     for k, i in enumerate(points):
-        if offsets[i] <= limit:
+        v = float(curve["offset"][i])
+        if v <= shown_range[1] and (v > shown_range[0] or shown_range[0] == 0):
             axes.annotate(
-                chr(65 + k),
-                (offsets[i], values[i]),
-                (0, -9),
-                fontsize=7,
-                ha="center",
+                _domain_letter(k),
+                (v, float(curve[i])),
+                (0, -11),
                 textcoords="offset points",
-                color=COLOURS[0],
+                ha="center",
+                path_effects=HALO,
             )
+
+
+def _draw_domains(panels, domains, share, points, sides):
+    """Contact domains of one load at some offsets, row by row."""
+    for k, panel in enumerate(panels.ravel()):
+        if k >= len(points):
+            panel.remove()
+            continue
+        i = points[k]
+        draw_domain(panel, domains[i].values, sides)
+        panel.set_title(
+            f"{_domain_letter(k)}: $v$ = {float(share['offset'][i]):.3g} mm, "
+            f"$A_r/A_0$ = {100 * float(share[i]):.2g} %"
+        )
+        panel.set_xlabel("$x$ (mm)")
+        panel.set_ylabel("$y$ (mm)")
+
+
+def _domain_letter(k):
+    return "ABCDEF"[k]
 
 
 def _table(dilatancy, direction, shown, share):
@@ -201,24 +217,23 @@ def _caption(label, direction, force, share, plateaus):
 
 
 def _plateau_words(plateaus):
-    parts = []
-    for direction, (line, change) in plateaus.items():
-        if not np.isfinite(line.slope):
-            parts.append(f"{TOWARDS.get(direction, direction)}: too few offsets to tell")
-            continue
-        if line.slope_low <= 0 <= line.slope_high:
-            verdict = "flat within its interval"
-        elif abs(change) <= NEARLY_FLAT:
-            verdict = "nearly flat"
-        else:
-            verdict = "still rising" if change > 0 else "falling"
-        parts.append(
-            f"{TOWARDS[direction]} {slope_text(line)} ({100 * change:+.2g} % of the mean: {verdict})"
-        )
+    fitted = {d: fit for d, fit in plateaus.items() if np.isfinite(fit[0].slope)}
+    if not fitted:
+        return "Too few offsets to tell whether there is a plateau."
+    parts = [
+        f"{TOWARDS[direction]} {slope_text(line)}, {100 * change:+.2g} % of the mean"
+        for direction, (line, change) in fitted.items()
+    ]
+    level = sum(line.slope_low <= 0 <= line.slope_high for line, _ in fitted.values())
+    flat = [TOWARDS[d] for d, (_, change) in fitted.items() if abs(change) <= NEARLY_FLAT]
+    rising = [TOWARDS[d] for d, (_, change) in fitted.items() if change > NEARLY_FLAT]
+    words = [f"{len(flat)} of {len(fitted)} directions stay within {100 * NEARLY_FLAT:g} %"]
+    words += [f"it keeps rising towards {' and '.join(rising)}"] if rising else []
     return (
-        "Slopes there in mm/mm, with 95 % intervals that take neighbouring offsets as independent "
-        f"(they are not, so the intervals are too narrow): {'; '.join(parts)}. The paper's rock "
-        "reaches a plateau in all directions, its concrete in two of four."
+        f"Slopes there in mm/mm, and the change they make: {'; '.join(parts)}. By that measure a "
+        f"plateau: {', '.join(words)} (the paper: all four for its rock, two of four for its "
+        f"concrete). {level} of the {len(fitted)} intervals include zero; they take neighbouring "
+        "offsets as independent, which they are not, and are too narrow."
     )
 
 

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ..scaling import RESOLUTION
-from ._domains import Loading, disagreement, draw_domain, opening
+from ._domains import Loading, disagreement, draw_domain, opening, short
 from .common import WIDTH, Drawing, force_label, force_of
 
 #: Maps side by side.
@@ -30,15 +30,16 @@ def draw(atlas, name):
     table = _table(loading, i)
     rows, columns = -(-len(table) // _COLUMNS), min(len(table), _COLUMNS)
     aspect = loading.sides[0] / loading.sides[1]
-    height = rows * (WIDTH / _COLUMNS * aspect + 0.6)
+    height = rows * (WIDTH / _COLUMNS * aspect + 0.75)
     figure = Figure(figsize=(WIDTH, height))
-    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    panels = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
     for axes, letter, row in zip(panels, "abcdefghijklmnop", table.itertuples(), strict=False):
         draw_domain(axes, loading.domain(row.resolution, i), loading.sides)
         axes.set_title(
-            f"({letter}) $s$ = {row.spacing_mm:.3g} mm\n"
-            f"$A_r$ = {row.area_mm2:.3g} mm$^2$ ({100 * row.area_share:.2g} % of $A_0$)\n"
-            rf"$\sigma_r$ = {row.sigma_r_MPa:.4g} MPa"
+            f"({letter}) $s$ = {short(row.spacing_mm)} mm\n"
+            f"$A_r$ = {short(row.area_mm2)} mm$^2$\n"
+            f"$A_r/A_0$ = {100 * row.area_share:.2g} %\n"
+            rf"$\sigma_r$ = {short(row.sigma_r_MPa)} MPa"
         )
         axes.set_xlabel("$x$ (mm)")
     for axes in panels[::columns]:
@@ -69,9 +70,10 @@ def _table(loading, i):
 def _caption(loading, i, table):
     by_area, by_box = loading.estimates
     return (
-        f"{opening(8, loading)} Contact domains (black) under F = {force_label(loading.forces[i])}, "
-        f"at {len(table)} resolutions. {_verdict(table)} Delta_sigma [95 % interval]: "
-        f"{by_area.text(i)} by A_r(s), {by_box.text(i)} by box counting at the finest resolution. "
+        f"{opening(8, loading)} Contact domains (black) under "
+        f"F = {force_label(loading.forces[i])}; resolutions: {len(table)}. {_verdict(table)} "
+        f"Delta_sigma [95 % interval]: {by_area.text(i)} by A_r(s), {by_box.text(i)} by box "
+        f"counting at the finest resolution ({loading.fit_ranges(i)}). "
         f"{disagreement(loading.scaling.isel(load=i))}"
     )
 
@@ -82,8 +84,8 @@ def _verdict(table):
     if len(table) < 2:
         return "With one resolution there is nothing to compare."
     refined = (
-        f"from {area[-1]:.3g} mm2 at s = {spacing[-1]:.3g} mm to {area[0]:.3g} mm2 at "
-        f"s = {spacing[0]:.3g} mm"
+        f"from {short(area[-1])} mm2 at s = {short(spacing[-1])} mm to {short(area[0])} mm2 at "
+        f"s = {short(spacing[0])} mm"
     )
     if (np.diff(area) > 0).all():
         return f"As in the paper, A_r falls with every refinement, {refined}, and sigma_r rises."

@@ -5,7 +5,15 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ..fitting import fit_line
-from ._domains import Loading, disagreement, draw_domain, interval, opening
+from ._domains import (
+    Loading,
+    disagreement,
+    draw_domain,
+    interval,
+    legend_below,
+    opening,
+    short,
+)
 from .common import COLOURS, WIDTH, Drawing, force_label, force_of
 
 
@@ -26,45 +34,45 @@ def draw(atlas, name):
     i = loading.nearest_load(force_of(loading.settings["map_load"], loading.specimen))
     counts = loading.domains.sel(resolution=loading.finest).isel(load=i)
     table = _table(counts)
-    figure = Figure(figsize=(WIDTH, 2.6))
+    figure = Figure(figsize=(WIDTH, 3.1))
     left, middle, right = figure.subplots(1, 3)
     draw_domain(left, loading.domain(loading.finest, i), loading.sides)
     left.set(xlabel="$x$ (mm)", ylabel="$y$ (mm)")
     left.set_title(f"(a) contact domain, $F$ = {force_label(loading.forces[i])}")
-    _draw_counts(middle, table, counts)
+    _draw_counts(middle, table, loading.estimates[1], i)
     _draw_slopes(right, table, counts)
     return Drawing(figure, table, _caption(loading, i, counts, table))
 
 
 def _table(counts):
-    """One row a box size, with the fitted N(r) and the slope between neighbouring sizes."""
+    """One row a box size, with the fitted N(r) and the local slope over a doubling."""
     kept = np.isfinite(counts["box_side"].values) & np.isfinite(counts["box_count"].values)
     r, n = counts["box_side"].values[kept], counts["box_count"].values[kept]
     used = counts["box_used"].values[kept]
     line = fit_line(np.log(r[used]), np.log(n[used]))
-    with np.errstate(divide="ignore"):
-        between = -np.diff(np.log(n)) / np.diff(np.log(r))
+    # Neighbouring sizes are so close that whole counts make their slopes jump: over a doubling.
+    start = np.flatnonzero(2 * r <= r[-1] * (1 + 1e-9))
+    end = np.searchsorted(r, 2 * r[start] * (1 - 1e-9))
+    to_side, slope = np.full((2, r.size), np.nan)
+    to_side[start] = r[end]
+    slope[start] = -np.log(n[end] / n[start]) / np.log(r[end] / r[start])
     return pd.DataFrame(
         {
             "box_side_mm": r,
             "box_count": n,
             "used": used,
             "fitted_count": np.where(used, np.exp(line.intercept + line.slope * np.log(r)), np.nan),
-            "next_side_mm": np.append(r[1:], np.nan),
-            "local_slope": np.append(between, np.nan),
+            "slope_to_mm": to_side,
+            "local_slope": slope,
         }
     )
 
 
-def _draw_counts(axes, table, counts):
+def _draw_counts(axes, table, estimate, i):
     r, n, used = (table[key] for key in ("box_side_mm", "box_count", "used"))
     axes.loglog(r[~used], n[~used], "o", mfc="white", mec=COLOURS[0], label="left out")
     axes.loglog(r[used], n[used], "o", color=COLOURS[0], label="used")
-    reason = str(counts["reason"].item())
-    if not reason:
-        delta = interval(*(counts[f"delta_sigma{end}"].item() for end in ("", "_low", "_high")))
-        label = rf"$\Delta_\sigma$ = {delta}"
-        axes.loglog(r, table["fitted_count"], color=COLOURS[2], label=label, zorder=1)
+    axes.loglog(r, table["fitted_count"], color=COLOURS[2], label=estimate.entry(i), zorder=1)
     # Guides go through the point that all lines share best: the largest box, where N is smallest.
     r_last, n_last = r.iloc[-1], n.iloc[-1]
     for slope, style in ((1, ":"), (2, "-.")):
@@ -72,13 +80,13 @@ def _draw_counts(axes, table, counts):
         axes.loglog(r, guide, style, color="0.6", lw=0.8, label=f"slope $-${slope}", zorder=0)
     axes.set_ylim(0.7, n.max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="boxes that meet it, $N(r)$ (1)")
-    axes.set_title("(b) box counts" if not reason else "(b) no dimension")
-    axes.legend(loc="best", handlelength=1.5)
+    axes.set_title("(b) box counts")
+    legend_below(axes)
 
 
 def _draw_slopes(axes, table, counts):
-    middle = np.sqrt(table["box_side_mm"] * table["next_side_mm"])
-    fitted = table["used"] & table["used"].shift(-1, fill_value=False)
+    middle = np.sqrt(table["box_side_mm"] * table["slope_to_mm"])
+    fitted = table["used"] & table["slope_to_mm"].isin(table["box_side_mm"][table["used"]])
     for mask, face in ((fitted, COLOURS[0]), (~fitted, "white")):
         axes.semilogx(middle[mask], table["local_slope"][mask], "o", mfc=face, mec=COLOURS[0])
     if not str(counts["reason"].item()):
@@ -95,15 +103,15 @@ def _draw_slopes(axes, table, counts):
 
 def _caption(loading, i, counts, table):
     start = f"{opening(9, loading)} (a) The contact domain under F = "
-    start += f"{force_label(loading.forces[i])}, s = {loading.finest_spacing:.3g} mm. "
+    start += f"{force_label(loading.forces[i])}, s = {short(loading.finest_spacing)} mm. "
     reason = str(counts["reason"].item())
     if reason:
         return f"{start}(b) Box counts; no dimension: {reason}. (c) Their local slopes."
     return (
         f"{start}(b) Box counts N(r), filled where used, with the line fitted from "
-        f"r = {counts['fit_min'].item():.3g} to {counts['fit_max'].item():.3g} mm "
+        f"r = {short(counts['fit_min'])} to {short(counts['fit_max'])} mm "
         f"({int(counts['fit_n'].item())} sizes): Delta_sigma = {loading.estimates[1].text(i)}, "
-        "the interval spanning the choice of range; (c) slopes between neighbouring sizes. "
+        "the interval spanning the choice of range; (c) slopes over a doubling of r. "
         f"{_verdict(counts, table)} {disagreement(loading.scaling.isel(load=i))}"
     )
 
@@ -122,7 +130,8 @@ def _verdict(counts, table):
     if not all(np.isfinite(p.slope) for p in parts):
         return f"Delta_sigma {lacunar}; too few sizes to tell whether one power law holds."
     apart = parts[0].slope_low > parts[1].slope_high or parts[1].slope_low > parts[0].slope_high
-    law = "so that no single power law holds" if apart else "one power law within the intervals"
+    law = "no single power law fits both" if apart else "one power law fits both"
     return (
-        f"Delta_sigma {lacunar}; the smaller boxes used give {fine}, the larger {coarse}: {law}."
+        f"Delta_sigma {lacunar}; the smaller half of the boxes used gives {fine}, the larger "
+        f"{coarse} (regression alone): {law}."
     )

@@ -9,8 +9,10 @@ from ._domains import (
     Loading,
     disagreement,
     label_spacings,
+    legend_below,
     number,
     opening,
+    short,
     size_effect,
 )
 from .common import COLOURS, MARKERS, WIDTH, Drawing, force_label, force_of
@@ -40,7 +42,7 @@ def draw(atlas, name):
     figure = Figure(figsize=(WIDTH, 3.9))
     left, right = figure.subplots(1, 2)
     area = _area_table(loading)
-    _draw_areas(left, loading, area)
+    _draw_areas(left, loading, i, area)
     pressure = _pressure_table(loading, i)
     _draw_pressures(right, loading, i, pressure)
     table = pd.concat([area, pressure], ignore_index=True)
@@ -68,15 +70,15 @@ def _area_table(loading):
     ).sort_values(["load_N", "spacing_mm"], ignore_index=True)
 
 
-def _draw_areas(axes, loading, table):
+def _draw_areas(axes, loading, map_load, table):
     by_area = loading.estimates[0]
-    for n, i in enumerate(loading.spread_loads(_MOST_LOADS)):
+    for n, i in enumerate(loading.spread_loads(_MOST_LOADS, map_load)):
         force = loading.forces[i]
         rows = table[table["load_N"] == force]
         style = {"color": COLOURS[n], "marker": MARKERS[n], "linestyle": "none"}
-        label = rf"{force_label(force)}: $\Delta_\sigma$ = {by_area.text(i)}"
-        if by_area.reason[i]:
-            label = f"{force_label(force)}: {by_area.reason[i]}"
+        # Low loads may share their few nodes: the later marker lets the earlier one show.
+        style["markersize"] = 7.5 - n
+        label = f"{force_label(force)}: {by_area.entry(i)}"
         used = rows[rows["used"]]
         left_out = rows[~rows["used"]]
         axes.plot(used["spacing_mm"], used["area_mm2"], **style, label=label)
@@ -86,7 +88,7 @@ def _draw_areas(axes, loading, table):
     axes.set_yscale("log")
     axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
     axes.set_title("(a) contact area and resolution")
-    _legend_below(axes)
+    legend_below(axes)
 
 
 def _pressure_table(loading, i):
@@ -121,9 +123,8 @@ def _draw_pressures(axes, loading, i, table):
     for estimate in loading.estimates:
         rows = table[table["estimator"] == estimate.label]
         style = {"color": estimate.style["color"], "linestyle": estimate.style["linestyle"]}
-        text = estimate.text(i)
-        text = text if estimate.reason[i] else rf"$\Delta_\sigma$ = {text}"
-        axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style, label=f"{estimate.label}: {text}")
+        label = f"{estimate.symbol}: {estimate.entry(i)}"
+        axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style, label=label)
     own = table[table["estimator"] == "specimen"]
     axes.plot(own["b_mm"], own["sigma_0_MPa"], "*k", ms=9, label="specimen: $F/b^2$")
     axes.set(xscale="log", yscale="log")
@@ -136,12 +137,7 @@ def _draw_pressures(axes, loading, i, table):
     axes.set_xlabel("side $b$ of the joint (mm)")
     axes.set_ylabel(r"nominal pressure $\sigma_0$ (MPa)")
     axes.set_title(f"(b) eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
-    _legend_below(axes)
-
-
-def _legend_below(axes):
-    """A legend under the axes, where it hides nothing."""
-    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.17), borderaxespad=0)
+    legend_below(axes)
 
 
 def _caption(loading, i, pressure):
@@ -149,8 +145,9 @@ def _caption(loading, i, pressure):
     force = force_label(loading.forces[i])
     return (
         f"{opening(10, loading)} (a) Real contact area at each resolution with the fitted "
-        f"A_r ~ s^(2 - Delta_sigma), filled where used. {_verdict(loading, i)} (b) Extrapolation "
-        f"by eq. 6 to other sides b for F = {force}, with Delta_sigma = {by_area.text(i)} from "
+        f"A_r ~ s^(2 - Delta_sigma), filled where used ({loading.fit_ranges(i)} at the load of "
+        f"(b)). {_verdict(loading, i)} (b) Extrapolation by eq. 6 to other sides b for "
+        f"F = {force}, with Delta_sigma = {by_area.text(i)} from "
         f"A_r(s) (solid) and {by_box.text(i)} from box counting (dashed), each with its own "
         f"sigma*; bands span the 95 % intervals. {disagreement(loading.scaling.isel(load=i))} "
         f"{_own_size(loading, pressure)}"
@@ -161,13 +158,13 @@ def _verdict(loading, i):
     """Whether the area falls with refinement as a power law, in words."""
     by_area = loading.estimates[0]
     if by_area.reason[i]:
-        return f"At the load of (b): {by_area.reason[i]}."
+        return f"There: {by_area.reason[i]}."
     r2 = number(loading.scaling["r2"].values[i], 3)
     if by_area.high[i] < 2:
-        return f"As in the paper, A_r falls with s as a power law (r2 = {r2} at the load of (b))."
+        return f"As in the paper, A_r falls as s is refined, as a power law (r2 = {r2})."
     return (
-        f"Unlike in the paper, a fall of A_r with s is not established (r2 = {r2} at the load "
-        "of (b)): the interval of Delta_sigma reaches 2."
+        f"Unlike in the paper, a fall of A_r with refinement is not established (r2 = {r2}): the "
+        "interval of Delta_sigma reaches 2."
     )
 
 
@@ -181,8 +178,8 @@ def _own_size(loading, pressure):
         if np.isfinite(own[e.label])
     ]
     if not ratios:
-        return f"The star is the specimen, b = {loading.side:.3g} mm."
+        return f"The star is the specimen, b = {short(loading.side)} mm."
     return (
-        f"Eq. 6 meets the specimen (star, b = {loading.side:.3g} mm) only if H_D = b^Delta_sigma; "
-        f"here it gives {' and '.join(ratios)} times the pressure applied."
+        f"Eq. 6 meets the specimen (star, b = {short(loading.side)} mm) only if "
+        f"H_D = b^Delta_sigma; here it gives {' and '.join(ratios)} times the pressure applied."
     )

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ._domains import Loading, disagreement, draw_domain, opening, trend
+from ._domains import Loading, disagreement, draw_domain, opening, short, trend, wrapped
 from .common import WIDTH, Drawing, force_label
 
 #: Contact domains drawn.
@@ -30,7 +30,7 @@ def draw(atlas, name):
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_MAPS)
     aspect = loading.sides[0] / loading.sides[1]
-    map_height = WIDTH / _MOST_MAPS * aspect + 0.5
+    map_height = WIDTH / _MOST_MAPS * aspect + 0.6
     figure = Figure(figsize=(WIDTH, map_height + 2.6))
     top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 2.6])
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
@@ -85,10 +85,10 @@ def _draw_dimensions(axes, loading):
             **estimate.style,
             capsize=2,
             elinewidth=0.8,
-            label=f"{estimate.label}, {known.sum()} of {known.size} loads",
+            label=f"{estimate.symbol},\n{known.sum()} of {known.size} loads",
         )
     if not any(np.isfinite(estimate.value).any() for estimate in loading.estimates):
-        first = loading.estimates[0].reason[0]
+        first = "\n".join(wrapped(estimate.reason[0]) for estimate in loading.estimates)
         axes.text(0.5, 0.5, first, transform=axes.transAxes, ha="center")
     axes.axhline(1, color="0.6", ls=":", lw=0.8, zorder=0)
     axes.set_xscale("log")
@@ -101,25 +101,26 @@ def _draw_dimensions(axes, loading):
 
 def _caption(loading, shown):
     verdicts = "; ".join(
-        f"by {estimate.label} it "
+        f"by {estimate.label} "
         + trend(loading.forces, estimate.value, estimate.low, estimate.high, rising=True)
         for estimate in loading.estimates
     )
-    few = loading.domain(loading.finest, shown[0]).sum()
     return (
-        f"{opening(12, loading)} Contact domains at s = {loading.finest_spacing:.3g} mm under "
-        f"growing load (the first has {few} nodes; rings mark the nodes of the sparsest), and "
-        "Delta_sigma with 95 % intervals, which the axis may cut. The paper has Delta_sigma rise "
-        f"from 0 with F: here {verdicts}. {disagreement(loading.scaling)}{_missing(loading)}"
+        f"{opening(12, loading)} Contact domains at s = {short(loading.finest_spacing)} mm under "
+        f"{len(shown)} loads (rings mark the nodes of the sparsest), and Delta_sigma with 95 % "
+        f"intervals, which the axis may cut ({loading.fit_ranges()}). The paper has "
+        f"Delta_sigma rise with F from 0: {verdicts}. {disagreement(loading.scaling)}"
+        f"{_missing(loading)}"
     )
 
 
 def _missing(loading):
-    """Loads without an estimate, and why."""
-    missing = [
-        f" No value by {estimate.label} at {force_label(loading.forces[i])} ({reason})."
-        for estimate in loading.estimates
-        for i, reason in enumerate(estimate.reason)
-        if reason
-    ]
-    return "".join(missing[:2]) + (f" ({len(missing) - 2} more.)" if len(missing) > 2 else "")
+    """Loads without an estimate, and why at the first."""
+    sentences = []
+    for estimate in loading.estimates:
+        missing = [i for i, reason in enumerate(estimate.reason) if reason]
+        if missing:
+            forces = ", ".join(force_label(loading.forces[i]) for i in missing)
+            first = estimate.reason[missing[0]]
+            sentences.append(f" None by {estimate.label} at {forces}; at the first, {first}.")
+    return "".join(sentences)

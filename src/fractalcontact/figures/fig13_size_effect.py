@@ -5,7 +5,16 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ._domains import Loading, disagreement, fractal_pressure, interval, opening, size_effect, trend
+from ._domains import (
+    Loading,
+    disagreement,
+    fractal_pressure,
+    interval,
+    opening,
+    short,
+    size_effect,
+    trend,
+)
 from .common import COLOURS, MARKERS, WIDTH, Drawing, force_label
 
 #: Loads drawn.
@@ -41,6 +50,7 @@ def draw(atlas, name):
             rows = under_load[under_load["estimator"] == estimate.label]
             style = {"color": COLOURS[n], "linestyle": estimate.style["linestyle"]}
             axes.loglog(rows["b_mm"], rows["sigma_0_MPa"], **style)
+            style["marker"] = MARKERS[n] if estimate.key == "area" else None
             handles.append(Line2D([], [], **style, label=_entry(loading, estimate, i)))
         own = (loading.side, loading.forces[i] / loading.side**2)
         axes.loglog(*own, MARKERS[n], color=COLOURS[n], mec="white", ms=6, zorder=3)
@@ -67,9 +77,9 @@ def _slope(estimate):
 def _entry(loading, estimate, i):
     """Legend of one line."""
     if estimate.reason[i]:
-        return f"{force_label(loading.forces[i])}, {estimate.label}: none"
+        return f"{force_label(loading.forces[i])}, {estimate.symbol}: none"
     slope = interval(*(part[i] for part in _slope(estimate)))
-    return f"{force_label(loading.forces[i])}, {estimate.label}: {slope}"
+    return f"{force_label(loading.forces[i])}, {estimate.symbol}: {slope}"
 
 
 def _table(loading, shown):
@@ -100,7 +110,7 @@ def _table(loading, shown):
 
 def _caption(loading):
     verdicts = "; ".join(
-        f"by {estimate.label} it "
+        f"by {estimate.label} "
         + trend(
             loading.forces,
             2 - estimate.value,
@@ -113,8 +123,9 @@ def _caption(loading):
     return (
         f"{opening(13, loading)} Extrapolation of eq. 6, not a measurement: nominal pressure that "
         "brings about the sigma* of each load on a joint of side b, with Delta_sigma and sigma* "
-        "from A_r(s) (solid) and from box counting (dashed); markers show the pressures applied to "
-        f"the specimen (b = {loading.side:.3g} mm), which eq. 6 meets only where "
+        f"from A_r(s) (solid) and from box counting (dashed), {loading.fit_ranges()}; "
+        "markers show the pressures applied to "
+        f"the specimen (b = {short(loading.side)} mm), which eq. 6 meets only where "
         "H_D = b^Delta_sigma. The paper has the slope's magnitude 2 - Delta_sigma fall as F rises: "
-        f"here {verdicts}. {disagreement(loading.scaling)}"
+        f"{verdicts}. {disagreement(loading.scaling)}"
     )

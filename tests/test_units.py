@@ -1,0 +1,40 @@
+"""Quantities as people write them."""
+
+import pytest
+
+from fractalcontact.errors import InputError
+from fractalcontact.units import length_factor, load, quantity
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        ("20 mm", "length", 20),
+        ("0.5 um", "length", 5e-4),
+        ("80 µm", "length", 0.08),
+        ("0.02 m", "length", 20),
+        ("20 GPa", "pressure", 20e3),
+        ("10 kN", "force", 10e3),
+    ],
+)
+def test_known_quantities(text, kind, value):
+    assert quantity(text, kind, "key") == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["20", 20, "20 MPa", "20 mmm", "", None, "__import__('os')"])
+def test_what_is_no_length_is_refused_by_its_key(text):
+    with pytest.raises(InputError, match=r"study\.yaml: window: .*'20 mm'"):
+        quantity(text, "length", "study.yaml: window")
+
+
+def test_loads_are_forces_or_pressures():
+    assert load("2 kN", "k") == (2000.0, "force")
+    assert load("2.5 MPa", "k") == (2.5, "pressure")
+    with pytest.raises(InputError, match="neither a force nor a nominal pressure"):
+        load("2 mm", "k")
+
+
+def test_units_of_length():
+    assert length_factor("um", "k") == pytest.approx(1e-3)
+    with pytest.raises(InputError):
+        length_factor("kN", "k")

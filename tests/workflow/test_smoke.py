@@ -1,0 +1,128 @@
+"""The Snakefile itself: the whole chain, small; a killed run; bad input among good."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+
+ROOT = Path(__file__).parents[2]
+SCANS = ROOT.parent / "shared" / "scans"
+pytestmark = pytest.mark.workflow
+
+
+@pytest.fixture
+def project(tmp_path):
+    """A working copy without results; the package is the installed one."""
+    for name in ("Snakefile", "config", "workflow", "src"):
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, tmp_path / name, ignore=shutil.ignore_patterns("*.pyc"))
+        else:
+            shutil.copy(source, tmp_path / name)
+    (tmp_path / "scans").mkdir()
+    return tmp_path
+
+
+def command(study, *options):
+    profile = ("--workflow-profile", "workflow/profiles/default")
+    base = (sys.executable, "-m", "snakemake", "--cores", "2", "--configfile", study)
+    return [*base, *profile, *options]
+
+
+def run(project, study="config/smoke.yaml", *options):
+    return subprocess.run(
+        command(study, *options), cwd=project, capture_output=True, text=True, timeout=300
+    )
+
+
+def small_study(project, **changes):
+    study = yaml.safe_load((project / "config/smoke.yaml").read_text())
+    study |= {"study": "test", "scans": "scans", "embedded": {}, "specimens": {}}
+    study["defaults"] |= {"window": "auto", "offsets": "auto", "loads": ["1 MPa", "10 MPa"]}
+    study |= changes
+    (project / "config/test.yaml").write_text(yaml.safe_dump(study))
+    return "config/test.yaml"
+
+
+def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(project):
+    whole = run(project)
+    assert whole.returncode == 0, whole.stderr
+    results = project / "results/smoke"
+    atlas = (results / "atlas.nc").read_bytes()
+    assert len(list((results / "figures/small_twin").glob("*.png"))) == 9
+    assert len(list((results / "figures/small_joint").glob("*.svg"))) == 7
+    again = run(project, "config/smoke.yaml", "--dry-run")
+    assert "Nothing to be done" in again.stdout + again.stderr
+
+    shutil.rmtree(results)
+    process = subprocess.Popen(
+        command("config/smoke.yaml"),
+        cwd=project,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 120
+    while not list(results.glob("specimens/*.nc")) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not (results / "atlas.nc").exists()
+    run(project, "config/smoke.yaml", "--unlock")
+    resumed = run(project)
+    assert resumed.returncode == 0, resumed.stderr
+    assert (results / "atlas.nc").read_bytes() == atlas
+
+
+def test_one_bad_scan_is_one_clear_error_and_the_good_one_finishes(project):
+    study = small_study(project)
+    rough = np.random.default_rng(0).normal(size=(40, 40)).cumsum(0).cumsum(1) * 1e-3
+    for name, heights in {"good": rough, "constant": np.ones((40, 40))}.items():
+        np.save(project / f"scans/{name}.npy", heights)
+        (project / f"scans/{name}.yaml").write_text("unit: mm\nspacing: 0.1\n")
+    np.save(project / "scans/unitless.npy", rough)
+    (project / "scans/empty.xyz").write_text("")
+    (project / "scans/empty.yaml").write_text("unit: mm\n")
+    np.save(project / "scans/far.npy", rough)
+    (project / "scans/far.yaml").write_text("unit: mm\nspacing: 0.1\noffsets: [50 mm]\n")
+    done = run(project, study, "--keep-going")
+    assert done.returncode != 0
+    errors = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
+    for name in ("constant.npy", "unitless.npy", "empty.xyz", "far"):
+        assert any(name in line for line in errors), (name, errors)
+    assert len(list((project / "results/test/figures/good").glob("*.png"))) == 9
+
+
+def test_an_unknown_key_stops_before_anything_runs(project):
+    study = small_study(project, grane={})
+    done = run(project, study)
+    assert done.returncode != 0
+    assert "unknown key 'grane'; did you mean 'grain'?" in done.stdout + done.stderr
+    assert not (project / "results").exists()
+
+
+@pytest.mark.scans
+@pytest.mark.skipif(not SCANS.is_dir(), reason="the real scans are not beside the project")
+def test_a_real_pair_dropped_in_gives_figures(project):
+    study = small_study(project)
+    folder = SCANS / "cnl_granite_pair"
+    shutil.copy(folder / "Extracted_M_CNL_SideA_bottom.txt", project / "scans/granite.lower.txt")
+    shutil.copy(folder / "Extracted_M_CNL_SideB_top.txt", project / "scans/granite.upper.txt")
+    (project / "scans/granite.yaml").write_text("unit: mm\n")
+    done = run(project, study)
+    assert done.returncode == 0, done.stderr
+    assert len(list((project / "results/test/figures/granite").glob("*.png"))) == 9
+    with xr.open_datatree(project / "results/test/atlas.nc") as atlas:
+        specimen = atlas["specimens/granite"]
+        assert specimen.attrs["opposite"] == "scanned"
+        gap = (specimen["upper"] - specimen["lower"]).values
+        assert np.nanmean(gap) == pytest.approx(0.6365, abs=0.01)
+        assert (atlas["closure/granite/residual"] <= 1e-6).all()
