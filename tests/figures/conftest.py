@@ -124,5 +124,6 @@ def atlas_file(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def atlas(atlas_file):
+    # In memory, not open: netCDF4 does not stand the same file opened and closed a second time.
     with store.open_atlas(atlas_file) as tree:
-        yield tree
+        return tree.load()

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.workflow
 @pytest.fixture
 def project(tmp_path):
     """A working copy without results; the package is the installed one."""
-    for name in ("Snakefile", "config", "workflow", "src"):
+    for name in ("Snakefile", "environment.yml", "config", "workflow", "src"):
         source = ROOT / name
         if source.is_dir():
             shutil.copytree(source, tmp_path / name, ignore=shutil.ignore_patterns("*.pyc"))

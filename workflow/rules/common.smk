@@ -31,10 +31,16 @@ def read_study():
     scans = find_scans(folder) if folder else {}
     twice = sorted(set(scans) & set(config.get("embedded", {})))
     if twice:
-        raise InputError(f"{folder}: specimen '{twice[0]}' is also embedded in {SOURCE}; rename one")
-    unknown = sorted(set(config.get("specimens", {})) - set(scans) - set(config.get("embedded", {})))
+        raise InputError(
+            f"{folder}: specimen '{twice[0]}' is also embedded in {SOURCE}; rename one"
+        )
+    unknown = sorted(
+        set(config.get("specimens", {})) - set(scans) - set(config.get("embedded", {}))
+    )
     if unknown:
-        raise InputError(f"{SOURCE}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}")
+        raise InputError(
+            f"{SOURCE}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
+        )
     settings = {
         name: resolve_settings(config, name, read_sidecar(scan.sidecar, SCHEMA)[1], SOURCE)
         for name, scan in scans.items()

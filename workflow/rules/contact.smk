@@ -16,6 +16,15 @@ rule contact:
         joint=rules.joint.output[0],
     output:
         f"{RESULTS}/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.nc",
+    log:
+        f"{RESULTS}/logs/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=60,
     params:
         settings=settings_of,
         solver=SOLVER,
@@ -24,15 +33,6 @@ rule contact:
             slice(*parts_of(wc.specimen)[1][int(wc.level)])
         ],
         code=code("sweep", "store"),
-    log:
-        f"{RESULTS}/logs/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.tsv"
-    resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=60,
-    conda:
-        "../../environment.yml"
     script:
         "../scripts/contact.py"
 
@@ -56,17 +56,17 @@ rule closure:
     output:
         closure=f"{RESULTS}/closure/{{specimen}}.nc",
         dilatancy=f"{RESULTS}/dilatancy/{{specimen}}.nc",
-    params:
-        settings=settings_of,
-        code=code("closure", "sweep", "store"),
     log:
         f"{RESULTS}/logs/closure/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/closure/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=1000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        settings=settings_of,
+        code=code("closure", "sweep", "store"),
     script:
         "../scripts/closure.py"

@@ -31,20 +31,20 @@ rule figures:
     output:
         *pictures("match"),
         *beside("match"),
-    wildcard_constraints:
-        specimen=one_of(SLIDING),
-    params:
-        names=figures_of("match"),
-        code=code("figures", *figure_modules("match")),
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
+    wildcard_constraints:
+        specimen=one_of(SLIDING),
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=2000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        names=figures_of("match"),
+        code=code("figures", *figure_modules("match")),
     script:
         "../scripts/figures.py"
 
@@ -54,18 +54,20 @@ use rule figures as figures_against_plane with:
     output:
         *pictures("flat"),
         *beside("flat"),
+    log:
+        f"{RESULTS}/logs/figures/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
     wildcard_constraints:
         specimen=one_of(FLAT),
     params:
         names=figures_of("flat"),
         code=code("figures", *figure_modules("flat")),
-    log:
-        f"{RESULTS}/logs/figures/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
 
 
 def collect_figures(wildcards):
     return expand(
         f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=SLIDING, name=figures_of("match")
-    ) + expand(f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=FLAT, name=figures_of("flat"))
+    ) + expand(
+        f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=FLAT, name=figures_of("flat")
+    )

@@ -6,17 +6,17 @@ rule joint:
         rules.specimen.output,
     output:
         f"{RESULTS}/joints/{{specimen}}.nc",
-    params:
-        settings=settings_of,
-        code=code("joint", "store"),
     log:
         f"{RESULTS}/logs/joint/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/joint/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=1000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        settings=settings_of,
+        code=code("joint", "store"),
     script:
         "../scripts/joint.py"

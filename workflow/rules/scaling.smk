@@ -8,18 +8,18 @@ rule domains:
     output:
         domains=f"{RESULTS}/domains/{{specimen}}.nc",
         contact=f"{RESULTS}/contact/{{specimen}}.nc",
-    params:
-        settings=settings_of,
-        code=code("analysis", "sweep", "store"),
     log:
         f"{RESULTS}/logs/domains/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/domains/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=2000,
         runtime=20,
-    conda:
-        "../../environment.yml"
+    params:
+        settings=settings_of,
+        code=code("analysis", "sweep", "store"),
     script:
         "../scripts/domains.py"
 
@@ -31,18 +31,18 @@ rule scaling:
         domains=rules.domains.output.domains,
     output:
         f"{RESULTS}/scaling/{{specimen}}.nc",
-    params:
-        settings=settings_of,
-        code=code("analysis", "store"),
     log:
         f"{RESULTS}/logs/scaling/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/scaling/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=1000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        settings=settings_of,
+        code=code("analysis", "store"),
     script:
         "../scripts/scaling.py"
 
@@ -66,19 +66,19 @@ rule specimen_atlas:
         **STAGE_FILES,
     output:
         f"{RESULTS}/atlas/{{specimen}}.nc",
-    params:
-        specimens=lambda wc: [wc.specimen],
-        configuration=lambda wc: {"study": config, "settings": {wc.specimen: settings_of(wc)}},
-        code=code("store"),
     log:
         f"{RESULTS}/logs/atlas/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/atlas/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=2000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        specimens=lambda wc: [wc.specimen],
+        configuration=lambda wc: {"study": config, "settings": {wc.specimen: settings_of(wc)}},
+        code=code("store"),
     script:
         "../scripts/atlas.py"
 
@@ -88,18 +88,18 @@ rule atlas:
         **{stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()},
     output:
         f"{RESULTS}/atlas.nc",
-    params:
-        specimens=SPECIMENS,
-        configuration={"study": config, "settings": SETTINGS},
-        code=code("store"),
     log:
         f"{RESULTS}/logs/atlas.log",
     benchmark:
         f"{RESULTS}/benchmarks/atlas.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=4000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        specimens=SPECIMENS,
+        configuration={"study": config, "settings": SETTINGS},
+        code=code("store"),
     script:
         "../scripts/atlas.py"

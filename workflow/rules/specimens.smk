@@ -5,18 +5,18 @@ rule embedded:
     output:
         scan=f"{RESULTS}/embedded/{{specimen}}.npy",
         sidecar=f"{RESULTS}/embedded/{{specimen}}.yaml",
-    params:
-        recipe=lambda wc: resolve_embedded(config["embedded"][wc.specimen], "embedded"),
-        code=code("synthesis"),
     log:
         f"{RESULTS}/logs/embedded/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/embedded/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=1000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        recipe=lambda wc: resolve_embedded(config["embedded"][wc.specimen], "embedded"),
+        code=code("synthesis"),
     script:
         "../scripts/embedded.py"
 
@@ -37,18 +37,18 @@ rule specimen:
         schema=SCHEMA_FILE,
     output:
         f"{RESULTS}/specimens/{{specimen}}.nc",
-    params:
-        settings=settings_of,
-        code=code("scan", "specimen", "study", "store"),
     log:
         f"{RESULTS}/logs/specimen/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/specimen/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=lambda wc, attempt: 2000 * attempt,
         runtime=15,
-    conda:
-        "../../environment.yml"
+    params:
+        settings=settings_of,
+        code=code("scan", "specimen", "study", "store"),
     script:
         "../scripts/specimen.py"
 
@@ -58,17 +58,17 @@ rule surface_dimension:
         rules.specimen.output,
     output:
         f"{RESULTS}/surface_dimension/{{specimen}}.nc",
-    params:
-        settings=settings_of,
-        code=code("roughness", "store"),
     log:
         f"{RESULTS}/logs/surface_dimension/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/surface_dimension/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=1000,
         runtime=10,
-    conda:
-        "../../environment.yml"
+    params:
+        settings=settings_of,
+        code=code("roughness", "store"),
     script:
         "../scripts/surface_dimension.py"

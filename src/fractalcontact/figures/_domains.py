@@ -15,8 +15,10 @@ from .common import COLOURS, MARKERS, force_label, group, map_offset, settings_o
 
 PAPER = "Borri-Brunetto, Carpinteri and Chiaia (1999)"
 
-#: Domains of fewer nodes than this get rings: their nodes are too small to be seen in print.
+#: Domains of fewer nodes than this get rings where the nodes are too small to be seen in print:
+#: more than so many along a side of the map.
 FEW_NODES = 100
+FINE_NODES = 100
 
 
 @dataclass(frozen=True)
@@ -207,13 +209,14 @@ def short(value):
 
 
 def wrapped(text):
-    """Text broken into lines that fit under one panel of two."""
-    return textwrap.fill(text, 56)
+    """Text broken into lines that fit under one panel of three."""
+    return textwrap.fill(text, 34)
 
 
 def legend_below(axes):
     """A legend under the axes, where it hides nothing."""
-    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.17), borderaxespad=0)
+    # Padding in heights of the font: room for the ticks and the label of the axis.
+    axes.legend(loc="upper left", bbox_to_anchor=(0, 0), borderaxespad=4.8)
 
 
 def interval(value, low, high):
@@ -233,9 +236,9 @@ def draw_domain(axes, domain, sides):
     """
     axes.imshow(domain, cmap="Greys", vmin=0, vmax=1, extent=(0, sides[1], 0, sides[0]))
     nodes = np.argwhere(domain)
-    if len(nodes) < FEW_NODES:
+    if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
         y, x = ((nodes + 0.5) * np.divide(sides, domain.shape)).T
-        axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7)
+        axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7, clip_on=False)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
 

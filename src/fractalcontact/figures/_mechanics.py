@@ -85,8 +85,8 @@ def window_outline(specimen, unit_mm, slid=(0.0, 0.0), **style):
     return Rectangle(corner[::-1], sides[1], sides[0], fill=False, path_effects=HALO, **style)
 
 
-def draw_map(axes, image, sides, unit, **options):
-    """An image true to scale, with distances from its corner; nothing is interpolated.
+def draw_map(axes, image, sides, unit, *, interpolation="nearest", **options):
+    """An image true to scale, with distances from its corner.
 
     Parameters
     ----------
@@ -97,6 +97,8 @@ def draw_map(axes, image, sides, unit, **options):
         (y, x) in mm.
     unit : (str, float)
         From :func:`length_unit`.
+    interpolation : str
+        By default none, so that no missing cell is filled.
     **options
         Of ``imshow``.
 
@@ -107,7 +109,7 @@ def draw_map(axes, image, sides, unit, **options):
     name, size = unit
     extent = (0, sides[1] / size, 0, sides[0] / size)
     axes.set_facecolor(MISSING)
-    drawn = axes.imshow(image, extent=extent, interpolation="nearest", **options)
+    drawn = axes.imshow(image, extent=extent, interpolation=interpolation, **options)
     for axis, letter in ((axes.xaxis, "x"), (axes.yaxis, "y")):
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_label_text(f"${letter}$ ({name})")

@@ -60,10 +60,10 @@ def draw(atlas, name):
     letters = "ab"[: len(faces)]
     for panel, which, face in zip(axes, letters, faces, strict=False):
         letter(panel, which, f"{face} face")
-    _draw_dimensions(axes[-1], dimension)
+    mean = _draw_dimensions(axes[-1], dimension)
     letter(axes[-1], "abc"[len(faces)], r"$\Delta_g$ of the lower face")
-    handles = [outline] + ([missing_patch()] if any(missing) else [])
-    figure.legend(handles=handles, loc="outside lower left", ncols=2)
+    handles = [outline, *([missing_patch()] if any(missing) else []), *mean]
+    figure.legend(handles=handles, loc="outside lower left", ncols=3)
     figure.suptitle(f"{label}\n{_size_words(specimen, sides)}", fontsize=9)
     return Drawing(figure, _table(dimension), _caption(label, specimen, faces, sides, dimension))
 
@@ -117,7 +117,7 @@ def _shaded(heights, spacing, low, high):
 
 
 def _draw_dimensions(axes, dimension):
-    """Estimates of Delta_g with their intervals, one below the other."""
+    """Estimates of Delta_g with their intervals, one below the other; the lines of a legend."""
     values, low, high = (dimension[f"dimension{end}"].values for end in ("", "_low", "_high"))
     rows = np.arange(len(values))
     fitted = np.isfinite(values)
@@ -131,7 +131,7 @@ def _draw_dimensions(axes, dimension):
     axes.set_yticks(rows, words, fontsize=7)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlabel(r"surface dimension $\Delta_g$ (-)")
-    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     if not fitted.any():
         axes.text(
             0.5,
@@ -142,11 +142,16 @@ def _draw_dimensions(axes, dimension):
             transform=axes.transAxes,
         )
         axes.set_xticks([])
-        return
+        return []
     errors = np.stack([values - low, high - values])[:, fitted]
     axes.errorbar(values[fitted], rows[fitted], xerr=errors, fmt="o", color=COLOURS[1], capsize=2)
-    axes.axvline(values[fitted].mean(), color=COLOURS[2], ls="--", lw=0.8)
+    mean = axes.axvline(values[fitted].mean(), color=COLOURS[2], ls="--", lw=0.8)
+    mean.set_label(
+        rf"mean $\Delta_g$ {values[fitted].mean():.2f}, "
+        f"range {values[fitted].min():.2f} to {values[fitted].max():.2f}"
+    )
     axes.grid(axis="x", color="0.9", lw=0.5)
+    return [mean]
 
 
 def _table(dimension):

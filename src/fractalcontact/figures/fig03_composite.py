@@ -27,6 +27,8 @@ from .common import COLOURS, WIDTH, Drawing, group, settings_of
 #: the size of the roll-off length, and their chance alone gives an r of this order.
 UNCORRELATED = 0.2
 
+_TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
+
 
 @dataclass(frozen=True)
 class Slid:
@@ -139,8 +141,8 @@ def draw(atlas, name):
     grid = figure.add_gridspec(2, 2, height_ratios=[1.5, 1])
     plan, composite = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
     profile = figure.add_subplot(grid[1, :])
-    _draw_plan(figure, plan, slid)
-    _draw_profile(profile, slid, profiles)
+    handles = _draw_plan(figure, plan, slid) + _draw_profile(profile, slid, profiles)
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
     _draw_composite(figure, composite, slid)
     letter(plan, "a", "lower face and window")
     letter(profile, "b", "profile through the point of first touch")
@@ -150,6 +152,7 @@ def draw(atlas, name):
 
 
 def _draw_plan(figure, axes, slid):
+    """The scan and the window twice; entries of a legend."""
     specimen = slid.specimen
     sides = scan_extent(specimen)
     unit = length_unit(max(sides))
@@ -158,16 +161,20 @@ def _draw_plan(figure, axes, slid):
     image = draw_map(axes, heights / height_unit[1], sides, unit, cmap="Greys_r")
     figure.colorbar(image, ax=axes, shrink=0.8, label=f"height ({height_unit[0]})")
     outlines = [
-        window_outline(specimen, unit[1], edgecolor=COLOURS[1], lw=1.5, ls="--", label="before"),
-        window_outline(specimen, unit[1], slid.slid, edgecolor=COLOURS[2], lw=1.5, label="after"),
+        window_outline(
+            specimen, unit[1], edgecolor=COLOURS[1], lw=1.5, ls="--", label="window before"
+        ),
+        window_outline(
+            specimen, unit[1], slid.slid, edgecolor=COLOURS[2], lw=1.5, label="window after"
+        ),
     ]
     for outline in outlines:
         axes.add_patch(outline)
-    handles = outlines + ([missing_patch()] if np.isnan(heights).any() else [])
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
+    return outlines + ([missing_patch()] if np.isnan(heights).any() else [])
 
 
 def _draw_profile(axes, slid, profiles):
+    """Both faces, offset and dilatancy; entries of a legend."""
     along = profiles[f"{slid.axis}_mm"].values
     unit, size = length_unit(along[-1])
     height_unit, height_size = length_unit(
@@ -185,7 +192,7 @@ def _draw_profile(axes, slid, profiles):
     axes.plot(
         x,
         after,
-        color=COLOURS[2],
+        color=COLOURS[4],
         lw=0.9,
         label=r"upper face, slid by $v$ and lifted by $\delta_r$",
     )
@@ -213,16 +220,14 @@ def _draw_profile(axes, slid, profiles):
         va="center",
         **words,
     )
-    axes.plot(
-        end, top, marker="o", ms=6, mfc="none", mec=COLOURS[3], ls="none", label="first touch"
-    )
+    axes.plot(end, top, marker="o", label="first touch", **_TOUCH)
     axes.set_xlabel(f"${slid.axis}$ ({unit})")
     axes.set_ylabel(f"height ({height_unit})")
     axes.margins(x=0, y=0.15)
     floor, ceiling = axes.get_ylim()
     axes.fill_between(x, lower, floor, color="0.9", lw=0, zorder=0)
     axes.set_ylim(floor, ceiling)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=4)
+    return axes.get_legend_handles_labels()[0]
 
 
 def _draw_composite(figure, axes, slid):
@@ -232,19 +237,7 @@ def _draw_composite(figure, axes, slid):
     image = draw_map(axes, slid.composite / size, sides, unit, cmap="cividis")
     figure.colorbar(image, ax=axes, shrink=0.8, label=f"$h$ ({height_unit})")
     y, x = ((np.array(slid.touch) + 0.5) * np.divide(sides, slid.composite.shape)) / unit[1]
-    (mark,) = axes.plot(
-        x,
-        y,
-        "o",
-        ms=7,
-        mfc="none",
-        mec=COLOURS[2],
-        mew=1.5,
-        path_effects=HALO,
-        ls="none",
-        label="first touch",
-    )
-    axes.legend(handles=[mark], loc="upper center", bbox_to_anchor=(0.5, -0.16))
+    axes.plot(x, y, marker="o", path_effects=HALO, **_TOUCH)
 
 
 def _caption(label, slid):

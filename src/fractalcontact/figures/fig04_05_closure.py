@@ -60,7 +60,7 @@ def draw(atlas, name):
     _draw_closure(left, curves, drawn, direction, nominal_area(specimen))
     _draw_area(right, curves, drawn, direction, fits, nominal_area(specimen))
     letter(left, "a", "closure")
-    letter(right, "b", "real contact area")
+    letter(right, "b", "real contact area (hollow: not fitted)")
     figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
     caption = _caption(settings["label"], direction, curves, closure.attrs, fits, drawn)
     return Drawing(figure, _table(curves, drawn, fits), caption)
@@ -191,8 +191,9 @@ def _caption(label, direction, curves, attrs, fits, drawn):
     sentences = [
         f"After Figs. 4 and 5 of {PAPER}: {label}, {place(direction)}, at the finest resolution. "
         f"(a) Force against interface closure; lines are hyperbolas fitted from "
-        f"{' to '.join(ends)}, dotted their asymptotes w_m with 95 % intervals. (b) Real contact area against force and "
-        f"power laws fitted to the domains of {FEWEST_NODES} nodes or more (filled).",
+        f"{' to '.join(ends)}, dotted their asymptotes w_m with 95 % intervals. (b) Real contact "
+        f"area against force and power laws fitted to the domains of {FEWEST_NODES} nodes or more "
+        f"(filled).",
         _hyperbola_words(curves.isel(offset=drawn)),
         _linearity_words([fits[i][0] for i in drawn]),
     ]

@@ -7,8 +7,18 @@ from matplotlib.ticker import MaxNLocator
 
 from ..fitting import fit_line
 from ..sweep import window_sides
-from ._domains import PAPER, draw_domain
-from ._mechanics import HALO, TOWARDS, colour_of, letter, place, slope_text, spread
+from ._domains import PAPER
+from ._mechanics import (
+    HALO,
+    TOWARDS,
+    colour_of,
+    draw_map,
+    length_unit,
+    letter,
+    place,
+    slope_text,
+    spread,
+)
 from .common import (
     LINES,
     MARKERS,
@@ -56,8 +66,8 @@ def draw(atlas, name):
     plateaus = {str(d): _plateau(dilatancy, d) for d in dilatancy["direction"].values}
 
     rows = -(-len(points) // COLUMNS)
-    figure = Figure(figsize=(WIDTH, 3.2 + 2.3 * rows))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.3 * rows])
+    figure = Figure(figsize=(WIDTH, 3.2 + 2.5 * rows))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])
     left, right = top.subfigures(1, 2, width_ratios=[0.85, 1])
     _draw_rigid(left.subplots(), dilatancy, plateaus)
     _draw_elastic(right, dilatancy, direction, shown, mapped, points)
@@ -115,6 +125,7 @@ def _draw_elastic(figure, dilatancy, direction, shown, mapped, points):
     for panel, (first, last) in zip(panels, ranges, strict=True):
         _elastic_curves(panel, dilatancy, direction, shown)
         _mark_points(panel, dilatancy, direction, mapped, points, (first, last))
+        panel.margins(y=0.12)
         margin = 0.06 * (last - first) or None
         panel.set_xlim(first, margin and last + margin)
         panel.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
@@ -157,18 +168,19 @@ def _mark_points(axes, dilatancy, direction, mapped, points, shown_range):
 
 def _draw_domains(panels, domains, share, points, sides):
     """Contact domains of one load at some offsets, row by row."""
+    unit = length_unit(max(sides))
     for k, panel in enumerate(panels.ravel()):
         if k >= len(points):
             panel.remove()
             continue
         i = points[k]
-        draw_domain(panel, domains[i].values, sides)
+        # No cell is missing in a window, and a node smaller than a pixel must not vanish.
+        grey = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
+        draw_map(panel, domains[i].values, sides, unit, **grey)
         panel.set_title(
             f"{_domain_letter(k)}: $v$ = {float(share['offset'][i]):.3g} mm, "
             f"$A_r/A_0$ = {100 * float(share[i]):.2g} %"
         )
-        panel.set_xlabel("$x$ (mm)")
-        panel.set_ylabel("$y$ (mm)")
 
 
 def _domain_letter(k):

@@ -72,8 +72,8 @@ def _caption(loading, i, table):
     return (
         f"{opening(8, loading)} Contact domains (black) under "
         f"F = {force_label(loading.forces[i])}; resolutions: {len(table)}. {_verdict(table)} "
-        f"Delta_sigma [95 % interval]: {by_area.text(i)} by A_r(s), {by_box.text(i)} by box "
-        f"counting at the finest resolution ({loading.fit_ranges(i)}). "
+        f"Delta_sigma [95 % interval] by A_r(s): {by_area.text(i)}; by box counting at the finest "
+        f"resolution: {by_box.text(i)} ({loading.fit_ranges(i)}). "
         f"{disagreement(loading.scaling.isel(load=i))}"
     )
 

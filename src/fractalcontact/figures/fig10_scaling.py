@@ -147,8 +147,8 @@ def _caption(loading, i, pressure):
         f"{opening(10, loading)} (a) Real contact area at each resolution with the fitted "
         f"A_r ~ s^(2 - Delta_sigma), filled where used ({loading.fit_ranges(i)} at the load of "
         f"(b)). {_verdict(loading, i)} (b) Extrapolation by eq. 6 to other sides b for "
-        f"F = {force}, with Delta_sigma = {by_area.text(i)} from "
-        f"A_r(s) (solid) and {by_box.text(i)} from box counting (dashed), each with its own "
+        f"F = {force}, Delta_sigma from A_r(s) (solid): {by_area.text(i)}, and from box counting "
+        f"(dashed): {by_box.text(i)}, each with its own "
         f"sigma*; bands span the 95 % intervals. {disagreement(loading.scaling.isel(load=i))} "
         f"{_own_size(loading, pressure)}"
     )

@@ -107,7 +107,7 @@ def _caption(loading, shown):
     )
     return (
         f"{opening(12, loading)} Contact domains at s = {short(loading.finest_spacing)} mm under "
-        f"{len(shown)} loads (rings mark the nodes of the sparsest), and Delta_sigma with 95 % "
+        f"{len(shown)} loads (rings mark nodes too few to be seen), and Delta_sigma with 95 % "
         f"intervals, which the axis may cut ({loading.fit_ranges()}). The paper has "
         f"Delta_sigma rise with F from 0: {verdicts}. {disagreement(loading.scaling)}"
         f"{_missing(loading)}"

@@ -53,7 +53,7 @@ def draw(atlas, name):
             style["marker"] = MARKERS[n] if estimate.key == "area" else None
             handles.append(Line2D([], [], **style, label=_entry(loading, estimate, i)))
         own = (loading.side, loading.forces[i] / loading.side**2)
-        axes.loglog(*own, MARKERS[n], color=COLOURS[n], mec="white", ms=6, zorder=3)
+        axes.loglog(*own, MARKERS[n], color=COLOURS[n], mec="white", mew=0.5, ms=7, zorder=3)
     axes.set_xlabel("side $b$ of the joint (mm)")
     axes.set_ylabel(r"nominal pressure $\sigma_0$ (MPa)")
     axes.set_title("eq. 6 extrapolated to other sizes; markers: the specimen")

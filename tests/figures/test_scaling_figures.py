@@ -1,0 +1,215 @@
+"""Figures of contact domains and their scaling: 8, 9, 10, 12 and 13."""
+
+import importlib
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fractalcontact import figures
+from fractalcontact.figures import _domains, common
+from fractalcontact.figures._domains import Loading, fractal_pressure, size_effect, trend
+from fractalcontact.fitting import fit_line
+from fractalcontact.scaling import renormalisation
+
+NAMES = (
+    "fig08_prefractals",
+    "fig09_box_counting",
+    "fig10_scaling",
+    "fig12_evolution",
+    "fig13_size_effect",
+)
+SPECIMENS = ("sliding", "flat", "pair")
+UNITS = ("(mm)", "(mm$^2$)", "(MPa)", "(N)", "(1)")
+
+
+def draw(atlas, figure, specimen):
+    with common.print_style():
+        return importlib.import_module(f"fractalcontact.figures.{figure}").draw(atlas, specimen)
+
+
+def finest(atlas, stage, specimen):
+    """A stage at the drawn offset and the finest resolution, straight from the atlas."""
+    settings = common.settings_of(atlas, specimen)
+    data = common.group(atlas, stage, specimen)
+    offset = common.map_offset(settings, data["offset"].values)
+    data = data.sel(direction=settings["contact_directions"][0], offset=offset)
+    return data.sel(resolution=data["resolution"].min())
+
+
+# Exact results
+
+
+def test_eq_6_of_a_full_square_is_the_pressure_applied_whatever_the_size():
+    s = xr.DataArray([1.0, 2.0, 4.0], dims="resolution", coords={"resolution": [1, 2, 4]})
+    area = xr.full_like(s, 64.0)  # every node of 8 x 8 mm touches at every resolution
+    scaling = renormalisation(s, area, xr.DataArray(640.0)).assign(spacing=s, area=area)
+    scaling = scaling.assign_coords(load=640.0)
+    for key in ("area", "box"):
+        assert fractal_pressure(scaling, key, 2.0) == pytest.approx(10.0)  # MPa, 640 N on 64 mm2
+
+
+def test_eq_6_of_a_square_carpet_meets_the_specimen():
+    # N = (b/s)^Delta nodes: the set whose H_D is b^Delta, for which eq. 6 is exact at b.
+    delta, b, force = 1.5, 16.0, 100.0
+    s = xr.DataArray([1.0, 4.0, 16.0], dims="resolution", coords={"resolution": [1, 4, 16]})
+    area = (b / s) ** delta * s**2
+    scaling = renormalisation(s, area, xr.DataArray(force)).assign(spacing=s, area=area)
+    scaling = scaling.assign_coords(load=force)
+    for key in ("area", "box"):
+        sigma_star = fractal_pressure(scaling, key, delta)
+        assert sigma_star * b ** (delta - 2) == pytest.approx(force / b**2)
+
+
+@pytest.mark.parametrize(
+    ("values", "half", "words"),
+    [
+        ([0.2, 0.9, 1.5], 0.1, "this holds (0.20 [0.10, 0.30] at 10 N to 1.50"),
+        ([0.2, 0.9, 0.3], 0.1, "not established"),
+        ([1.5, 0.9, 0.3], 0.1, "does not hold"),
+        ([np.nan, 0.9, np.nan], 0.1, "cannot be told"),
+    ],
+)
+def test_trend_says_whether_a_value_rises(values, half, words):
+    values = np.array(values)
+    said = trend([10.0, 100.0, 1000.0], values, values - half, values + half, rising=True)
+    assert words in said
+    falling = trend([10.0, 100.0, 1000.0], -values, -values - half, -values + half, rising=False)
+    assert said.split("(")[0] == falling.split("(")[0]
+
+
+def test_numbers_in_words():
+    assert _domains.interval(-1e-12, -0.004, 0.3) == "0.00 [0.00, 0.30]"
+    assert _domains.short(2210.4) == "2210"
+    assert _domains.short(0.03906) == "0.0391"
+
+
+def test_loads_spread_evenly_with_the_one_asked_for(atlas):
+    loading = Loading.of(atlas, "sliding")
+    assert list(loading.spread_loads(3)) == [0, 2, 5]
+    assert list(loading.spread_loads(3, including=1)) in ([0, 1, 5], [1, 2, 5])
+    assert list(loading.spread_loads(99)) == list(range(6))
+
+
+# Against the atlas, by another way
+
+
+def test_prefractals_balance_the_force(atlas):
+    table = draw(atlas, "fig08_prefractals", "sliding").data
+    settings = common.settings_of(atlas, "sliding")
+    force = common.force_of(settings["map_load"], common.group(atlas, "specimens", "sliding"))
+    assert table["resolution"].tolist() == settings["resolutions"]
+    np.testing.assert_allclose(table["sigma_r_MPa"] * table["area_mm2"], force)
+    loading = Loading.of(atlas, "sliding")
+    nodes = [loading.domain(k, loading.nearest_load(force)).sum() for k in table["resolution"]]
+    np.testing.assert_allclose(table["area_mm2"], nodes * table["spacing_mm"] ** 2)
+
+
+@pytest.mark.parametrize("specimen", SPECIMENS)
+def test_box_counts_give_the_dimension_of_the_atlas(atlas, specimen):
+    drawing = draw(atlas, "fig09_box_counting", specimen)
+    stored = finest(atlas, "domains", specimen).isel(load=-1)
+    used = drawing.data[drawing.data["used"]]
+    line = fit_line(np.log(used["box_side_mm"]), np.log(used["box_count"]))
+    np.testing.assert_allclose(-line.slope, stored["delta_sigma"].item(), atol=1e-9)
+    reason = str(stored["reason"].item())
+    assert (f"no dimension: {reason}" in drawing.caption) == bool(reason)
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "flat"])
+def test_area_law_and_sigma_star_are_those_of_the_atlas(atlas, specimen):
+    loading = Loading.of(atlas, specimen)
+    stored = finest(atlas, "scaling", specimen)
+    for i in range(len(loading.forces)):
+        star = fractal_pressure(loading.scaling.isel(load=i), "area", loading.estimates[0].value[i])
+        assert star == pytest.approx(stored["sigma_star"].values[i])
+    table = draw(atlas, "fig10_scaling", specimen).data
+    rows = table[(table["panel"] == "a") & (table["load_N"] == loading.forces[-1])]
+    law = fit_line(np.log(rows["spacing_mm"]), np.log(rows["area_mm2"]))
+    np.testing.assert_allclose(
+        np.log(rows["fitted_area_mm2"]), law.intercept + law.slope * np.log(rows["spacing_mm"])
+    )
+
+
+def test_interval_of_eq_6_brackets_its_line(atlas):
+    loading = Loading.of(atlas, "sliding")
+    for estimate in loading.estimates:
+        known = np.flatnonzero(np.isfinite(estimate.value))
+        sides = loading.side * np.array([0.1, 1.0, 10.0])
+        value, low, high = size_effect(loading, estimate, known[-1], sides)
+        slope = np.diff(np.log(value)) / np.diff(np.log(sides))
+        np.testing.assert_allclose(slope, estimate.value[known[-1]] - 2)
+        assert (np.fmin(low, high) <= value * (1 + 1e-12)).all()
+        assert (np.fmax(low, high) >= value * (1 - 1e-12)).all()
+
+
+@pytest.mark.parametrize("specimen", SPECIMENS)
+def test_both_estimates_are_drawn_as_stored(atlas, specimen):
+    table = draw(atlas, "fig12_evolution", specimen).data
+    stored = finest(atlas, "scaling", specimen)
+    for label, key in (("A_r(s)", "delta_area"), ("box counting", "delta_box")):
+        rows = table[table["estimator"] == label]
+        np.testing.assert_allclose(rows["delta_sigma"], stored[key])
+        np.testing.assert_allclose(rows["load_N"], stored["load"])
+        assert ((rows["reason"] == "") == np.isfinite(rows["delta_sigma"])).all()
+
+
+def test_size_effect_lists_slopes_and_the_specimen(atlas):
+    table = draw(atlas, "fig13_size_effect", "flat").data
+    known = table[np.isfinite(table["delta_sigma"])]
+    for _, rows in known.groupby(["load_N", "estimator"]):
+        slope = np.diff(np.log(rows["sigma_0_MPa"])) / np.diff(np.log(rows["b_mm"]))
+        np.testing.assert_allclose(slope, rows["delta_sigma"].iloc[0] - 2)
+    np.testing.assert_allclose(
+        table["specimen_sigma_0_MPa"] * table["specimen_b_mm"] ** 2, table["load_N"]
+    )
+
+
+# Properties
+
+
+@pytest.mark.parametrize("specimen", SPECIMENS)
+@pytest.mark.parametrize("figure", NAMES)
+def test_axes_and_captions_say_what_is_drawn(atlas, figure, specimen):
+    drawing = draw(atlas, figure, specimen)
+    labelled = [axes for axes in drawing.figure.get_axes() if axes.axison]
+    assert labelled
+    for axes in labelled:
+        assert axes.get_xlabel().endswith(UNITS)
+        shares_y = len(axes.get_shared_y_axes().get_siblings(axes)) > 1
+        assert axes.get_ylabel().endswith(UNITS) or shares_y
+    label = common.settings_of(atlas, specimen)["label"]
+    paper_number = int(figure[3:5])
+    assert drawing.caption.startswith(f"After Fig. {paper_number} of ")
+    assert label in drawing.caption
+    assert "nan" not in drawing.caption
+    assert 0 < len(drawing.data) < 20_000
+
+
+@pytest.mark.parametrize("figure", ["fig10_scaling", "fig13_size_effect"])
+def test_eq_6_is_called_an_extrapolation(atlas, figure):
+    assert "Extrapolation" in draw(atlas, figure, "sliding").caption
+
+
+@pytest.mark.parametrize("figure", NAMES)
+def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas, figure):
+    assert "A_r(s) less box counting is" in draw(atlas, figure, "flat").caption
+    # One resolution gives no A_r(s) to fit.
+    assert np.isnan(finest(atlas, "scaling", "pair")["delta_area"]).all()
+    assert "cannot be compared" in draw(atlas, figure, "pair").caption
+
+
+def test_no_fit_is_said_with_its_reason(atlas):
+    caption = draw(atlas, "fig10_scaling", "pair").caption
+    assert "no fit: A_r at 1 of the 3 resolutions needed" in caption
+
+
+def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
+    for folder in ("first", "second"):
+        figures.draw_figures(atlas_file, "sliding", tmp_path / folder, NAMES)
+    written = sorted(path.name for path in (tmp_path / "first").iterdir())
+    assert written == sorted(f"{n}.{e}" for n in NAMES for e in figures.ENDINGS)
+    for name in written:
+        first, second = (tmp_path / folder / name for folder in ("first", "second"))
+        assert first.stat().st_size > 100
+        assert first.read_bytes() == second.read_bytes()
