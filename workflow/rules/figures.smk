@@ -1,4 +1,4 @@
-# Figures of every specimen, each from its own atlas: PNG, SVG, and the numbers as CSV beside them.
+# Figures of every specimen, each from its own atlas: PNG, SVG, numbers as CSV, caption as text.
 
 FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and not is_pair(name)]
 SLIDING = [name for name in SPECIMENS if name not in FLAT]
@@ -17,11 +17,11 @@ def picture(name):
 
 
 def beside(opposite):
-    """Vector drawings and numbers that go with the pictures."""
+    """Vector drawings, numbers and captions that go with the pictures."""
     return expand(
         f"{RESULTS}/figures/{{{{specimen}}}}/{{name}}.{{ending}}",
         name=figures_of(opposite),
-        ending=("svg", "csv"),
+        ending=("svg", "csv", "txt"),
     )
 
 

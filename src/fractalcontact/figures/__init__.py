@@ -23,10 +23,6 @@ FIGURES = (
 )
 _NEEDS_SLIDING = ("fig03_composite", "fig06_07_dilatancy")
 
-#: Files written for each figure: two pictures, and the numbers in them.
-ENDINGS = ("png", "svg", "csv")
-
-
 def figures_of(opposite):
     """Names of the figures that make sense for a specimen.
 
@@ -39,7 +35,7 @@ def figures_of(opposite):
 
 
 def draw_figures(atlas_path, specimen, folder, names):
-    """Draw figures of one specimen and write each as PNG, SVG and CSV.
+    """Draw figures of one specimen and write each as PNG, SVG, CSV and caption.
 
     Parameters
     ----------

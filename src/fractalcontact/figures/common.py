@@ -63,11 +63,13 @@ def print_style():
 
 
 def save(drawing, folder, name):
-    """Write a drawing as NAME.png, NAME.svg, NAME.csv, each whole or not at all."""
+    """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
     for ending, options in (("png", {"dpi": 200}), ("svg", {"metadata": {"Date": None}})):
         with written_whole(folder / f"{name}.{ending}") as path:
             drawing.figure.savefig(path, format=ending, **options)
+    with written_whole(folder / f"{name}.txt") as path:
+        path.write_text(drawing.caption + "\n", encoding="utf-8")
     with written_whole(folder / f"{name}.csv") as path:
         drawing.data.to_csv(path, index=False, float_format="%.8g", lineterminator="\n")
 

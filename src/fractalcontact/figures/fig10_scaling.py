@@ -158,7 +158,7 @@ def _verdict(loading, i):
     """Whether the area falls with refinement as a power law, in words."""
     by_area = loading.estimates[0]
     if by_area.reason[i]:
-        return f"There: {by_area.reason[i]}."
+        return f"At that load there is {by_area.reason[i]}."
     r2 = number(loading.scaling["r2"].values[i], 3)
     if by_area.high[i] < 2:
         return f"As in the paper, A_r falls as s is refined, as a power law (r2 = {r2})."

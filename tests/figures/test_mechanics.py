@@ -1,0 +1,292 @@
+"""Figures of relief, composite topography, closure and dilatancy (Figs. 2 to 7 of the paper)."""
+
+import importlib
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from matplotlib.colors import to_rgb
+
+from fractalcontact.figures import ENDINGS, draw_figures, figures_of
+from fractalcontact.figures._mechanics import MISSING, force_unit, length_unit, spread
+from fractalcontact.figures.common import print_style
+from fractalcontact.figures.fig02_relief import _shaded
+from fractalcontact.figures.fig03_composite import Slid
+from fractalcontact.fitting import fit_line
+from fractalcontact.joint import composite_topography
+
+FIGURES = ("fig02_relief", "fig03_composite", "fig04_05_closure", "fig06_07_dilatancy")
+DRAWN = [
+    (specimen, figure)
+    for specimen, opposite in (("sliding", "match"), ("pair", "scanned"), ("flat", "flat"))
+    for figure in FIGURES
+    if figure in figures_of(opposite)
+]
+
+
+def drawn(atlas, specimen, figure):
+    with print_style():
+        module = importlib.import_module(f"fractalcontact.figures.{figure}")
+        return module.draw(atlas, specimen)
+
+
+def with_changes(atlas, group, **variables):
+    """The atlas with some variables of one group replaced by numbers."""
+    changed = atlas.copy(deep=True)
+    dataset = changed[group].to_dataset()
+    for name, value in variables.items():
+        dataset[name] = xr.full_like(dataset[name], value)
+    changed[group] = xr.DataTree(dataset)
+    return changed
+
+
+# Exact
+
+
+def test_light_comes_from_the_north_west():
+    y, x = np.mgrid[-10:11, -10:11] * 1.0
+    dome = np.sqrt(400 - x**2 - y**2)
+    # Equal colours for equal heights, so that only the light differs.
+    brightness = _shaded(dome, (1.0, 1.0), -1e6, 1e6).sum(axis=2)
+    north_west, south_east = brightness[15, 5], brightness[5, 15]
+    assert north_west > brightness[15, 15] > south_east
+    assert north_west > brightness[5, 5] > south_east
+
+
+def test_missing_cells_are_grey_and_leave_their_neighbours_light_alone():
+    heights = np.add.outer(np.arange(12.0), np.zeros(12))
+    holed = heights.copy()
+    holed[5, 6] = np.nan
+    whole, seen = (_shaded(z, (1.0, 1.0), 0.0, 11.0) for z in (heights, holed))
+    np.testing.assert_allclose(seen[5, 6], to_rgb(MISSING))
+    far = np.ones(heights.shape, bool)
+    far[4:7, 5:8] = False
+    np.testing.assert_allclose(seen[far], whole[far], atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("span", "unit"), [(3e-2, "µm"), (0.5, "mm"), (50.0, "mm"), (1999.0, "mm"), (3000.0, "m")]
+)
+def test_lengths_get_a_unit_that_suits_them(span, unit):
+    name, size = length_unit(span)
+    assert name == unit
+    assert size == {"µm": 1e-3, "mm": 1.0, "m": 1e3}[unit]
+
+
+def test_forces_get_a_unit_that_suits_them():
+    assert force_unit(999.0) == ("N", 1.0)
+    assert force_unit(3e4) == ("kN", 1000.0)
+
+
+def test_spread_keeps_the_ends_and_never_repeats():
+    assert spread(10, 6).tolist() == [0, 2, 4, 5, 7, 9]
+    assert spread(3, 6).tolist() == [0, 1, 2]
+    assert spread(1, 6).tolist() == [0]
+
+
+# Against the atlas, by other ways
+
+
+def test_estimates_of_dimension_are_those_of_the_atlas(atlas):
+    table = drawn(atlas, "sliding", "fig02_relief").data
+    stored = atlas["surface_dimension/sliding"]
+    assert table["estimator"].tolist() == stored["estimator"].values.tolist()
+    for end in ("", "_low", "_high"):
+        np.testing.assert_array_equal(table[f"dimension{end}"], stored[f"dimension{end}"])
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "pair"])
+def test_lifted_upper_face_touches_once_and_never_cuts_the_lower(atlas, specimen):
+    profiles = drawn(atlas, specimen, "fig03_composite").data
+    gap = (profiles["upper_after_mm"] - profiles["lower_mm"]).dropna()
+    assert gap.min() == pytest.approx(0, abs=1e-12)
+    assert (gap < 1e-9).sum() == 1
+    before = (profiles["upper_before_mm"] - profiles["lower_mm"]).dropna()
+    assert before.min() > -1e-12
+
+
+def test_a_single_face_lies_on_its_match_before_sliding(atlas):
+    profiles = drawn(atlas, "sliding", "fig03_composite").data.dropna(subset="upper_before_mm")
+    np.testing.assert_allclose(profiles["upper_before_mm"], profiles["lower_mm"], atol=1e-12)
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "pair"])
+def test_composite_drawn_is_that_of_the_joint_at_the_largest_offset(atlas, specimen):
+    slid = Slid.of(atlas, specimen)
+    stored = atlas[f"specimens/{specimen}"].to_dataset()
+    cells = round(slid.offset / 0.1)
+    again = composite_topography(stored, slid.direction, cells)
+    np.testing.assert_array_equal(slid.composite, again)
+    mated = composite_topography(stored, slid.direction, 0)
+    assert slid.dilatancy == pytest.approx(again.max() - mated.max(), abs=1e-12)
+    assert again[slid.touch] == again.max()
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "flat", "pair"])
+def test_closure_points_are_those_of_the_atlas(atlas, specimen):
+    table = drawn(atlas, specimen, "fig04_05_closure").data
+    curves = atlas[f"closure/{specimen}"].to_dataset().isel(direction=0, resolution=0)
+    for offset, points in table.groupby("offset_mm"):
+        stored = curves.sel(offset=offset, method="nearest")
+        for column, name in (
+            ("force_N", "load"),
+            ("interface_closure_mm", "interface_closure"),
+            ("area_mm2", "area"),
+        ):
+            np.testing.assert_array_equal(points[column], stored[name])
+        np.testing.assert_array_equal(points["w_m_mm"].unique(), stored["hyperbola_w_m"])
+    assert table["offset_mm"].nunique() == min(5, curves.sizes["offset"])
+
+
+def test_area_exponent_is_that_of_the_points_marked_as_fitted(atlas):
+    table = drawn(atlas, "sliding", "fig04_05_closure").data
+    for _, points in table.groupby("offset_mm"):
+        fitted = points[points["area_fitted"]]
+        assert (fitted["area_mm2"] > 9.5 * 0.1**2).all()
+        line = fit_line(np.log(fitted["force_N"]), np.log(fitted["area_mm2"]))
+        np.testing.assert_array_equal(points["area_exponent"].unique(), line.slope)
+
+
+def test_drawn_hyperbola_goes_through_law_of_bandis(atlas):
+    figure = drawn(atlas, "flat", "fig04_05_closure").figure
+    curve = atlas["closure/flat"].to_dataset().isel(direction=0, resolution=0, offset=0)
+    k_ni, w_m = float(curve["hyperbola_k_ni"]), float(curve["hyperbola_w_m"])
+    w, force = figure.axes[0].lines[1].get_data()
+    sigma = force * 1000 / 4.8**2  # kN on the window, MPa
+    np.testing.assert_allclose(sigma, k_ni * w / (1 - w / w_m), rtol=1e-9)
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "pair"])
+def test_elastic_dilatancy_is_rigid_dilatancy_less_closure(atlas, specimen):
+    table = drawn(atlas, specimen, "fig06_07_dilatancy").data
+    curves = atlas[f"closure/{specimen}"].to_dataset().isel(direction=0, resolution=0)
+    direction = str(curves["direction"].values)
+    elastic = table[table["curve"] == "elastic"]
+    rigid = table[(table["curve"] == "rigid") & (table["direction"] == direction)]
+    assert set(elastic["direction"]) == {direction}
+    for _, point in elastic.iterrows():
+        state = curves.sel(offset=point["offset_mm"], load=point["force_N"], method="nearest")
+        opened = np.interp(point["offset_mm"], rigid["offset_mm"], rigid["dilatancy_mm"])
+        expected = opened - float(state["interface_closure"])
+        assert point["dilatancy_mm"] == pytest.approx(expected, abs=1e-12)
+        assert point["area_share"] == float(state["area_share"])
+
+
+def test_contact_domains_drawn_hold_the_area_of_the_atlas(atlas):
+    figure = drawn(atlas, "sliding", "fig06_07_dilatancy").figure
+    maps = [axes for axes in figure.axes if axes.images]
+    assert len(maps) == 6
+    curves = atlas["closure/sliding"].to_dataset().isel(direction=0, resolution=0, load=-1)
+    for axes, i in zip(maps, spread(curves.sizes["offset"], 6), strict=True):
+        share = float(np.mean(axes.images[0].get_array()))
+        assert share == pytest.approx(float(curves["area_share"][i]))
+
+
+# What every figure must be
+
+
+@pytest.mark.parametrize(("specimen", "figure"), DRAWN)
+def test_every_axis_has_a_label_with_its_unit(atlas, specimen, figure):
+    drawing = drawn(atlas, specimen, figure)
+    for axes in drawing.figure.axes:
+        if axes.get_label() == "<colorbar>":
+            continue
+        labels = [axes.get_xlabel(), axes.get_ylabel()]
+        assert any(labels), axes.get_title(loc="left")
+        assert all(re.search(r"\(.+\)$", label) for label in labels if label)
+    assert isinstance(drawing.data, pd.DataFrame)
+    assert 0 < len(drawing.data) <= 20_000
+    label = {"sliding": "synthetic twin of nothing", "pair": "Brèche", "flat": "flat"}[specimen]
+    assert label in drawing.caption
+    assert "Fig" in drawing.caption
+    assert "nan" not in drawing.caption
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "pair"])
+def test_maps_are_true_to_scale(atlas, specimen):
+    for figure in FIGURES:
+        for axes in drawn(atlas, specimen, figure).figure.axes:
+            if axes.images:
+                assert axes.get_aspect() == 1
+
+
+def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
+    written = []
+    for folder in (tmp_path / "first", tmp_path / "second"):
+        captions = draw_figures(atlas_file, "pair", folder, FIGURES)
+        assert list(captions) == list(FIGURES)
+        written.append({path.name: path.read_bytes() for path in folder.iterdir()})
+    assert written[0] == written[1]
+    assert set(written[0]) == {f"{name}.{ending}" for name in FIGURES for ending in ENDINGS}
+
+
+# Where something is missing
+
+
+def test_a_missing_fit_is_said_with_its_reason(atlas):
+    drawing = drawn(atlas, "pair", "fig04_05_closure")
+    words = [text.get_text() for text in drawing.figure.axes[0].get_legend().get_texts()]
+    assert len(words) == 3
+    assert all("no fit: 3 points with w_int > 0, 4 needed" in text for text in words)
+    assert "No hyperbola could be fitted" in drawing.caption
+
+
+def test_a_surface_without_a_dimension_is_still_drawn(atlas):
+    ends = dict.fromkeys(("dimension", "dimension_low", "dimension_high"), np.nan)
+    drawing = drawn(with_changes(atlas, "surface_dimension/flat", **ends), "flat", "fig02_relief")
+    assert "No dimension could be fitted" in drawing.caption
+
+
+def test_one_solved_offset_is_enough(atlas):
+    cut = atlas.copy(deep=True)
+    for stage, dims in {
+        "contact": ("offset",),
+        "closure": ("offset",),
+        "dilatancy": ("offset",),
+        "joints": ("offset",),
+    }.items():
+        dataset = cut[f"{stage}/sliding"].to_dataset()
+        cut[f"{stage}/sliding"] = xr.DataTree(dataset.isel({dim: [2] for dim in dims}))
+    for figure in FIGURES:
+        drawing = drawn(cut, "sliding", figure)
+        drawing.figure.draw_without_rendering()
+    assert "Too few offsets to tell whether the contact area falls" in drawing.caption
+
+
+# Verdicts follow the data
+
+
+def test_plateau_is_claimed_only_where_dilatancy_is_level(atlas):
+    level = with_changes(atlas, "dilatancy/sliding", rigid_dilatancy=0.5)
+    assert "4 of 4 directions stay within 10 %" in (
+        drawn(level, "sliding", "fig06_07_dilatancy").caption
+    )
+    rising = atlas.copy(deep=True)
+    dataset = rising["dilatancy/sliding"].to_dataset()
+    dataset["rigid_dilatancy"] = dataset["rigid_dilatancy"] * 0 + dataset["rigid_offset"]
+    rising["dilatancy/sliding"] = xr.DataTree(dataset)
+    caption = drawn(rising, "sliding", "fig06_07_dilatancy").caption
+    assert "0 of 4 directions" in caption
+    assert "keeps rising towards East and North and West and South" in caption
+
+
+@pytest.mark.parametrize(("power", "words"), [(-0.5, "it falls, as"), (0.5, "it rises, unlike")])
+def test_area_over_offset_is_judged_by_its_slope(atlas, power, words):
+    changed = atlas.copy(deep=True)
+    dataset = changed["closure/sliding"].to_dataset()
+    noise = 1 + 0.01 * np.cos(np.arange(dataset.sizes["offset"]))
+    law = 0.01 * dataset["offset"] ** power * noise
+    dataset["area_share"] = dataset["area_share"] * 0 + law
+    changed["closure/sliding"] = xr.DataTree(dataset)
+    assert words in drawn(changed, "sliding", "fig06_07_dilatancy").caption
+
+
+@pytest.mark.parametrize(("power", "words"), [(1.0, "nearly linear, as"), (0.6, "not all within")])
+def test_linearity_is_judged_by_the_exponents(atlas, power, words):
+    changed = atlas.copy(deep=True)
+    dataset = changed["closure/flat"].to_dataset()
+    dataset["area"] = dataset["area"] * 0 + dataset["load"] ** power
+    changed["closure/flat"] = xr.DataTree(dataset)
+    assert words in drawn(changed, "flat", "fig04_05_closure").caption
