@@ -23,6 +23,10 @@ FIGURES = (
 )
 _NEEDS_SLIDING = ("fig03_composite", "fig06_07_dilatancy")
 
+#: Files written for each figure: two pictures, the numbers in them, the caption.
+ENDINGS = ("png", "svg", "csv", "txt")
+
+
 def figures_of(opposite):
     """Names of the figures that make sense for a specimen.
 

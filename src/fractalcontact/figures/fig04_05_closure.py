@@ -76,7 +76,7 @@ def _area_law(curve, node):
 def _hyperbola(curve, pressure):
     """w_int in mm of the fitted hyperbola sigma = k_ni w / (1 - w / w_m)."""
     k_ni, w_m = float(curve["hyperbola_k_ni"]), float(curve["hyperbola_w_m"])
-    return pressure * w_m / (k_ni + pressure)
+    return pressure * w_m / (k_ni * w_m + pressure)
 
 
 def _draw_closure(axes, curves, drawn, direction, area):
