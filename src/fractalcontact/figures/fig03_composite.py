@@ -211,7 +211,7 @@ def _draw_profile(axes, slid, profiles):
     axes.annotate(
         f"$v$ = {slid.offset:.3g} mm", ((start + end) / 2, bottom), (0, -10), ha="center", **words
     )
-    side = -1 if end < start else 1
+    side = 1 if end < x.mean() else -1  # towards the middle, where there is room
     axes.annotate(
         rf"$\delta_r$ = {slid.dilatancy:.3g} mm",
         (end, (top + bottom) / 2),
