@@ -1,5 +1,6 @@
 """Figures of relief, composite topography, closure and dilatancy (Figs. 2 to 7 of the paper)."""
 
+import base64
 import importlib
 import re
 
@@ -10,8 +11,9 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 from fractalcontact.figures import ENDINGS, draw_figures, figures_of
-from fractalcontact.figures._mechanics import MISSING, force_unit, length_unit, spread
-from fractalcontact.figures.common import print_style
+from fractalcontact.figures._maps import MISSING
+from fractalcontact.figures._words import force_label, force_unit, length_unit
+from fractalcontact.figures.common import DPI, print_style, spread
 from fractalcontact.figures.fig02_relief import _shaded
 from fractalcontact.figures.fig03_composite import Slid
 from fractalcontact.fitting import fit_line
@@ -75,9 +77,31 @@ def test_lengths_get_a_unit_that_suits_them(span, unit):
     assert size == {"µm": 1e-3, "mm": 1.0, "m": 1e3}[unit]
 
 
-def test_forces_get_a_unit_that_suits_them():
-    assert force_unit(999.0) == ("N", 1.0)
-    assert force_unit(3e4) == ("kN", 1000.0)
+@pytest.mark.parametrize(
+    ("force", "unit", "words"),
+    [
+        (2e-7, ("µN", 1e-6), "0.2 µN"),
+        (0.025, ("mN", 1e-3), "25 mN"),
+        (999.0, ("N", 1.0), "999 N"),
+        (999.9, ("kN", 1e3), "1 kN"),  # not 1e+03 N
+        (3e4, ("kN", 1e3), "30 kN"),
+        (2.98e7, ("MN", 1e6), "29.8 MN"),
+        (4e11, ("GN", 1e9), "400 GN"),
+    ],
+)
+def test_forces_get_a_unit_that_suits_them(force, unit, words):
+    assert force_unit(force) == unit
+    assert force_label(force) == words
+
+
+@pytest.mark.parametrize("decade", range(-7, 14))
+def test_no_force_is_written_with_an_exponent(decade):
+    for digits in (1, 2.5, 9.99, 9.999):
+        words = force_label(digits * 10.0**decade)
+        assert re.fullmatch(r"[\d.]+ \S+", words)
+        value, unit = words.split()
+        size = {"GN": 1e9, "MN": 1e6, "kN": 1e3, "N": 1.0, "mN": 1e-3, "µN": 1e-6}[unit]
+        assert float(value) * size == pytest.approx(digits * 10.0**decade, rel=5e-3)
 
 
 def test_spread_keeps_the_ends_and_never_repeats():
@@ -222,14 +246,23 @@ def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
     assert set(written[0]) == {f"{name}.{ending}" for name in FIGURES for ending in ENDINGS}
 
 
+def test_maps_in_the_svg_are_as_fine_as_those_in_the_png(atlas_file, tmp_path):
+    draw_figures(atlas_file, "flat", tmp_path, ["fig02_relief"])
+    svg = (tmp_path / "fig02_relief.svg").read_text(encoding="utf-8")
+    pixels = base64.b64decode(re.search(r"image/png;base64,([^\"]+)", svg)[1])
+    width = float(re.search(r"<image [^>]*?width=\"([\d.]+)", svg)[1])
+    columns = int.from_bytes(pixels[16:20], "big")  # of the PNG's header
+    assert columns == pytest.approx(width / 72 * DPI, rel=0.02)
+
+
 # Where something is missing
 
 
 def test_a_missing_fit_is_said_with_its_reason(atlas):
     drawing = drawn(atlas, "pair", "fig04_05_closure")
-    words = [text.get_text() for text in drawing.figure.axes[0].get_legend().get_texts()]
-    assert len(words) == 3
-    assert all("no fit: 3 points with w_int > 0, 4 needed" in text for text in words)
+    words = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
+    assert len(words) == 6  # of closure, then of contact area
+    assert all("no fit: 3 points with w_int > 0, 4 needed" in text for text in words[:3])
     assert "No hyperbola could be fitted" in drawing.caption
 
 

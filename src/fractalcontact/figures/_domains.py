@@ -1,24 +1,15 @@
-"""What the figures of contact domains share: states drawn, both estimates, size effect."""
+"""States of the contact that the figures of domains draw, and both estimates of Delta_sigma."""
 
-import textwrap
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from matplotlib.ticker import MaxNLocator, NullLocator
 
 from ..fitting import FEWEST_POINTS
-from ..scaling import RESOLUTION, hausdorff_measure, nominal_pressure
+from ..scaling import RESOLUTION
 from ..sweep import window_sides
-from ._mechanics import TOWARDS, spread
-from .common import COLOURS, MARKERS, force_label, group, map_offset, settings_of
-
-PAPER = "Borri-Brunetto, Carpinteri and Chiaia (1999)"
-
-#: Domains of fewer nodes than this get rings where the nodes are too small to be seen in print:
-#: more than so many along a side of the map.
-FEW_NODES = 100
-FINE_NODES = 100
+from ._words import force_label, interval, number, opening, place, short
+from .common import COLOURS, MARKERS, group, map_offset, nearest_load, settings_of, spread
 
 
 @dataclass(frozen=True)
@@ -50,8 +41,10 @@ class Estimate:
         return self.reason[i] or interval(self.value[i], self.low[i], self.high[i])
 
     def entry(self, i):
-        """Delta_sigma under the i-th load for a legend."""
-        return wrapped(self.reason[i]) if self.reason[i] else rf"$\Delta_\sigma$ = {self.text(i)}"
+        """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
+        if self.reason[i]:
+            return self.reason[i].split(":")[0]
+        return rf"$\Delta_\sigma$ = {self.text(i)}"
 
     @property
     def style(self):
@@ -124,18 +117,35 @@ class Loading:
     @property
     def place(self):
         """Where the contact is, in words."""
-        if self.direction == "none":
-            return "against a rigid plane"
-        return f"at an offset v = {short(self.offset)} mm towards {TOWARDS[self.direction]}"
+        return place(self.direction, self.offset)
+
+    @property
+    def title(self):
+        """Which specimen, and where its contact is."""
+        return f"{self.settings['label']}, {self.place}"
+
+    def opening(self, figure):
+        """First words of the caption of a figure of the paper."""
+        return opening(figure, self.settings["label"], self.place)
+
+    @property
+    def map_load(self):
+        """Index of the load whose contact domains the study wants drawn."""
+        return nearest_load(self.forces, self.settings["map_load"], self.specimen)
+
+    @property
+    def counts(self):
+        """Box counts at the finest resolution, under every load."""
+        return self.domains.sel(resolution=self.finest)
 
     @property
     def estimates(self):
         """Both estimates of Delta_sigma; that of the box counts at the finest resolution."""
-        area, box = self.scaling, self.domains.sel(resolution=self.finest)
+        area, box = self.scaling, self.counts
         too_few = [
             ""
             if np.isfinite(value)
-            else f"no fit: A_r at {n} of the {FEWEST_POINTS} resolutions needed"
+            else f"no fit: A_r large enough at {n} of the {FEWEST_POINTS} resolutions needed"
             for value, n in zip(area["delta_sigma"].values, area["n"].values, strict=True)
         ]
         no_dimension = [f"no dimension: {text}" if text else "" for text in box["reason"].values]
@@ -157,7 +167,7 @@ class Loading:
         """In words: what the estimates are fitted over, under one load, or the widest of all."""
         which = slice(None) if load is None else [load]
         scaling = self.scaling.isel(load=which)
-        box = self.domains.sel(resolution=self.finest).isel(load=which)
+        box = self.counts.isel(load=which)
         used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")
         spacing = scaling["spacing"].where(used)
         spans = (
@@ -181,122 +191,12 @@ class Loading:
         """s at the finest resolution, mm."""
         return float(self.scaling["spacing"].min())
 
-    def nearest_load(self, force):
-        """Index of the load nearest to a force in N."""
-        return int(np.argmin(np.abs(self.forces - force)))
-
     def spread_loads(self, most, including=None):
         """Indices of up to ``most`` loads: first and last, evenly between, and a given one."""
         chosen = spread(len(self.forces), most)
         if including is not None:
             chosen[np.argmin(np.abs(chosen - including))] = including
         return np.unique(chosen)
-
-
-def opening(number, loading):
-    """First words of a caption."""
-    return f"After Fig. {number} of {PAPER}: {loading.settings['label']}, {loading.place}."
-
-
-def number(value, digits=2):
-    """A number to some decimals, never a negative zero."""
-    return f"{round(float(value), digits) + 0.0:.{digits}f}"
-
-
-def short(value):
-    """Three digits of a number, without an exponent up to a million."""
-    return f"{float(f'{float(value):.3g}'):g}"
-
-
-def wrapped(text):
-    """Text broken into lines that fit under one panel of three."""
-    return textwrap.fill(text, 34)
-
-
-def legend_below(axes):
-    """A legend under the axes, where it hides nothing."""
-    # Padding in heights of the font: room for the ticks and the label of the axis.
-    axes.legend(loc="upper left", bbox_to_anchor=(0, 0), borderaxespad=4.8)
-
-
-def interval(value, low, high):
-    """A value with its 95 % interval in words."""
-    return f"{number(value)} [{number(low)}, {number(high)}]"
-
-
-def draw_domain(axes, domain, sides):
-    """Contact domain in black, true to scale, in mm from the window's corner.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    domain : (ny, nx) bool ndarray
-    sides : (float, float)
-        Of the window (y, x), mm.
-    """
-    axes.imshow(domain, cmap="Greys", vmin=0, vmax=1, extent=(0, sides[1], 0, sides[0]))
-    nodes = np.argwhere(domain)
-    if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
-        y, x = ((nodes + 0.5) * np.divide(sides, domain.shape)).T
-        axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7, clip_on=False)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
-
-
-def label_spacings(axes, spacings):
-    """A logarithmic axis of few spacings s, each with its own tick."""
-    axes.set_xscale("log")
-    axes.set_xticks(spacings, [short(s) for s in spacings])
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel("spacing $s$ (mm)")
-
-
-def fractal_pressure(scaling, key, delta):
-    """sigma* = F / H_D under one load if the contact domain has the dimension ``delta``.
-
-    Parameters
-    ----------
-    scaling : xr.Dataset
-        Under one load.
-    key : {"area", "box"}
-        H_D is the geometric mean over the resolutions fitted, or that of the finest one.
-    delta : float
-
-    Returns
-    -------
-    float
-        In N mm^-delta.
-    """
-    # sigma_n was kept at the resolutions that were fitted, and no others.
-    fitted = scaling["area"].where(np.isfinite(scaling["sigma_n"]))
-    area = fitted if key == "area" else scaling["area"].sel(resolution=[scaling.resolution.min()])
-    measure = hausdorff_measure(scaling["spacing"], area, delta)
-    return float(scaling["load"] / np.exp(np.log(measure).mean(RESOLUTION)))
-
-
-def size_effect(loading, estimate, i, sides):
-    """Eq. 6 under the i-th load: nominal pressure over the side b of the joint.
-
-    Parameters
-    ----------
-    loading : Loading
-    estimate : Estimate
-    i : int
-    sides : (n,) ndarray
-        b, mm.
-
-    Returns
-    -------
-    (3, n) ndarray
-        sigma_0 in MPa for Delta_sigma and both ends of its interval, sigma* going with each; NaN
-        where there is no Delta_sigma.
-    """
-    scaling = loading.scaling.isel(load=i)
-    dimensions = (estimate.value[i], estimate.low[i], estimate.high[i])
-    pressures = [fractal_pressure(scaling, estimate.key, delta) for delta in dimensions]
-    return np.array(
-        [nominal_pressure(p, d, sides) for p, d in zip(pressures, dimensions, strict=True)]
-    )
 
 
 def trend(forces, value, low, high, *, rising):
@@ -312,7 +212,7 @@ def trend(forces, value, low, high, *, rising):
     Returns
     -------
     str
-        Holds if the value moves the right way by more than the intervals at both ends.
+        Holds, or does not, if the value moves by more than the intervals at both ends.
     """
     known = np.flatnonzero(np.isfinite(value))
     if len(known) < 2:
@@ -322,10 +222,10 @@ def trend(forces, value, low, high, *, rising):
     ends = " to ".join(
         f"{interval(value[i], low[i], high[i])} at {force_label(forces[i])}" for i in (first, last)
     )
-    if steps.sum() <= 0:
-        return f"this does not hold ({ends})"
-    apart = low[last] > high[first] if rising else high[last] < low[first]
-    verdict = "this holds" if apart else "this is not established, the intervals overlap"
+    up, down = low[last] > high[first], high[last] < low[first]
+    verdict = "this is not established, the intervals overlap"
+    if up or down:
+        verdict = "this holds" if up == rising else "this does not hold"
     every = "every step" if (steps > 0).all() else f"{(steps > 0).sum()} of {len(steps)} steps"
     return f"{verdict} ({ends}; {'up' if rising else 'down'} at {every})"
 

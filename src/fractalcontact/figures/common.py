@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ..store import written_whole
 from ..sweep import forces_of, nominal_area
@@ -20,6 +22,8 @@ LINES = ("-", "--", "-.", ":")
 
 #: Width of a figure across two columns of a journal, inches.
 WIDTH = 7.2
+#: Pixels of an inch, in the PNG and of the maps inside the SVG.
+DPI = 200
 
 _STYLE = {
     "font.size": 8,
@@ -65,9 +69,9 @@ def print_style():
 def save(drawing, folder, name):
     """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
-    for ending, options in (("png", {"dpi": 200}), ("svg", {"metadata": {"Date": None}})):
+    for ending, options in (("png", {}), ("svg", {"metadata": {"Date": None}})):
         with written_whole(folder / f"{name}.{ending}") as path:
-            drawing.figure.savefig(path, format=ending, **options)
+            drawing.figure.savefig(path, format=ending, dpi=DPI, **options)
     with written_whole(folder / f"{name}.txt") as path:
         path.write_text(drawing.caption + "\n", encoding="utf-8")
     with written_whole(folder / f"{name}.csv") as path:
@@ -84,9 +88,17 @@ def group(atlas, stage, specimen):
     return atlas[f"{stage}/{specimen}"].to_dataset().load()
 
 
-def force_of(load, specimen):
-    """A load of the settings, (value, kind), as a force in N."""
-    return float(forces_of([load], nominal_area(specimen))[0])
+def finest_curves(atlas, specimen):
+    """Closure curves (offset, load) in the first contact direction, at the finest resolution."""
+    closure = group(atlas, "closure", specimen)
+    direction = settings_of(atlas, specimen)["contact_directions"][0]
+    return closure.sel(direction=direction, resolution=closure["resolution"].min())
+
+
+def nearest_load(loads, wanted, specimen):
+    """Index of the force in N nearest to a load of the settings, (value, kind)."""
+    (force,) = forces_of([wanted], nominal_area(specimen))
+    return int(np.argmin(np.abs(loads - force)))
 
 
 def map_offset(settings, offsets):
@@ -97,6 +109,49 @@ def map_offset(settings, offsets):
     return float(min(offsets, key=lambda offset: abs(offset - wanted)))
 
 
-def force_label(force):
-    """A force in words: N below 1 kN, kN above."""
-    return f"{force:.3g} N" if force < 1000 else f"{force / 1000:.3g} kN"
+def spread(n, most):
+    """Indices of up to ``most`` of n things, the first and the last among them."""
+    return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))
+
+
+def colour_of(i):
+    """The i-th colour that can be seen as a line on white: all but the yellow."""
+    return COLOURS[i % (len(COLOURS) - 1)]
+
+
+def letter(axes, which, title):
+    """Letter of a panel as the paper has it, at its upper left, before a title."""
+    axes.set_title(f"({which}) {title}", loc="left")
+
+
+def entries(axes):
+    """What stands in a legend of the axes."""
+    return axes.get_legend_handles_labels()[0]
+
+
+def legends_below(figure, *columns):
+    """Legends side by side under a figure, where they hide nothing.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.FigureBase
+    *columns : list of matplotlib.artist.Artist
+        Entries of each legend.
+    """
+    rows = max(len(column) for column in columns)
+    # One legend fills its columns one by one: the shorter ones need filling up.
+    handles = [
+        handle for column in columns for handle in column + [heading(" ")] * (rows - len(column))
+    ]
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=len(columns),
+        columnspacing=6,
+        handlelength=3,
+    )
+
+
+def heading(text):
+    """Entry of a legend that is words alone."""
+    return Line2D([], [], linestyle="none", label=text)

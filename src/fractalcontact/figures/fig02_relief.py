@@ -10,17 +10,9 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 
 from ..sweep import window_sides
-from ._domains import PAPER, interval
-from ._mechanics import (
-    MISSING,
-    draw_map,
-    length_unit,
-    letter,
-    missing_patch,
-    scan_extent,
-    window_outline,
-)
-from .common import COLOURS, WIDTH, Drawing, group, settings_of
+from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
+from ._words import interval, length_unit, opening
+from .common import COLOURS, WIDTH, Drawing, group, letter, settings_of
 
 COLOUR_MAP = "cividis"
 #: Share of the heights beyond each end of the colours, so that a spike does not take them all.
@@ -72,14 +64,14 @@ def _draw_faces(figure, panels, specimen, faces, sides):
     """Reliefs side by side with one scale of heights; the outline of the window."""
     heights = np.concatenate([specimen[face].values.ravel() for face in faces])
     low, high = np.nanquantile(heights, [CLIPPED, 1 - CLIPPED])
-    unit = length_unit(max(sides))
+    _, size = length_unit(max(sides))
     unit_of_height = length_unit(high - low)
     norm = Normalize(low / unit_of_height[1], high / unit_of_height[1])
     spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
     for panel, face in zip(panels, faces, strict=True):
         image = _shaded(specimen[face].values, spacing, low, high)
-        draw_map(panel, image, sides, unit)
-        outline = window_outline(specimen, unit[1], lw=1, label="window of the contact")
+        draw_map(panel, image, sides)
+        outline = window_outline(specimen, size, lw=1, label="window of the contact")
         panel.add_patch(outline)
     figure.colorbar(
         ScalarMappable(norm, COLOUR_MAP),
@@ -130,7 +122,7 @@ def _draw_dimensions(axes, dimension):
     ]
     axes.set_yticks(rows, words, fontsize=7)
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_xlabel(r"surface dimension $\Delta_g$ (-)")
+    axes.set_xlabel(r"surface dimension $\Delta_g$ (1)")
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     if not fitted.any():
         axes.text(
@@ -189,7 +181,7 @@ def _caption(label, specimen, faces, sides, dimension):
     )
     absent = 1 - float(specimen["valid"].mean())
     return (
-        f"After Fig. 2 of {PAPER}: {label}. Shaded relief about the mean plane, lit from the "
+        f"{opening('Fig. 2', label)} Shaded relief about the mean plane, lit from the "
         f"North-West: {shape[1]} x {shape[0]} cells of {spacing[0]:.4g} x {spacing[1]:.4g} mm, "
         f"{sides[1]:.4g} x {sides[0]:.4g} mm (x, y), {100 * absent:.2g} % of them not measured; "
         f"window {window[1]:.4g} x {window[0]:.4g} mm; {heights}. {_words(dimension)}"

@@ -10,18 +10,9 @@ from matplotlib.figure import Figure
 from ..joint import STEPS
 from ..specimen import faces, window_slices
 from ..sweep import window_sides
-from ._domains import PAPER
-from ._mechanics import (
-    HALO,
-    draw_map,
-    length_unit,
-    letter,
-    missing_patch,
-    place,
-    scan_extent,
-    window_outline,
-)
-from .common import COLOURS, WIDTH, Drawing, group, settings_of
+from ._maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
+from ._words import length_unit, opening, place
+from .common import COLOURS, WIDTH, Drawing, group, letter, settings_of
 
 #: Up to this the faces under the window are said to be uncorrelated. A window holds few features of
 #: the size of the roll-off length, and their chance alone gives an r of this order.
@@ -147,7 +138,7 @@ def draw(atlas, name):
     letter(plan, "a", "lower face and window")
     letter(profile, "b", "profile through the point of first touch")
     letter(composite, "c", "composite topography $h$")
-    figure.suptitle(f"{label}, {place(slid.direction)}, $v$ = {slid.offset:.3g} mm", fontsize=9)
+    figure.suptitle(f"{label}, {place(slid.direction, slid.offset)}", fontsize=9)
     return Drawing(figure, profiles, _caption(label, slid))
 
 
@@ -155,17 +146,17 @@ def _draw_plan(figure, axes, slid):
     """The scan and the window twice; entries of a legend."""
     specimen = slid.specimen
     sides = scan_extent(specimen)
-    unit = length_unit(max(sides))
+    _, size = length_unit(max(sides))
     heights = specimen["lower"].values
     height_unit = length_unit(np.nanmax(heights) - np.nanmin(heights))
-    image = draw_map(axes, heights / height_unit[1], sides, unit, cmap="Greys_r")
+    image = draw_map(axes, heights / height_unit[1], sides, cmap="Greys_r")
     figure.colorbar(image, ax=axes, shrink=0.8, label=f"height ({height_unit[0]})")
     outlines = [
         window_outline(
-            specimen, unit[1], edgecolor=COLOURS[1], lw=1.5, ls="--", label="window before"
+            specimen, size, edgecolor=COLOURS[1], lw=1.5, ls="--", label="window before"
         ),
         window_outline(
-            specimen, unit[1], slid.slid, edgecolor=COLOURS[2], lw=1.5, label="window after"
+            specimen, size, slid.slid, edgecolor=COLOURS[2], lw=1.5, label="window after"
         ),
     ]
     for outline in outlines:
@@ -207,7 +198,8 @@ def _draw_profile(axes, slid, profiles):
     arrow = {"arrowstyle": "<->", "color": COLOURS[3], "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
     for tip, tail in (((end, bottom), (start, bottom)), ((end, top), (end, bottom))):
         axes.annotate("", tip, tail, arrowprops=arrow)
-    words = {"color": COLOURS[3], "path_effects": HALO, "textcoords": "offset points"}
+    ground = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
+    words = {"color": COLOURS[3], "bbox": ground, "textcoords": "offset points"}
     axes.annotate(
         f"$v$ = {slid.offset:.3g} mm", ((start + end) / 2, bottom), (0, -10), ha="center", **words
     )
@@ -232,11 +224,10 @@ def _draw_profile(axes, slid, profiles):
 
 def _draw_composite(figure, axes, slid):
     sides = window_sides(slid.specimen)
-    unit = length_unit(max(sides))
     height_unit, size = length_unit(np.ptp(slid.composite))
-    image = draw_map(axes, slid.composite / size, sides, unit, cmap="cividis")
+    image = draw_map(axes, slid.composite / size, sides, cmap="cividis")
     figure.colorbar(image, ax=axes, shrink=0.8, label=f"$h$ ({height_unit})")
-    y, x = ((np.array(slid.touch) + 0.5) * np.divide(sides, slid.composite.shape)) / unit[1]
+    y, x = node_position(slid.touch, slid.composite.shape, sides)
     axes.plot(x, y, marker="o", path_effects=HALO, **_TOUCH)
 
 
@@ -248,7 +239,7 @@ def _caption(label, slid):
         else "some correlation is left, unlike in the paper at its largest offset"
     )
     return (
-        f"After Fig. 3 of {PAPER}: {label}, {place(slid.direction)}. (a) Window before and after "
+        f"{opening('Fig. 3', label, place(slid.direction))} (a) Window before and after "
         f"an offset v = {slid.offset:.3g} mm, the largest solved. (b) The faces along the line of "
         f"sliding through the point of first touch, the upper one lifted by the rigid dilatancy "
         f"delta_r = {slid.dilatancy:.3g} mm; heights are stretched. (c) Composite topography h "

@@ -6,18 +6,21 @@ from matplotlib.figure import Figure
 
 from ..fitting import FEWEST_POINTS, fit_line
 from ..sweep import nominal_area
-from ._domains import PAPER
-from ._mechanics import (
+from ._words import estimate, force_label, force_unit, opening, place, short, slope_text
+from .common import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
     colour_of,
-    estimate,
-    force_unit,
+    entries,
+    finest_curves,
+    group,
+    legends_below,
     letter,
-    place,
-    slope_text,
+    settings_of,
     spread,
-    state_label,
 )
-from .common import LINES, MARKERS, WIDTH, Drawing, force_label, group, settings_of
 
 CURVES = 5
 
@@ -44,11 +47,10 @@ def draw(atlas, name):
     -------
     Drawing
     """
-    settings = settings_of(atlas, name)
+    label = settings_of(atlas, name)["label"]
     specimen = group(atlas, "specimens", name)
-    direction = settings["contact_directions"][0]
-    closure = group(atlas, "closure", name)
-    curves = closure.sel(direction=direction, resolution=closure["resolution"].min())
+    curves = finest_curves(atlas, name)
+    direction = str(curves["direction"].values)
     node = float(
         curves["resolution"] ** 2 * specimen.attrs["spacing_x"] * specimen.attrs["spacing_y"]
     )
@@ -59,10 +61,11 @@ def draw(atlas, name):
     left, right = figure.subplots(1, 2)
     _draw_closure(left, curves, drawn, direction, nominal_area(specimen))
     _draw_area(right, curves, drawn, direction, fits, nominal_area(specimen))
+    legends_below(figure, entries(left), entries(right))
     letter(left, "a", "closure")
     letter(right, "b", "real contact area (hollow: not fitted)")
-    figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
-    caption = _caption(settings["label"], direction, curves, closure.attrs, fits, drawn)
+    figure.suptitle(f"{label}, {place(direction)}", fontsize=9)
+    caption = _caption(label, direction, curves, fits, drawn)
     return Drawing(figure, _table(curves, drawn, fits), caption)
 
 
@@ -98,7 +101,7 @@ def _draw_closure(axes, curves, drawn, direction, area):
             curve["interface_closure"],
             curve["load"] / size,
             MARKERS[n],
-            label=f"{state_label(direction, float(curve['offset']))}: {fit}",
+            label=f"{_state(direction, float(curve['offset']))}: {fit}",
             **style,
         )
         if not np.isfinite(w_m):
@@ -113,7 +116,11 @@ def _draw_closure(axes, curves, drawn, direction, area):
     axes.set_ylabel(f"normal force $F$ ({unit})")
     second = _second_axis(axes, size / area)
     second.set_ylabel("nominal pressure $F/A_0$ (MPa)")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18))
+
+
+def _state(direction, offset):
+    """One of the states of a legend."""
+    return "against a plane" if direction == "none" else f"$v$ = {short(offset)} mm"
 
 
 def _second_axis(axes, factor):
@@ -138,7 +145,7 @@ def _draw_area(axes, curves, drawn, direction, fits, area):
         axes.plot(
             force[fitted] / size,
             share[fitted],
-            label=f"{state_label(direction, offset)}: {exponent}",
+            label=f"{_state(direction, offset)}: {exponent}",
             **style,
         )
         axes.plot(force[~fitted] / size, share[~fitted], mfc="none", **style)
@@ -152,7 +159,6 @@ def _draw_area(axes, curves, drawn, direction, fits, area):
     axes.set_ylabel("real contact area $A_r/A_0$ (%)")
     second = _second_axis(axes, area / 100)
     second.set_ylabel("$A_r$ (mm$^2$)")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18))
 
 
 def _no_law(line):
@@ -186,10 +192,11 @@ def _table(curves, drawn, fits):
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, curves, attrs, fits, drawn):
-    ends = (force_label(attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
+def _caption(label, direction, curves, fits, drawn):
+    ends = (force_label(curves.attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
+    where = f"{place(direction)}, at the finest resolution"
     sentences = [
-        f"After Figs. 4 and 5 of {PAPER}: {label}, {place(direction)}, at the finest resolution. "
+        f"{opening('Figs. 4 and 5', label, where)} "
         f"(a) Force against interface closure; lines are hyperbolas fitted from "
         f"{' to '.join(ends)}, dotted their asymptotes w_m with 95 % intervals. (b) Real contact "
         f"area against force and power laws fitted to the domains of {FEWEST_NODES} nodes or more "

@@ -7,27 +7,22 @@ from matplotlib.ticker import MaxNLocator
 
 from ..fitting import fit_line
 from ..sweep import window_sides
-from ._domains import PAPER
-from ._mechanics import (
-    HALO,
-    TOWARDS,
-    colour_of,
-    draw_map,
-    length_unit,
-    letter,
-    place,
-    slope_text,
-    spread,
-)
+from ._maps import HALO, draw_domain
+from ._words import TOWARDS, force_label, opening, place, short, slope_text
 from .common import (
     LINES,
     MARKERS,
     WIDTH,
     Drawing,
-    force_label,
-    force_of,
+    colour_of,
+    entries,
+    finest_curves,
     group,
+    legends_below,
+    letter,
+    nearest_load,
     settings_of,
+    spread,
 )
 
 DOMAINS, COLUMNS = 6, 3
@@ -54,23 +49,25 @@ def draw(atlas, name):
     settings = settings_of(atlas, name)
     specimen = group(atlas, "specimens", name)
     dilatancy = group(atlas, "dilatancy", name)
-    closure = group(atlas, "closure", name)
-    direction = settings["contact_directions"][0]
-    finest = int(closure["resolution"].min())
-    share = closure["area_share"].sel(direction=direction, resolution=finest)
-    loads = closure["load"].values
-    mapped = _nearest(loads, force_of(settings["map_load"], specimen))
-    asked = [_nearest(loads, force_of(load, specimen)) for load in settings["dilatancy_loads"]]
+    curves = finest_curves(atlas, name)
+    direction, finest = str(curves["direction"].values), int(curves["resolution"])
+    share, loads = curves["area_share"], curves["load"].values
+    mapped = nearest_load(loads, settings["map_load"], specimen)
+    asked = [nearest_load(loads, load, specimen) for load in settings["dilatancy_loads"]]
     shown = sorted({*asked, mapped})
-    points = spread(closure.sizes["offset"], DOMAINS)
+    points = spread(curves.sizes["offset"], DOMAINS)
     plateaus = {str(d): _plateau(dilatancy, d) for d in dilatancy["direction"].values}
 
     rows = -(-len(points) // COLUMNS)
     figure = Figure(figsize=(WIDTH, 3.2 + 2.5 * rows))
     top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])
-    left, right = top.subfigures(1, 2, width_ratios=[0.85, 1])
-    _draw_rigid(left.subplots(), dilatancy, plateaus)
-    _draw_elastic(right, dilatancy, direction, shown, mapped, points)
+    ranges = _ranges(dilatancy["offset"].values)
+    rigid, *elastic = top.subplots(
+        1, 1 + len(ranges), width_ratios=[2.3, 1.5, 1][: 1 + len(ranges)]
+    )
+    _draw_rigid(rigid, dilatancy, plateaus)
+    _draw_elastic(elastic, ranges, dilatancy, direction, shown, mapped, points)
+    legends_below(top, entries(rigid), entries(elastic[0]))
     domains = group(atlas, "contact", name)[f"in_contact_{finest}"].sel(direction=direction)
     panels = bottom.subplots(rows, COLUMNS, squeeze=False)
     _draw_domains(panels, domains[:, mapped], share[:, mapped], points, window_sides(specimen))
@@ -81,10 +78,6 @@ def draw(atlas, name):
     table = _table(dilatancy, direction, shown, share)
     caption = _caption(settings["label"], direction, loads[mapped], share[:, mapped], plateaus)
     return Drawing(figure, table, caption)
-
-
-def _nearest(loads, force):
-    return int(np.argmin(np.abs(loads - force)))
 
 
 def _plateau(dilatancy, direction):
@@ -111,17 +104,19 @@ def _draw_rigid(axes, dilatancy, plateaus):
     axes.set_ylim(bottom=min(0, float(dilatancy["rigid_dilatancy"].min())))
     axes.set_xlim(left=0)
     letter(axes, "a", "rigid dilatancy")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
 
 
-def _draw_elastic(figure, dilatancy, direction, shown, mapped, points):
-    """The first offsets, and beside them, on another scale, the others."""
-    offsets = dilatancy["offset"].values
+def _ranges(offsets):
+    """The first offsets (from, to) and the others, which need another scale; mm."""
     limit = max(INITIAL_PART * offsets[-1], offsets[min(INITIAL_OFFSETS, len(offsets)) - 1])
-    ranges = [(0, limit)] + ([(limit, offsets[-1])] if limit < offsets[-1] else [])
-    panels = figure.subplots(
-        1, len(ranges), sharey=True, squeeze=False, width_ratios=[1.5, 1][: len(ranges)]
-    )[0]
+    return [(0, limit)] + ([(limit, offsets[-1])] if limit < offsets[-1] else [])
+
+
+def _draw_elastic(panels, ranges, dilatancy, direction, shown, mapped, points):
+    """Elastic dilatancy, a panel a range of offsets."""
+    for panel in panels[1:]:
+        panel.sharey(panels[0])
+        panel.tick_params(labelleft=False)
     for panel, (first, last) in zip(panels, ranges, strict=True):
         _elastic_curves(panel, dilatancy, direction, shown)
         _mark_points(panel, dilatancy, direction, mapped, points, (first, last))
@@ -132,8 +127,6 @@ def _draw_elastic(figure, dilatancy, direction, shown, mapped, points):
         panel.set_xlabel("offset $v$ (mm)")
     panels[0].set_ylabel(r"dilatancy $\delta$ (mm)")
     letter(panels[0], "b", f"elastic dilatancy, {place(direction)}")
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2)
 
 
 def _elastic_curves(axes, dilatancy, direction, shown):
@@ -168,17 +161,14 @@ def _mark_points(axes, dilatancy, direction, mapped, points, shown_range):
 
 def _draw_domains(panels, domains, share, points, sides):
     """Contact domains of one load at some offsets, row by row."""
-    unit = length_unit(max(sides))
     for k, panel in enumerate(panels.ravel()):
         if k >= len(points):
             panel.remove()
             continue
         i = points[k]
-        # No cell is missing in a window, and a node smaller than a pixel must not vanish.
-        grey = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
-        draw_map(panel, domains[i].values, sides, unit, **grey)
+        draw_domain(panel, domains[i].values, sides)
         panel.set_title(
-            f"{_domain_letter(k)}: $v$ = {float(share['offset'][i]):.3g} mm, "
+            f"{_domain_letter(k)}: $v$ = {short(share['offset'][i])} mm, "
             f"$A_r/A_0$ = {100 * float(share[i]):.2g} %"
         )
 
@@ -221,7 +211,7 @@ def _table(dilatancy, direction, shown, share):
 
 def _caption(label, direction, force, share, plateaus):
     return (
-        f"After Figs. 6 and 7 of {PAPER}: {label}. (a) Rigid dilatancy, with straight lines over "
+        f"{opening('Figs. 6 and 7', label)} (a) Rigid dilatancy, with straight lines over "
         f"the second half of the offsets. (b) Elastic dilatancy, {place(direction)}; letters stand "
         f"at F = {force_label(force)}. (c) Contact domains there. {_plateau_words(plateaus)} "
         f"{_area_words(share, force)}"
@@ -239,8 +229,10 @@ def _plateau_words(plateaus):
     level = sum(line.slope_low <= 0 <= line.slope_high for line, _ in fitted.values())
     flat = [TOWARDS[d] for d, (_, change) in fitted.items() if abs(change) <= NEARLY_FLAT]
     rising = [TOWARDS[d] for d, (_, change) in fitted.items() if change > NEARLY_FLAT]
+    falling = [TOWARDS[d] for d, (_, change) in fitted.items() if change < -NEARLY_FLAT]
     words = [f"{len(flat)} of {len(fitted)} directions stay within {100 * NEARLY_FLAT:g} %"]
     words += [f"it keeps rising towards {' and '.join(rising)}"] if rising else []
+    words += [f"it falls towards {' and '.join(falling)}"] if falling else []
     return (
         f"Slopes there in mm/mm, and the change they make: {'; '.join(parts)}. By that measure a "
         f"plateau: {', '.join(words)} (the paper: all four for its rock, two of four for its "

@@ -5,8 +5,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ..scaling import RESOLUTION
-from ._domains import Loading, disagreement, draw_domain, opening, short
-from .common import WIDTH, Drawing, force_label, force_of
+from ._domains import Loading, disagreement
+from ._maps import draw_domain
+from ._words import force_label, short
+from .common import WIDTH, Drawing, letter
 
 #: Maps side by side.
 _COLUMNS = 4
@@ -26,26 +28,27 @@ def draw(atlas, name):
     Drawing
     """
     loading = Loading.of(atlas, name)
-    i = loading.nearest_load(force_of(loading.settings["map_load"], loading.specimen))
+    i = loading.map_load
     table = _table(loading, i)
     rows, columns = -(-len(table) // _COLUMNS), min(len(table), _COLUMNS)
     aspect = loading.sides[0] / loading.sides[1]
     height = rows * (WIDTH / _COLUMNS * aspect + 0.75)
-    figure = Figure(figsize=(WIDTH, height))
+    figure = Figure(figsize=(WIDTH, height + 0.3))
     panels = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
-    for axes, letter, row in zip(panels, "abcdefghijklmnop", table.itertuples(), strict=False):
+    for axes, which, row in zip(panels, "abcdefghijklmnop", table.itertuples(), strict=False):
         draw_domain(axes, loading.domain(row.resolution, i), loading.sides)
-        axes.set_title(
-            f"({letter}) $s$ = {short(row.spacing_mm)} mm\n"
+        letter(
+            axes,
+            which,
+            f"$s$ = {short(row.spacing_mm)} mm\n"
             f"$A_r$ = {short(row.area_mm2)} mm$^2$\n"
             f"$A_r/A_0$ = {100 * row.area_share:.2g} %\n"
-            rf"$\sigma_r$ = {short(row.sigma_r_MPa)} MPa"
+            rf"$\sigma_r$ = {short(row.sigma_r_MPa)} MPa",
         )
-        axes.set_xlabel("$x$ (mm)")
-    for axes in panels[::columns]:
-        axes.set_ylabel("$y$ (mm)")
+        axes.label_outer()
     for axes in panels[len(table) :]:
         axes.remove()
+    figure.suptitle(f"{loading.title}, $F$ = {force_label(loading.forces[i])}", fontsize=9)
     return Drawing(figure, table, _caption(loading, i, table))
 
 
@@ -70,7 +73,7 @@ def _table(loading, i):
 def _caption(loading, i, table):
     by_area, by_box = loading.estimates
     return (
-        f"{opening(8, loading)} Contact domains (black) under "
+        f"{loading.opening('Fig. 8')} Contact domains (black) under "
         f"F = {force_label(loading.forces[i])}; resolutions: {len(table)}. {_verdict(table)} "
         f"Delta_sigma [95 % interval] by A_r(s): {by_area.text(i)}; by box counting at the finest "
         f"resolution: {by_box.text(i)} ({loading.fit_ranges(i)}). "

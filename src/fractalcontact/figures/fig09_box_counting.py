@@ -5,16 +5,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ..fitting import fit_line
-from ._domains import (
-    Loading,
-    disagreement,
-    draw_domain,
-    interval,
-    legend_below,
-    opening,
-    short,
-)
-from .common import COLOURS, WIDTH, Drawing, force_label, force_of
+from ._domains import Loading, disagreement
+from ._maps import draw_domain
+from ._words import force_label, interval, short
+from .common import COLOURS, WIDTH, Drawing, letter
 
 
 def draw(atlas, name):
@@ -31,16 +25,19 @@ def draw(atlas, name):
     Drawing
     """
     loading = Loading.of(atlas, name)
-    i = loading.nearest_load(force_of(loading.settings["map_load"], loading.specimen))
-    counts = loading.domains.sel(resolution=loading.finest).isel(load=i)
+    i = loading.map_load
+    counts = loading.counts.isel(load=i)
     table = _table(counts)
     figure = Figure(figsize=(WIDTH, 3.1))
     left, middle, right = figure.subplots(1, 3)
     draw_domain(left, loading.domain(loading.finest, i), loading.sides)
-    left.set(xlabel="$x$ (mm)", ylabel="$y$ (mm)")
-    left.set_title(f"(a) contact domain, $F$ = {force_label(loading.forces[i])}")
+    letter(left, "a", "contact domain")
     _draw_counts(middle, table, loading.estimates[1], i)
     _draw_slopes(right, table, counts)
+    # The marks of the counts are those of their slopes too: one legend.
+    handles, _ = middle.get_legend_handles_labels()
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    figure.suptitle(f"{loading.title}, $F$ = {force_label(loading.forces[i])}", fontsize=9)
     return Drawing(figure, table, _caption(loading, i, counts, table))
 
 
@@ -80,8 +77,7 @@ def _draw_counts(axes, table, estimate, i):
         axes.loglog(r, guide, style, color="0.6", lw=0.8, label=f"slope $-${slope}", zorder=0)
     axes.set_ylim(0.7, n.max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="boxes that meet it, $N(r)$ (1)")
-    axes.set_title("(b) box counts")
-    legend_below(axes)
+    letter(axes, "b", "box counts")
 
 
 def _draw_slopes(axes, table, counts):
@@ -98,11 +94,11 @@ def _draw_slopes(axes, table, counts):
         axes.axhline(slope, color="0.6", ls=style, lw=0.8, zorder=0)
     axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
-    axes.set_title("(c) local slopes")
+    letter(axes, "c", "local slopes")
 
 
 def _caption(loading, i, counts, table):
-    start = f"{opening(9, loading)} (a) The contact domain under F = "
+    start = f"{loading.opening('Fig. 9')} (a) The contact domain under F = "
     start += f"{force_label(loading.forces[i])}, s = {short(loading.finest_spacing)} mm. "
     reason = str(counts["reason"].item())
     if reason:

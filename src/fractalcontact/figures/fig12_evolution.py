@@ -4,8 +4,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ._domains import Loading, disagreement, draw_domain, opening, short, trend, wrapped
-from .common import WIDTH, Drawing, force_label
+from ._domains import Loading, disagreement, trend
+from ._maps import draw_domain
+from ._words import force_label, short, wrapped
+from .common import WIDTH, Drawing, letter
 
 #: Contact domains drawn.
 _MOST_MAPS = 6
@@ -30,23 +32,21 @@ def draw(atlas, name):
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_MAPS)
     aspect = loading.sides[0] / loading.sides[1]
-    map_height = WIDTH / _MOST_MAPS * aspect + 0.6
+    map_height = WIDTH / _MOST_MAPS * aspect + 0.75
     figure = Figure(figsize=(WIDTH, map_height + 2.6))
     top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 2.6])
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
     nominal = np.prod(loading.sides)
     finest = loading.scaling["area"].sel(resolution=loading.finest).values
-    for axes, letter, i in zip(maps, "abcdef", shown, strict=False):
-        draw_domain(axes, loading.domain(loading.finest, i), loading.sides)
-        axes.set_title(
-            f"({letter}) {force_label(loading.forces[i])}\n"
-            f"$A_r/A_0$ = {100 * finest[i] / nominal:.2g} %"
-        )
-        axes.set_xlabel("$x$ (mm)")
-    maps[0].set_ylabel("$y$ (mm)")
+    for axes, which, i in zip(maps, "abcdef", shown, strict=False):
+        draw_domain(axes, loading.domain(loading.finest, i), loading.sides, ticks=3)
+        share = 100 * finest[i] / nominal
+        letter(axes, which, f"{force_label(loading.forces[i])}\n$A_r/A_0$ = {share:.2g} %")
+        axes.label_outer()
     axes = bottom.subplots()
     _draw_dimensions(axes, loading)
-    axes.set_title(rf"({'abcdefg'[len(shown)]}) dimension of the contact domain and load")
+    letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
+    figure.suptitle(loading.title, fontsize=9)
     return Drawing(figure, _table(loading, finest), _caption(loading, shown))
 
 
@@ -74,12 +74,11 @@ def _table(loading, area):
 
 def _draw_dimensions(axes, loading):
     for estimate in loading.estimates:
+        reach = np.array([estimate.value - estimate.low, estimate.high - estimate.value])
         known = np.isfinite(estimate.value)
-        value = estimate.value[known]
-        reach = np.array([value - estimate.low[known], estimate.high[known] - value])
         axes.errorbar(
-            loading.forces[known] * _APART[estimate.key],
-            value,
+            loading.forces * _APART[estimate.key],
+            estimate.value,
             # Rounding may leave an exact fit's interval a hair's breadth below zero.
             yerr=np.maximum(reach, 0),
             **estimate.style,
@@ -106,21 +105,21 @@ def _caption(loading, shown):
         for estimate in loading.estimates
     )
     return (
-        f"{opening(12, loading)} Contact domains at s = {short(loading.finest_spacing)} mm under "
-        f"{len(shown)} loads (rings mark nodes too few to be seen), and Delta_sigma with 95 % "
-        f"intervals, which the axis may cut ({loading.fit_ranges()}). The paper has "
-        f"Delta_sigma rise with F from 0: {verdicts}. {disagreement(loading.scaling)}"
-        f"{_missing(loading)}"
+        f"{loading.opening('Fig. 12')} Contact domains at s = {short(loading.finest_spacing)} mm "
+        f"under {len(shown)} loads (rings: nodes too few to be seen), and Delta_sigma with 95 % "
+        f"intervals, which the axis may cut ({loading.fit_ranges()}). The paper has Delta_sigma "
+        f"rise with F from 0: {verdicts}. {disagreement(loading.scaling)}{_missing(loading)}"
     )
 
 
 def _missing(loading):
-    """Loads without an estimate, and why at the first."""
-    sentences = []
-    for estimate in loading.estimates:
-        missing = [i for i, reason in enumerate(estimate.reason) if reason]
-        if missing:
-            forces = ", ".join(force_label(loading.forces[i]) for i in missing)
-            first = estimate.reason[missing[0]]
-            sentences.append(f" None by {estimate.label} at {forces}; at the first, {first}.")
-    return "".join(sentences)
+    """Loads without an estimate; the table has the reasons."""
+    missing = [
+        f"by {estimate.label} at "
+        + ", ".join(
+            force_label(loading.forces[i]) for i, reason in enumerate(estimate.reason) if reason
+        )
+        for estimate in loading.estimates
+        if any(estimate.reason)
+    ]
+    return f" None {' and '.join(missing)}, for want of points to fit." if missing else ""
