@@ -20,11 +20,22 @@ def test_exact_fractal_gives_back_its_dimension_and_measure():
     result = renormalisation(S, AREA, FORCE)
     assert result.delta_sigma.dims == ("load",)
     np.testing.assert_allclose(result.delta_sigma, DELTA)
-    np.testing.assert_allclose(result.delta_sigma_low, DELTA, atol=1e-9)
     np.testing.assert_allclose(result.hausdorff_measure, MEASURE)
     np.testing.assert_allclose(result.hausdorff_spread, 1)
     np.testing.assert_allclose(result.sigma_star, FORCE / MEASURE)
     assert (result.n == 4).all()
+
+
+def test_interval_of_an_exact_fractal_is_that_of_counting_its_nodes():
+    result = renormalisation(S, AREA, FORCE)
+    nodes = AREA / S**2
+    weight = np.log(S) - np.log(S).mean()
+    weight = weight / (weight**2).sum()
+    half = 1.959964 * np.sqrt((weight**2 / nodes).sum("resolution"))
+    np.testing.assert_allclose(result.delta_sigma_high - result.delta_sigma, half, rtol=1e-6)
+    np.testing.assert_allclose(result.delta_sigma - result.delta_sigma_low, half, rtol=1e-6)
+    many = renormalisation(S, 1e8 * AREA, FORCE)
+    np.testing.assert_allclose(many.delta_sigma_low, DELTA, atol=1e-4)
 
 
 def test_sigma_star_does_not_depend_on_resolution_though_sigma_n_does():
@@ -63,6 +74,36 @@ def test_resolutions_without_contact_are_left_out():
     assert np.isnan(result.sigma_star[0]).all()
     np.testing.assert_allclose(result.delta_sigma[1:], DELTA[1:])
     assert np.isnan(result.sigma_n.sel(load=0)[:2]).all()
+
+
+@pytest.mark.parametrize(("nodes", "fitted"), [(1, 0), (3, 0), (4, 4)])
+def test_few_nodes_have_no_dimension(nodes, fitted):
+    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0))
+    assert result.n.item() == fitted
+    if fitted:
+        assert result.delta_sigma.item() == pytest.approx(0, abs=1e-9)
+        assert result.delta_sigma_high - result.delta_sigma_low > 1
+    else:
+        assert np.isnan(result.delta_sigma)
+        assert np.isnan(result.sigma_n).all()
+
+
+def test_resolutions_of_few_nodes_are_left_out():
+    nodes = xr.DataArray([200, 66, 22, 3], dims="resolution")
+    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0))
+    assert result.n.item() == 3
+    slope = np.polyfit(np.log(S[:3]), np.log(nodes[:3]), 1)[0]
+    assert result.delta_sigma.item() == pytest.approx(-slope)
+    assert np.isfinite(result.sigma_n).values.tolist() == [True, True, True, False]
+
+
+def test_interval_holds_the_dimension_of_counts_that_scatter():
+    rng = np.random.default_rng(0)
+    expected = 400 * 2.0 ** (-1.2 * np.arange(4))
+    nodes = xr.DataArray(rng.poisson(expected, (500, 4)), dims=("sample", "resolution"))
+    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0))
+    inside = (result.delta_sigma_low <= 1.2) & (result.delta_sigma_high >= 1.2)
+    assert inside.mean() >= 0.95
 
 
 def test_more_dimensions_than_load():

@@ -3,7 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from .domain import box_dimension, box_sizes, clusters
+from .domain import box_dimension, box_sizes, clusters, no_dimension
+from .labels import about
 from .scaling import compare_dimensions, renormalisation
 from .store import padded
 
@@ -18,6 +19,9 @@ DOMAIN_FIELDS = {
     "clusters": ("1", "contact clusters, neighbours by side or corner"),
     "largest_share": ("1", "share of the largest cluster in the contact area"),
 }
+
+#: Why the contact domain of one node has no dimension.
+ONE_NODE = "one node is in contact, and what touches within its cell is not known"
 
 
 def analyse_domains(fields, spacing, *, fit_range=None):
@@ -39,6 +43,12 @@ def analyse_domains(fields, spacing, *, fit_range=None):
         :data:`DOMAIN_FIELDS` and ``reason`` (why there is no dimension) over (direction, offset,
         resolution, load); ``box_count`` and ``box_used`` with a last dimension scale; ``box_side``
         (resolution, scale) in mm.
+
+    Notes
+    -----
+    A contact domain of one node has no dimension here. To box counting it is a point, of dimension
+    0 without error; but the node stands for contact somewhere in a cell, and whether that is a
+    point, a line or the whole cell no count at this spacing can tell.
     """
     factors = sorted(int(name.removeprefix("in_contact_")) for name in fields.data_vars)
     domains = {k: fields[f"in_contact_{k}"].values for k in factors}
@@ -54,6 +64,8 @@ def analyse_domains(fields, spacing, *, fit_range=None):
         factor = factors[k]
         domain = domains[factor][d, o, j]
         box = box_dimension(domain, factor * spacing, fit_range=fit_range, sizes=sizes[factor])
+        if domain.sum() == 1:
+            box = no_dimension(box.r, box.count, ONE_NODE)
         found = clusters(domain)
         row = {
             "delta_sigma": box.dimension,
@@ -71,17 +83,16 @@ def analyse_domains(fields, spacing, *, fit_range=None):
         count[d, o, k, j, : len(box.count)] = box.count
         used[d, o, k, j, : len(box.used)] = box.used
     dims = ("direction", "offset", "resolution", "load")
-    units = {name: {"units": u, "long_name": words} for name, (u, words) in DOMAIN_FIELDS.items()}
     return xr.Dataset(
         {
-            **{name: (dims, values, units[name]) for name, values in table.items()},
-            "reason": (dims, reason.astype(str), _about("1", "why there is no dimension")),
-            "box_count": ((*dims, "scale"), count, _about("1", "boxes that meet the domain, N(r)")),
-            "box_used": ((*dims, "scale"), used, _about("1", "box size used in the fit")),
+            **{name: (dims, values, about(*DOMAIN_FIELDS[name])) for name, values in table.items()},
+            "reason": (dims, reason.astype(str), about("1", "why there is no dimension")),
+            "box_count": ((*dims, "scale"), count, about("1", "boxes that meet the domain, N(r)")),
+            "box_used": ((*dims, "scale"), used, about("1", "box size used in the fit")),
             "box_side": (
                 ("resolution", "scale"),
                 padded([sizes[k] * k * spacing for k in factors]),
-                _about("mm", "side of the boxes r"),
+                about("mm", "side of the boxes r"),
             ),
         },
         coords={
@@ -89,7 +100,7 @@ def analyse_domains(fields, spacing, *, fit_range=None):
             "resolution": (
                 "resolution",
                 factors,
-                _about("1", "multiple k of the scan's spacing"),
+                about("1", "multiple k of the scan's spacing"),
             ),
         },
     )
@@ -116,7 +127,7 @@ def scaling_over_resolutions(curves, domains, spacing, *, fit_range=None):
         offset, load), and both estimates of Delta_sigma with their difference; the box counts are
         those at the scan's own resolution.
     """
-    s = (curves["resolution"] * spacing).assign_attrs(_about("mm", "spacing s"))
+    s = (curves["resolution"] * spacing).assign_attrs(about("mm", "spacing s"))
     area = curves["area"]
     if fit_range is not None:
         tolerance = 1e-9 * spacing
@@ -135,7 +146,3 @@ def scaling_over_resolutions(curves, domains, spacing, *, fit_range=None):
     result["spacing"] = s
     result["area"] = curves["area"]
     return result.drop_vars([n for n in result.coords if n not in result.dims])
-
-
-def _about(units, long_name):
-    return {"units": units, "long_name": long_name}

@@ -7,6 +7,8 @@ from scipy import optimize, special
 
 from .fitting import CONFIDENCE
 from .halfspace import rectangle_mean_displacement
+from .labels import about
+from .sweep import OFFSETS, SCALARS
 
 #: Points a hyperbola of two parameters needs before its interval means anything.
 FEWEST_POINTS = 4
@@ -120,20 +122,20 @@ def closure_curves(states, window, e_star, fit_range=None):
     Returns
     -------
     xr.Dataset
-        ``bulk_settlement`` (load), ``interface_closure``, ``nominal_pressure``, area and stiffness
-        over (direction, offset, resolution, load), and the fit over (direction, offset,
-        resolution).
+        ``bulk_settlement`` and ``nominal_pressure`` (load); ``interface_closure``, ``area_share``
+        and the scalars of the states over (direction, offset, resolution, load); the fit over
+        (direction, offset, resolution); offset made and rigid opening over (direction, offset).
     """
     force = states["load"]
-    result = states[["closure", "force", "area", "stiffness", "residual", "iterations"]].copy()
+    result = states[[*SCALARS, *OFFSETS]].copy()
     settlement = bulk_settlement(force.values, e_star, *window)
     area = window[0] * window[1]
-    result["bulk_settlement"] = ("load", settlement, _about("mm", "bulk settlement w_b"))
-    result["nominal_pressure"] = ("load", force.values / area, _about("MPa", "F / A_0"))
+    result["bulk_settlement"] = ("load", settlement, about("mm", "bulk settlement w_b"))
+    result["nominal_pressure"] = ("load", force.values / area, about("MPa", "F / A_0"))
     result["interface_closure"] = result["closure"] - result["bulk_settlement"]
-    result["interface_closure"].attrs = _about("mm", "interface closure w_int = w - w_b")
+    result["interface_closure"].attrs = about("mm", "interface closure w_int = w - w_b")
     result["area_share"] = result["area"] / area
-    result["area_share"].attrs = _about("1", "real contact area A_r / A_0")
+    result["area_share"].attrs = about("1", "real contact area A_r / A_0")
 
     lowest, highest = fit_range or (force.values.min(), force.values.max())
     fitted = (force.values >= lowest * (1 - 1e-9)) & (force.values <= highest * (1 + 1e-9))
@@ -145,7 +147,7 @@ def closure_curves(states, window, e_star, fit_range=None):
     for name, units, words in HYPERBOLA_FIELDS:
         kind = str if name == "reason" else float
         values = np.array([getattr(fit, name) for fit in fits.flat], kind).reshape(fits.shape)
-        result[f"hyperbola_{name}"] = (dims, values, _about(units, words))
+        result[f"hyperbola_{name}"] = (dims, values, about(units, words))
     result.attrs["hyperbola_force_low"] = float(force.values[fitted].min(initial=np.inf))
     result.attrs["hyperbola_force_high"] = float(force.values[fitted].max(initial=-np.inf))
     return result
@@ -179,27 +181,15 @@ def elastic_dilatancy(curves, joint):
     -------
     xr.Dataset
         Rigid dilatancy over (direction, rigid_offset) and ``elastic_dilatancy`` over
-        (contact_direction, offset, load).
+        (contact_direction, offset, load), with ``offset_made`` over (contact_direction, offset).
     """
     result = joint[["rigid_dilatancy", "composite_rms"]].copy()
-    finest = curves["interface_closure"].sel(resolution=curves["resolution"].min())
-    closure = finest.rename(direction="contact_direction")
-    directions = list(joint["direction"].values)
-    rows = []
-    for direction in closure["contact_direction"].values:
-        if direction not in directions:
-            raise ValueError(f"no rigid dilatancy was computed for direction {direction}")
-        rigid = joint["rigid_dilatancy"].sel(direction=direction).values
-        opened = np.interp(closure["offset"].values, joint["rigid_offset"].values, rigid)
-        rows.append(opened[:, None] - closure.sel(contact_direction=direction).values)
-    result["elastic_dilatancy"] = (
-        ("contact_direction", "offset", "load"),
-        np.array(rows),
-        _about("mm", "elastic dilatancy delta = delta_r - w_int"),
-    )
-    coords = {name: closure[name] for name in ("contact_direction", "offset", "load")}
-    return result.assign_coords(coords)
-
-
-def _about(units, long_name):
-    return {"units": units, "long_name": long_name}
+    finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
+    finest = finest.rename(direction="contact_direction")
+    # The opening at the cells whose contact was solved: that of `joint` is at the first direction's
+    # offsets, from which those of the others differ where cells are not square.
+    elastic = finest["rigid_opening"] - finest["interface_closure"]
+    result["elastic_dilatancy"] = elastic.transpose("contact_direction", "offset", "load")
+    result["elastic_dilatancy"].attrs = about("mm", "elastic dilatancy delta = delta_r - w_int")
+    result["offset_made"] = finest["offset_made"]
+    return result

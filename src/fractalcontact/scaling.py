@@ -2,11 +2,16 @@
 
 import numpy as np
 import xarray as xr
+from scipy import special
 
-from .fitting import fit_line
+from .fitting import CONFIDENCE, fit_line
+from .labels import about
 
 #: The dimension along which resolutions s, 2s, 4s ... are stored.
 RESOLUTION = "resolution"
+
+#: Nodes that a contact domain needs at a resolution for its number N_n to tell anything.
+FEWEST_NODES = 4
 
 
 def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) -> xr.Dataset:
@@ -20,7 +25,8 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
     s : DataArray (resolution,)
         Spacings, mm.
     area : DataArray (resolution, ...)
-        Real contact area A_n, mm2. Zero or missing areas are left out of the fit.
+        Real contact area A_n, mm2. Areas of fewer than `FEWEST_NODES` nodes of s_n^2, and missing
+        ones, are left out.
     force : DataArray (...)
         Force F, N, on any of the other dimensions of `area`.
 
@@ -30,8 +36,18 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
         On the other dimensions of `area`: `delta_sigma` with `_low`, `_high` (95 %), `n`
         resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta)
         and `hausdorff_spread`, the geometric standard deviation about it (1 = no spread);
-        `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa. NaN
-        with `n` where fewer than three resolutions are in contact.
+        `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
+        resolutions that count. NaN where fewer than three resolutions can be.
+
+    Notes
+    -----
+    N_n = A_n / s_n^2 is a whole number. One node more or less of one, two or three would change the
+    slope over a doubling of s by 1, 0.6 or 0.4: such domains are too small to have a dimension (a
+    single node at every resolution would give exactly 0). From `FEWEST_NODES` = 4 on it is 0.3.
+
+    Few resolutions may lie on a line by chance. The interval is that of the regression, but never
+    narrower than what counting leaves open: N_n nodes vary at least as sqrt(N_n) with the place of
+    the grid (as Poisson's law has it for nodes that touch independently; clusters vary more).
 
     Raises
     ------
@@ -42,7 +58,7 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
         raise ValueError(f"spacings must be positive, not {s.values}")
     if (area < 0).any():
         raise ValueError(f"a contact area cannot be negative: {float(area.min())} mm2")
-    touching = area.where(area > 0)
+    touching = area.where(area >= (FEWEST_NODES - 1e-6) * s**2)
     slope, low, high, n, r2 = xr.apply_ufunc(
         _area_exponent,
         np.log(s),
@@ -82,13 +98,25 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
         "sigma_n": ("MPa", "real mean pressure at each resolution"),
     }
     for name, (unit, words) in units.items():
-        result[name].attrs = {"units": unit, "long_name": words}
+        result[name].attrs = about(unit, words)
     return result
 
 
 def _area_exponent(log_s: np.ndarray, log_area: np.ndarray) -> tuple[float, ...]:
+    """Slope of log A over log s with its interval, resolutions fitted and r2."""
     line = fit_line(log_s, log_area)
-    return line.slope, line.slope_low, line.slope_high, float(line.n), line.r2
+    if np.isnan(line.slope):
+        return np.nan, np.nan, np.nan, float(line.n), np.nan
+    half = max(line.slope_high - line.slope, _counting_error(log_s, log_area))
+    return line.slope, line.slope - half, line.slope + half, float(line.n), line.r2
+
+
+def _counting_error(log_s: np.ndarray, log_area: np.ndarray) -> float:
+    """Half of the interval of the slope if each N varies as sqrt(N), hence log N as 1/sqrt(N)."""
+    counted = np.isfinite(log_area)
+    nodes = np.exp(log_area - 2 * log_s)[counted]
+    dx = log_s[counted] - log_s[counted].mean()
+    return special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(np.sum(dx**2 / nodes)) / np.sum(dx**2)
 
 
 def hausdorff_measure(s, area, delta_sigma):
@@ -174,5 +202,5 @@ def compare_dimensions(
         "disagree": "the two estimates of Delta_sigma differ by more than their intervals",
     }
     for name, text in words.items():
-        result[name].attrs = {"units": "1", "long_name": text}
+        result[name].attrs = about("1", text)
     return result

@@ -5,7 +5,8 @@ import xarray as xr
 
 from .contact import NotConverged, solve_contact
 from .halfspace import HalfSpace
-from .joint import composite_topography, prefractal
+from .joint import composite_topography, direction_spacing, prefractal, rigid_dilatancy
+from .labels import about
 
 #: Scalars kept of every state: name, unit, long name.
 SCALARS = {
@@ -17,10 +18,21 @@ SCALARS = {
     "iterations": ("1", "applications of the elastic operator"),
 }
 
+#: Numbers kept of every offset: name, unit, long name.
+OFFSETS = {
+    "offset_made": ("mm", "shear offset v, in whole cells of this direction"),
+    "rigid_opening": ("mm", "rigid dilatancy delta_r at the offset made"),
+}
+
 
 def window_sides(specimen):
     """Sides (y, x) of the window, mm."""
     return tuple(specimen.attrs[f"window_n{a}"] * specimen.attrs[f"spacing_{a}"] for a in "yx")
+
+
+def cell_side(specimen):
+    """s, mm: side of the square as large as a cell, so that N nodes cover N s^2."""
+    return float(np.sqrt(specimen.attrs["spacing_y"] * specimen.attrs["spacing_x"]))
 
 
 def nominal_area(specimen):
@@ -69,8 +81,9 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
     Returns
     -------
     xr.Dataset
-        The scalars of :data:`SCALARS` over (direction, offset, resolution, load) and, for each
-        resolution k, the contact domain ``in_contact_k`` over (direction, offset, load, y_k, x_k).
+        The scalars of :data:`SCALARS` over (direction, offset, resolution, load), those of
+        :data:`OFFSETS` over (direction, offset) and, for each resolution k, the contact domain
+        ``in_contact_k`` over (direction, offset, load, y_k, x_k).
 
     Raises
     ------
@@ -105,31 +118,36 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "load", f"y_{factor}", f"x_{factor}"),
             touching,
-            {"units": "1", "long_name": f"contact domain at {factor} times the scan's spacing"},
+            about("1", f"contact domain at {factor} times the scan's spacing"),
         )
     dims = ("direction", "offset", "resolution", "load")
-    spacing = specimen.attrs["spacing_x" if direction in ("E", "W", "none") else "spacing_y"]
-    variables = {
-        name: (dims, values, {"units": SCALARS[name][0], "long_name": SCALARS[name][1]})
-        for name, values in scalars.items()
-    }
+    made = cells * direction_spacing(specimen, direction)
+    opened, _ = rigid_dilatancy(specimen, direction, cells)
+    of_offsets = {"offset_made": made, "rigid_opening": opened}
     return xr.Dataset(
-        {**variables, **fields},
+        {
+            **{name: (dims, values, about(*SCALARS[name])) for name, values in scalars.items()},
+            **{
+                name: (("direction", "offset"), values[np.newaxis], about(*OFFSETS[name]))
+                for name, values in of_offsets.items()
+            },
+            **fields,
+        },
         coords={
             "direction": [direction],
-            "offset": ("offset", cells * spacing, {"units": "mm", "long_name": "shear offset v"}),
+            "offset": ("offset", made, about("mm", "shear offset v")),
             "resolution": (
                 "resolution",
                 np.array(resolutions),
-                {"units": "1", "long_name": "multiple k of the scan's spacing"},
+                about("1", "multiple k of the scan's spacing"),
             ),
-            "load": ("load", forces, {"units": "N", "long_name": "normal force F"}),
+            "load": ("load", forces, about("N", "normal force F")),
         },
     )
 
 
 def combine(parts):
-    """One dataset from the parts that several jobs solved, in the order of their coordinates.
+    """One dataset from the parts that several jobs solved.
 
     Parameters
     ----------
@@ -139,6 +157,19 @@ def combine(parts):
     Returns
     -------
     xr.Dataset
+        Offsets, resolutions and loads ascending, directions in the order of ``parts``.
+
+    Notes
+    -----
+    The n-th offsets of all directions belong together, but each is a whole number of cells of its
+    own direction. Where cells are not square they differ by less than a cell: ``offset`` is that
+    of the first direction, as in :func:`fractalcontact.joint.describe_joint`, and ``offset_made``
+    that of each.
+
+    Raises
+    ------
+    ValueError
+        If the directions do not have the same number of offsets.
     """
     groups = {}
     for part in parts:
@@ -146,7 +177,7 @@ def combine(parts):
             key = (part.direction.item(), tuple(part.resolution.values))
             groups.setdefault(key, []).append(part)
     by_direction = {}
-    for (direction, _), members in sorted(groups.items()):
+    for (direction, _), members in groups.items():
         whole = xr.concat(members, "offset", data_vars="minimal").sortby("offset")
         by_direction.setdefault(direction, []).append(whole)
     return xr.concat(
@@ -159,7 +190,7 @@ def combine(parts):
 
 def domains_of(states):
     """The contact domains alone, without the scalars."""
-    return states.drop_vars([*SCALARS, "resolution"])
+    return states.drop_vars([*SCALARS, *OFFSETS, "resolution"])
 
 
 def _join_resolutions(parts):

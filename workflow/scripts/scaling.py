@@ -4,13 +4,14 @@ from _job import reported
 
 from fractalcontact import store
 from fractalcontact.analysis import scaling_over_resolutions
+from fractalcontact.sweep import cell_side
 
 with reported(snakemake.log) as log:
     specimen = store.read(snakemake.input.specimen)
     scaling = scaling_over_resolutions(
         store.read(snakemake.input.closure),
         store.read(snakemake.input.domains),
-        specimen.attrs["spacing_x"],
+        cell_side(specimen),
         fit_range=snakemake.params.settings["scaling_range"],
     )
     store.write(scaling, snakemake.output[0])
