@@ -42,7 +42,7 @@ rule scaling:
         runtime=10,
     params:
         settings=settings_of,
-        code=code("analysis", "store"),
+        code=code("analysis", "sweep", "store"),
     script:
         "../scripts/scaling.py"
 
