@@ -137,12 +137,31 @@ def test_operator_is_positive_definite(kernel):
     assert np.linalg.eigvalsh(np.array(columns)).min() > 0.1
 
 
-def test_preconditioner_is_symmetric_and_positive():
-    space = HalfSpace((15, 20), (0.1, 0.3), 1.0)
-    p1, p2 = np.random.default_rng(2).standard_normal((2, 15, 20))
-    there, back = np.vdot(p1, space.precondition(p2)), np.vdot(p2, space.precondition(p1))
-    assert there == pytest.approx(back, rel=1e-5)
-    assert np.vdot(p1, space.precondition(p1)) > 0
+@pytest.mark.parametrize("shape", [(48, 40), (33, 70), (1, 90)])
+def test_coarser_cells_are_the_same_half_space(shape):
+    space = HalfSpace(shape, (0.1, 0.3), 5.0)
+    coarse = space.coarser(4)
+    alone = HalfSpace(coarse.shape, (0.4, 1.2), 5.0)
+    assert coarse.shape == tuple(-(-n // 4) for n in shape)
+    np.testing.assert_allclose(coarse.influence(), alone.influence(), rtol=1e-12)
+
+
+def test_stacked_fields_are_displaced_one_by_one():
+    space = HalfSpace((20, 31), (0.1, 0.3), 1.0)
+    fields = np.random.default_rng(5).standard_normal((3, 20, 31)).astype(np.float32)
+    together = space.convolve(fields)
+    for field, image in zip(fields, together, strict=True):
+        np.testing.assert_allclose(image, space.convolve(field), atol=1e-5)
+
+
+def test_bits_do_not_depend_on_the_number_of_threads(monkeypatch):
+    values = np.random.default_rng(6).standard_normal((150, 400))
+    images = []
+    for count in ("1", "2", "5"):
+        monkeypatch.setenv("OMP_NUM_THREADS", count)
+        images.append(HalfSpace((150, 400), (1.0, 1.0), 1.0).convolve(values))
+    np.testing.assert_array_equal(images[0], images[1])
+    np.testing.assert_array_equal(images[0], images[2])
 
 
 def test_loads_on_opposite_edges_do_not_feel_each_other_round_the_back():

@@ -1,37 +1,29 @@
 """Frictionless elastic contact of a composite topography with a rigid plane.
 
-With the gap g = K p + (max h - h) - w at the nodes, a state of contact has p >= 0, g >= 0, p g = 0;
-where the force is given its sum of p is fixed and w is free. That is the minimum of a strictly
-convex quadratic under p >= 0, found by a projected Newton method (Bertsekas 1982). Outside, the
-contact set is corrected at once wherever pressure is negative or the gap closed. Inside, conjugate
-gradients on that set, preconditioned with the half-space's own |q|/2, run in single precision on a
-double-precision residual. The conditions are checked in double precision before anything returns.
+A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
+where the force is given its sum of p is fixed and w is free. With a hardness H the pressure stops
+at H, and points there may be pressed in. How such a state is found is told in `active_set`; here
+loads become dimensionless, starts are chosen, and nothing returns unverified.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
+from . import active_set
+from .active_set import ActiveSet, Problem
 from .halfspace import HalfSpace
+from .set_equations import Operator
 
-# Corrections of the contact set before the solver gives up: trials needed at most 15 up to 2048^2.
-MAX_CORRECTIONS = 200
-# The inner solve is stopped at this share of its first residual: solving for a set that will still
-# change is wasted, and trials found the total nearly flat between 0.03 and 0.7.
-INNER_REDUCTION = 0.1
-# Single precision carries a correction down to this share of its right side.
-SINGLE_REACHES = 1e-5
-# A total this close to F is F: the closure is then read from the gap itself.
-FORCE_ROUNDING = 1e-12
-# Inner iterations for one correction; on an exact set 14-27 reach 1e-6.
-MAX_INNER = 200
-# Aim this far below the tolerance, so that one correction too many is rarer than one too few.
-SAFETY = 0.3
 # A coarser grid gives the start until its shorter side has fewer nodes than this.
 COARSEST = 24
 # The coarse solution is only a start.
 COARSE_RTOL = 3e-2
+# Earlier states are extrapolated by no more than this many of their own steps.
+FURTHEST = 2.0
+# Largest relative error of the stiffness.
+STIFFNESS_ERROR = 1e-6
 
 
 @dataclass(frozen=True)
@@ -56,6 +48,8 @@ class ContactState:
         Applications of the elastic operator, whatever their precision, coarse starts not counted.
     space : HalfSpace
         The operator it was solved with.
+    hardness : float
+        Largest pressure, MPa; infinity for an elastic surface.
     """
 
     pressure: np.ndarray
@@ -66,6 +60,8 @@ class ContactState:
     residual: float
     iterations: int
     space: HalfSpace = field(repr=False)
+    hardness: float = np.inf
+    _before: "ContactState | None" = field(default=None, repr=False, compare=False)
 
     @property
     def in_contact(self):
@@ -84,15 +80,14 @@ class ContactState:
         Raises
         ------
         NotConverged
-            If that linear problem is not solved to 1e-6.
+            If it is not known to 1e-6.
         """
-        contact = self.in_contact
-        if not contact.any():
-            return 0.0
-        unit = _solve_on_set(self.space, contact, np.ones(np.count_nonzero(contact)), 1e-6)
-        if unit.error > 1e-6:
-            raise NotConverged("the stiffness equations on the contact set", self, unit.error)
-        return float(unit.solution.sum()) * self.space.modulus * self.space.cell
+        # The unit of pressure does not matter: only which nodes lie between the bounds.
+        problem = Problem(self.space, None, 1.0, by_force=False, cap=self.hardness)
+        value, error = active_set.stiffness(problem, self.pressure.ravel(), Operator(self.space))
+        if not error <= STIFFNESS_ERROR:
+            raise NotConverged("the stiffness equations on the contact set", self, error)
+        return value * self.space.modulus * self.space.cell
 
 
 class NotConverged(RuntimeError):
@@ -114,7 +109,9 @@ class NotConverged(RuntimeError):
         return type(self), (self.reason, self.state, self.residual)
 
 
-def solve_contact(composite, space, *, closure=None, force=None, start=None, rtol=1e-6):
+def solve_contact(
+    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
+):
     """Press a composite topography against a rigid plane.
 
     Parameters
@@ -131,6 +128,8 @@ def solve_contact(composite, space, *, closure=None, force=None, start=None, rto
         A state of the same grid to start from, such as the previous load step.
     rtol : float
         Largest violation allowed of gap and pressure conditions, as a share of the closure.
+    hardness : float, optional
+        H, MPa: the pressure at which the surface yields (elastic, then perfectly plastic).
 
     Returns
     -------
@@ -139,7 +138,8 @@ def solve_contact(composite, space, *, closure=None, force=None, start=None, rto
     Raises
     ------
     ValueError
-        If the topography has missing cells or another shape, or the load makes no sense.
+        If the topography has missing cells or another shape, the load makes no sense, or the force
+        is more than the hardness lets the whole window carry.
     NotConverged
         If the conditions are not met to ``rtol``.
     """
@@ -148,17 +148,33 @@ def solve_contact(composite, space, *, closure=None, force=None, start=None, rto
     clearance = height.max() - height
     if load == 0:
         return unloaded_state(space, clearance)
-    problem = _Problem(space, clearance, load, force is not None)
-    if start is not None:
-        pressure = start.pressure / problem.pressure_unit
+    units = _Units(space, load, force is not None)
+    problem = units.problem(clearance, checked_hardness(hardness, space, force))
+    if start is None or not start.pressure.any():
+        pressure, displacement = _coarse_start(problem), None
     else:
-        pressure = _coarse_start(problem)
-    solution = _newton(problem, pressure, rtol)
-    state = solution.to_state()
+        pressure, displacement = units.extrapolated(start, load)
+    found = ActiveSet(problem, rtol).solve(pressure, displacement)
+    state = units.state(found, clearance, problem, start)
     if not state.residual <= rtol:
-        reason = f"the contact set still changed after {MAX_CORRECTIONS} corrections"
+        reason = f"the contact set still changed after {active_set.MAX_CORRECTIONS} corrections"
         raise NotConverged(reason, state, state.residual)
     return state
+
+
+def checked_hardness(hardness, space, force):
+    """The hardness as a number, infinite if there is none, after it was found sound."""
+    if hardness is None:
+        return np.inf
+    if not hardness > 0:
+        raise ValueError(f"hardness {hardness}: expected > 0 MPa")
+    ny, nx = space.shape
+    most = hardness * space.cell_area * ny * nx
+    if force is not None and not force < most:
+        raise ValueError(
+            f"force {force:g} N: at hardness {hardness:g} MPa the window carries {most:g}"
+        )
+    return float(hardness)
 
 
 def checked_load(height, space, closure, force, start, rtol):
@@ -186,168 +202,70 @@ def unloaded_state(space, clearance):
     return ContactState(zero, zero.copy(), clearance, 0.0, 0.0, 0.0, 0, space)
 
 
-class _Problem:
-    """The contact problem in units in which loads are near one: nothing depends on mm or MPa."""
+class _Units:
+    """Units in which loads are near one: nothing depends on mm or MPa."""
 
-    def __init__(self, space, clearance, load, by_force):
+    def __init__(self, space, load, by_force):
         self.space, self.by_force = space, by_force
         stress_per_length = space.modulus / space.cell
         if by_force:
-            self.pressure_unit = load / (space.cell_area * clearance.size)
-            self.length_unit = self.pressure_unit / stress_per_length
-            self.load = float(clearance.size)
+            ny, nx = space.shape
+            self.pressure = load / (space.cell_area * ny * nx)
+            self.length = self.pressure / stress_per_length
+            self.load = float(ny * nx)
         else:
-            self.length_unit = load
-            self.pressure_unit = load * stress_per_length
+            self.length = load
+            self.pressure = load * stress_per_length
             self.load = 1.0
-        self.clearance = clearance / self.length_unit
 
-    def first_touch(self):
-        """The given force on the nodes that touch first, where nothing better is known.
+    def problem(self, clearance, hardness):
+        cap = hardness / self.pressure
+        return Problem(self.space, clearance.ravel() / self.length, self.load, self.by_force, cap)
 
-        Forces so small that the depths of all other nodes drown theirs leave no other start.
+    def extrapolated(self, start, load):
+        """Pressure at a load, and its displacement, along the line through two earlier states.
+
+        With one state only, both in proportion to the load.
         """
-        touching = self.clearance == 0
-        return touching * (self.load / np.count_nonzero(touching))
+        known = start.space == self.space
+        before = start._before
+        at = start.force if self.by_force else start.closure
+        step = at - (before.force if self.by_force else before.closure) if before else 0.0
+        if step:
+            along = np.clip((load - at) / step, -1.0, FURTHEST)
+            fields = [
+                (1 + along) * getattr(start, name) - along * getattr(before, name)
+                for name in ("pressure", "displacement")
+            ]
+        else:
+            share = min(load / at, FURTHEST) if at > 0 else 1.0
+            fields = [share * start.pressure, share * start.displacement]
+        pressure, displacement = fields
+        return (
+            pressure.ravel() / self.pressure,
+            displacement.ravel() / self.length if known else None,
+        )
 
-
-@dataclass
-class _Solution:
-    """Where the iteration stands, in the problem's units."""
-
-    problem: _Problem
-    pressure: np.ndarray
-    displacement: np.ndarray
-    closure: float
-    residual: float
-    iterations: int = 0
-
-    def to_state(self):
-        length, stress = self.problem.length_unit, self.problem.pressure_unit
-        space = self.problem.space
-        pressure = self.pressure * stress
-        gap = (self.displacement + self.problem.clearance - self.closure) * length
+    def state(self, found, clearance, problem, start):
+        """The solution in mm, N and MPa."""
+        space = self.space
+        pressure = found.pressure.reshape(space.shape) * self.pressure
+        displacement = found.displacement.reshape(space.shape) * self.length
+        closure = found.closure * self.length if self.by_force else self.length
+        # Of the states before, one is enough, and it need not hold on to its own.
+        before = None if start is None or start.space != space else replace(start, _before=None)
         return ContactState(
             pressure=pressure,
-            displacement=self.displacement * length,
-            gap=gap,
-            closure=self.closure * length,
+            displacement=displacement,
+            gap=displacement + clearance - closure,
+            closure=closure,
             force=float(pressure.sum()) * space.cell_area,
-            residual=self.residual,
-            iterations=self.iterations,
+            residual=found.residual,
+            iterations=found.applications,
             space=space,
+            hardness=problem.cap * self.pressure,
+            _before=before,
         )
-
-
-def _newton(problem, pressure, rtol):
-    """Projected Newton iteration from any start; the caller checks ``residual``."""
-    space, load = problem.space, problem.load
-    pressure = np.maximum(pressure, 0.0)
-    closure = load
-    if problem.by_force:
-        loaded = pressure if pressure.any() else problem.first_touch()
-        pressure = loaded * (load / loaded.sum())
-        closure = None
-    best, iterations = None, 0
-    for _ in range(MAX_CORRECTIONS):
-        displacement = space.convolve(pressure)
-        iterations += 1
-        gap = displacement + problem.clearance
-        contact = pressure > 0
-        lacking = load - pressure.sum() if problem.by_force else 0.0
-        if problem.by_force and (closure is None or abs(lacking) <= FORCE_ROUNDING * load):
-            closure = gap[contact].mean()
-        gap -= closure
-        # A step may overshoot to w < 0, which no state has: u >= 0, so its gaps then exceed |w|.
-        residual = max(
-            np.abs(gap[contact]).max(initial=0.0) / abs(closure),
-            -gap.min() / abs(closure),
-            abs(lacking) / load,
-        )
-        if best is None or residual < best.residual:
-            best = _Solution(problem, pressure, displacement, closure, residual)
-        if residual <= rtol:
-            break
-        contact |= gap < 0
-        step = _solve_on_set(
-            space,
-            contact,
-            -gap[contact],
-            max(INNER_REDUCTION, SAFETY * rtol / residual),
-            total=lacking if problem.by_force else None,
-        )
-        iterations += step.applications
-        closure += step.common
-        pressure = pressure.copy()
-        pressure[contact] += step.solution
-        np.maximum(pressure, 0.0, out=pressure)
-        if problem.by_force:
-            if not pressure.any():
-                pressure = problem.first_touch()
-            # A common factor restores F where it disturbs the gap less than the tolerance. Larger
-            # ones were seen to make the set swing for ever: there the next step restores F.
-            factor = load / pressure.sum()
-            if abs(factor - 1) < SAFETY * rtol:
-                pressure *= factor
-    best.iterations = iterations
-    return best
-
-
-@dataclass
-class _LinearSolution:
-    """Solution on a contact set: its error as a share of the right side, and what it cost."""
-
-    solution: np.ndarray
-    common: float
-    error: float
-    applications: int
-
-
-def _solve_on_set(space, contact, right_side, reduction, *, total=None):
-    """Preconditioned conjugate gradients for K x = right_side on the contact set.
-
-    With ``total``, x has that sum and the equations hold up to a common constant, the change of
-    closure that a given force leaves free (projected method of Gould, Hribar and Nocedal, 2001).
-    """
-    precision = np.float32 if reduction > SINGLE_REACHES else np.float64
-    grid = np.zeros(space.shape, precision)
-
-    def on_set(operator, values):
-        grid[contact] = values
-        return operator(grid)[contact]
-
-    scale = max(np.abs(right_side).max(), np.finfo(float).tiny)
-    residual = (right_side / scale).astype(precision)
-    solution = np.zeros_like(residual)
-    common, applications = 0.0, 0
-    if total is not None:
-        ones = on_set(space.precondition, np.ones_like(residual))
-        ones_total = ones.sum(dtype=float)
-        if total != 0:
-            solution = precision(total / scale / ones_total) * ones
-            residual -= on_set(space.convolve, solution)
-            applications += 1
-    direction, previous = np.zeros_like(residual), np.inf
-    while True:
-        search = on_set(space.precondition, residual)
-        if total is not None:
-            offset = precision(search.sum(dtype=float) / ones_total)
-            search -= offset * ones
-            residual -= offset
-            common -= float(offset) * scale
-        error = float(np.abs(residual).max())
-        if error <= reduction or applications >= MAX_INNER:
-            break
-        slope = float(np.dot(residual, search))
-        direction *= precision(slope / previous)
-        direction += search
-        image = on_set(space.convolve, direction)
-        applications += 1
-        length = precision(slope / float(np.dot(direction, image)))
-        solution += length * direction
-        residual -= length * image
-        previous = slope
-    return _LinearSolution(solution.astype(float) * scale, common, error, applications)
 
 
 def _coarse_start(problem):
@@ -355,17 +273,15 @@ def _coarse_start(problem):
     space = problem.space
     ny, nx = space.shape
     if min(ny, nx) < COARSEST:
-        return np.ones(space.shape)
-    pooled = _pool_minimum(problem.clearance)
-    dy, dx = space.spacing
-    coarse_space = HalfSpace(pooled.shape, (2 * dy, 2 * dx), space.modulus, kernel=space.kernel)
-    load = problem.load * problem.length_unit
-    if problem.by_force:
-        load = problem.load * problem.pressure_unit * space.cell_area
-    coarse = _Problem(coarse_space, pooled * problem.length_unit, load, problem.by_force)
-    solution = _newton(coarse, _coarse_start(coarse), COARSE_RTOL)
-    pressure = solution.pressure * (coarse.pressure_unit / problem.pressure_unit)
-    return np.repeat(np.repeat(pressure, 2, axis=0), 2, axis=1)[:ny, :nx]
+        return np.full(ny * nx, min(1.0, problem.cap))
+    coarse_space = space.coarser(2)
+    pooled = _pool_minimum(problem.clearance.reshape(ny, nx)).ravel()
+    # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
+    load = problem.load / 2 if problem.by_force else problem.load
+    coarse = Problem(coarse_space, pooled, load, problem.by_force, 2 * problem.cap)
+    found = ActiveSet(coarse, COARSE_RTOL).solve(_coarse_start(coarse))
+    pressure = found.pressure.reshape(coarse_space.shape) / 2
+    return np.repeat(np.repeat(pressure, 2, axis=0), 2, axis=1)[:ny, :nx].ravel()
 
 
 def _pool_minimum(clearance):

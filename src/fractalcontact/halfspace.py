@@ -9,6 +9,13 @@ from functools import cached_property
 import numpy as np
 from scipy import fft
 
+from . import threads
+from .screening import ContactInverse
+
+#: Columns transformed at a time: few enough to stay near the processor, from zero padding to the
+#: rows that are wanted.
+COLUMNS = 64
+
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
 RIGID_PLATE_SELF_TERMS = {
@@ -113,6 +120,27 @@ class HalfSpace:
         self.cell = float(np.sqrt(dy * dx))
         self._padded = (fft.next_fast_len(2 * ny - 1), fft.next_fast_len(2 * nx - 1, real=True))
 
+    def __eq__(self, other):
+        if not isinstance(other, HalfSpace):
+            return NotImplemented
+        return self._key == other._key
+
+    def __hash__(self):
+        return hash(self._key)
+
+    @property
+    def _key(self):
+        return self.shape, self.spacing, self.modulus, self.kernel
+
+    def __getstate__(self):
+        kept = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
+        return {name: self.__dict__[name] for name in kept}
+
+    @cached_property
+    def inverse(self):
+        """Approximate inverse of K on a contact set, kept because the next set is much the same."""
+        return ContactInverse(self)
+
     @property
     def cell_area(self):
         """Area of one cell, mm2."""
@@ -123,38 +151,55 @@ class HalfSpace:
         return self.convolve(np.asarray(pressure, float)) * (self.cell / self.modulus)
 
     def influence(self):
-        """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx)."""
+        """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only."""
+        return self._influence
+
+    @cached_property
+    def _influence(self):
         dy, dx = (d / self.cell for d in self.spacing)
         y = np.arange(self.shape[0])[:, None] * dy
         x = np.arange(self.shape[1])[None, :] * dx
         if self.kernel == "love":
-            return love_displacement(x, y, dx, dy)
-        distance = np.hypot(x, y)
-        distance[0, 0] = 1.0
-        influence = 1 / (np.pi * distance)
-        influence[0, 0] = RIGID_PLATE_SELF_TERMS[self.kernel]
+            influence = love_displacement(x, y, dx, dy)
+        else:
+            distance = np.hypot(x, y)
+            distance[0, 0] = 1.0
+            influence = 1 / (np.pi * distance)
+            influence[0, 0] = RIGID_PLATE_SELF_TERMS[self.kernel]
+        influence.flags.writeable = False
         return influence
 
+    def coarser(self, factor):
+        """The same half-space on cells ``factor`` times as long and as wide, covering the window.
+
+        Distances counted in cells are the same, and so is the influence.
+        """
+        shape = tuple(-(-n // factor) for n in self.shape)
+        sides = tuple(factor * d for d in self.spacing)
+        coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
+        coarse._influence = self.influence()[: shape[0], : shape[1]]
+        return coarse
+
     def convolve(self, values):
-        """Dimensionless operator K: (ny, nx) to (ny, nx), in the precision of ``values``.
+        """Dimensionless operator K: (..., ny, nx) to (..., ny, nx), in the precision of ``values``.
 
         The transforms skip what zero padding makes known: rows are transformed before the columns
         are padded, and only the wanted rows are transformed back.
         """
         (ny, nx), (padded_y, padded_x) = self.shape, self._padded
-        single = values.dtype == np.float32
-        spectrum = self._spectrum_single if single else self._spectrum
-        work = fft.rfft(values, n=padded_x, axis=1)
-        work = fft.fft(work, n=padded_y, axis=0, overwrite_x=True)
-        work *= spectrum
-        work = fft.ifft(work, axis=0, overwrite_x=True)[:ny]
-        return fft.irfft(work, n=padded_x, axis=1)[:, :nx]
+        spectrum = self._spectrum_single if values.dtype == np.float32 else self._spectrum
+        work = fft.rfft(values, n=padded_x, axis=-1, workers=threads.count())
+        width = work.shape[-1]
 
-    def precondition(self, values):
-        """Approximate inverse of K: the half-space's own |q|/2 on the unpadded grid."""
-        transform = fft.rfft2(values)
-        transform *= self._wavenumber.astype(values.dtype, copy=False)
-        return fft.irfft2(transform, s=self.shape)
+        def columns(first, last):
+            for k in range(first, last):
+                some = slice(k * COLUMNS, min((k + 1) * COLUMNS, width))
+                column = fft.fft(work[..., some], n=padded_y, axis=-2)
+                column *= spectrum[:, some]
+                work[..., some] = fft.ifft(column, axis=-2, overwrite_x=True)[..., :ny, :]
+
+        threads.in_parts(columns, -(-width // COLUMNS), smallest=2)
+        return fft.irfft(work, n=padded_x, axis=-1, workers=threads.count())[..., :nx]
 
     @cached_property
     def _spectrum(self):
@@ -169,13 +214,3 @@ class HalfSpace:
     @cached_property
     def _spectrum_single(self):
         return self._spectrum.astype(np.float32)
-
-    @cached_property
-    def _wavenumber(self):
-        (ny, nx), (dy, dx) = self.shape, (d / self.cell for d in self.spacing)
-        qy = 2 * np.pi * fft.fftfreq(ny, dy)[:, None]
-        qx = 2 * np.pi * fft.rfftfreq(nx, dx)[None, :]
-        half = np.hypot(qy, qx) / 2
-        # A uniform pressure settles the window by its mean deflection, not by infinity.
-        half[0, 0] = 1 / rectangle_mean_displacement(ny * dy, nx * dx)
-        return half.astype(np.float32)

@@ -1,0 +1,315 @@
+"""Active-set iteration for the contact problem: pressures between bounds, an unknown closure.
+
+With the gap g = K p + c - w at the nodes (c the clearance at first touch), a state of contact has
+0 <= p <= H, and g = 0 where p lies between, g >= 0 where p = 0, g <= 0 where p = H. That is the
+minimum of a strictly convex quadratic between bounds. The set of a correction is the nodes between
+the bounds and those at a bound that the gap pulls off it. Its first step is a whole one of the
+approximate inverse of K (`screening`), clipped at the bounds, so that nodes leave the set in the
+same application of K that moves the others; conjugate gradients follow on those that stay.
+Directions and their images are in single precision; what is returned was judged on a displacement
+in double precision.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numba import njit
+
+from .set_equations import CLIPPING_PASSES, Operator, SetEquations
+
+# Corrections of the contact set before the solver gives up: trials needed at most some twenty.
+MAX_CORRECTIONS = 200
+# The linear solve for a set is stopped at this share of its first residual, as the set will change.
+REDUCTION = 0.3
+# Where a given force has no state after so many corrections, closures are given instead: with a
+# free closure the set was seen to swing for ever on combs and checkerboards, with a given one not.
+PATIENCE = 30
+# Closures tried in search of one force; Newton's method needs about five.
+MAX_CLOSURES = 50
+# Aim this far below the tolerance, so that one correction too many is rarer than one too few.
+SAFETY = 0.3
+# Single precision carries a correction no further down than this share of its right side.
+SINGLE_REACHES = 1e-5
+# A total this close to F is F.
+FORCE_ROUNDING = 1e-12
+# Stiffness: its error is of second order in this residual.
+TANGENT_RESIDUAL = 1e-4
+
+
+@dataclass
+class Problem:
+    """What is pressed, in units in which loads are near one.
+
+    Attributes
+    ----------
+    space : HalfSpace
+    clearance : (n,) ndarray
+        c at every node, flattened.
+    load : float
+        The closure, or the sum of the pressures.
+    by_force : bool
+        Which of the two.
+    cap : float
+        Largest pressure, or infinity.
+    """
+
+    space: object
+    clearance: np.ndarray
+    load: float
+    by_force: bool
+    cap: float = np.inf
+
+    def first_touch(self):
+        """The given force on the nodes that touch first, where nothing better is known.
+
+        Forces so small that the depths of all other nodes drown theirs leave no other start.
+        """
+        touching = self.clearance == 0
+        return touching * (self.load / np.count_nonzero(touching))
+
+
+@dataclass
+class Solution:
+    """A pressure within its bounds, and how far it is from a state of contact.
+
+    Attributes
+    ----------
+    pressure, displacement : (n,) ndarray
+    closure : float
+    residual : float
+        Largest violation of the contact conditions, share of the closure.
+    applications : int
+        Applications of K, in either precision.
+    """
+
+    pressure: np.ndarray
+    displacement: np.ndarray
+    closure: float
+    residual: float
+    applications: int
+
+
+class ActiveSet:
+    """The iteration, from any start to a verified solution.
+
+    Parameters
+    ----------
+    problem : Problem
+    rtol : float
+        Largest violation allowed, share of the closure.
+    """
+
+    def __init__(self, problem, rtol):
+        self.problem, self.rtol = problem, rtol
+        self.operator = Operator(problem.space)
+
+    def solve(self, pressure, displacement=None):
+        """Iterate until a state is verified or patience ends; the caller checks the residual.
+
+        Parameters
+        ----------
+        pressure : (n,) ndarray
+            Where to start; may violate the bounds.
+        displacement : (n,) ndarray, optional
+            K of it, where known.
+
+        Returns
+        -------
+        Solution
+        """
+        problem = self.problem
+        pressure, displacement = self._loaded(pressure, displacement)
+        if displacement is None:
+            displacement = self.operator(pressure.astype(np.float32)).astype(float)
+        closure = self._mean_gap(pressure, displacement) if problem.by_force else problem.load
+        for correction in range(MAX_CORRECTIONS):
+            examined = self._examine(pressure, displacement, closure)
+            if examined.worst <= self.rtol * abs(closure):
+                solution = self._verified(pressure, closure)
+                if solution.residual <= self.rtol:
+                    return solution
+                pressure, displacement = solution.pressure, solution.displacement
+                closure = solution.closure
+                examined = self._examine(pressure, displacement, closure)
+            self.operator.inverse.update(examined.free, fresh=correction == 0)
+            pressure, displacement, closure = self._correct(
+                pressure, displacement, closure, examined
+            )
+            if problem.by_force and correction == PATIENCE:
+                return self._by_closures(self._verified(pressure, closure))
+        return self._verified(pressure, closure)
+
+    def _by_closures(self, solution):
+        """The state of the given force as that of a closure, found by Newton's method on F(w)."""
+        problem, low, high = self.problem, 0.0, np.inf
+        closure = solution.closure
+        for _ in range(MAX_CLOSURES):
+            given = replace(problem, load=closure, by_force=False)
+            search = ActiveSet(given, SAFETY * self.rtol)
+            solution = search.solve(solution.pressure, solution.displacement)
+            self.operator.applications += search.operator.applications
+            total = solution.pressure.sum()
+            if abs(total / problem.load - 1) <= SAFETY * self.rtol:
+                break
+            low, high = (closure, high) if total < problem.load else (low, closure)
+            slope, _ = stiffness(given, solution.pressure, self.operator)
+            closure += (problem.load - total) / slope if slope > 0 else np.inf
+            if not low < closure < high:
+                closure = (low + min(high, 4 * low + 1)) / 2
+        return self._verified(solution.pressure, solution.closure)
+
+    def _examine(self, pressure, displacement, closure):
+        problem = self.problem
+        return Examined(*_examine(pressure, displacement, problem.clearance, closure, problem.cap))
+
+    def _loaded(self, pressure, displacement):
+        """The start, scaled to the force where that is given."""
+        problem = self.problem
+        if not problem.by_force:
+            return pressure, displacement
+        total = np.maximum(pressure, 0.0).sum()
+        if not total > 0:
+            return problem.first_touch(), None
+        factor = problem.load / total
+        return pressure * factor, None if displacement is None else displacement * factor
+
+    def _mean_gap(self, pressure, displacement):
+        """The closure that a given force leaves open: it makes the mean gap in contact vanish."""
+        between = (pressure > 0) & (pressure < self.problem.cap)
+        if not between.any():
+            between = pressure > 0
+        return (displacement[between] + self.problem.clearance[between]).mean()
+
+    def _verified(self, pressure, closure):
+        """The pressure put within its bounds, with a displacement in double precision."""
+        problem = self.problem
+        pressure = np.clip(pressure, 0.0, problem.cap)
+        lacking = 0.0
+        if problem.by_force:
+            if not pressure.any():
+                pressure = problem.first_touch()
+            pressure = _with_total(pressure, problem.load, problem.cap)
+            lacking = abs(1 - pressure.sum() / problem.load)
+        displacement = self.operator(pressure)
+        if problem.by_force:
+            closure = self._mean_gap(pressure, displacement)
+        worst = self._examine(pressure, displacement, closure).worst
+        residual = max(worst / abs(closure), lacking)
+        return Solution(pressure, displacement, closure, residual, self.operator.applications)
+
+    def _correct(self, pressure, displacement, closure, examined):
+        """Pressure, displacement and closure after one correction of the set."""
+        problem, free, beyond = self.problem, examined.free, examined.beyond
+        gap = displacement[free] + problem.clearance[free] - closure
+        bound = np.where(pressure[beyond] < 0, 0.0, problem.cap)
+        back = bound - pressure[beyond]
+        lacking = problem.load - pressure.sum() - back.sum() if problem.by_force else None
+        scale = max(
+            np.abs(gap).max(initial=0.0),
+            np.abs(back).max(initial=0.0),
+            0.0 if lacking is None else abs(lacking) / max(free.size, 1),
+            np.finfo(float).tiny,
+        )
+        equations = SetEquations(self.operator, free, -gap / scale)
+        goal = max(REDUCTION, SINGLE_REACHES, SAFETY * self.rtol * abs(closure) / scale)
+        start = pressure[free] / scale
+        wanted = None if lacking is None else start.sum() + lacking / scale
+        equations.clipped_step(start, problem.cap / scale, beyond, back / scale, wanted)
+        equations.conjugate_gradients(goal, by_force=problem.by_force)
+        pressure = pressure.copy()
+        pressure[beyond] = bound
+        pressure[free] += scale * equations.solution.astype(float)
+        # Exactly at the bound, where rounding leaves them next to it.
+        pressure[free[equations.at_zero]] = 0.0
+        pressure[free[equations.at_cap]] = problem.cap
+        return pressure, displacement + scale * equations.image, closure + scale * equations.common
+
+
+@dataclass(frozen=True)
+class Examined:
+    """What the contact conditions say of a pressure: see :func:`_examine`."""
+
+    free: np.ndarray
+    beyond: np.ndarray
+    worst: float
+
+
+def stiffness(problem, pressure, operator):
+    """Sum of q with K q = 1 on the nodes between the bounds: dF/dw in the problem's units.
+
+    Parameters
+    ----------
+    problem : Problem
+    pressure : (n,) ndarray
+        Of a state of contact.
+    operator : Operator
+
+    Returns
+    -------
+    stiffness, error : float
+        0 without such nodes. ``error`` estimates the relative error, of second order in the
+        residual of the equations.
+
+    Notes
+    -----
+    For an approximate q with residual r = 1 - K q, sum(q) + r.q errs by r.K^-1 r only.
+    """
+    free = np.flatnonzero((pressure > 0) & (pressure < problem.cap)).astype(np.int32)
+    if free.size == 0:
+        return 0.0, 0.0
+    operator.inverse.update(free, fresh=True)
+    equations = SetEquations(operator, free, np.ones(free.size))
+    equations.conjugate_gradients(TANGENT_RESIDUAL, by_force=False)
+    residual, q = equations.residual.astype(float), equations.solution.astype(float)
+    value = q.sum() + residual @ q
+    return value, float(residual @ operator.inverse(equations.residual)) / value
+
+
+def _with_total(pressure, total, cap):
+    """Pressure scaled to a total, none above the cap."""
+    for _ in range(CLIPPING_PASSES):
+        lacking = total - pressure.sum()
+        below = pressure < cap
+        part = pressure[below].sum()
+        if abs(lacking) <= FORCE_ROUNDING * total or part == 0:
+            break
+        pressure = np.where(below, np.minimum(pressure * (1 + lacking / part), cap), pressure)
+    return pressure
+
+
+@njit(cache=True)
+def _examine(pressure, displacement, clearance, closure, cap):
+    """What the contact conditions say of every node.
+
+    Returns
+    -------
+    free : (n,) int32 ndarray
+        Nodes on which the gap is to vanish.
+    beyond : (m,) int32 ndarray
+        Nodes whose pressure is beyond a bound.
+    worst : float
+        Largest violation: of a gap condition, or of a bound (as a node's pressure displaces it by
+        about itself in these units).
+    """
+    free = np.empty(pressure.size, np.int32)
+    beyond = np.empty(pressure.size, np.int32)
+    n, m, worst = 0, 0, 0.0
+    for i in range(pressure.size):
+        p = pressure[i]
+        if p < 0 or p > cap:
+            beyond[m] = i
+            m += 1
+            worst = max(worst, -p if p < 0 else p - cap)
+            continue
+        gap = displacement[i] + clearance[i] - closure
+        if p == 0:
+            off = -gap
+        elif p == cap:
+            off = gap
+        else:
+            off = abs(gap)
+        if off > 0 or (p > 0 and p < cap):
+            free[n] = i
+            n += 1
+            worst = max(worst, off)
+    return free[:n].copy(), beyond[:m].copy(), worst

@@ -1,0 +1,277 @@
+"""Correction of an approximate inverse for smooth pressures, on a coarse grid.
+
+The correction is balancing (Mandel, Comm. Numer. Methods Eng. 9 (1993) 233): what a few hat
+functions on the contact set can resolve is solved with the elastic operator between them, and only
+what is left goes to the approximate inverse. With P the bilinear interpolation from a coarse grid
+to the contact set, the hats there are Z = P Y, and the operator is taken as P K_c P' + D: K_c on
+the coarse grid, D what is then missing of each node's displacement under its own load. Numbers are
+small here, and loops are compiled: a library of linear algebra would set its own threads spinning
+beside those of the transforms.
+"""
+
+import numpy as np
+from numba import njit
+
+#: A coarse cell is this many fine ones across, or so much larger by powers of two that the coarse
+#: grid has no more than COARSE cells along a side.
+FINEST_STEP, COARSE = 8, 64
+#: Fine cells between hat functions; the factor is right about what varies within them.
+HAT_SPACING = 80
+#: Most hat functions along a side: their number squared is the size of a dense matrix.
+MOST_HATS = 17
+#: Added to the coarse matrix, shares of each and of its largest diagonal: hats that hold few nodes
+#: may nearly coincide.
+RIDGE, LEAST_RIDGE = 1e-4, 1e-6
+#: Change of the set's size beyond which the coarse operator is made anew.
+LAG = 0.1
+
+
+class SmoothCorrection:
+    """The coarse operator on a contact set.
+
+    Parameters
+    ----------
+    space : HalfSpace
+    """
+
+    def __init__(self, space):
+        step = FINEST_STEP
+        while max(space.shape) > COARSE * step:
+            step *= 2
+        self._coarse = space.coarser(step)
+        self._step, self._nx = step, space.shape[1]
+        # A load on a coarse cell is a pressure 1/step^2 of it there, on cells step times as wide.
+        self._factor = np.float32(1 / step)
+        near = np.zeros((2, 2))
+        known = self._coarse.influence()[:2, :2]
+        near[: known.shape[0], : known.shape[1]] = known
+        self._near = (near * self._factor).astype(np.float32)
+        self._own = np.float32(space.influence()[0, 0])
+        self._hats = _hats(self._coarse, max(space.shape))
+        self._size = 0
+
+    def update(self, rows, fresh):
+        """Take another contact set; the operator is made anew if it is ``fresh`` or much larger.
+
+        Parameters
+        ----------
+        rows : (n,) int32 ndarray
+            Nodes as numbers of cells.
+        fresh : bool
+        """
+        self._place, self._share = _interpolation(rows, self._nx, self._step, *self._coarse.shape)
+        self._missing = _missing(self._share, self._near, self._own)
+        if fresh or abs(rows.size - self._size) > LAG * self._size:
+            self._size = rows.size
+            self._make_operator()
+
+    def _make_operator(self):
+        shape = self._coarse.shape
+        plain, own = _masses(self._place, self._share, self._missing, *shape)
+        hats = self._hats.reshape(-1, *shape)
+        loads = _nine_points(plain, hats)
+        images = self._coarse.convolve(loads) * self._factor
+        self._images = images.reshape(len(hats), -1)
+        matrix = _products(loads.reshape(len(hats), -1), self._images)
+        matrix += _products(_nine_points(own, hats).reshape(len(hats), -1), self._hats)
+        self._inverse = _ridged_inverse(matrix)
+
+    def balance(self, residual, inverse):
+        """The approximate inverse, corrected; symmetric and positive definite if it is.
+
+        Parameters
+        ----------
+        residual : (n,) float32 ndarray
+        inverse : callable
+            From (n,) float32 to (n,) float32.
+
+        Returns
+        -------
+        (n,) float32 ndarray
+        """
+        mesh = self._place, self._share, self._missing
+        loads, _ = _gather(*mesh, residual, self._hats.shape[1])
+        first = times(self._inverse, times(self._hats, loads))
+        smooth = _combined(self._hats, first)
+        fine = inverse(_less_displacement(*mesh, residual, _combined(self._images, first), smooth))
+        loads, own = _gather(*mesh, fine, self._hats.shape[1])
+        second = times(self._inverse, times(self._images, loads) + times(self._hats, own))
+        _add_interpolated(*mesh, smooth - _combined(self._hats, second), fine)
+        return fine
+
+
+def _hats(coarse, cells):
+    """(hats, coarse cells): bilinear hats spread evenly along ``cells`` of the longer side."""
+    sides = [n * d for n, d in zip(coarse.shape, coarse.spacing, strict=True)]
+    spacing = max(sides) / (min(round(cells / HAT_SPACING) + 1, MOST_HATS) - 1)
+    along = []
+    for n, side in zip(coarse.shape, sides, strict=True):
+        knots = max(2, round(side / spacing) + 1)
+        at = (np.arange(n) + 0.5) / n * (knots - 1)
+        along.append(np.maximum(0, 1 - np.abs(at - np.arange(knots)[:, None])))
+    hats = np.einsum("ay,bx->abyx", *along)
+    return np.ascontiguousarray(hats.reshape(-1, coarse.shape[0] * coarse.shape[1]), np.float32)
+
+
+@njit(cache=True)
+def _interpolation(rows, nx, step, coarse_y, coarse_x):
+    """The four coarse cells between which each node lies, and its share in each."""
+    place = np.empty((rows.size, 4), np.int32)
+    share = np.empty((rows.size, 4), np.float32)
+    for i in range(rows.size):
+        y = min(max((rows[i] // nx + 0.5) / step - 0.5, 0.0), coarse_y - 1.0)
+        x = min(max((rows[i] % nx + 0.5) / step - 0.5, 0.0), coarse_x - 1.0)
+        low_y, low_x = min(int(y), max(coarse_y - 2, 0)), min(int(x), max(coarse_x - 2, 0))
+        high_y, high_x = min(low_y + 1, coarse_y - 1), min(low_x + 1, coarse_x - 1)
+        y -= low_y
+        x -= low_x
+        place[i, 0], share[i, 0] = low_y * coarse_x + low_x, (1 - y) * (1 - x)
+        place[i, 1], share[i, 1] = low_y * coarse_x + high_x, (1 - y) * x
+        place[i, 2], share[i, 2] = high_y * coarse_x + low_x, y * (1 - x)
+        place[i, 3], share[i, 3] = high_y * coarse_x + high_x, y * x
+    return place, share
+
+
+@njit(cache=True)
+def _missing(share, near, own):
+    """D: a node's displacement under its own load, less what the coarse grid has of it."""
+    missing = np.empty(share.shape[0], np.float32)
+    for i in range(missing.size):
+        a, b, c, d = share[i]
+        missing[i] = own - (
+            (a * a + b * b + c * c + d * d) * near[0, 0]
+            + 2 * (a * b + c * d) * near[0, 1]
+            + 2 * (a * c + b * d) * near[1, 0]
+            + 2 * (a * d + b * c) * near[1, 1]
+        )
+    return missing
+
+
+@njit(cache=True)
+def _masses(place, share, missing, coarse_y, coarse_x):
+    """P'P and P'DP: for every coarse cell its products with the eight around it and itself."""
+    plain = np.zeros((3, 3, coarse_y * coarse_x), np.float32)
+    own = np.zeros((3, 3, coarse_y * coarse_x), np.float32)
+    for i in range(place.shape[0]):
+        for a in range(4):
+            y, x = place[i, a] // coarse_x, place[i, a] % coarse_x
+            for b in range(4):
+                dy, dx = place[i, b] // coarse_x - y, place[i, b] % coarse_x - x
+                product = share[i, a] * share[i, b]
+                plain[dy + 1, dx + 1, place[i, a]] += product
+                own[dy + 1, dx + 1, place[i, a]] += product * missing[i]
+    shape = (3, 3, coarse_y, coarse_x)
+    return plain.reshape(shape), own.reshape(shape)
+
+
+@njit(cache=True, fastmath=True)
+def _nine_points(stencil, fields):
+    """Such a matrix times fields on the coarse grid, (n, coarse_y, coarse_x)."""
+    out = np.zeros_like(fields)
+    ny, nx = fields.shape[1:]
+    for f in range(fields.shape[0]):
+        for y in range(ny):
+            for dy in range(-1 if y else 0, 2 if y < ny - 1 else 1):
+                for dx in range(-1, 2):
+                    for x in range(max(-dx, 0), min(nx - dx, nx)):
+                        out[f, y, x] += stencil[dy + 1, dx + 1, y, x] * fields[f, y + dy, x + dx]
+    return out
+
+
+@njit(cache=True, fastmath=True)
+def _products(rows, columns):
+    """rows columns', (n, n) float64; what is summed is float32."""
+    out = np.empty((rows.shape[0], columns.shape[0]))
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            total = np.float32(0)
+            for k in range(rows.shape[1]):
+                total += rows[i, k] * columns[j, k]
+            out[i, j] = total
+    return out
+
+
+@njit(cache=True, fastmath=True)
+def inverted(matrix):
+    """Inverse by elimination; a positive definite matrix needs no pivots."""
+    inverse = matrix.copy()
+    n = inverse.shape[0]
+    for k in range(n):
+        pivot = 1 / inverse[k, k]
+        inverse[k, k] = 1.0
+        for b in range(n):
+            inverse[k, b] *= pivot
+        for a in range(n):
+            if a != k:
+                factor = inverse[a, k]
+                inverse[a, k] = 0.0
+                for b in range(n):
+                    inverse[a, b] -= factor * inverse[k, b]
+    return inverse
+
+
+@njit(cache=True, fastmath=True)
+def _ridged_inverse(matrix):
+    """Inverse of the symmetric part with the ridge, float32."""
+    n = matrix.shape[0]
+    inverse = (matrix + matrix.T) / 2
+    largest = np.max(np.diag(inverse))
+    for k in range(n):
+        inverse[k, k] += RIDGE * inverse[k, k] + LEAST_RIDGE * largest
+    inverse = inverted(inverse)
+    return ((inverse + inverse.T) / 2).astype(np.float32)
+
+
+@njit(cache=True, fastmath=True)
+def times(matrix, values):
+    """matrix values."""
+    out = np.empty(matrix.shape[0], np.float32)
+    for i in range(out.size):
+        total = np.float32(0)
+        for j in range(values.size):
+            total += matrix[i, j] * values[j]
+        out[i] = total
+    return out
+
+
+@njit(cache=True, fastmath=True)
+def _combined(matrix, values):
+    """matrix' values."""
+    out = np.zeros(matrix.shape[1], np.float32)
+    for i in range(values.size):
+        for j in range(out.size):
+            out[j] += matrix[i, j] * values[i]
+    return out
+
+
+@njit(cache=True, fastmath=True)
+def _gather(place, share, missing, values, n):
+    """P' values and P' D values."""
+    plain, own = np.zeros(n, np.float32), np.zeros(n, np.float32)
+    for i in range(values.size):
+        for a in range(4):
+            part = share[i, a] * values[i]
+            plain[place[i, a]] += part
+            own[place[i, a]] += missing[i] * part
+    return plain, own
+
+
+@njit(cache=True, fastmath=True)
+def _less_displacement(place, share, missing, values, image, smooth):
+    """values - P image - D P smooth."""
+    out = np.empty(values.size, np.float32)
+    for i in range(values.size):
+        displacement, pressure = np.float32(0), np.float32(0)
+        for a in range(4):
+            displacement += share[i, a] * image[place[i, a]]
+            pressure += share[i, a] * smooth[place[i, a]]
+        out[i] = values[i] - displacement - missing[i] * pressure
+    return out
+
+
+@njit(cache=True, fastmath=True)
+def _add_interpolated(place, share, missing, field, values):
+    """values += P field."""
+    for i in range(values.size):
+        for a in range(4):
+            values[i] += share[i, a] * field[place[i, a]]
