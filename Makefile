@@ -1,5 +1,6 @@
 # make        environment, then the default study (config/paper.yaml)
 # make test   what the tests need, then the tests
+# make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make lint   ruff and snakefmt, changing nothing
 # make lock   new pins for every package (needs uv)
 
@@ -22,7 +23,7 @@ GUARD :=
 UNLOCK :=
 endif
 
-.PHONY: all study smoke test lint format lock clean
+.PHONY: all study smoke test bench lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -34,6 +35,10 @@ smoke:
 
 test: $(VENV)/tests-installed
 	$(BIN)/python -m pytest
+
+# Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
+bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
+	$(BIN)/python benchmarks/run.py $(BENCH)
 
 lint: $(VENV)/tests-installed
 	$(BIN)/ruff check .
@@ -57,6 +62,11 @@ $(VENV)/installed: requirements.lock pyproject.toml | $(VENV)/bin/python
 
 $(VENV)/tests-installed: requirements-test.lock $(VENV)/installed
 	$(PIP) install --require-hashes --compile -r requirements-test.lock
+	@touch $@
+
+# Not locked: nothing of the study depends on them, and pip leaves what is pinned as it is.
+$(VENV)/peers-installed: pyproject.toml $(VENV)/installed
+	$(PIP) install --no-build-isolation -e '.[peers]'
 	@touch $@
 
 COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet pyproject.toml

@@ -10,8 +10,8 @@ import itertools
 import numpy as np
 from scipy import linalg
 
-from ..contact import checked_load, unloaded_state
-from .common import checked_state
+from ..contact import checked_hardness, checked_load, unloaded_state
+from .common import checked_state, influence_matrix
 
 # Pressures and gaps smaller than this share of the largest pressure and of the closure are zero:
 # the rounding of a Cholesky solution, which must not count as tension or penetration.
@@ -23,9 +23,13 @@ PATIENCE = 10
 MAX_CLOSURES = 100
 # Contact sets solved for at one closure before giving up: finite in theory, this in practice.
 MAX_SETS = 10_000
+# What a node can be: its pressure zero, its gap zero, or its pressure at the hardness.
+OPEN, CLOSED, CAPPED = 0, 1, 2
 
 
-def solve_contact(composite, space, *, closure=None, force=None, rtol=1e-9):
+def solve_contact(
+    composite, space, *, closure=None, force=None, start=None, rtol=1e-9, hardness=None
+):
     """Press a composite topography against a rigid plane; direct and exact but for rounding.
 
     Parameters
@@ -38,8 +42,12 @@ def solve_contact(composite, space, *, closure=None, force=None, rtol=1e-9):
         w, mm, from first touch. Either this or ``force`` is given.
     force : float, optional
         F, N.
+    start : ContactState, optional
+        Its contact set is the first one tried.
     rtol : float
-        Largest violation allowed of the contact conditions in the final check by summation.
+        Largest violation allowed of the contact conditions in the final check.
+    hardness : float, optional
+        Largest pressure, MPa.
 
     Returns
     -------
@@ -55,59 +63,64 @@ def solve_contact(composite, space, *, closure=None, force=None, rtol=1e-9):
 
     Notes
     -----
-    J. J. Judice & F. M. Pires, Comput. Oper. Res. 21 (1994) 587; K. G. Murty, Linear Algebra Appl.
-    20 (1978) 263. Under a given force every set yields, with its closure unknown, the bordered
-    system [K -1; 1' 0] [p; w] = [-c; F], solved here by elimination of p.
+    J. J. Judice & F. M. Pires, Comput. Oper. Res. 21 (1994) 587, and for two bounds J. Optim.
+    Theory Appl. 74 (1992) 487; K. G. Murty, Linear Algebra Appl. 20 (1978) 263. Under a given force
+    every set yields, with its closure unknown, the bordered system [K -1; 1' 0] [p; w] = [-c; F],
+    solved here by elimination of p.
     """
     height = np.asarray(composite, float)
-    load = checked_load(height, space, closure, force, None, rtol)
+    load = checked_load(height, space, closure, force, start, rtol)
+    limit = checked_hardness(hardness, space, force)
     clearance = height.max() - height
     if load == 0:
         return unloaded_state(space, clearance)
+    status = np.full(space.shape, OPEN)
+    if start is not None:
+        status[start.pressure > 0] = CLOSED
     if force is None:
-        contact, values, sets = _pivot(space, clearance, load, clearance < load)
+        if start is None:
+            status[clearance < load] = CLOSED
+        pressure, _, sets = _pivot(space, clearance, load, status, limit)
     else:
-        contact, values, load, sets = _find_closure(space, clearance, load)
-    pressure = np.zeros(space.shape)
-    pressure[contact] = np.maximum(values, 0.0)
+        pressure, load, sets = _find_closure(space, clearance, load, status, limit)
     return checked_state(
         space,
         clearance,
-        pressure,
+        pressure.clip(0.0, limit),
         load,
         force=force,
         iterations=sets,
         rtol=rtol,
         reason=f"pivoting stopped after {sets} contact sets",
+        hardness=limit,
     )
 
 
-def _influence_matrix(space, rows, columns):
-    """Displacement in mm at the nodes ``rows`` under unit pressure at the nodes ``columns``."""
-    influence = space.influence() * (space.cell / space.modulus)
-    (row_y, row_x), (column_y, column_x) = np.nonzero(rows), np.nonzero(columns)
-    return influence[
-        np.abs(row_y[:, None] - column_y[None, :]),
-        np.abs(row_x[:, None] - column_x[None, :]),
-    ]
-
-
-def _pivot(space, clearance, closure, contact):
-    """Contact set and its pressures at a closure, from a first guess of the set.
+def _pivot(space, clearance, closure, status, limit):
+    """Pressure at a closure, the status of every node, and the sets solved for, from a first guess.
 
     As u >= 0, only nodes with d > 0 can touch: the others are left out of the matrix.
     """
     candidates = clearance < closure
-    matrix = _influence_matrix(space, candidates, candidates)
+    matrix = influence_matrix(space, candidates, candidates)
     interference = (closure - clearance)[candidates]
-    inside = contact[candidates]
-    fewest, patience = inside.size + 1, PATIENCE
+    now = status[candidates]
+    fewest, patience = now.size + 1, PATIENCE
     for sets in itertools.count(1):
-        pressure = _solve(matrix[np.ix_(inside, inside)], interference[inside])
-        gap = matrix[np.ix_(~inside, inside)] @ pressure - interference[~inside]
-        wrong = np.zeros_like(inside)
-        wrong[inside] = pressure < -ROUNDING * np.abs(pressure).max(initial=0.0)
-        wrong[~inside] = gap < -ROUNDING * closure
+        closed, capped = now == CLOSED, now == CAPPED
+        pressure = np.where(capped, limit, 0.0)
+        pressure[closed] = _solve(
+            matrix[np.ix_(closed, closed)],
+            interference[closed] - _capped(matrix, closed, capped, limit),
+        )
+        gap = matrix @ pressure - interference
+        largest, depth = ROUNDING * pressure.max(initial=0.0), ROUNDING * closure
+        next_status = now.copy()
+        next_status[closed & (pressure < -largest)] = OPEN
+        next_status[closed & (pressure > limit + largest)] = CAPPED
+        next_status[(now == OPEN) & (gap < -depth)] = CLOSED
+        next_status[capped & (gap > depth)] = CLOSED
+        wrong = next_status != now
         number = np.count_nonzero(wrong)
         if number == 0 or sets == MAX_SETS:
             break
@@ -117,10 +130,15 @@ def _pivot(space, clearance, closure, contact):
             patience -= 1
         else:
             wrong[: np.flatnonzero(wrong)[-1]] = False
-        inside = inside ^ wrong
-    contact = np.zeros(space.shape, bool)
-    contact[candidates] = inside
-    return contact, pressure, sets
+        now = np.where(wrong, next_status, now)
+    status, whole = np.full(space.shape, OPEN), np.zeros(space.shape)
+    status[candidates], whole[candidates] = now, pressure
+    return whole, status, sets
+
+
+def _capped(matrix, rows, capped, limit):
+    """Displacement at the nodes ``rows`` under those at the hardness, if any."""
+    return limit * matrix[np.ix_(rows, capped)].sum(axis=1) if capped.any() else 0.0
 
 
 def _solve(matrix, right_side):
@@ -130,29 +148,43 @@ def _solve(matrix, right_side):
     return linalg.cho_solve(linalg.cho_factor(matrix, lower=True), right_side)
 
 
-def _find_closure(space, clearance, force):
-    """Contact set, pressures and closure under a force.
+def _find_closure(space, clearance, force, status, limit):
+    """Pressure, closure and number of sets under a force.
 
     F(w) is continuous, rising and linear while the set stays: the bordered system of the current
     set is Newton's step, exact on the right set; a bracket keeps it from going astray.
     """
     total = force / space.cell_area
     low, high = 0.0, np.inf
-    contact = clearance == 0
+    if not (status == CLOSED).any():
+        status = np.where(clearance == 0, CLOSED, OPEN)
     sets = 0
     for _ in range(MAX_CLOSURES):
-        matrix = _influence_matrix(space, contact, contact)
-        right_sides = np.column_stack([np.ones(len(matrix)), clearance[contact]])
-        per_closure, at_zero = _solve(matrix, right_sides).sum(axis=0)
-        closure = (total + at_zero) / per_closure
+        closure = _closure_of_set(space, clearance, total, status, limit)
         if not low < closure < high:
-            closure = (low + high) / 2
-        contact, values, more = _pivot(space, clearance, closure, contact)
+            closure = (low + high) / 2 if np.isfinite(high) else 2 * low
+        pressure, status, more = _pivot(space, clearance, closure, status, limit)
         sets += more
-        if abs(values.sum() / total - 1) <= ROUNDING:
+        if abs(pressure.sum() / total - 1) <= ROUNDING:
             break
-        if values.sum() < total:
+        if pressure.sum() < total:
             low = closure
         else:
             high = closure
-    return contact, values, closure, sets
+    return pressure, closure, sets
+
+
+def _closure_of_set(space, clearance, total, status, limit):
+    """Closure at which a set carries the sum ``total``, NaN where it has no closed node."""
+    closed, capped = status == CLOSED, status == CAPPED
+    if not closed.any():
+        return np.nan
+    matrix = influence_matrix(space, closed, closed)
+    fixed = clearance[closed]
+    if capped.any():
+        fixed = fixed + limit * influence_matrix(space, closed, capped).sum(axis=1)
+        total = total - limit * np.count_nonzero(capped)
+    per_closure, at_zero = _solve(matrix, np.column_stack([np.ones(len(matrix)), fixed])).sum(
+        axis=0
+    )
+    return (total + at_zero) / per_closure

@@ -12,6 +12,7 @@ from numba import njit
 
 from ..contact import checked_load, unloaded_state
 from .common import checked_state
+from .gauss_seidel import relieve
 
 # Sweeps on one set before giving up: 500 over all sets sufficed for 12,000 interpenetrating nodes.
 MAX_SWEEPS = 5000
@@ -19,7 +20,9 @@ MAX_SWEEPS = 5000
 SAFETY = 0.3
 
 
-def solve_contact(composite, space, *, closure=None, force=None, rtol=1e-6):
+def solve_contact(
+    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
+):
     """Press a composite topography against a rigid plane by dropping points in tension.
 
     Parameters
@@ -32,8 +35,12 @@ def solve_contact(composite, space, *, closure=None, force=None, rtol=1e-6):
         w, mm, from first touch.
     force : None
         Not offered: the paper imposes the closure.
+    start : ContactState, optional
+        Checked and not used: the procedure starts from all interpenetrating points.
     rtol : float
         Largest violation allowed of the contact conditions, as a share of the closure.
+    hardness : None
+        Not offered.
 
     Returns
     -------
@@ -43,14 +50,16 @@ def solve_contact(composite, space, *, closure=None, force=None, rtol=1e-6):
     Raises
     ------
     ValueError
-        If a force is given, or as `fractalcontact.solve_contact`.
+        If a force or a hardness is given, or as `fractalcontact.solve_contact`.
     NotConverged
         If Gauss-Seidel does not converge, or a dropped point is left interpenetrating.
     """
     if force is not None:
         raise ValueError("the paper's algorithm takes a closure only: give closure=, not force=")
+    if hardness is not None:
+        raise ValueError("the paper's algorithm knows no hardness: leave hardness= out")
     height = np.asarray(composite, float)
-    closure = checked_load(height, space, closure, None, None, rtol)
+    closure = checked_load(height, space, closure, None, start, rtol)
     clearance = height.max() - height
     if closure == 0:
         return unloaded_state(space, clearance)
@@ -92,8 +101,7 @@ def _gauss_seidel(influence, rows, columns, target, values, tolerance, max_sweep
     """
     left = target.copy()
     for s in range(rows.size):
-        for r in range(rows.size):
-            left[r] -= influence[abs(rows[r] - rows[s]), abs(columns[r] - columns[s])] * values[s]
+        relieve(influence, rows, columns, s, values[s], left)
     for sweep in range(max_sweeps + 1):
         worst = 0.0
         for r in range(rows.size):
@@ -103,6 +111,5 @@ def _gauss_seidel(influence, rows, columns, target, values, tolerance, max_sweep
         for s in range(rows.size):
             change = left[s] / influence[0, 0]
             values[s] += change
-            for r in range(rows.size):
-                left[r] -= influence[abs(rows[r] - rows[s]), abs(columns[r] - columns[s])] * change
+            relieve(influence, rows, columns, s, change, left)
     return max_sweeps + 1

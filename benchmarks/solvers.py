@@ -1,0 +1,331 @@
+"""Every solver behind one call: ours, the package's comparison methods, and the public codes.
+
+A solver is made for one scene. ``solve(reference, tolerance, previous)`` presses it to the
+reference's closure or force, whichever it controls, from ``previous`` (what the last call returned,
+or None for a cold start), and returns an `Answer`. ``applications()`` tells how many zero-padded
+convolutions the last call took; where counting costs time it is switched on by ``counting``.
+``likely`` is a tolerance near the one that reaches the benchmark's error at 512 x 512: the search
+for the best begins there, and ends at ``loosest``.
+"""
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+import numpy as np
+
+from fractalcontact import HalfSpace, NotConverged, solve_contact
+from fractalcontact.methods import METHODS
+
+
+class Failed(RuntimeError):
+    """The solver itself says that it did not converge."""
+
+
+@dataclass
+class Answer:
+    """Force and closure reached, and whatever the same solver can start from."""
+
+    force: float
+    closure: float
+    state: object = None
+
+
+class Solver:
+    """What the table needs of every solver; this is the part most of them share."""
+
+    runs_sweep = True
+    counting = False
+    loosest = 1e-2
+
+    def carries(self, scene):
+        """Whether a solve of this scene takes seconds rather than hours."""
+        return True
+
+    def complete(self, answer):
+        """Fill in, outside the clock, what the solver does not report itself."""
+
+    def coarse_applications(self):
+        """Convolutions of the last call on coarser grids, as shares of a full one by area."""
+        return 0.0
+
+
+class Ours(Solver):
+    """`fractalcontact.solve_contact`, at its default tolerance or, if it must be, a tighter one."""
+
+    likely = loosest = 1e-6
+
+    def __init__(self, scene, control):
+        self.name, self.control = f"fractalcontact ({control})", control
+        self.height, self.space = scene.height, scene.space
+        self.calls = {"full": 0, "coarse": 0.0}
+
+    def solve(self, reference, tolerance, previous):
+        """Press to the reference's closure or force."""
+        load = {self.control: getattr(reference, self.control)}
+        start = None if previous is None else previous.state
+        if start is None:
+            forget(self.space)
+        if self.counting:
+            with counted_convolutions(self.space.shape) as self.calls:
+                state = self._solve(load, start, tolerance)
+        else:
+            state = self._solve(load, start, tolerance)
+        # Its own count, or what was seen of it if that should be more.
+        self.work = max(state.iterations, self.calls["full"])
+        return Answer(state.force, state.closure, state)
+
+    def _solve(self, load, start, tolerance):
+        try:
+            return solve_contact(self.height, self.space, start=start, rtol=tolerance, **load)
+        except NotConverged as error:
+            raise Failed(str(error)) from error
+
+    def applications(self):
+        """Zero-padded convolutions of the last call."""
+        return self.work
+
+    def coarse_applications(self):
+        """Convolutions of the last call on coarser grids, as shares of a full one by area."""
+        return self.calls["coarse"]
+
+
+def forget(space):
+    """Drop what a half-space has kept of the last contact set: a cold solve must not find it."""
+    vars(space).pop("inverse", None)
+
+
+@contextmanager
+def counted_convolutions(shape):
+    """Count the fields convolved meanwhile: on grids of a shape, and on others as shares of it."""
+    counts, convolve = {"full": 0, "coarse": 0.0}, HalfSpace.convolve
+
+    def counted(space, values):
+        ny, nx = space.shape
+        fields = values.size // (ny * nx)
+        if space.shape == shape:
+            counts["full"] += fields
+        else:
+            counts["coarse"] += fields * (ny * nx) / (shape[0] * shape[1])
+        return convolve(space, values)
+
+    HalfSpace.convolve = counted
+    try:
+        yield counts
+    finally:
+        HalfSpace.convolve = convolve
+
+
+#: Interpenetrating nodes beyond which a single solve takes minutes or too much memory.
+LARGEST = {"dense": 6000, "paper": 12_000, "gauss-seidel": 12_000, "nnls": 12_000}
+#: The method whose `iterations` are convolutions.
+CONVOLVES = "polonsky-keer"
+
+
+class Method(Ours):
+    """A comparison method of the package; what it counts as work is its own."""
+
+    likely, loosest = 1e-5, 1e-2
+
+    def __init__(self, scene, control, method):
+        super().__init__(scene, control)
+        self.name, self.method = f"{method} ({control})", method
+        self.runs_sweep = method == CONVOLVES
+
+    def carries(self, scene):
+        """Whether no more nodes interpenetrate than the method can take."""
+        nodes = np.count_nonzero(scene.height.max() - scene.height < scene.closure)
+        return nodes <= LARGEST.get(self.method, np.inf)
+
+    def _solve(self, load, start, tolerance):
+        try:
+            return METHODS[self.method](
+                self.height, self.space, start=start, rtol=tolerance, **load
+            )
+        except NotConverged as error:
+            raise Failed(str(error)) from error
+
+    def applications(self):
+        """Zero-padded convolutions of the last call."""
+        return self.work if self.method == CONVOLVES else None
+
+
+class ContactMechanics(Solver):
+    """ContactMechanics, ``FreeFFTElasticHalfSpace`` with one of the optimisers it offers.
+
+    ``ccg``: ``NonSmoothContactSystem.minimize_proxy``, its Polonsky-Keer iteration at a given
+    offset (with ``external_force`` it took twice the time). ``dual`` and ``dual-lbfgs``:
+    ``dual_minimize_proxy``, constrained conjugate gradients without restart, or L-BFGS-B, for pixel
+    forces at a given offset. Tolerances are shares of the closure and of the mean pixel force in
+    contact. The package transforms with one thread; its parallelism is MPI's. Convolutions are
+    counted by wrapping ``evaluate_disp`` and ``evaluate_force`` of the substrate, which all of its
+    optimisers call.
+    """
+
+    control = "closure"
+    max_iterations = 500
+
+    def __init__(self, scene, optimiser):
+        from ContactMechanics import FreeFFTElasticHalfSpace
+        from ContactMechanics.Systems import NonSmoothContactSystem
+        from SurfaceTopography import Topography
+
+        self.name = f"ContactMechanics {optimiser} (closure)"
+        self.likely = 10**-4.5 if optimiser == "ccg" else 10**-5.5
+        self.optimiser, self.work = optimiser, None
+        shape = scene.height.shape
+        self.substrate = FreeFFTElasticHalfSpace(shape, 1.0, (1.0, 1.0))
+        # First touch at offset 0, so that its offset is our closure.
+        topography = Topography(scene.height - scene.height.max(), (1.0, 1.0))
+        self.system = NonSmoothContactSystem(self.substrate, topography)
+        self.evaluate = {
+            name: getattr(self.substrate, name) for name in ("evaluate_disp", "evaluate_force")
+        }
+
+    def solve(self, reference, tolerance, previous):
+        """Press to the reference's closure or force."""
+        self._count()
+        start = None if previous is None else previous.state
+        minimise = self._ccg if self.optimiser == "ccg" else self._dual
+        result = minimise(reference, tolerance, start)
+        if not result.success:
+            raise Failed(str(result.message))
+        forces = result.jac if self.optimiser == "ccg" else result.x
+        forces = np.reshape(forces, self.substrate.nb_grid_pts)
+        return Answer(float(forces.sum()), reference.closure, forces)
+
+    def _ccg(self, reference, tolerance, start):
+        padded = None
+        if start is not None:
+            padded = np.zeros(self.substrate.nb_domain_grid_pts)
+            padded[: start.shape[0], : start.shape[1]] = -start
+        nodes = reference.fraction * np.prod(self.substrate.nb_grid_pts)
+        return self.system.minimize_proxy(
+            offset=reference.closure,
+            initial_forces=padded,
+            pentol=tolerance * reference.closure,
+            forcetol=tolerance * reference.force / nodes,
+            thermotol=tolerance,
+            maxiter=self.max_iterations,
+        )
+
+    def _dual(self, reference, tolerance, start):
+        return self.system.dual_minimize_proxy(
+            offset=reference.closure,
+            init_force=np.zeros(self.substrate.nb_grid_pts) if start is None else start.copy(),
+            solver={"dual": "ccg-without-restart", "dual-lbfgs": "l-bfgs-b"}[self.optimiser],
+            gtol=tolerance * reference.closure,
+            maxiter=self.max_iterations,
+        )
+
+    def _count(self):
+        self.work = 0 if self.counting else None
+        for name, evaluate in self.evaluate.items():
+
+            def counted(*args, evaluate=evaluate, **options):
+                self.work += 1
+                return evaluate(*args, **options)
+
+            setattr(self.substrate, name, counted if self.counting else evaluate)
+
+    def applications(self):
+        """Zero-padded convolutions of the last call."""
+        return self.work
+
+
+class Tamaas(Solver):
+    """Tamaas, ``PolonskyKeerRey`` on its non-periodic operator ``dcfft``; force control only.
+
+    Its solver starts from ``model.traction``: zero for a cold start (it then spreads the load
+    evenly), what the load before left for a warm one. Its displacement is known up to a constant,
+    so the closure is evaluated from its pressure with its operator, outside the clock. The wheels
+    on PyPI have one thread. An iteration convolves twice, for gradient and step; iterations are
+    counted by a functional that adds nothing.
+    """
+
+    control = "force"
+    name = "Tamaas (force)"
+    likely = 10**-3.5
+    max_iterations = 500
+
+    def __init__(self, scene):
+        import tamaas
+
+        tamaas.set_log_level(tamaas.LogLevel.warning)
+        self.tamaas = tamaas
+        shape = scene.height.shape
+        self.model = tamaas.ModelFactory.createModel(
+            tamaas.model_type.basic_2d, [1.0, 1.0], list(shape)
+        )
+        # The operator takes over the modulus it finds when it is registered.
+        self.model.E, self.model.nu = 1.0, 0.0
+        tamaas.ModelFactory.registerNonPeriodic(self.model, "dcfft")
+        self.height = np.ascontiguousarray(scene.height)
+        self.counter = None
+
+    def solve(self, reference, tolerance, previous):
+        """Press to the reference's closure or force."""
+        self.model.traction[:] = 0.0 if previous is None else previous.state
+        solver = self.tamaas.PolonskyKeerRey(self.model, self.height, tolerance)
+        solver.setIntegralOperator("dcfft")
+        solver.max_iter = self.max_iterations
+        self.counter = _tamaas_counter(self.tamaas) if self.counting else None
+        if self.counting:
+            solver.addFunctionalTerm(self.counter)
+        # A mean pressure; the window's area is one.
+        reached = solver.solve(reference.force)
+        if not reached <= tolerance:
+            raise Failed(f"error {reached:.2g} after {self.max_iterations} iterations")
+        return Answer(float(self.model.traction.mean()), np.nan, np.array(self.model.traction))
+
+    def complete(self, answer):
+        """The closure of an answer, from the mean gap over the contact."""
+        displacement = np.zeros_like(answer.state)
+        self.model.operators["dcfft"](answer.state, displacement)
+        gap = displacement + self.height.max() - self.height
+        answer.closure = float(gap[answer.state > 0].mean())
+
+    def applications(self):
+        """Zero-padded convolutions of the last call."""
+        return 2 * self.counter.iterations
+
+
+def _tamaas_counter(tamaas):
+    class Counter(tamaas.Functional):
+        def __init__(self):
+            super().__init__()
+            self.iterations = 0
+
+        def computeGradF(self, variable, gradient):
+            self.iterations += 1
+
+        def computeF(self, variable, dual):
+            return 0.0
+
+    return Counter()
+
+
+def solvers_for(scene, *, methods, peers, every):
+    """The solvers that can carry a scene, ours first; peers only where they are installed.
+
+    Unless ``every`` one is wanted: ours, and the fastest of the peers.
+    """
+    chosen = [Ours(scene, "closure"), Ours(scene, "force")]
+    if methods and every:
+        chosen += [
+            Method(scene, control, method)
+            for method, control in [
+                ("polonsky-keer", "closure"),
+                ("polonsky-keer", "force"),
+                ("dense", "closure"),
+                ("paper", "closure"),
+                ("gauss-seidel", "closure"),
+                ("nnls", "closure"),
+            ]
+        ]
+    if peers and find_spec("ContactMechanics"):
+        optimisers = ("ccg", "dual", "dual-lbfgs") if every else ("dual",)
+        chosen += [ContactMechanics(scene, optimiser) for optimiser in optimisers]
+    if peers and every and find_spec("tamaas"):
+        chosen.append(Tamaas(scene))
+    return [solver for solver in chosen if solver.carries(scene)]
