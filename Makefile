@@ -1,6 +1,7 @@
 # make        environment, then the default study (config/paper.yaml)
 # make test   what the tests need, then the tests
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
+# make scenes SCENES=5000   so many random contact problems, each state verified
 # make lint   ruff and snakefmt, changing nothing
 # make lock   new pins for every package (needs uv)
 
@@ -23,7 +24,7 @@ GUARD :=
 UNLOCK :=
 endif
 
-.PHONY: all study smoke test bench lint format lock clean
+.PHONY: all study smoke test bench scenes lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -39,6 +40,10 @@ test: $(VENV)/tests-installed
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
+
+SCENES ?= 3000
+scenes: $(VENV)/tests-installed
+	SCENES=$(SCENES) $(BIN)/python -m pytest -q tests/test_scenes.py -k every_state
 
 lint: $(VENV)/tests-installed
 	$(BIN)/ruff check .

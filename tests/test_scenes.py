@@ -1,4 +1,9 @@
-"""Three hundred random contact problems, each state verified by a convolution of its own."""
+"""Three hundred random contact problems, each state verified by a convolution of its own.
+
+``make scenes SCENES=5000`` tries more.
+"""
+
+import os
 
 import numpy as np
 import pytest
@@ -7,10 +12,11 @@ from fractalcontact import NotConverged, solve_contact
 from fractalcontact.scenes import KINDS, PRESSED, random_scene, violation
 
 SEEDS = range(300)
+TRIED = int(os.environ.get("SCENES", len(SEEDS)))
 RTOL = 1e-6
 
 
-@pytest.mark.parametrize("first", range(0, 300, 10))
+@pytest.mark.parametrize("first", range(0, TRIED, 10))
 def test_every_state_is_verified(first):
     """Ten scenes at a time: one of every kind."""
     for seed in range(first, first + 10):
