@@ -15,6 +15,8 @@ from .screening import ContactInverse
 #: Columns transformed at a time: few enough to stay near the processor, from zero padding to the
 #: rows that are wanted.
 COLUMNS = 64
+#: On fewer cells than this a second thread costs more than it brings.
+THREADED_CELLS = 150_000
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
@@ -188,7 +190,8 @@ class HalfSpace:
         """
         (ny, nx), (padded_y, padded_x) = self.shape, self._padded
         spectrum = self._spectrum_single if values.dtype == np.float32 else self._spectrum
-        work = fft.rfft(values, n=padded_x, axis=-1, workers=threads.count())
+        workers = threads.count() if values.size >= THREADED_CELLS else 1
+        work = fft.rfft(values, n=padded_x, axis=-1, workers=workers)
         width = work.shape[-1]
 
         def columns(first, last):
@@ -198,8 +201,9 @@ class HalfSpace:
                 column *= spectrum[:, some]
                 work[..., some] = fft.ifft(column, axis=-2, overwrite_x=True)[..., :ny, :]
 
-        threads.in_parts(columns, -(-width // COLUMNS), smallest=2)
-        return fft.irfft(work, n=padded_x, axis=-1, workers=threads.count())[..., :nx]
+        blocks = -(-width // COLUMNS)
+        threads.in_parts(columns, blocks, smallest=2 if workers > 1 else blocks)
+        return fft.irfft(work, n=padded_x, axis=-1, workers=workers)[..., :nx]
 
     @cached_property
     def _spectrum(self):
