@@ -77,13 +77,14 @@ class SetEquations:
         self.at_zero = self.at_cap = np.zeros(free.size, bool)
         self.common = 0.0
 
-    def clipped_step(self, start, cap, beyond, back, total):
-        """The approximate inverse's whole step, clipped so that 0 <= start + x <= cap.
+    def clipped_step(self, start, bounds, beyond, back, total):
+        """The approximate inverse's whole step, clipped so that start + x keeps within bounds.
 
         ``back`` on the nodes ``beyond`` goes with it; with a ``total``, start + x has that sum.
         """
+        low, high = bounds
         aim = start + self.inverse(self.residual)
-        end = np.clip(aim, 0.0, cap)
+        end = np.clip(aim, low, high)
         if total is not None:
             ones = self.inverse(np.ones(self.free.size, np.float32)).astype(float)
             # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
@@ -91,14 +92,14 @@ class SetEquations:
             common = 0.0
             for _ in range(CLIPPING_PASSES):
                 missing = total - end.sum()
-                give = ones[(end > 0) & (end < cap)].sum()
+                give = ones[(end > low) & (end < high)].sum()
                 if abs(missing) <= 1e-7 * abs(total) or give <= 0:
                     break
                 common += missing / give
-                end = np.clip(aim + common * ones, 0.0, cap)
+                end = np.clip(aim + common * ones, low, high)
             self.residual += np.float32(common)
             self.common += common
-        self.at_zero, self.at_cap = end <= 0, end >= cap
+        self.at_zero, self.at_cap = end <= low, end >= high
         self.inside[self.at_zero | self.at_cap] = 0
         self.solution = (end - start).astype(np.float32)
         self.image += self.operator.on((self.free, self.solution), (beyond, back))
