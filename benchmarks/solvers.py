@@ -54,6 +54,7 @@ class Ours(Solver):
     """`fractalcontact.solve_contact`, at its default tolerance or, if it must be, a tighter one."""
 
     likely = loosest = 1e-6
+    press = staticmethod(solve_contact)
 
     def __init__(self, scene, control):
         self.name, self.control = f"fractalcontact ({control})", control
@@ -77,7 +78,7 @@ class Ours(Solver):
 
     def _solve(self, load, start, tolerance):
         try:
-            return solve_contact(self.height, self.space, start=start, rtol=tolerance, **load)
+            return self.press(self.height, self.space, start=start, rtol=tolerance, **load)
         except NotConverged as error:
             raise Failed(str(error)) from error
 
@@ -130,20 +131,13 @@ class Method(Ours):
     def __init__(self, scene, control, method):
         super().__init__(scene, control)
         self.name, self.method = f"{method} ({control})", method
+        self.press = METHODS[method]
         self.runs_sweep = method == CONVOLVES
 
     def carries(self, scene):
         """Whether no more nodes interpenetrate than the method can take."""
         nodes = np.count_nonzero(scene.height.max() - scene.height < scene.closure)
         return nodes <= LARGEST.get(self.method, np.inf)
-
-    def _solve(self, load, start, tolerance):
-        try:
-            return METHODS[self.method](
-                self.height, self.space, start=start, rtol=tolerance, **load
-            )
-        except NotConverged as error:
-            raise Failed(str(error)) from error
 
     def applications(self):
         """Zero-padded convolutions of the last call."""

@@ -158,7 +158,8 @@ class ActiveSet:
             if abs(total / problem.load - 1) <= SAFETY * self.rtol:
                 break
             low, high = (closure, high) if total < problem.load else (low, closure)
-            slope, _ = stiffness(given, solution.pressure, self.operator)
+            free = between_bounds(solution.pressure, problem.cap)
+            slope, _ = stiffness(self.operator, free)
             closure += (problem.load - total) / slope if slope > 0 else np.inf
             if not low < closure < high:
                 closure = (low + min(high, 4 * low + 1)) / 2
@@ -181,10 +182,10 @@ class ActiveSet:
 
     def _mean_gap(self, pressure, displacement):
         """The closure that a given force leaves open: it makes the mean gap in contact vanish."""
-        between = (pressure > 0) & (pressure < self.problem.cap)
-        if not between.any():
-            between = pressure > 0
-        return (displacement[between] + self.problem.clearance[between]).mean()
+        loaded = between_bounds(pressure, self.problem.cap)
+        if loaded.size == 0:
+            loaded = np.flatnonzero(pressure > 0)
+        return (displacement[loaded] + self.problem.clearance[loaded]).mean()
 
     def _verified(self, pressure, closure):
         """The pressure put within its bounds, with a displacement in double precision."""
@@ -242,27 +243,29 @@ class Examined:
     worst: float
 
 
-def stiffness(problem, pressure, operator):
-    """Sum of q with K q = 1 on the nodes between the bounds: dF/dw in the problem's units.
+def between_bounds(pressure, cap):
+    """Nodes whose pressure is neither zero nor at the cap, (n,) int32: those that keep gap 0."""
+    return np.flatnonzero((pressure > 0) & (pressure < cap)).astype(np.int32)
+
+
+def stiffness(operator, free):
+    """Sum of q with K q = 1 on some nodes: dF/dw of a state in which these lie between the bounds.
 
     Parameters
     ----------
-    problem : Problem
-    pressure : (n,) ndarray
-        Of a state of contact.
     operator : Operator
+    free : (n,) int32 ndarray
 
     Returns
     -------
     stiffness, error : float
-        0 without such nodes. ``error`` estimates the relative error, of second order in the
+        0 without nodes. ``error`` estimates the relative error, of second order in the
         residual of the equations.
 
     Notes
     -----
     For an approximate q with residual r = 1 - K q, sum(q) + r.q errs by r.K^-1 r only.
     """
-    free = np.flatnonzero((pressure > 0) & (pressure < problem.cap)).astype(np.int32)
     if free.size == 0:
         return 0.0, 0.0
     operator.inverse.update(free, fresh=True)

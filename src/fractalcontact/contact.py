@@ -82,9 +82,8 @@ class ContactState:
         NotConverged
             If it is not known to 1e-6.
         """
-        # The unit of pressure does not matter: only which nodes lie between the bounds.
-        problem = Problem(self.space, None, 1.0, by_force=False, cap=self.hardness)
-        value, error = active_set.stiffness(problem, self.pressure.ravel(), Operator(self.space))
+        free = active_set.between_bounds(self.pressure.ravel(), self.hardness)
+        value, error = active_set.stiffness(Operator(self.space), free)
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         return value * self.space.modulus * self.space.cell
@@ -143,9 +142,7 @@ def solve_contact(
     NotConverged
         If the conditions are not met to ``rtol``.
     """
-    height = np.asarray(composite, float)
-    load = checked_load(height, space, closure, force, start, rtol)
-    clearance = height.max() - height
+    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
     if load == 0:
         return unloaded_state(space, clearance)
     units = _Units(space, load, force is not None)
@@ -177,8 +174,17 @@ def checked_hardness(hardness, space, force):
     return float(hardness)
 
 
-def checked_load(height, space, closure, force, start, rtol):
-    """The closure or force given, after every argument of `solve_contact` was found sound."""
+def checked_problem(composite, space, closure, force, start, rtol):
+    """What `solve_contact` and the comparison methods are given, after it was found sound.
+
+    Returns
+    -------
+    load : float
+        The closure or the force.
+    clearance : (ny, nx) ndarray
+        Opening at first touch, mm.
+    """
+    height = np.asarray(composite, float)
     if height.shape != space.shape:
         raise ValueError(f"composite topography {height.shape} on a half-space of {space.shape}")
     if not np.isfinite(height).all():
@@ -193,7 +199,7 @@ def checked_load(height, space, closure, force, start, rtol):
         raise ValueError(f"start of shape {start.pressure.shape} for a grid of {space.shape}")
     if not 0 < rtol < 1:
         raise ValueError(f"rtol {rtol}: expected between 0 and 1")
-    return load
+    return load, height.max() - height
 
 
 def unloaded_state(space, clearance):

@@ -9,6 +9,18 @@ from ..contact import ContactState, NotConverged
 LARGEST_SUM = 3_000_000
 
 
+def refuse_force(method, force):
+    """Say that a method takes a closure only, if a force is given."""
+    if force is not None:
+        raise ValueError(f"{method} takes a closure only: give closure=, not force=")
+
+
+def refuse_hardness(method, hardness):
+    """Say that a method knows no hardness, if one is given."""
+    if hardness is not None:
+        raise ValueError(f"{method} knows no hardness: leave hardness= out")
+
+
 def influence_matrix(space, rows, columns):
     """Displacement at the nodes ``rows`` under unit pressure at the nodes ``columns``.
 
@@ -94,7 +106,7 @@ def checked_state(
     if np.count_nonzero(pressure) * pressure.size <= LARGEST_SUM:
         displacement = sum_displacement(space, pressure)
     else:
-        displacement = space.convolve(pressure) * (space.cell / space.modulus)
+        displacement = space.displacement(pressure)
     gap = displacement + clearance - closure
     total = float(pressure.sum()) * space.cell_area
     parted = gap[pressure > 0].max(initial=0.0)

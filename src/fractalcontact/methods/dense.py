@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 from scipy import linalg
 
-from ..contact import checked_hardness, checked_load, unloaded_state
+from ..contact import checked_hardness, checked_problem, unloaded_state
 from .common import checked_state, influence_matrix
 
 # Pressures and gaps smaller than this share of the largest pressure and of the closure are zero:
@@ -68,10 +68,8 @@ def solve_contact(
     every set yields, with its closure unknown, the bordered system [K -1; 1' 0] [p; w] = [-c; F],
     solved here by elimination of p.
     """
-    height = np.asarray(composite, float)
-    load = checked_load(height, space, closure, force, start, rtol)
+    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
     limit = checked_hardness(hardness, space, force)
-    clearance = height.max() - height
     if load == 0:
         return unloaded_state(space, clearance)
     status = np.full(space.shape, OPEN)

@@ -7,8 +7,8 @@ the number of interpenetrating points. A pressure capped at a hardness is projec
 import numpy as np
 from numba import njit
 
-from ..contact import checked_hardness, checked_load, unloaded_state
-from .common import checked_state, in_stress
+from ..contact import checked_hardness, checked_problem, unloaded_state
+from .common import checked_state, in_stress, refuse_force
 
 # Sweeps before giving up: the number needed grows with the width of the contact patches in cells.
 MAX_SWEEPS = 5000
@@ -50,12 +50,9 @@ def solve_contact(
     NotConverged
         If `MAX_SWEEPS` were not enough.
     """
-    if force is not None:
-        raise ValueError("projected Gauss-Seidel takes a closure only: give closure=, not force=")
-    height = np.asarray(composite, float)
-    closure = checked_load(height, space, closure, None, start, rtol)
+    refuse_force("projected Gauss-Seidel", force)
+    closure, clearance = checked_problem(composite, space, closure, None, start, rtol)
     limit = checked_hardness(hardness, space, None)
-    clearance = height.max() - height
     if closure == 0:
         return unloaded_state(space, clearance)
     # As u >= 0, only interpenetrating points can touch.

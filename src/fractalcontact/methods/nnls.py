@@ -10,8 +10,8 @@ takes as many factorisations as there are points in contact; the warm start of B
 import numpy as np
 from scipy import linalg
 
-from ..contact import checked_load, unloaded_state
-from .common import checked_state, influence_matrix
+from ..contact import checked_problem, unloaded_state
+from .common import checked_state, influence_matrix, refuse_force, refuse_hardness
 
 # Gradient projections for the warm start; each one application of the operator.
 PROJECTIONS = 100
@@ -55,13 +55,9 @@ def solve_contact(
     NotConverged
         If the active set does not end, or the state found fails the final check.
     """
-    if force is not None:
-        raise ValueError("NNLS takes a closure only: give closure=, not force=")
-    if hardness is not None:
-        raise ValueError("NNLS knows no hardness: leave hardness= out")
-    height = np.asarray(composite, float)
-    closure = checked_load(height, space, closure, None, start, rtol)
-    clearance = height.max() - height
+    refuse_force("NNLS", force)
+    refuse_hardness("NNLS", hardness)
+    closure, clearance = checked_problem(composite, space, closure, None, start, rtol)
     if closure == 0:
         return unloaded_state(space, clearance)
     # Pressure in units of E*/s, so that the operator gives mm.

@@ -10,8 +10,8 @@ With ``HalfSpace(..., kernel=...)`` the influence terms are Love's or a rigid pl
 import numpy as np
 from numba import njit
 
-from ..contact import checked_load, unloaded_state
-from .common import checked_state
+from ..contact import checked_problem, unloaded_state
+from .common import checked_state, refuse_force, refuse_hardness
 from .gauss_seidel import relieve
 
 # Sweeps on one set before giving up: 500 over all sets sufficed for 12,000 interpenetrating nodes.
@@ -54,13 +54,9 @@ def solve_contact(
     NotConverged
         If Gauss-Seidel does not converge, or a dropped point is left interpenetrating.
     """
-    if force is not None:
-        raise ValueError("the paper's algorithm takes a closure only: give closure=, not force=")
-    if hardness is not None:
-        raise ValueError("the paper's algorithm knows no hardness: leave hardness= out")
-    height = np.asarray(composite, float)
-    closure = checked_load(height, space, closure, None, start, rtol)
-    clearance = height.max() - height
+    refuse_force("the paper's algorithm", force)
+    refuse_hardness("the paper's algorithm", hardness)
+    closure, clearance = checked_problem(composite, space, closure, None, start, rtol)
     if closure == 0:
         return unloaded_state(space, clearance)
     influence = space.influence()

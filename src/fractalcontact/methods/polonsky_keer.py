@@ -13,7 +13,7 @@ error; here the iteration ends when the contact conditions hold.
 
 import numpy as np
 
-from ..contact import checked_hardness, checked_load, unloaded_state
+from ..contact import checked_hardness, checked_problem, unloaded_state
 from .common import checked_state, in_stress
 
 # Two applications each: rough scenes need 30 to 150 for 1e-6.
@@ -56,12 +56,10 @@ def solve_contact(
     NotConverged
         If the conditions are not met after `MAX_ITERATIONS`.
     """
-    height = np.asarray(composite, float)
-    load = checked_load(height, space, closure, force, start, rtol)
+    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
     if hardness is not None and force is not None:
         raise ValueError("conjugate gradients take a hardness with a closure only: give closure=")
     limit = checked_hardness(hardness, space, None)
-    clearance = height.max() - height
     if load == 0:
         return unloaded_state(space, clearance)
     # Pressure is counted in units of E*/s throughout, so that the operator gives mm.
