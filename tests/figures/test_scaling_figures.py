@@ -2,13 +2,16 @@
 
 import importlib
 import re
+from itertools import pairwise
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 
 from fractalcontact import figures
-from fractalcontact.figures import _words, common
+from fractalcontact.figures import _words, common, fig09_box_counting
 from fractalcontact.figures._domains import Loading, trend
 from fractalcontact.figures._size_effect import fractal_pressure, size_effect
 from fractalcontact.fitting import fit_line
@@ -207,6 +210,27 @@ def test_legends_hide_nothing(atlas, figure, specimen):
         assert drawn.bbox.x0 <= frame.x0 < frame.x1 <= drawn.bbox.x1
         # A hair's breadth for the legend's padding, which is empty.
         assert all(axes.get_tightbbox().y0 >= frame.y1 - 1 for axes in drawn.get_axes())
+
+
+@pytest.mark.parametrize("largest", [3.0, 6.0, 25.0, 400.0])
+def test_box_sides_have_labels_that_stand_apart(largest):
+    """Over less than a decade matplotlib writes every minor tick, one over the other."""
+    with common.print_style():
+        shown = Figure(figsize=(7.2, 3.1))
+        axes = shown.subplots(1, 3)[1]
+        sides = pd.Series(np.geomspace(0.2, 0.2 * largest, 9))
+        axes.loglog(sides, 1 / sides)
+        fig09_box_counting._label_sides(axes, sides)
+        shown.draw_without_rendering()
+    low, high = axes.get_xlim()
+    labels = [
+        tick.label1.get_window_extent()
+        for tick in [*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks()]
+        if tick.label1.get_text() and low <= tick.get_loc() <= high
+    ]
+    labels.sort(key=lambda box: box.x0)
+    assert len(labels) >= 2
+    assert all(a.x1 < b.x0 for a, b in pairwise(labels))
 
 
 @pytest.mark.parametrize("figure", ["fig10_scaling", "fig13_size_effect"])
