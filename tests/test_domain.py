@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from fractalcontact.domain import box_count, box_dimension, box_sizes, clusters
+from fractalcontact.domain import box_count, box_dimension, box_sizes
 from fractalcontact.synthesis import self_affine
 
 CARPET = np.log(8) / np.log(3)
@@ -236,20 +236,3 @@ def test_counting_is_fast_enough_for_every_state_of_a_study():
     start = time.perf_counter()
     box_count(domain, box_sizes(512))
     assert time.perf_counter() - start < 0.5
-
-
-def test_clusters_join_over_corners():
-    domain = np.zeros((6, 6), dtype=bool)
-    domain[0, 0] = domain[1, 1] = domain[2, 1] = True
-    domain[5, 5] = True
-    result = clusters(domain)
-    assert result.clusters.item() == 2
-    assert result.mean_size.item() == 2
-    assert result.largest_share.item() == 0.75
-
-
-def test_no_clusters_in_an_empty_domain():
-    result = clusters(np.zeros((6, 6), dtype=bool))
-    assert result.clusters.item() == 0
-    assert np.isnan(result.mean_size.item())
-    assert np.isnan(result.largest_share.item())

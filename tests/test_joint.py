@@ -8,6 +8,8 @@ from fractalcontact.errors import InputError
 from fractalcontact.joint import (
     choose_offsets,
     composite_topography,
+    correlation_ranges,
+    face_correlation,
     prefractal,
     rigid_dilatancy,
 )
@@ -96,3 +98,47 @@ def test_a_plane_opposite_does_not_slide(rough):
 
 def test_prefractal_keeps_every_kth_node():
     assert prefractal(np.arange(16).reshape(4, 4), 2).tolist() == [[0, 2], [8, 10]]
+
+
+def test_a_matching_face_correlates_fully_and_less_as_it_slides(rough):
+    joint = specimen(rough)
+    correlation = face_correlation(joint, "E", np.arange(8))
+    assert correlation[0] == pytest.approx(1, abs=1e-12)
+    assert (np.diff(correlation[:4]) < 0).all()
+
+
+def test_correlation_of_a_wave_is_its_cosine():
+    # 20 cells a wave, 20 cells of window: the mean plane of a whole wave is not level, so a wave
+    # along y seen while sliding along y keeps a plane of its own; a shorter wave has less of it.
+    x = np.arange(40)
+    wave = np.sin(2 * np.pi * x / 4)
+    joint = specimen(np.tile(wave, (40, 1)))
+    joint["lower"].values[...] = np.tile(wave, (40, 1))
+    expected = np.cos(2 * np.pi * np.arange(5) / 4)
+    assert face_correlation(joint, "E", np.arange(5)) == pytest.approx(expected, abs=0.06)
+
+
+def test_correlation_ranges_of_an_exponential():
+    v = np.linspace(0, 10, 1001)
+    length, uncorrelated, limit = correlation_ranges(v, [np.exp(-v / 2), np.exp(-v / 2)], 400.0)
+    assert length == pytest.approx([2, 2], abs=0.01)
+    assert limit == pytest.approx(1.96 * np.sqrt(np.pi * 4 / 800), rel=0.01)
+    assert uncorrelated == pytest.approx(-2 * np.log([limit, limit]), abs=0.01)
+
+
+def test_the_limit_is_what_chance_gives():
+    def surface(seed):
+        return self_affine((96, 96), SPACING, 0.8, seed=seed, rms=0.1, roll_off=1.2)
+
+    surfaces = [surface(seed) for seed in range(40)]
+    v = np.arange(30)
+    own = [np.mean(surfaces[0][:, : 96 - n] * surfaces[0][:, n:]) for n in v]
+    _, _, limit = correlation_ranges(v * SPACING, [np.array(own) / own[0]], (96 * SPACING) ** 2)
+    found = [np.corrcoef(a.ravel(), b.ravel())[0, 1] for a in surfaces[:20] for b in surfaces[20:]]
+    # Spectra without long waves leave a negative lobe, and less chance than an exponential.
+    assert 1 < limit / np.quantile(np.abs(found), 0.95) < 2
+
+
+def test_faces_that_stay_alike_have_no_such_range():
+    length, uncorrelated, limit = correlation_ranges([0, 1, 2], [[1, 0.9, 0.8]], 400.0)
+    assert np.isnan([*length, *uncorrelated, limit]).all()

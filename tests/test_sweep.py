@@ -6,8 +6,8 @@ import xarray as xr
 
 from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.joint import composite_topography, describe_joint
-from fractalcontact.specimen import make_specimen
-from fractalcontact.sweep import OFFSETS, combine, contact_states, domains_of, window_sides
+from fractalcontact.specimen import make_specimen, window_sides
+from fractalcontact.sweep import OFFSETS, combine, contact_states, domains_of
 from fractalcontact.synthesis import self_affine
 
 SPACING_Y, SPACING_X = 0.12, 0.1
@@ -18,6 +18,7 @@ SETTINGS = {
     "offsets": OFFSETS_ASKED,
     "loads": [(20.0, "force"), (200.0, "force")],
     "material": {"e_star": 2e4},
+    "surface_range": None,
 }
 SOLVER = {"rtol": 1e-6, "kernel": "love"}
 

@@ -65,6 +65,58 @@ def test_moments_that_no_surface_has_give_no_summit_heights():
     assert np.isnan(theory.asperities(1.0, 1.0, 0.5).height_deviation)
 
 
+def test_majumdar_bhushan_is_the_sum_of_hertz_contacts_on_its_spots():
+    modulus, dimension, scale, largest = 2e4, 1.3, 1e-5, 0.04
+
+    def number(a):
+        return dimension / 2 * largest ** (dimension / 2) * a ** (-dimension / 2 - 1)
+
+    def hertz(a):
+        # The bump G^(D-1) l^(2-D) cos(pi x / l) on a base l = sqrt(a), by its curvature at the top.
+        length, step = np.sqrt(a), 1e-3 * np.sqrt(a)
+        height = scale ** (dimension - 1) * length ** (2 - dimension)
+        fall = height * (1 - np.cos(np.pi * step / length))
+        radius = step**2 / (2 * fall)
+        return 4 / 3 * modulus * (a / np.pi) ** 1.5 / radius
+
+    force = integrate.quad(lambda a: hertz(a) * number(a), 0, largest)[0]
+    area = integrate.quad(lambda a: a * number(a), 0, largest)[0]
+    found = theory.majumdar_bhushan_area(force, modulus, dimension, scale)
+    assert found == pytest.approx(area, rel=1e-5)
+
+
+@pytest.mark.parametrize("dimension", [1.1, 1.2, 1.4])
+def test_majumdar_bhushan_exponent(dimension):
+    one, ten = theory.majumdar_bhushan_area(np.array([1.0, 10.0]), 1e4, dimension, 1e-4)
+    assert np.log10(ten / one) == pytest.approx(2 / (3 - dimension))
+
+
+@pytest.mark.parametrize("dimension", [1.0, 1.5, 1.7, np.nan])
+def test_majumdar_bhushan_without_a_law(dimension):
+    assert np.isnan(theory.majumdar_bhushan_area(1.0, 1e4, dimension, 1e-4))
+    assert np.isnan(theory.roughness_scale(1e-4, 0.1, dimension))
+
+
+@pytest.mark.parametrize("dimension", [1.2, 1.4])
+def test_scale_of_a_made_weierstrass_mandelbrot_profile_is_found(dimension):
+    scale, rng = 0.01, np.random.default_rng(1)
+    frequency = theory.FREQUENCY_RATIO ** np.arange(-60.0, 30.0)
+    amplitude = scale ** (dimension - 1) / frequency ** (2 - dimension)
+    # Over a period of ln gamma the sum is not quite its smooth mean: lags through one of them.
+    lags = np.geomspace(1, theory.FREQUENCY_RATIO, 12, endpoint=False)
+    x, phase = rng.uniform(0, 1e6, 4000), rng.uniform(0, 2 * np.pi, frequency.size)
+
+    def height(x):
+        return np.cos(np.multiply.outer(x, frequency) + phase) @ amplitude
+
+    found = [
+        theory.roughness_scale(np.mean((height(x + lag) - height(x)) ** 2), lag, dimension)
+        for lag in lags
+    ]
+    found = np.exp(np.mean(np.log(found))) ** (dimension - 1)
+    assert found == pytest.approx(scale ** (dimension - 1), rel=0.03)
+
+
 def test_archard_exponents():
     np.testing.assert_allclose(theory.archard_exponent([1, 2, 3]), [2 / 3, 8 / 9, 26 / 27])
 

@@ -1,5 +1,7 @@
 """Quantities as people write them."""
 
+import math
+
 import pytest
 
 from fractalcontact.errors import InputError
@@ -38,3 +40,11 @@ def test_units_of_length():
     assert length_factor("um", "k") == pytest.approx(1e-3)
     with pytest.raises(InputError):
         length_factor("kN", "k")
+
+
+def test_an_angle_needs_its_unit():
+    assert quantity("30 deg", "angle", "here") == 30
+    assert quantity("0.5 rad", "angle", "here") == pytest.approx(90 / math.pi)
+    for wrong in ("30", "3 mm", 30):
+        with pytest.raises(InputError, match="expected an angle with its unit, such as '30 deg'"):
+            quantity(wrong, "angle", "here")

@@ -3,7 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from .domain import box_dimension, box_sizes, clusters, no_dimension
+from .clusters import CLUSTER_FIELDS, cluster_statistics
+from .domain import box_dimension, box_sizes, no_dimension
 from .labels import about
 from .scaling import compare_dimensions, renormalisation
 from .store import padded
@@ -16,8 +17,7 @@ DOMAIN_FIELDS = {
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
     "fit_n": ("1", "box sizes fitted"),
-    "clusters": ("1", "contact clusters, neighbours by side or corner"),
-    "largest_share": ("1", "share of the largest cluster in the contact area"),
+    **CLUSTER_FIELDS,
 }
 
 #: Why the contact domain of one node has no dimension.
@@ -41,8 +41,8 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     -------
     xr.Dataset
         :data:`DOMAIN_FIELDS` and ``reason`` (why there is no dimension) over (direction, offset,
-        resolution, load); ``box_count`` and ``box_used`` with a last dimension scale; ``box_side``
-        (resolution, scale) in mm.
+        resolution, load); ``box_count`` and ``box_used`` with a last dimension scale, and
+        ``cluster_octaves`` with a last dimension octave; ``box_side`` (resolution, scale) in mm.
 
     Notes
     -----
@@ -57,6 +57,9 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     n_direction, n_offset, n_load = domains[factors[0]].shape[:3]
     shape = (n_direction, n_offset, len(factors), n_load)
     table = {name: np.full(shape, np.nan) for name in DOMAIN_FIELDS}
+    # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
+    n_octaves = int(domains[factors[0]][0, 0, 0].size).bit_length()
+    octaves = np.zeros((*shape, n_octaves), int)
     reason = np.full(shape, "", object)
     count = np.full((*shape, n_scales), np.nan)
     used = np.zeros(count.shape, bool)
@@ -66,7 +69,7 @@ def analyse_domains(fields, spacing, *, fit_range=None):
         box = box_dimension(domain, factor * spacing, fit_range=fit_range, sizes=sizes[factor])
         if domain.sum() == 1:
             box = no_dimension(box.r, box.count, ONE_NODE)
-        found = clusters(domain)
+        found = cluster_statistics(domain, factor * spacing)
         row = {
             "delta_sigma": box.dimension,
             "delta_sigma_low": box.low,
@@ -74,11 +77,12 @@ def analyse_domains(fields, spacing, *, fit_range=None):
             "fit_min": box.r_min,
             "fit_max": box.r_max,
             "fit_n": box.n,
-            "clusters": found["clusters"].item(),
-            "largest_share": found["largest_share"].item(),
+            **{name: found[name] for name in CLUSTER_FIELDS},
         }
         for name, value in row.items():
             table[name][d, o, k, j] = value
+        sizes_found = found["cluster_octaves"]
+        octaves[d, o, k, j, : len(sizes_found)] = sizes_found
         reason[d, o, k, j] = box.reason
         count[d, o, k, j, : len(box.count)] = box.count
         used[d, o, k, j, : len(box.used)] = box.used
@@ -86,6 +90,11 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     return xr.Dataset(
         {
             **{name: (dims, values, about(*DOMAIN_FIELDS[name])) for name, values in table.items()},
+            "cluster_octaves": (
+                (*dims, "octave"),
+                octaves,
+                about("1", "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k"),
+            ),
             "reason": (dims, reason.astype(str), about("1", "why there is no dimension")),
             "box_count": ((*dims, "scale"), count, about("1", "boxes that meet the domain, N(r)")),
             "box_used": ((*dims, "scale"), used, about("1", "box size used in the fit")),
@@ -102,6 +111,7 @@ def analyse_domains(fields, spacing, *, fit_range=None):
                 factors,
                 about("1", "multiple k of the scan's spacing"),
             ),
+            "octave": ("octave", np.arange(n_octaves), about("1", "octave k of cluster sizes")),
         },
     )
 

@@ -3,9 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from scipy import optimize, special
 
-from .fitting import CONFIDENCE
+from .area import FEWEST_NODES
+from .fitting import CONFIDENCE, fit_line
 from .halfspace import rectangle_mean_displacement
 from .labels import about
 from .sweep import OFFSETS, SCALARS
@@ -122,9 +124,16 @@ def closure_curves(states, window, e_star, fit_range=None):
     Returns
     -------
     xr.Dataset
-        ``bulk_settlement`` and ``nominal_pressure`` (load); ``interface_closure``, ``area_share``
-        and the scalars of the states over (direction, offset, resolution, load); the fit over
-        (direction, offset, resolution); offset made and rigid opening over (direction, offset).
+        ``bulk_settlement`` and ``nominal_pressure`` (load); ``interface_closure``,
+        ``interface_stiffness``, ``conductance``, ``area_share`` and the scalars of the states over
+        (direction, offset, resolution, load); the fits over (direction, offset, resolution); what
+        :data:`fractalcontact.sweep.OFFSETS` names over (direction, offset).
+
+    Notes
+    -----
+    Faces that match everywhere (a composite topography that is flat) have nothing to close: their
+    w_int is 0. The difference w - w_b would be -0.078 F/(E* b) there, because a flush window is
+    pressed as a rigid punch and w_b belongs to a uniform pressure.
     """
     force = states["load"]
     result = states[[*SCALARS, *OFFSETS]].copy()
@@ -132,10 +141,20 @@ def closure_curves(states, window, e_star, fit_range=None):
     area = window[0] * window[1]
     result["bulk_settlement"] = ("load", settlement, about("mm", "bulk settlement w_b"))
     result["nominal_pressure"] = ("load", force.values / area, about("MPa", "F / A_0"))
-    result["interface_closure"] = result["closure"] - result["bulk_settlement"]
+    flush = result["composite_spread"] == 0
+    closed = (result["closure"] - result["bulk_settlement"]).where(~flush, 0.0)
+    result["interface_closure"] = closed.transpose(*result["closure"].dims)
     result["interface_closure"].attrs = about("mm", "interface closure w_int = w - w_b")
     result["area_share"] = result["area"] / area
     result["area_share"].attrs = about("1", "real contact area A_r / A_0")
+    stiffness = interface_stiffness(
+        result["stiffness"] / area, result["nominal_pressure"] / result["bulk_settlement"]
+    ).where(~flush)
+    result["interface_stiffness"] = stiffness.transpose(*result["closure"].dims)
+    result["interface_stiffness"].attrs = about(
+        "MPa/mm", "stiffness of the interface d sigma / d w_int; none where faces are flush"
+    )
+    _add_conductance(result, e_star)
 
     lowest, highest = fit_range or (force.values.min(), force.values.max())
     fitted = (force.values >= lowest * (1 - 1e-9)) & (force.values <= highest * (1 + 1e-9))
@@ -151,6 +170,61 @@ def closure_curves(states, window, e_star, fit_range=None):
     result.attrs["hyperbola_force_low"] = float(force.values[fitted].min(initial=np.inf))
     result.attrs["hyperbola_force_high"] = float(force.values[fitted].max(initial=-np.inf))
     return result
+
+
+def interface_stiffness(total, bulk):
+    """Stiffness of the interface alone, from that of the whole, of which the bulk is a part.
+
+    The two compliances add up: 1/k = 1/k_int + 1/k_bulk.
+
+    Parameters
+    ----------
+    total, bulk : array_like
+        d sigma / dw and sigma / w_b, MPa/mm.
+
+    Returns
+    -------
+    array_like
+        d sigma / d w_int, MPa/mm; NaN where the whole is not more compliant than the bulk (contact
+        so full that it answers like a punch).
+    """
+    compliance = 1 / total - 1 / bulk
+    return 1 / compliance.where(compliance > 0)
+
+
+def _add_conductance(curves, e_star):
+    """Conductance of the interface and its power of the pressure, into ``curves``.
+
+    Barber (Proc. R. Soc. A 459 (2003) 53): 1/R = 2/(E* (rho_1 + rho_2)) dF/dw. Two blocks of one
+    conductivity k = 1/rho, thermal or electrical, give h_c = k/E* d sigma/d w_int per nominal area.
+    Loads at which fewer than `FEWEST_NODES` touch are not fitted: they press punches of one cell.
+    """
+    curves["conductance"] = curves["interface_stiffness"] / e_star
+    curves["conductance"].attrs = about(
+        "mm-1", "conductance of the interface per nominal area and conductivity of the material"
+    )
+    dims = ("direction", "offset", "resolution")
+    log_pressure = np.log(curves["nominal_pressure"].values)
+    with np.errstate(divide="ignore"):
+        resolved = curves["conductance"].where(curves["nodes"] >= FEWEST_NODES)
+        log_conductance = np.log(resolved.transpose(*dims, "load").values)
+    shape = log_conductance.shape[:-1]
+    fits = [fit_line(log_pressure, row) for row in log_conductance.reshape(-1, len(log_pressure))]
+    for name, field, words in (
+        ("conductance_exponent", "slope", "exponent of conductance against pressure"),
+        ("conductance_exponent_low", "slope_low", "that exponent, lower end of its 95 % interval"),
+        (
+            "conductance_exponent_high",
+            "slope_high",
+            "that exponent, upper end of its 95 % interval",
+        ),
+    ):
+        values = np.array([getattr(fit, field) for fit in fits]).reshape(shape)
+        curves[name] = (dims, values, about("1", words))
+    for name, field in (("low", "x_min"), ("high", "x_max")):
+        values = np.exp([getattr(fit, field) for fit in fits]).reshape(shape)
+        words = f"{name}est pressure of that fit"
+        curves[f"conductance_pressure_{name}"] = (dims, values, about("MPa", words))
 
 
 #: What is kept of each hyperbola: field, unit, long name.
@@ -180,8 +254,10 @@ def elastic_dilatancy(curves, joint):
     Returns
     -------
     xr.Dataset
-        Rigid dilatancy over (direction, rigid_offset) and ``elastic_dilatancy`` over
-        (contact_direction, offset, load), with ``offset_made`` over (contact_direction, offset).
+        Rigid dilatancy over (direction, rigid_offset); ``elastic_dilatancy`` and ``left_out_error``
+        over (contact_direction, offset, load), the latter what interpolating the closure curve at
+        this force gives wrong when its own state is left out; ``offset_made`` over
+        (contact_direction, offset).
     """
     result = joint[["rigid_dilatancy", "composite_rms"]].copy()
     finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
@@ -191,5 +267,89 @@ def elastic_dilatancy(curves, joint):
     elastic = finest["rigid_opening"] - finest["interface_closure"]
     result["elastic_dilatancy"] = elastic.transpose("contact_direction", "offset", "load")
     result["elastic_dilatancy"].attrs = about("mm", "elastic dilatancy delta = delta_r - w_int")
+    result["left_out_error"] = _left_out_error(finest).transpose(*result["elastic_dilatancy"].dims)
+    result["left_out_error"].attrs = about(
+        "mm", "error of delta when interpolated from the states at the loads beside this one"
+    )
     result["offset_made"] = finest["offset_made"]
     return result
+
+
+def _left_out_error(curves):
+    """What the closure curve without a state misses at its force, for every state within it."""
+    forces = curves["load"].values
+
+    def of_curve(closures, stiffnesses):
+        missed = np.full(len(forces), np.nan)
+        for j in range(1, len(forces) - 1):
+            others = np.delete(np.arange(len(forces)), j)
+            read = closure_at_force(
+                forces[j], forces[others], closures[others], stiffnesses[others]
+            )
+            missed[j] = abs(read.closure - closures[j])
+        return missed
+
+    return xr.apply_ufunc(
+        of_curve,
+        curves["closure"],
+        curves["stiffness"],
+        input_core_dims=[["load"], ["load"]],
+        output_core_dims=[["load"]],
+        vectorize=True,
+    )
+
+
+class InterpolatedClosure(NamedTuple):
+    """Closure at a force between those that were solved, and how far off it can be; mm."""
+
+    closure: float
+    error: float
+
+
+def closure_at_force(force, forces, closures, stiffnesses):
+    """Closure at a force, read from a solved closure curve.
+
+    Parameters
+    ----------
+    force : float
+        F, N.
+    forces, closures, stiffnesses : (n,) array_like
+        F (ascending, > 0), w (mm) and dF/dw (N/mm) of the states of the curve.
+
+    Returns
+    -------
+    InterpolatedClosure
+        NaN outside the curve, and an error of NaN where the curve has but two states.
+
+    Notes
+    -----
+    Cubic Hermite interpolation of log w against log F, with the slope F/(w dF/dw) of each state.
+    The error is the largest that the same interpolation makes at the states next to the interval
+    when each is left out in turn. It then bridges two intervals, so that the error is overstated,
+    by 16 where the curve is smooth.
+    """
+    x, y = np.log(forces), np.log(closures)
+    slope = np.asarray(forces) / (np.asarray(closures) * np.asarray(stiffnesses))
+    at = np.log(force)
+    if not x[0] <= at <= x[-1]:
+        return InterpolatedClosure(np.nan, np.nan)
+    left = min(int(np.searchsorted(x, at, side="right")) - 1, len(x) - 2)
+    found = np.exp(_hermite(at, x, y, slope, left, left + 1))
+    misses = [
+        abs(np.exp(_hermite(x[i], x, y, slope, i - 1, i + 1)) / closures[i] - 1)
+        for i in (left, left + 1)
+        if 0 < i < len(x) - 1
+    ]
+    return InterpolatedClosure(float(found), float(found * max(misses, default=np.nan)))
+
+
+def _hermite(at, x, y, slope, left, right):
+    """Cubic through two points (x, y) with their slopes."""
+    step = x[right] - x[left]
+    t = (at - x[left]) / step
+    return (
+        (2 * t**3 - 3 * t**2 + 1) * y[left]
+        + (t**3 - 2 * t**2 + t) * step * slope[left]
+        + (3 * t**2 - 2 * t**3) * y[right]
+        + (t**3 - t**2) * step * slope[right]
+    )

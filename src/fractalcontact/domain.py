@@ -1,15 +1,12 @@
-"""The contact domain D: box counts, its dimension Delta_sigma, and its clusters."""
+"""The contact domain D: its box counts and its dimension Delta_sigma."""
 
 import itertools
 from dataclasses import dataclass
 
 import numba
 import numpy as np
-import scipy.ndimage
-import xarray as xr
 
 from .fitting import LineFit, fit_line
-from .labels import about
 
 #: Box sizes in each doubling.
 SIZES_PER_OCTAVE = 4
@@ -319,34 +316,3 @@ def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:
     """
     nan = float("nan")
     return BoxDimension(nan, nan, nan, nan, nan, 0, r, count, np.zeros(r.size, dtype=bool), reason)
-
-
-def clusters(domain: np.ndarray) -> xr.Dataset:
-    """Number and size of the clusters of a contact domain (nodes joined by a side or a corner).
-
-    Parameters
-    ----------
-    domain : (ny, nx) bool array_like
-
-    Returns
-    -------
-    xarray.Dataset
-        Scalars: `clusters`; `mean_size` in nodes; `largest_share`, the largest cluster's part of
-        all nodes in contact. The last two are NaN for an empty domain.
-    """
-    labels, number = scipy.ndimage.label(domain, structure=np.ones((3, 3)))
-    sizes = np.bincount(labels.ravel())[1:]
-    total = sizes.sum()
-    mean_size = total / number if number else np.nan
-    largest_share = sizes.max() / total if number else np.nan
-    return xr.Dataset(
-        {
-            "clusters": ((), number, about("1", "clusters of nodes in contact")),
-            "mean_size": ((), mean_size, about("1", "mean nodes in a cluster")),
-            "largest_share": (
-                (),
-                largest_share,
-                about("1", "largest cluster's share of nodes in contact"),
-            ),
-        }
-    )

@@ -8,11 +8,18 @@ import numpy as np
 import xarray as xr
 
 from .errors import InputError
-from .specimen import faces, largest_offset, window_slices
+from .fitting import without_mean_plane
+from .labels import about
+from .roughness import surface_dimension
+from .specimen import faces, largest_offset, nominal_area, window_slices
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
 #: slide, a surface against a rigid plane.
 STEPS = {"E": (0, 1), "N": (1, 0), "W": (0, -1), "S": (-1, 0), "none": (0, 0)}
+
+#: How Delta_g of the composite topographies is measured: of the estimators with little bias the
+#: one that a tilt of the composite, which is part of the joint, does not touch.
+COMPOSITE_ESTIMATOR = "second_differences"
 
 #: Offsets that "auto" places between one cell and the largest possible, in geometric steps.
 AUTOMATIC_OFFSETS = 8
@@ -125,6 +132,77 @@ def rigid_dilatancy(specimen, direction, cells):
     return np.array(opened), np.array(spread)
 
 
+def face_correlation(specimen, direction, cells):
+    """Correlation of the two faces under the window, each less its own mean plane.
+
+    Parameters
+    ----------
+    specimen, direction
+        As for :func:`composite_topography`.
+    cells : (n,) int array_like
+        Offsets in cells.
+
+    Returns
+    -------
+    (n,) ndarray
+        Pearson's coefficient; NaN where a face is a plane.
+    """
+    _, z_u = faces(specimen)
+    upper = z_u[window_slices(specimen)]
+    under = without_mean_plane(upper)
+    found = []
+    for n in cells:
+        above = without_mean_plane(composite_topography(specimen, direction, n) + upper)
+        norm = np.sqrt(np.mean(above**2) * np.mean(under**2))
+        found.append(np.mean(above * under) / norm if norm > 0 else np.nan)
+    return np.array(found)
+
+
+def correlation_ranges(offset, correlation, area):
+    """Offsets at which the faces stop to resemble each other.
+
+    Parameters
+    ----------
+    offset : (n,) array_like
+        v, mm, ascending.
+    correlation : (directions, n) array_like
+        From :func:`face_correlation`.
+    area : float
+        Of the window, mm2.
+
+    Returns
+    -------
+    length : (directions,) ndarray
+        Correlation length l, mm: the first v where the correlation is at most 1/e.
+    uncorrelated : (directions,) ndarray
+        The first v, mm, where it no longer differs from zero.
+    limit : float
+        Up to here it does not: 1.96 sqrt(pi l^2 / (2 A_0)).
+
+    Notes
+    -----
+    Chance alone correlates two unrelated faces with a variance of (integral of rho^2)/A_0
+    (Bartlett 1935, here in the plane); the integral is pi l^2 / 2 for a Gaussian and for an
+    exponential rho. l is the geometric mean over the directions that reach it; without one, or with
+    a window that holds so few lengths l that chance explains more than 1/e, nothing can be said
+    and the last two results are NaN.
+    """
+    length = np.array([_first_below(offset, row, np.exp(-1)) for row in correlation])
+    reached = length[np.isfinite(length) & (length > 0)]
+    if not reached.size:
+        return length, np.full(len(length), np.nan), np.nan
+    mean_square = np.exp(2 * np.mean(np.log(reached)))
+    limit = float(1.96 * np.sqrt(np.pi * mean_square / (2 * area)))
+    if limit > np.exp(-1):
+        return length, np.full(len(length), np.nan), np.nan
+    return length, np.array([_first_below(offset, row, limit) for row in correlation]), limit
+
+
+def _first_below(offset, values, limit):
+    below = np.flatnonzero(np.asarray(values) <= limit)
+    return offset[below[0]] if below.size else np.nan
+
+
 def describe_joint(specimen, settings):
     """Offsets, rigid dilatancy and composite topographies of a specimen.
 
@@ -137,9 +215,12 @@ def describe_joint(specimen, settings):
     Returns
     -------
     xr.Dataset
-        ``rigid_dilatancy`` and ``composite_rms`` (direction, rigid_offset) at every cell up to the
-        largest offset; ``offset_cells`` (direction, offset) of the contact solves; ``composite``
-        (offset, window_y, window_x) for the first direction whose contact is solved.
+        ``rigid_dilatancy``, ``composite_rms`` and ``face_correlation`` (direction, rigid_offset)
+        at every cell up to the largest offset; ``correlation_length`` and ``uncorrelated_offset``
+        (direction), ``correlation_limit``; ``offset_cells`` (direction, offset) of the contact
+        solves; for the first direction whose contact is solved ``composite`` (offset, window_y,
+        window_x) and its dimension Delta_g ``composite_dimension`` (offset), with its interval and
+        the lengths fitted.
 
     Raises
     ------
@@ -154,49 +235,77 @@ def describe_joint(specimen, settings):
     spacing = direction_spacing(specimen, reference)
     largest = int(max(chosen[reference]))
     dilatancy = np.full((len(directions), largest + 1), np.nan)
-    spread = dilatancy.copy()
+    spread, correlation = dilatancy.copy(), dilatancy.copy()
     for i, direction in enumerate(directions):
         ratio = spacing / direction_spacing(specimen, direction)
         cells = np.round(np.arange(largest + 1) * ratio).astype(int)
         dilatancy[i], spread[i] = rigid_dilatancy(specimen, direction, cells)
+        correlation[i] = face_correlation(specimen, direction, cells)
+    slid = np.arange(largest + 1) * spacing
+    length, uncorrelated, limit = correlation_ranges(slid, correlation, nominal_area(specimen))
     composites = [composite_topography(specimen, reference, n) for n in chosen[reference]]
+    dimensions = xr.concat(
+        [
+            surface_dimension(
+                composite,
+                tuple(specimen.attrs[f"spacing_{axis}"] for axis in "yx"),
+                fit_range=settings["surface_range"],
+                estimators=[COMPOSITE_ESTIMATOR],
+            ).squeeze("estimator")
+            for composite in composites
+        ],
+        "offset",
+    )
     window_y, window_x = window_slices(specimen)
+    of_slide = ("direction", "rigid_offset")
     return xr.Dataset(
         {
-            "rigid_dilatancy": (
-                ("direction", "rigid_offset"),
-                dilatancy,
-                {"units": "mm", "long_name": "rigid dilatancy delta_r"},
-            ),
+            "rigid_dilatancy": (of_slide, dilatancy, about("mm", "rigid dilatancy delta_r")),
             "composite_rms": (
-                ("direction", "rigid_offset"),
+                of_slide,
                 spread,
-                {"units": "mm", "long_name": "standard deviation of the composite topography"},
+                about("mm", "standard deviation of the composite topography"),
             ),
+            "face_correlation": (
+                of_slide,
+                correlation,
+                about("1", "correlation of the two faces under the window"),
+            ),
+            "correlation_length": (
+                "direction",
+                length,
+                about("mm", "first offset where the correlation is at most 1/e"),
+            ),
+            "uncorrelated_offset": (
+                "direction",
+                uncorrelated,
+                about("mm", "first offset where the correlation does not differ from zero"),
+            ),
+            "correlation_limit": (
+                (),
+                limit,
+                about("1", "largest correlation that chance alone explains, 95 %"),
+            ),
+            **{
+                f"composite_{name}": ("offset", dimensions[name].values, dimensions[name].attrs)
+                for name in ("dimension", "dimension_low", "dimension_high", "fit_min", "fit_max")
+            },
             "offset_cells": (
                 ("contact_direction", "offset"),
                 np.array([chosen[direction] for direction in solved]),
-                {"units": "1", "long_name": "offset in cells of the scan"},
+                about("1", "offset in cells of the scan"),
             ),
             "composite": (
                 ("offset", "window_y", "window_x"),
                 np.array(composites),
-                {"units": "mm", "long_name": f"composite topography h, direction {reference}"},
+                about("mm", f"composite topography h, direction {reference}"),
             ),
         },
         coords={
             "direction": directions,
             "contact_direction": solved,
-            "rigid_offset": (
-                "rigid_offset",
-                np.arange(largest + 1) * spacing,
-                {"units": "mm", "long_name": "shear offset v"},
-            ),
-            "offset": (
-                "offset",
-                chosen[reference] * spacing,
-                {"units": "mm", "long_name": "shear offset v"},
-            ),
+            "rigid_offset": ("rigid_offset", slid, about("mm", "shear offset v")),
+            "offset": ("offset", chosen[reference] * spacing, about("mm", "shear offset v")),
             "window_y": ("window_y", specimen.y.values[window_y], specimen.y.attrs),
             "window_x": ("window_x", specimen.x.values[window_x], specimen.x.attrs),
         },

@@ -113,6 +113,22 @@ def window_slices(specimen: xr.Dataset) -> tuple[slice, slice]:
     return slice(y0, y0 + ny), slice(x0, x0 + nx)
 
 
+def window_sides(specimen):
+    """Sides (y, x) of the window, mm."""
+    return tuple(specimen.attrs[f"window_n{a}"] * specimen.attrs[f"spacing_{a}"] for a in "yx")
+
+
+def cell_side(specimen):
+    """s, mm: side of the square as large as a cell, so that N nodes cover N s^2."""
+    return float(np.sqrt(specimen.attrs["spacing_y"] * specimen.attrs["spacing_x"]))
+
+
+def nominal_area(specimen):
+    """A_0 of the window, mm2."""
+    side_y, side_x = window_sides(specimen)
+    return side_y * side_x
+
+
 def largest_offset(specimen: xr.Dataset, direction: str) -> int:
     """Cells the lower window can slide before it leaves the scan or meets a hole.
 

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-#: Stages of the atlas, one group each, holding one group a specimen.
+#: Stages of the atlas, one group each, holding one group a specimen; strength and statements only
+#: of joints that slide, area_slope one of made surfaces where the study asks for it.
 STAGES = {
     "specimens": "levelled faces, mask, window and where they came from",
     "surface_dimension": "Delta_g of each face by several estimators",
@@ -22,8 +23,13 @@ STAGES = {
     "contact": "contact domains",
     "closure": "closure curves, stiffness, real contact area",
     "dilatancy": "rigid and elastic dilatancy",
+    "area": "laws of the real contact area, and the classical theories beside it",
+    "strength": "dilatancy and friction angles, shear strength",
+    "windows": "closure, roughness and strength of parts of the window",
     "domains": "box counts, Delta_sigma and clusters of the contact domains",
     "scaling": "renormalisation over resolutions",
+    "statements": "what the paper says, and whether it holds here",
+    "area_slope": "real contact area at light load, on surfaces with and without a roll-off",
 }
 
 #: Libraries whose version can change a number.
@@ -74,9 +80,9 @@ def write(dataset, path):
         dataset.to_netcdf(temporary, engine="netcdf4", encoding=_encoding(dataset))
 
 
-def read(path):
-    """A dataset written by :func:`write`, in memory."""
-    with xr.open_dataset(path, engine="netcdf4") as dataset:
+def read(path, group=None):
+    """A dataset written by :func:`write`, or one group of an atlas, in memory."""
+    with xr.open_dataset(path, engine="netcdf4", group=group) as dataset:
         return dataset.load()
 
 
@@ -128,9 +134,34 @@ def write_atlas(parts, path, *, study, configuration):
         tree.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
 
 
-def open_atlas(path):
-    """The atlas as an xarray DataTree, loaded on use; close it when done."""
-    return xr.open_datatree(path, engine="netcdf4")
+def read_atlas(path, without=()):
+    """The atlas as an xarray DataTree, in memory.
+
+    Parameters
+    ----------
+    path : path-like
+    without : sequence of str
+        Stages to leave out.
+
+    Returns
+    -------
+    xr.DataTree
+
+    Notes
+    -----
+    Group by group: xarray's ``open_datatree`` ends in a segmentation fault inside netCDF4 where a
+    process has opened the same file before.
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        names = [
+            group.path
+            for name, stage in file.groups.items()
+            if name not in without
+            for group in [stage, *stage.groups.values()]
+        ]
+    return xr.DataTree.from_dict({name: read(path, name) for name in ["/", *names]})
 
 
 def _checksums(specimens):

@@ -216,7 +216,7 @@ def solver_settings(config):
 
 
 def _material(config, material, where, source):
-    """Name, modulus E (MPa), Poisson's ratio and composite modulus E* of two like bodies (MPa)."""
+    """Name, E (MPa), Poisson's ratio, E* of two like bodies (MPa), and what strength needs."""
     if isinstance(material, Mapping):
         label, definition = "own", material
     else:
@@ -230,8 +230,24 @@ def _material(config, material, where, source):
     if modulus <= 0:
         raise InputError(f"{where}.modulus: {definition['modulus']!r} must be positive")
     poisson = float(definition["poisson"])
-    e_star = modulus / (2 * (1 - poisson**2))
-    return {"name": label, "modulus": modulus, "poisson": poisson, "e_star": e_star}
+    return {
+        "name": label,
+        "modulus": modulus,
+        "poisson": poisson,
+        "e_star": modulus / (2 * (1 - poisson**2)),
+        "basic_friction_angle": _if_stated(definition, "basic_friction_angle", "angle", where),
+        "joint_wall_strength": _if_stated(definition, "joint_wall_strength", "pressure", where),
+    }
+
+
+def _if_stated(definition, key, kind, where):
+    """A quantity that only the strength of the joint needs; NaN where the study has none."""
+    if key not in definition:
+        return math.nan
+    value = quantity(definition[key], kind, f"{where}.{key}")
+    if not 0 < value < (90 if kind == "angle" else math.inf):
+        raise InputError(f"{where}.{key}: {definition[key]!r} must be positive, an angle below 90")
+    return value
 
 
 def _chosen_loads(merged, key, loads, where):

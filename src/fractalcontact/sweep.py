@@ -3,16 +3,21 @@
 import numpy as np
 import xarray as xr
 
+from .area import contact_perimeter, corrected_area
 from .contact import NotConverged, solve_contact
 from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing, prefractal, rigid_dilatancy
 from .labels import about
+from .specimen import nominal_area
 
 #: Scalars kept of every state: name, unit, long name.
 SCALARS = {
     "closure": ("mm", "closure w from first touch"),
     "force": ("N", "normal force F"),
     "area": ("mm2", "real contact area A_r"),
+    "nodes": ("1", "nodes in contact"),
+    "perimeter": ("mm", "perimeter of the contact domain's cells inside the window"),
+    "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
     "residual": ("1", "largest violation of the contact conditions, share of the closure"),
     "iterations": ("1", "applications of the elastic operator"),
@@ -22,23 +27,8 @@ SCALARS = {
 OFFSETS = {
     "offset_made": ("mm", "shear offset v, in whole cells of this direction"),
     "rigid_opening": ("mm", "rigid dilatancy delta_r at the offset made"),
+    "composite_spread": ("mm", "standard deviation of the composite topography"),
 }
-
-
-def window_sides(specimen):
-    """Sides (y, x) of the window, mm."""
-    return tuple(specimen.attrs[f"window_n{a}"] * specimen.attrs[f"spacing_{a}"] for a in "yx")
-
-
-def cell_side(specimen):
-    """s, mm: side of the square as large as a cell, so that N nodes cover N s^2."""
-    return float(np.sqrt(specimen.attrs["spacing_y"] * specimen.attrs["spacing_x"]))
-
-
-def nominal_area(specimen):
-    """A_0 of the window, mm2."""
-    side_y, side_x = window_sides(specimen)
-    return side_y * side_x
 
 
 def forces_of(loads, area):
@@ -113,8 +103,14 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
                     )
                     raise
                 touching[0, i, j] = state.in_contact
+                of_domain = {
+                    "nodes": np.count_nonzero(state.in_contact),
+                    "perimeter": contact_perimeter(state.in_contact, space.spacing),
+                    "area_corrected": corrected_area(state.in_contact, space.spacing),
+                }
                 for name, values in scalars.items():
-                    values[0, i, k, j] = getattr(state, name)
+                    known = of_domain[name] if name in of_domain else getattr(state, name)
+                    values[0, i, k, j] = known
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "load", f"y_{factor}", f"x_{factor}"),
             touching,
@@ -122,8 +118,8 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
         )
     dims = ("direction", "offset", "resolution", "load")
     made = cells * direction_spacing(specimen, direction)
-    opened, _ = rigid_dilatancy(specimen, direction, cells)
-    of_offsets = {"offset_made": made, "rigid_opening": opened}
+    opened, spread = rigid_dilatancy(specimen, direction, cells)
+    of_offsets = {"offset_made": made, "rigid_opening": opened, "composite_spread": spread}
     return xr.Dataset(
         {
             **{name: (dims, values, about(*SCALARS[name])) for name, values in scalars.items()},

@@ -12,6 +12,12 @@ from scipy import special
 PERSSON_KAPPA = np.sqrt(8 / np.pi)
 #: Bush, Gibson & Thomas, Wear 35 (1975) 87.
 BUSH_GIBSON_THOMAS_KAPPA = np.sqrt(2 * np.pi)
+#: Where the values computed in the literature for many hills at light load lie.
+COMPUTED_KAPPA = (2.1, 2.3)
+
+#: Ratio of successive frequencies of the Weierstrass-Mandelbrot profile, as Majumdar and Bhushan
+#: take it.
+FREQUENCY_RATIO = 1.5
 
 #: Barton's total friction angle is not used above this, degrees (Barton & Choubey, Rock Mech. 10
 #: (1977) 1): at low stress the logarithm would take it past the vertical.
@@ -98,6 +104,62 @@ def greenwood_williamson_area(force, modulus, radius, height_deviation):
     Greenwood & Williamson, Proc. R. Soc. A 295 (1966) 300.
     """
     return force * np.sqrt(np.pi * radius / height_deviation) / modulus
+
+
+def roughness_scale(mean_square, lag, dimension):
+    """Scale G of a fractal profile from its structure function S at one lag, mm.
+
+    Parameters
+    ----------
+    mean_square : array_like
+        S, mean square height difference over the lag, mm2.
+    lag : array_like
+        tau, mm.
+    dimension : array_like
+        D of the profile; NaN is returned outside 1 < D < 1.5, to which the area law is held.
+
+    Notes
+    -----
+    Majumdar & Bhushan, J. Tribol. 112 (1990) 205: S = C G^(2 (D-1)) tau^(4-2D) with
+    C = Gamma(2D-3) sin[(2D-3) pi/2] / [(4-2D) ln gamma], gamma = 1.5, after Berry & Lewis, Proc.
+    R. Soc. A 370 (1980) 459. That is S of the profile G^(D-1) sum cos(gamma^n x) / gamma^((2-D) n),
+    whose gamma^n are radians per length; were they waves per length, as 2 pi in the cosine would
+    have it, G^(D-1) were (2 pi)^(2-D) times smaller.
+    """
+    dimension = np.where((dimension > 1) & (dimension < 1.5), dimension, np.nan)
+    constant = special.gamma(2 * dimension - 3) * np.sin((2 * dimension - 3) * np.pi / 2)
+    constant = constant / ((4 - 2 * dimension) * np.log(FREQUENCY_RATIO))
+    return (mean_square / (constant * lag ** (4 - 2 * dimension))) ** (1 / (2 * (dimension - 1)))
+
+
+def majumdar_bhushan_area(force, modulus, dimension, scale):
+    """Real contact area of a fractal surface without plasticity, mm2: A ~ F^(2/(3-D)).
+
+    Parameters
+    ----------
+    force : array_like
+        N.
+    modulus : array_like
+        E*, MPa.
+    dimension : array_like
+        D of profiles, one less than that of the surface; NaN is returned outside 1 < D < 1.5 (above
+        it small spots carry most of the load, and without plasticity the law has no limit).
+    scale : array_like
+        G of `roughness_scale`, mm.
+
+    Notes
+    -----
+    Majumdar & Bhushan, J. Tribol. 113 (1991) 1, with their a_c = 0. Spots of area a number
+    n(a) = (D/2) a_L^(D/2) a^(-D/2-1) up to a_L and carry (4 sqrt(pi)/3) E* G^(D-1) a^((3-D)/2) each
+    (Hertz, radius a^(D/2) / (pi^2 G^(D-1))), so that A = D/(2-D) a_L and
+    F = (4 sqrt(pi)/3) E* G^(D-1) D/(3-2D) a_L^((3-D)/2). The nominal area does not enter, and
+    nothing keeps A below it.
+    """
+    dimension = np.where((dimension > 1) & (dimension < 1.5), dimension, np.nan)
+    unit = 4 * np.sqrt(np.pi) / 3 * modulus * scale ** (dimension - 1)
+    unit = unit * dimension / (3 - 2 * dimension)
+    largest_spot = (force / unit) ** (2 / (3 - dimension))
+    return dimension / (2 - dimension) * largest_spot
 
 
 def archard_exponent(level):

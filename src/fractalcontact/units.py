@@ -7,9 +7,11 @@ import pint
 from .errors import InputError
 
 #: The program's unit for each kind of quantity.
-PROGRAM_UNITS = {"length": "mm", "force": "N", "pressure": "MPa"}
+PROGRAM_UNITS = {"length": "mm", "force": "N", "pressure": "MPa", "angle": "degree"}
 
-_EXAMPLES = {"length": "20 mm", "force": "10 kN", "pressure": "25 MPa"}
+_EXAMPLES = {"length": "20 mm", "force": "10 kN", "pressure": "25 MPa", "angle": "30 deg"}
+#: What an angle is to pint, which knows no such dimension.
+_DIMENSIONS = {"angle": "[]"}
 
 
 @cache
@@ -24,7 +26,7 @@ def quantity(text, kind: str, where: str) -> float:
     ----------
     text : str
         A number and a unit, such as ``"0.1 mm"``.
-    kind : {"length", "force", "pressure"}
+    kind : {"length", "force", "pressure", "angle"}
         What it must be.
     where : str
         The file and key it stands under, for the error.
@@ -32,7 +34,7 @@ def quantity(text, kind: str, where: str) -> float:
     Returns
     -------
     float
-        The value in mm, N or MPa.
+        The value in mm, N, MPa or degrees.
 
     Raises
     ------
@@ -40,18 +42,22 @@ def quantity(text, kind: str, where: str) -> float:
         If the unit is missing, unknown, or of another kind.
     """
     unit = PROGRAM_UNITS[kind]
-    wanted = f"expected a {kind} with its unit, such as '{_EXAMPLES[kind]}'"
+    wanted = f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
     if not isinstance(text, str):
         raise InputError(f"{where}: {text!r} has no unit; {wanted}")
     try:
         value = _registry()(text)
     except Exception as error:  # pint raises half a dozen unrelated types for malformed text
         raise InputError(f"{where}: cannot read {text!r} ({error}); {wanted}") from None
-    if not isinstance(value, pint.Quantity):
+    if not isinstance(value, pint.Quantity) or value.unitless:
         raise InputError(f"{where}: {text!r} has no unit; {wanted}")
-    if not value.check(f"[{kind}]"):
-        raise InputError(f"{where}: {text!r} is not a {kind}; {wanted}")
+    if not value.check(_DIMENSIONS.get(kind, f"[{kind}]")):
+        raise InputError(f"{where}: {text!r} is not {_article(kind)} {kind}; {wanted}")
     return float(value.to(unit).magnitude)
+
+
+def _article(noun):
+    return "an" if noun[0] in "aeiou" else "a"
 
 
 def load(text, where: str) -> tuple[float, str]:

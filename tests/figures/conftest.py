@@ -6,19 +6,40 @@ import xarray as xr
 
 from fractalcontact import store
 from fractalcontact.analysis import analyse_domains, scaling_over_resolutions
+from fractalcontact.area import area_laws, joint_statistics
+from fractalcontact.area_slope import area_slope
 from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.joint import describe_joint
-from fractalcontact.roughness import surface_dimension
-from fractalcontact.specimen import make_specimen
+from fractalcontact.roughness import best_dimension, surface_dimension
+from fractalcontact.size_laws import size_laws
+from fractalcontact.specimen import make_specimen, window_sides
+from fractalcontact.statements import judge
+from fractalcontact.strength import joint_strength, profile_roughness
 from fractalcontact.study import resolve_settings, window_arguments
-from fractalcontact.sweep import combine, contact_states, domains_of, force_range, window_sides
+from fractalcontact.sweep import combine, contact_states, domains_of, force_range
 from fractalcontact.synthesis import self_affine
+from fractalcontact.windows import window_states
 
 SPACING = 0.1  # mm
 SOLVER = {"rtol": 1e-6, "kernel": "love"}
+AREA_SLOPE = {
+    "dimension": 2.2,
+    "nodes": 64,
+    "size": 6.4,
+    "seeds": [1, 2],
+    "roll_off_share": 0.25,
+    "loads": [0.01, 0.02],
+}
 STUDY = {
     "study": "tiny",
-    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
+    "materials": {
+        "rock": {
+            "modulus": "20 GPa",
+            "poisson": 0.2,
+            "basic_friction_angle": "30 deg",
+            "joint_wall_strength": "80 MPa",
+        }
+    },
     "defaults": {
         "material": "rock",
         "contact_directions": ["W"],
@@ -73,6 +94,16 @@ def _scans():
     }
 
 
+def windows_of(specimen, joint, settings, dimension):
+    """Parts of the window, as the workflow presses them."""
+    direction = settings["contact_directions"][0]
+    cells = np.sort(joint["offset_cells"][0].values)
+    states = window_states(specimen, direction, cells, settings, SOLVER)
+    slides = direction != "none"
+    roughness = float(profile_roughness(specimen, direction)["jrc_used"]) if slides else np.nan
+    return size_laws(states, settings["material"], roughness, dimension)
+
+
 @pytest.fixture(scope="session")
 def atlas_file(tmp_path_factory):
     """Path of an atlas with the specimens sliding, flat and pair."""
@@ -103,18 +134,34 @@ def atlas_file(tmp_path_factory):
         )
         fields = domains_of(states)
         domains = analyse_domains(fields, SPACING)
+        dimension = surface_dimension(lower.values, SPACING)
+        dilatancy = elastic_dilatancy(curves, joint)
+        area = area_laws(
+            curves,
+            joint_statistics(specimen, joint),
+            chosen["material"]["e_star"],
+            best_dimension(dimension)[0],
+        )
+        windows = windows_of(specimen, joint, chosen, best_dimension(dimension))
         made = {
             "specimens": specimen,
-            "surface_dimension": surface_dimension(lower.values, SPACING),
+            "surface_dimension": dimension,
             "joints": joint,
             "contact": fields,
             "closure": curves,
-            "dilatancy": elastic_dilatancy(curves, joint),
+            "dilatancy": dilatancy,
+            "area": area,
+            "windows": windows,
             "domains": domains,
             "scaling": scaling_over_resolutions(curves, domains, SPACING),
         }
+        if name != "flat":
+            made["strength"] = joint_strength(dilatancy, joint, specimen, chosen)
+            stages = made | {"specimen": specimen, "joint": joint}
+            made["statements"] = judge(stages, chosen)
         for stage, dataset in made.items():
             parts[stage][name] = dataset
+    parts["area_slope"]["surfaces"] = area_slope(AREA_SLOPE)
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
     store.write_atlas(
         parts, path, study="tiny", configuration={"study": STUDY, "settings": settings}
@@ -124,6 +171,4 @@ def atlas_file(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def atlas(atlas_file):
-    # In memory, not open: netCDF4 does not stand the same file opened and closed a second time.
-    with store.open_atlas(atlas_file) as tree:
-        return tree.load()
+    return store.read_atlas(atlas_file)

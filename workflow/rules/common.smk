@@ -9,7 +9,7 @@ from snakemake.exceptions import WorkflowError
 
 from fractalcontact.catalogue import find_scans
 from fractalcontact.errors import InputError
-from fractalcontact.figures import figures_of
+from fractalcontact.figures import figures_of, study_figures_of
 from fractalcontact.joint import AUTOMATIC_OFFSETS
 from fractalcontact.study import (
     check_study,
@@ -79,6 +79,11 @@ def settings_of(wildcards):
 def is_pair(specimen):
     """Whether both faces of a specimen were scanned."""
     return specimen in SCANS and SCANS[specimen].upper is not None
+
+
+#: Surfaces against a plane, which cannot slide, and all others.
+FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and not is_pair(name)]
+SLIDING = [name for name in SPECIMENS if name not in FLAT]
 
 
 def figure_modules(opposite):

@@ -70,3 +70,27 @@ rule closure:
         code=code("closure", "sweep", "store"),
     script:
         "../scripts/closure.py"
+
+
+# Box counts, dimension and clusters of every contact domain.
+rule domains:
+    input:
+        specimen=rules.specimen.output[0],
+        contact=contact_parts,
+    output:
+        domains=f"{RESULTS}/domains/{{specimen}}.nc",
+        contact=f"{RESULTS}/contact/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/domains/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/domains/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=20,
+    params:
+        settings=settings_of,
+        code=code("analysis", "sweep", "store"),
+    script:
+        "../scripts/domains.py"

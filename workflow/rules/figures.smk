@@ -1,7 +1,6 @@
 # Figures of every specimen, each from its own atlas: PNG, SVG, numbers as CSV, caption as text.
 
-FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and not is_pair(name)]
-SLIDING = [name for name in SPECIMENS if name not in FLAT]
+STUDY_FIGURES = study_figures_of(bool(SLIDING), "area_slope" in config)
 
 
 def pictures(opposite):
@@ -65,8 +64,45 @@ use rule figures as figures_against_plane with:
         code=code("figures", *figure_modules("flat")),
 
 
+# What only the whole study shows.
+rule study_figures:
+    input:
+        rules.atlas.output[0],
+    output:
+        *[
+            report(
+                f"{RESULTS}/figures/{name}.png",
+                category="study",
+                labels={"figure": name},
+                caption=f"../report/{name}.rst",
+            )
+            for name in STUDY_FIGURES
+        ],
+        *expand(
+            f"{RESULTS}/figures/{{name}}.{{ending}}",
+            name=STUDY_FIGURES,
+            ending=("svg", "csv", "txt"),
+        ),
+    log:
+        f"{RESULTS}/logs/study_figures.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/study_figures.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=4000,
+        runtime=10,
+    params:
+        specimens=SPECIMENS,
+        names=STUDY_FIGURES,
+        code=code("figures", *(f"figures/{name}" for name in STUDY_FIGURES)),
+    script:
+        "../scripts/study_figures.py"
+
+
 def collect_figures(wildcards):
-    return expand(
+    study = rules.study_figures.output if STUDY_FIGURES else []
+    return list(study) + expand(
         f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=SLIDING, name=figures_of("match")
     ) + expand(
         f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=FLAT, name=figures_of("flat")

@@ -1,27 +1,4 @@
-# Contact domains: box counts, clusters, and what changes with resolution. Then the atlas.
-
-
-rule domains:
-    input:
-        specimen=rules.specimen.output[0],
-        contact=contact_parts,
-    output:
-        domains=f"{RESULTS}/domains/{{specimen}}.nc",
-        contact=f"{RESULTS}/contact/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/domains/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/domains/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=2000,
-        runtime=20,
-    params:
-        settings=settings_of,
-        code=code("analysis", "sweep", "store"),
-    script:
-        "../scripts/domains.py"
+# What changes with resolution. Then the atlas.
 
 
 rule scaling:
@@ -54,16 +31,29 @@ STAGE_FILES = {
     "contact": rules.domains.output.contact,
     "closure": rules.closure.output.closure,
     "dilatancy": rules.closure.output.dilatancy,
+    "area": rules.area.output[0],
+    "windows": rules.windows.output[0],
     "domains": rules.domains.output.domains,
     "scaling": rules.scaling.output[0],
 }
+# What only joints that slide have.
+SLIDING_FILES = {
+    "strength": rules.strength.output.strength,
+    "statements": rules.strength.output.statements,
+}
+# What the study has once.
+STUDY_FILES = {"area_slope": rules.area_slope.output[0]} if "area_slope" in config else {}
+
+
+def stages_of(wildcards):
+    return STAGE_FILES | (SLIDING_FILES if wildcards.specimen in SLIDING else {})
 
 
 # An atlas of one specimen: its figures need no other, so a new scan redraws only its own, and one
 # bad scan does not keep the others from theirs.
 rule specimen_atlas:
     input:
-        **STAGE_FILES,
+        unpack(stages_of),
     output:
         f"{RESULTS}/atlas/{{specimen}}.nc",
     log:
@@ -76,7 +66,6 @@ rule specimen_atlas:
         mem_mb=2000,
         runtime=10,
     params:
-        specimens=lambda wc: [wc.specimen],
         configuration=lambda wc: {"study": config, "settings": {wc.specimen: settings_of(wc)}},
         code=code("store"),
     script:
@@ -86,6 +75,8 @@ rule specimen_atlas:
 rule atlas:
     input:
         **{stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()},
+        **{stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()},
+        **STUDY_FILES,
     output:
         f"{RESULTS}/atlas.nc",
     log:
@@ -98,7 +89,6 @@ rule atlas:
         mem_mb=4000,
         runtime=10,
     params:
-        specimens=SPECIMENS,
         configuration={"study": config, "settings": SETTINGS},
         code=code("store"),
     script:

@@ -1,17 +1,18 @@
 """Put what was made of some specimens into one file."""
 
+from pathlib import Path
+
 from _job import reported
 
 from fractalcontact import store
 
 with reported(snakemake.log) as log:
     parts = {}
-    for stage in store.STAGES:
-        paths = snakemake.input[stage]
+    for stage, paths in snakemake.input.items():
         paths = [paths] if isinstance(paths, str) else paths
-        names = snakemake.params.specimens
-        parts[stage] = {n: store.read(path) for n, path in zip(names, paths, strict=True)}
+        # Every stage keeps a specimen in a file of its name.
+        parts[stage] = {Path(path).stem: store.read(path) for path in paths}
     configuration = snakemake.params.configuration
     study = configuration["study"]["study"]
     store.write_atlas(parts, snakemake.output[0], study=study, configuration=configuration)
-    log.info("%d stages, specimens %s", len(parts), ", ".join(snakemake.params.specimens))
+    log.info("%d stages, specimens %s", len(parts), ", ".join(parts["specimens"]))

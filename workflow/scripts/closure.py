@@ -4,7 +4,8 @@ from _job import reported
 
 from fractalcontact import store
 from fractalcontact.closure import closure_curves, elastic_dilatancy
-from fractalcontact.sweep import combine, force_range, window_sides
+from fractalcontact.specimen import window_sides
+from fractalcontact.sweep import combine, force_range
 
 with reported(snakemake.log) as log:
     specimen = store.read(snakemake.input.specimen)

@@ -4,7 +4,7 @@ from _job import reported
 
 from fractalcontact import store
 from fractalcontact.analysis import scaling_over_resolutions
-from fractalcontact.sweep import cell_side
+from fractalcontact.specimen import cell_side
 
 with reported(snakemake.log) as log:
     specimen = store.read(snakemake.input.specimen)

@@ -6,22 +6,43 @@ A module has ``draw(atlas, name)``: the atlas as an xarray DataTree and a specim
 
 import importlib
 
-from ..store import open_atlas
+from ..store import read_atlas
 from .common import print_style, save
 
 #: Figures of a joint that slides, and of a surface against a plane: module names, in order.
 FIGURES = (
+    "fig01_strength",
     "fig02_relief",
     "fig03_composite",
     "fig04_05_closure",
+    "area_theories",
+    "compliance",
+    "conductance",
+    "window_size",
     "fig06_07_dilatancy",
+    "strength",
+    "clusters",
+    "statements",
     "fig08_prefractals",
     "fig09_box_counting",
     "fig10_scaling",
     "fig12_evolution",
     "fig13_size_effect",
 )
-_NEEDS_SLIDING = ("fig03_composite", "fig06_07_dilatancy")
+_NEEDS_SLIDING = (
+    "fig01_strength",
+    "fig03_composite",
+    "compliance",
+    "fig06_07_dilatancy",
+    "strength",
+    "clusters",
+    "statements",
+)
+
+#: Figures of a whole study. Their ``draw(atlas, names)`` takes the names of all its specimens.
+STUDY_FIGURES = ("plateau", "area_slope")
+#: What no figure of a whole study draws, and takes most of an atlas.
+_LARGE_STAGES = ("specimens", "contact")
 
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
@@ -36,6 +57,21 @@ def figures_of(opposite):
         "flat" for a surface against a plane; anything else slides.
     """
     return [name for name in FIGURES if opposite != "flat" or name not in _NEEDS_SLIDING]
+
+
+def study_figures_of(slides, area_slope):
+    """Names of the figures that make sense for a whole study.
+
+    Parameters
+    ----------
+    slides : bool
+        Whether any of its specimens slides.
+    area_slope : bool
+        Whether it presses made surfaces at light load.
+    """
+    return [
+        name for name, wanted in zip(STUDY_FIGURES, (slides, area_slope), strict=True) if wanted
+    ]
 
 
 def draw_figures(atlas_path, specimen, folder, names):
@@ -54,10 +90,33 @@ def draw_figures(atlas_path, specimen, folder, names):
     dict
         Figure name to caption.
     """
+    return _draw(read_atlas(atlas_path), specimen, folder, names)
+
+
+def draw_study_figures(atlas_path, specimens, folder, names):
+    """Draw figures of a whole study, as :func:`draw_figures` does those of one specimen.
+
+    Parameters
+    ----------
+    atlas_path : path-like
+    specimens : sequence of str
+    folder : path-like
+    names : sequence of str
+        From :func:`study_figures_of`.
+
+    Returns
+    -------
+    dict
+        Figure name to caption.
+    """
+    return _draw(read_atlas(atlas_path, without=_LARGE_STAGES), list(specimens), folder, names)
+
+
+def _draw(atlas, subject, folder, names):
     captions = {}
-    with open_atlas(atlas_path) as atlas, print_style():
+    with print_style():
         for name in names:
-            drawing = importlib.import_module(f".{name}", __package__).draw(atlas, specimen)
+            drawing = importlib.import_module(f".{name}", __package__).draw(atlas, subject)
             save(drawing, folder, name)
             captions[name] = drawing.caption
     return captions

@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..fitting import FEWEST_POINTS
 from ..scaling import RESOLUTION
-from ..sweep import window_sides
+from ..specimen import window_sides
 from ._words import force_label, interval, number, opening, place, short
 from .common import COLOURS, MARKERS, group, map_offset, nearest_load, settings_of, spread
 

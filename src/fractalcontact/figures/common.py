@@ -10,9 +10,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullLocator
 
+from ..specimen import nominal_area
 from ..store import written_whole
-from ..sweep import forces_of, nominal_area
+from ..sweep import forces_of
 
 #: Okabe and Ito's colours, told apart by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
@@ -99,6 +101,35 @@ def nearest_load(loads, wanted, specimen):
     """Index of the force in N nearest to a load of the settings, (value, kind)."""
     (force,) = forces_of([wanted], nominal_area(specimen))
     return int(np.argmin(np.abs(loads - force)))
+
+
+def dilatancy_loads(loads, settings, specimen):
+    """Indices of the forces in N that a study's dilatancy is asked for, ascending."""
+    return sorted({nearest_load(loads, wanted, specimen) for wanted in settings["dilatancy_loads"]})
+
+
+def offset_axis(axes, offsets):
+    """Offsets v along x: in decades where they span one, with v = 0 at their left if it is there.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    offsets : (n,) ndarray
+        mm, those drawn.
+    """
+    slid = offsets[offsets > 0]
+    if slid.size > 1 and slid.max() > 10 * slid.min():
+        first, last = np.ceil(np.log10(slid.min())), np.floor(np.log10(slid.max()))
+        ticks = list(10 ** np.arange(first, last + 1))
+        if slid.size < len(offsets):
+            axes.set_xscale("symlog", linthresh=slid.min(), linscale=0.3)
+            axes.set_xlim(-0.15 * slid.min(), 1.2 * slid.max())
+            axes.xaxis.set_minor_locator(NullLocator())
+            ticks.insert(0, 0.0)
+        else:
+            axes.set_xscale("log", nonpositive="mask")
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xlabel("offset $v$ (mm)")
 
 
 def map_offset(settings, offsets):

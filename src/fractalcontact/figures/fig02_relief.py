@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 
-from ..sweep import window_sides
+from ..specimen import window_sides
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ._words import interval, length_unit, opening
 from .common import COLOURS, WIDTH, Drawing, group, letter, settings_of

@@ -8,8 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..joint import STEPS
-from ..specimen import faces, window_slices
-from ..sweep import window_sides
+from ..specimen import faces, window_sides, window_slices
 from ._maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
 from ._words import length_unit, opening, place
 from .common import COLOURS, WIDTH, Drawing, group, letter, settings_of

@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ..fitting import FEWEST_POINTS, fit_line
-from ..sweep import nominal_area
+from ..area import FEWEST_NODES
+from ..fitting import fit_line
+from ..specimen import nominal_area
 from ._words import estimate, force_label, force_unit, opening, place, short, slope_text
 from .common import (
     LINES,
@@ -23,9 +24,6 @@ from .common import (
 )
 
 CURVES = 5
-
-#: A domain of fewer nodes is left out of the fits of area: one node more or less is 10 % of it.
-FEWEST_NODES = 10
 
 #: An exponent this near to 1 is what a plot shows as "nearly linear", the paper's words.
 NEARLY = 0.1
@@ -51,29 +49,19 @@ def draw(atlas, name):
     specimen = group(atlas, "specimens", name)
     curves = finest_curves(atlas, name)
     direction = str(curves["direction"].values)
-    node = float(
-        curves["resolution"] ** 2 * specimen.attrs["spacing_x"] * specimen.attrs["spacing_y"]
-    )
-    fits = [_area_law(curves.isel(offset=i), node) for i in range(curves.sizes["offset"])]
+    laws = group(atlas, "area", name).sel(direction=direction)
     drawn = spread(curves.sizes["offset"], CURVES)
 
     figure = Figure(figsize=(WIDTH, 4.2))
     left, right = figure.subplots(1, 2)
     _draw_closure(left, curves, drawn, direction, nominal_area(specimen))
-    _draw_area(right, curves, drawn, direction, fits, nominal_area(specimen))
+    _draw_area(right, curves, drawn, direction, laws, nominal_area(specimen))
     legends_below(figure, entries(left), entries(right))
     letter(left, "a", "closure")
     letter(right, "b", "real contact area (hollow: not fitted)")
     figure.suptitle(f"{label}, {place(direction)}", fontsize=9)
-    caption = _caption(label, direction, curves, fits, drawn)
-    return Drawing(figure, _table(curves, drawn, fits), caption)
-
-
-def _area_law(curve, node):
-    """Line of log A_r over log F, and the loads it was fitted to."""
-    fitted = curve["area"].values > (FEWEST_NODES - 0.5) * node
-    force, area = curve["load"].values[fitted], curve["area"].values[fitted]
-    return fit_line(np.log(force), np.log(area)), fitted
+    caption = _caption(label, direction, curves, laws, drawn)
+    return Drawing(figure, _table(curves, drawn, laws), caption)
 
 
 def _hyperbola(curve, pressure):
@@ -133,14 +121,16 @@ def _asymptote(curve):
     return estimate(*ends, "mm")
 
 
-def _draw_area(axes, curves, drawn, direction, fits, area):
+def _draw_area(axes, curves, drawn, direction, laws, area):
     unit, size = force_unit(curves["load"].max())
     force = curves["load"].values
     for n, i in enumerate(drawn):
-        line, fitted = fits[i]
+        law = laws.isel(offset=i)
+        fitted = law["fitted"].values
         share = 100 * curves["area_share"].values[i]
         offset = float(curves["offset"][i])
-        exponent = f"exponent {slope_text(line)}" if np.isfinite(line.slope) else _no_law(line)
+        known = np.isfinite(float(law["exponent"]))
+        exponent = f"exponent {_exponent(law)}" if known else f"no fit: {law['no_law'].item()}"
         style = {"color": colour_of(n), "ls": "none", "marker": MARKERS[n]}
         axes.plot(
             force[fitted] / size,
@@ -149,10 +139,10 @@ def _draw_area(axes, curves, drawn, direction, fits, area):
             **style,
         )
         axes.plot(force[~fitted] / size, share[~fitted], mfc="none", **style)
-        if np.isfinite(line.slope):
-            ends = np.array([line.x_min, line.x_max])
-            law = 100 * np.exp(line.intercept + line.slope * ends) / area
-            axes.plot(np.exp(ends) / size, law, color=colour_of(n), lw=0.7, ls=LINES[n % 4])
+        if known:
+            ends = np.array([float(law["force_low"]), float(law["force_high"])])
+            line = 100 * float(law["unit_area"]) * ends ** float(law["exponent"]) / area
+            axes.plot(ends / size, line, color=colour_of(n), lw=0.7, ls=LINES[n % 4])
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel(f"normal force $F$ ({unit})")
@@ -161,15 +151,15 @@ def _draw_area(axes, curves, drawn, direction, fits, area):
     second.set_ylabel("$A_r$ (mm$^2$)")
 
 
-def _no_law(line):
-    return f"no fit: {line.n} of {FEWEST_POINTS} points needed"
+def _exponent(law):
+    return estimate(*(float(law[f"exponent{end}"]) for end in ("", "_low", "_high")))
 
 
-def _table(curves, drawn, fits):
+def _table(curves, drawn, laws):
     """Points drawn, with the numbers fitted to their curve."""
     rows = []
     for i in drawn:
-        curve, (line, fitted) = curves.isel(offset=i), fits[i]
+        curve, law = curves.isel(offset=i), laws.isel(offset=i)
         rows.append(
             pd.DataFrame(
                 {
@@ -182,17 +172,18 @@ def _table(curves, drawn, fits):
                     "w_m_mm": float(curve["hyperbola_w_m"]),
                     "w_m_low_mm": float(curve["hyperbola_w_m_low"]),
                     "w_m_high_mm": float(curve["hyperbola_w_m_high"]),
-                    "area_fitted": fitted,
-                    "area_exponent": line.slope,
-                    "area_exponent_low": line.slope_low,
-                    "area_exponent_high": line.slope_high,
+                    "area_corrected_mm2": curve["area_corrected"].values,
+                    "area_fitted": law["fitted"].values,
+                    "area_exponent": float(law["exponent"]),
+                    "area_exponent_low": float(law["exponent_low"]),
+                    "area_exponent_high": float(law["exponent_high"]),
                 }
             )
         )
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, curves, fits, drawn):
+def _caption(label, direction, curves, laws, drawn):
     ends = (force_label(curves.attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
     where = f"{place(direction)}, at the finest resolution"
     sentences = [
@@ -202,7 +193,7 @@ def _caption(label, direction, curves, fits, drawn):
         f"area against force and power laws fitted to the domains of {FEWEST_NODES} nodes or more "
         f"(filled).",
         _hyperbola_words(curves.isel(offset=drawn)),
-        _linearity_words([fits[i][0] for i in drawn]),
+        _linearity_words(laws.isel(offset=drawn)),
     ]
     if direction != "none":
         sentences.append(_compliance_words(curves))
@@ -227,26 +218,26 @@ def _hyperbola_words(curves):
     return f"{words}; no computed curve passes its asymptote."
 
 
-def _linearity_words(lines):
-    known = [line for line in lines if np.isfinite(line.slope)]
-    if not known:
+def _linearity_words(laws):
+    known = laws.isel(offset=np.isfinite(laws["exponent"].values))
+    if not known.sizes["offset"]:
         return "Too few domains are large enough to tell whether A_r grows as F."
-    slopes = [line.slope for line in known]
-    holding = sum(line.slope_low <= 1 <= line.slope_high for line in known)
+    slopes = known["exponent"].values
+    low, high = known["exponent_low"].values, known["exponent_high"].values
+    holding = int(((low <= 1) & (high >= 1)).sum())
     verdict = (
         "nearly linear, as the paper says"
-        if all(abs(slope - 1) <= NEARLY for slope in slopes)
+        if (abs(slopes - 1) <= NEARLY).all()
         else f"not all within {NEARLY:g} of 1, where the paper has a nearly linear law"
     )
-    if len(known) == 1:
+    if len(slopes) == 1:
         held = "includes" if holding else "leaves out"
-        return (
-            f"A_r grows as F to the power {slope_text(known[0])}: {verdict}; its interval {held} 1."
-        )
+        power = _exponent(known.isel(offset=0))
+        return f"A_r grows as F to the power {power}: {verdict}; its interval {held} 1."
     return (
         f"A_r grows as F to powers from {min(slopes):.3g} to {max(slopes):.3g}: "
         f"{verdict}; the intervals "
-        f"of {holding} of {len(known)} include 1."
+        f"of {holding} of {len(slopes)} include 1."
     )
 
 

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ..fitting import fit_line
-from ..sweep import window_sides
+from ..specimen import window_sides
 from ._maps import HALO, draw_domain
 from ._words import TOWARDS, force_label, opening, place, short, slope_text
 from .common import (

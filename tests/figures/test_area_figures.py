@@ -1,0 +1,240 @@
+"""Figures of the real contact area beside the theories."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from fractalcontact.area import FULL_CONTACT, area_laws, joint_statistics
+from fractalcontact.area_slope import area_slope
+from fractalcontact.figures import area_slope as slope_figure
+from fractalcontact.figures import area_theories
+from fractalcontact.figures.common import print_style, save, settings_of
+
+SPECIMENS = ("sliding", "flat", "pair")
+RECIPE = {
+    "dimension": 2.2,
+    "nodes": 48,
+    "size": 20.0,
+    "seeds": [1, 2, 3],
+    "roll_off_share": 0.125,
+    "loads": [0.005, 0.01, 0.02],
+}
+
+
+@pytest.fixture(scope="module")
+def with_area(atlas):
+    """The small atlas with what these figures read, made by the package's own functions."""
+    whole = atlas.copy(deep=True)
+    for name in SPECIMENS:
+        specimen, joint, curves = (
+            atlas[f"{stage}/{name}"].to_dataset() for stage in ("specimens", "joints", "closure")
+        )
+        e_star = settings_of(atlas, name)["material"]["e_star"]
+        laws = area_laws(curves, joint_statistics(specimen, joint), e_star, 2.2)
+        whole[f"area/{name}"] = xr.DataTree(laws)
+    whole["area_slope/surfaces"] = xr.DataTree(area_slope(RECIPE))
+    return whole
+
+
+def drawn(atlas, name):
+    with print_style():
+        return area_theories.draw(atlas, name)
+
+
+def slopes_drawn(atlas):
+    with print_style():
+        return slope_figure.draw(atlas, list(SPECIMENS))
+
+
+def changed(atlas, group, change):
+    """The atlas with one group put through a function of its dataset."""
+    other = atlas.copy(deep=True)
+    other[group] = xr.DataTree(change(other[group].to_dataset()))
+    return other
+
+
+def axes_labels_have_units(figure):
+    for axes in figure.axes:
+        labels = [label for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
+        assert labels
+        assert all(re.search(r"\(.+\)$", label) for label in labels)
+
+
+# -- area beside the theories ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SPECIMENS)
+def test_labels_table_and_caption(with_area, name):
+    drawing = drawn(with_area, name)
+    drawing.figure.draw_without_rendering()
+    axes_labels_have_units(drawing.figure)
+    assert settings_of(with_area, name)["label"] in drawing.caption
+    assert "Fig. 5" in drawing.caption
+    assert "nan" not in drawing.caption
+    assert 0 < len(drawing.data) <= 20_000
+
+
+@pytest.mark.parametrize("name", SPECIMENS)
+def test_points_are_those_of_the_atlas(with_area, name):
+    table = drawn(with_area, name).data
+    offset = table["offset_mm"].iloc[0]
+    laws = with_area[f"area/{name}"].to_dataset().isel(direction=0).sel(offset=offset)
+    curve = with_area[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
+    curve = curve.sel(offset=offset)
+    np.testing.assert_array_equal(table["area_share"], curve["area_share"])
+    for column in ("kappa", "corrected_kappa", "persson_share", "majumdar_bhushan_share"):
+        np.testing.assert_array_equal(table[column], laws[column])
+    nominal = curve["load"] / curve["nominal_pressure"]
+    np.testing.assert_allclose(table["corrected_share"], curve["area_corrected"] / nominal)
+
+
+def test_offset_of_the_maps_is_drawn(with_area):
+    assert drawn(with_area, "sliding").data["offset_mm"].unique() == pytest.approx([0.4])
+
+
+def test_slopes_of_archard_are_straight_and_his(with_area):
+    axes = drawn(with_area, "sliding").figure.axes[0]
+    fan = [line for line in axes.lines if line.get_linestyle() == ":"]
+    slopes = [np.diff(np.log(line.get_ydata())) / np.diff(np.log(line.get_xdata())) for line in fan]
+    np.testing.assert_allclose(np.ravel(slopes), [2 / 3, 8 / 9, 26 / 27])
+
+
+def test_only_loads_with_enough_nodes_have_a_kappa(with_area):
+    drawing = drawn(with_area, "sliding")
+    kappa = [line for line in drawing.figure.axes[1].lines if line.get_marker() == "o"]
+    assert len(kappa) == 2  # corrected and raw
+    fitted = drawing.data[drawing.data["fitted"]]
+    for line, column in zip(kappa, ("corrected_kappa", "kappa"), strict=True):
+        np.testing.assert_array_equal(line.get_xdata(), fitted["reduced_pressure"])
+        np.testing.assert_array_equal(line.get_ydata(), fitted[column])
+
+
+def test_shares_beyond_the_window_are_not_drawn(with_area):
+    heavy = changed(
+        with_area,
+        "area/flat",
+        lambda laws: laws.assign(majumdar_bhushan_share=laws["majumdar_bhushan_share"] * 0 + 2),
+    )
+    lines = drawn(heavy, "flat").figure.axes[0].lines
+    (line,) = (line for line in lines if "Majumdar" in line.get_label())
+    assert not len(line.get_xdata())
+    assert "not defined" in line.get_label()
+
+
+@pytest.mark.parametrize(
+    ("value", "words"), [(1.2, "below both"), (2.0, "lies between"), (3.0, "above both")]
+)
+def test_kappa_is_judged_by_the_theories(with_area, value, words):
+    def set_mean(laws):
+        for key, ending in ((value, ""), (value - 0.1, "_low"), (value + 0.1, "_high")):
+            laws[f"corrected_mean_kappa{ending}"] = laws["mean_kappa"] * 0 + key
+        return laws
+
+    assert words in drawn(changed(with_area, "area/sliding", set_mean), "sliding").caption
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "words"),
+    [
+        (0.95, 1.02, "includes 1, the paper's linear law, and agrees with Archard's level 3"),
+        (0.85, 0.98, "leaves out 1, the paper's linear law, and agrees with Archard's levels 2, 3"),
+        (0.75, 0.8, "agrees with none of Archard's"),
+    ],
+)
+def test_exponent_is_judged_by_its_interval(with_area, low, high, words):
+    def set_exponent(laws):
+        for name, value in (("_low", low), ("", (low + high) / 2), ("_high", high)):
+            laws[f"exponent{name}"] = laws["exponent"] * 0 + value
+        return laws
+
+    assert words in drawn(changed(with_area, "area/sliding", set_exponent), "sliding").caption
+
+
+def test_flush_faces_are_passed_over_and_if_there_are_no_others_said_to_be(with_area):
+    def flush(laws):
+        laws = laws.copy(deep=True)
+        numbers = [name for name in laws.data_vars if laws[name].dtype.kind == "f"]
+        for name in numbers:
+            if "offset" in laws[name].dims:
+                laws[name][{"offset": slice(0, count)}] = np.nan
+        laws["fitted"][{"offset": slice(0, count)}] = False
+        laws["no_law"] = laws["no_law"].astype(object)
+        laws["no_mean_kappa"] = laws["no_mean_kappa"].astype(object)
+        laws["no_law"][{"offset": slice(0, count)}] = FULL_CONTACT
+        laws["no_mean_kappa"][{"offset": slice(0, count)}] = "the faces are flush"
+        return laws
+
+    count = 3  # all up to the offset of the maps
+    drawing = drawn(changed(with_area, "area/sliding", flush), "sliding")
+    assert drawing.data["offset_mm"].iloc[0] == pytest.approx(0.6)
+    count = with_area["area/sliding"].sizes["offset"]
+    drawing = drawn(changed(with_area, "area/sliding", flush), "sliding")
+    drawing.figure.draw_without_rendering()
+    assert FULL_CONTACT in drawing.caption
+    assert "no kappa at light load: the faces are flush" in drawing.caption
+    assert "None of the theories" in drawing.caption
+
+
+def test_one_load_is_drawn(with_area):
+    one = with_area
+    for group in ("area/sliding", "closure/sliding"):
+        one = changed(one, group, lambda dataset: dataset.isel(load=[-1]))
+    drawn(one, "sliding").figure.draw_without_rendering()
+
+
+# -- made surfaces ---------------------------------------------------------------------------------
+
+
+def test_every_surface_is_in_its_panel(with_area):
+    drawing = slopes_drawn(with_area)
+    drawing.figure.draw_without_rendering()
+    axes_labels_have_units(drawing.figure)
+    slopes = with_area["area_slope/surfaces"].to_dataset()
+    for axes, kind in zip(drawing.figure.axes, slopes["surface"].values, strict=True):
+        lines = [line for line in axes.lines if line.get_marker() not in (None, "None", "")]
+        values = [line.get_ydata() for line in lines]
+        one = slopes.sel(surface=kind)
+        stored = [
+            one[name].sel(seed=seed).values
+            for seed in RECIPE["seeds"]
+            for name in ("corrected_kappa", "kappa")
+        ]
+        np.testing.assert_array_equal(values, stored)
+    assert len(drawing.data) == slopes["kappa"].size
+    assert isinstance(drawing.data, pd.DataFrame)
+    assert "1/8 of the side" in drawing.figure.axes[0].get_title(loc="left")
+
+
+def test_values_outside_the_theories_are_counted(with_area):
+    def lower(slopes):
+        slopes = slopes.copy(deep=True)
+        slopes["corrected_kappa"][...] = 2.0
+        slopes["corrected_kappa"][0, 0, 0] = 1.0
+        return slopes
+
+    caption = slopes_drawn(changed(with_area, "area_slope/surfaces", lower)).caption
+    assert "is 1.00 to 2.00, 8 of 9 values between" in caption
+    assert "is 2.00 to 2.00, all between" in caption
+
+
+def test_one_seed_has_no_scatter(with_area):
+    one = changed(
+        with_area, "area_slope/surfaces", lambda _: area_slope(RECIPE | {"seeds": [1], "nodes": 32})
+    )
+    drawing = slopes_drawn(one)
+    assert "One seed tells nothing" in drawing.caption
+    assert "nan" not in drawing.caption
+
+
+def test_two_runs_give_the_same_bytes(with_area, tmp_path):
+    written = []
+    for folder in (tmp_path / "first", tmp_path / "second"):
+        with print_style():
+            save(area_theories.draw(with_area, "pair"), folder, "area_theories")
+            save(slope_figure.draw(with_area, list(SPECIMENS)), folder, "area_slope")
+        written.append({path.name: path.read_bytes() for path in folder.iterdir()})
+    assert written[0] == written[1]
+    assert len(written[0]) == 8

@@ -1,0 +1,283 @@
+"""Figures of clusters, conductance, compliance and of the plateau of rigid dilatancy."""
+
+import importlib
+import json
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+from fractalcontact.clusters import cluster_sizes, cluster_statistics
+from fractalcontact.figures.common import offset_axis, print_style, save
+from fractalcontact.figures.plateau import Slide
+from fractalcontact.fitting import fit_line
+
+SLIDING = ("sliding", "pair")
+DRAWN = [
+    *[(figure, name) for figure in ("clusters", "compliance") for name in SLIDING],
+    *[("conductance", name) for name in (*SLIDING, "flat")],
+    ("plateau", ("sliding", "pair", "flat")),
+    ("plateau", ("sliding",)),
+]
+
+
+def drawn(atlas, figure, what):
+    with print_style():
+        return importlib.import_module(f"fractalcontact.figures.{figure}").draw(atlas, what)
+
+
+def with_changes(atlas, group, **change):
+    """The atlas with some variables of a group made anew from its dataset."""
+    changed = atlas.copy(deep=True)
+    dataset = changed[group].to_dataset()
+    for name, make in change.items():
+        new = make(dataset) if callable(make) else make
+        dataset[name] = xr.zeros_like(dataset[name], float) + new
+    changed[group] = xr.DataTree(dataset)
+    return changed
+
+
+# Against the atlas
+
+
+@pytest.mark.parametrize("name", SLIDING)
+def test_clusters_drawn_are_those_of_the_contact_domains(atlas, name):
+    table = drawn(atlas, "clusters", name).data
+    fields = atlas[f"contact/{name}"].to_dataset()["in_contact_1"].isel(direction=0)
+    points = table[table["kind"] == "domain"]
+    assert len(points) > 0
+    for _, point in points.iterrows():
+        domain = fields.sel(offset=point["offset_mm"], load=point["force_N"], method="nearest")
+        found = cluster_statistics(domain.values, 0.1)
+        assert point["nodes"] == domain.values.sum()
+        for column in ("clusters", "largest_share", "morisita", "half_share", "morisita_scatter"):
+            np.testing.assert_allclose(point[column], found[column])
+
+
+def test_sizes_drawn_are_those_of_the_clusters(atlas):
+    table = drawn(atlas, "clusters", "sliding").data
+    sizes = table[table["kind"] == "sizes"]
+    fields = atlas["contact/sliding"].to_dataset()["in_contact_1"].isel(direction=0)
+    assert sizes["offset_mm"].nunique() == 3
+    for _, point in sizes.iterrows():
+        domain = fields.sel(offset=point["offset_mm"], load=point["force_N"], method="nearest")
+        areas = cluster_sizes(domain.values) * 0.1**2
+        at_least = (areas > point["cluster_area_mm2"] * (1 - 1e-9)).sum()
+        assert point["clusters_at_least"] == at_least
+
+
+@pytest.mark.parametrize("name", [*SLIDING, "flat"])
+def test_conductance_drawn_is_that_of_the_atlas(atlas, name):
+    table = drawn(atlas, "conductance", name).data
+    curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
+    e_star = json.loads(atlas.attrs["configuration"])["settings"][name]["material"]["e_star"]
+    for offset, points in table.groupby("offset_mm"):
+        curve = curves.sel(offset=offset, method="nearest")
+        np.testing.assert_array_equal(points["conductance_per_mm"], curve["conductance"])
+        np.testing.assert_allclose(
+            points["interface_stiffness_MPa_per_mm"], points["conductance_per_mm"] * e_star
+        )
+        fitted = points[points["fitted"]]
+        line = fit_line(
+            np.log(fitted["nominal_pressure_MPa"]), np.log(fitted["conductance_per_mm"])
+        )
+        np.testing.assert_allclose(points["exponent"].iloc[0], line.slope)
+
+
+@pytest.mark.parametrize("name", SLIDING)
+def test_compliance_drawn_is_the_inverse_of_the_stiffness(atlas, name):
+    table = drawn(atlas, "compliance", name).data
+    curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
+    joint = atlas[f"joints/{name}"].to_dataset()
+    closed = table[table["curve"] == "closure"]
+    for force, points in closed.groupby("force_N"):
+        curve = curves.sel(load=force)
+        np.testing.assert_array_equal(points["interface_closure_mm"], curve["interface_closure"])
+        np.testing.assert_allclose(
+            points["interface_compliance_mm_per_MPa"] * curve["interface_stiffness"].values,
+            np.where(np.isfinite(curve["interface_stiffness"]), 1, np.nan),
+        )
+    correlation = table[table["curve"] == "correlation"]
+    for direction, points in correlation.groupby("direction"):
+        stored = joint["face_correlation"].sel(direction=direction)
+        np.testing.assert_array_equal(points["face_correlation"], stored)
+
+
+def test_plateau_holds_every_direction_of_all_that_slides(atlas):
+    table = drawn(atlas, "plateau", ["flat", "sliding", "pair"]).data
+    assert table["specimen"].nunique() == 2
+    for name in SLIDING:
+        joint = atlas[f"joints/{name}"].to_dataset()
+        label = json.loads(atlas.attrs["configuration"])["settings"][name]["label"]
+        for direction, points in table[table["specimen"] == label].groupby("direction"):
+            stored = joint.sel(direction=direction)
+            np.testing.assert_array_equal(points["rigid_dilatancy_mm"], stored["rigid_dilatancy"])
+            np.testing.assert_array_equal(points["composite_rms_mm"], stored["composite_rms"])
+
+
+def test_spread_of_the_composite_is_what_the_correlation_makes_it(atlas):
+    # Exact but for the heights' changing with the place of the window.
+    slide = Slide.of(atlas, "sliding")
+    np.testing.assert_allclose(slide.expected[:, 0], 0, atol=1e-6)
+    near = slide.v < 0.3 * slide.v[-1]
+    np.testing.assert_allclose(slide.expected[:, near], slide.spread[:, near], rtol=0.2, atol=1e-6)
+    assert np.isnan(slide.ratio[:, 0]).all()
+    assert np.isfinite(slide.ratio[:, 1:]).all()
+
+
+# What every figure must be
+
+
+@pytest.mark.parametrize(("figure", "what"), DRAWN)
+def test_every_axis_has_a_label_with_its_unit(atlas, figure, what):
+    drawing = drawn(atlas, figure, what)
+    drawing.figure.draw_without_rendering()
+    for axes in drawing.figure.axes:
+        assert axes.get_ylabel()
+        for label in (axes.get_xlabel(), axes.get_ylabel()):
+            assert not label or re.search(r"\(.+\)$", label), label
+    assert 0 < len(drawing.data) <= 20_000
+    assert "nan" not in drawing.caption
+    assert "inf" not in re.sub("interface|inform", "", drawing.caption)
+    labels = {"sliding": "synthetic twin of nothing", "pair": "Brèche", "flat": "flat"}
+    for name in [what] if isinstance(what, str) else [n for n in what if n != "flat"]:
+        assert labels[name] in drawing.caption
+
+
+@pytest.mark.parametrize(
+    ("figure", "what"),
+    [
+        ("clusters", "pair"),
+        ("compliance", "pair"),
+        ("conductance", "flat"),
+        ("plateau", ("sliding", "pair")),
+    ],
+)
+def test_the_same_drawing_twice_is_the_same_file_twice(atlas, tmp_path, figure, what):
+    for folder in ("first", "second"):
+        with print_style():
+            save(drawn(atlas, figure, what), tmp_path / folder, figure)
+    written = [
+        {path.name: path.read_bytes() for path in (tmp_path / folder).iterdir()}
+        for folder in ("first", "second")
+    ]
+    assert written[0] == written[1]
+    assert len(written[0]) == 4
+
+
+@pytest.mark.parametrize(
+    ("offsets", "scale"),
+    [
+        ([0.1, 0.5, 10.0], "log"),
+        ([0.0, 0.5, 10.0], "symlog"),
+        ([0.5, 1.0], "linear"),
+        ([2.0], "linear"),
+    ],
+)
+def test_scale_of_offsets_suits_them(offsets, scale):
+    axes = Figure().subplots()
+    offset_axis(axes, np.array(offsets))
+    assert axes.get_xscale() == scale
+
+
+# Verdicts follow the data
+
+
+@pytest.mark.parametrize(
+    ("power", "words"),
+    [
+        (0.5, "the domains become less homogeneous with v, as the paper says"),
+        (-0.5, "more homogeneous with v, unlike the paper's"),
+        (0.0, "no trend beyond the intervals"),
+    ],
+)
+def test_localisation_is_judged_by_its_slope(atlas, power, words):
+    def law(dataset):
+        n = np.arange(dataset.sizes["offset"])
+        return (
+            3 * dataset["offset"] ** power * xr.DataArray(1 + 0.05 * np.cos(3 * n), dims="offset")
+        )
+
+    changed = with_changes(atlas, "domains/sliding", morisita=law)
+    changed = with_changes(changed, "closure/sliding", area=1.0)  # 100 nodes
+    assert words in drawn(changed, "clusters", "sliding").caption
+
+
+def test_domains_of_few_nodes_make_no_trend(atlas):
+    few = with_changes(atlas, "closure/sliding", area=9 * 0.1**2)
+    drawing = drawn(few, "clusters", "sliding")
+    assert not drawing.data["in_trend"].fillna(False).any()
+    assert "Too few offsets" in drawing.caption
+
+
+def test_caption_of_the_compliance_says_what_was_judged(atlas):
+    caption = drawn(atlas, "compliance", "sliding").caption
+    judged = atlas["statements/sliding"].to_dataset()
+    for name in ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again"):
+        finding = judged.sel(statement=name)
+        assert f"{finding['verdict'].item()} ({finding['numbers'].item()})" in caption
+
+
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        ((0.9, 0.97), "as the theories have it"),
+        ((0.5, 0.6), "lie below and of 0 above"),
+        ((1.2, 1.4), "lie below and of 5 above"),
+    ],
+)
+def test_conductance_is_judged_by_its_intervals(atlas, ends, words):
+    changed = with_changes(
+        atlas,
+        "closure/sliding",
+        conductance_exponent=np.mean(ends),
+        conductance_exponent_low=ends[0],
+        conductance_exponent_high=ends[1],
+    )
+    assert words in drawn(changed, "conductance", "sliding").caption
+
+
+def test_a_conductance_without_a_fit_is_still_drawn(atlas):
+    nothing = dict.fromkeys(
+        [f"conductance_{key}" for key in ("exponent", "pressure_low", "pressure_high")], np.nan
+    )
+    caption = drawn(with_changes(atlas, "closure/flat", **nothing), "conductance", "flat").caption
+    assert "Too few pressures" in caption
+
+
+def with_roll_off(atlas, roll_off, opened):
+    """The atlas as if its sliding specimen were embedded, with a roll-off and a dilatancy."""
+    changed = with_changes(atlas, "joints/sliding", rigid_dilatancy=opened)
+    configuration = json.loads(changed.attrs["configuration"])
+    configuration["study"]["embedded"] = {"sliding": {"roll_off": roll_off}}
+    changed.attrs["configuration"] = json.dumps(configuration)
+    return changed
+
+
+def test_a_plateau_is_told_from_a_rise(atlas):
+    level = with_roll_off(atlas, "1 mm", lambda joint: 1 - np.exp(-10 * joint["rigid_offset"]))
+    caption = drawn(level, "plateau", ["sliding"]).caption
+    assert "beyond the roll-off length, sigma_z is" in caption
+    assert "in 1 of 1 and rises by more in 0" in caption
+    assert "(roll-off 1 mm)" in caption
+    rising = with_roll_off(atlas, None, lambda joint: joint["rigid_offset"])
+    caption = drawn(rising, "plateau", ["sliding"]).caption
+    assert "in 0 of 1 and rises by more in 1 (the intervals of 1 exclude zero)" in caption
+    assert "(no roll-off)" in caption
+
+
+def test_a_scan_has_no_roll_off_that_is_known(atlas):
+    assert "(roll-off not known)" in drawn(atlas, "plateau", ["sliding"]).caption
+
+
+def test_one_solved_offset_is_enough(atlas):
+    cut = atlas.copy(deep=True)
+    for stage in ("contact", "closure", "domains", "joints"):
+        dataset = cut[f"{stage}/sliding"].to_dataset()
+        cut[f"{stage}/sliding"] = xr.DataTree(dataset.isel(offset=[2]))
+    for figure in ("clusters", "conductance", "compliance"):
+        drawing = drawn(cut, figure, "sliding")
+        drawing.figure.draw_without_rendering()
+        assert "nan" not in drawing.caption

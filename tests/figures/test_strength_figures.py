@@ -1,0 +1,175 @@
+"""Figures of strength and of size (Fig. 1b, sects. 3 and 5 of the paper)."""
+
+import importlib
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fractalcontact.figures._sizes import apart, plain_decades
+from fractalcontact.figures.common import print_style, save
+from fractalcontact.theory import LARGEST_FRICTION_ANGLE
+
+DRAWN = [
+    ("sliding", "strength"),
+    ("sliding", "window_size"),
+    ("sliding", "fig01_strength"),
+    ("pair", "strength"),
+    ("pair", "window_size"),
+    ("pair", "fig01_strength"),
+    ("flat", "window_size"),
+]
+
+
+def drawn(atlas, specimen, figure):
+    with print_style():
+        return importlib.import_module(f"fractalcontact.figures.{figure}").draw(atlas, specimen)
+
+
+def unstated(atlas):
+    """The atlas of a study that states neither basic friction angle nor wall strength."""
+    changed = atlas.copy(deep=True)
+    lost = ("strength", "held", "barton", "scaled", "friction_angle", "joint_wall")
+    for stage in ("strength", "windows"):
+        for specimen in changed[stage].children:
+            dataset = changed[f"{stage}/{specimen}"].to_dataset()
+            for name in dataset.data_vars:
+                if any(word in name for word in lost) and dataset[name].dtype.kind == "f":
+                    dataset[name] = xr.full_like(dataset[name], np.nan)
+            changed[f"{stage}/{specimen}"] = xr.DataTree(dataset)
+    return changed
+
+
+# Exact
+
+
+def test_short_axes_are_numbered_in_plain_words(atlas):
+    axes = drawn(atlas, "flat", "window_size").figure.axes[0]
+    axes.set_xlim(0.9, 21)
+    plain_decades(axes.xaxis)
+    ticks = [t for t in axes.xaxis.get_major_locator()() if 0.9 <= t <= 21]
+    assert ticks == pytest.approx([1, 2, 5, 10, 20])
+    assert axes.xaxis.get_major_formatter()(5.0) == "5"
+
+
+def test_series_stand_apart_about_the_size_itself():
+    b = np.array([1.0, 10.0])
+    places = np.array([apart(b, j, 3) for j in range(3)])
+    np.testing.assert_allclose(places[1], b)
+    np.testing.assert_allclose(places.mean(axis=0), b)
+    assert (np.diff(places, axis=0) > 0).all()
+
+
+# Against the atlas
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "pair"])
+def test_strength_drawn_is_that_of_the_atlas(atlas, specimen):
+    table = drawn(atlas, specimen, "strength").data
+    stored = atlas[f"strength/{specimen}"].to_dataset().isel(contact_direction=0)
+    over = table[table["curve"] == "over the offsets"]
+    for pressure, points in over.groupby("nominal_pressure_MPa"):
+        j = int(np.argmin(np.abs(stored["nominal_pressure"].values - pressure)))
+        for column, name in (
+            ("offset_mm", "midpoint"),
+            ("rigid_dilatancy_angle_deg", "rigid_dilatancy_angle"),
+        ):
+            np.testing.assert_array_equal(points[column], stored[name])
+        for column, name in (
+            ("dilatancy_angle_deg", "dilatancy_angle"),
+            ("shear_strength_MPa", "shear_strength"),
+        ):
+            np.testing.assert_array_equal(points[column], stored[name][:, j])
+    ends = table[table["curve"] == "peak and residual"]
+    np.testing.assert_array_equal(ends["peak_strength_MPa"], stored["peak_strength"])
+    np.testing.assert_array_equal(ends["barton_strength_MPa"], stored["barton_strength"])
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "pair", "flat"])
+def test_sizes_drawn_are_those_of_the_atlas(atlas, specimen):
+    table = drawn(atlas, specimen, "window_size").data
+    laws = atlas[f"windows/{specimen}"].to_dataset()
+    face = table[table["surface"] == "face"]
+    np.testing.assert_array_equal(face["b_mm"], laws["scale_side"])
+    np.testing.assert_array_equal(face["mean_mm"], laws["face_sigma_z"])
+    closure = table[table["quantity"] == "interface_closure"]
+    expected = laws["interface_closure"].transpose("offset", "load", "part").values.ravel()
+    np.testing.assert_array_equal(closure["mean_mm"], expected)
+
+
+def test_strength_by_size_is_that_of_the_atlas(atlas):
+    table = drawn(atlas, "sliding", "fig01_strength").data
+    laws = atlas["windows/sliding"].to_dataset()
+    similar = table[table["at"] == "v/b"]
+    stored = laws["similar_slope"].transpose("load", "share", "part").values.ravel()
+    np.testing.assert_array_equal(similar["slope"], stored)
+    peak = table[table["at"] == "peak"]
+    stored = laws["peak_strength"].transpose("load", "part").values.ravel()
+    np.testing.assert_array_equal(peak["strength_MPa"], stored)
+
+
+def test_the_right_axis_adds_the_basic_angle(atlas):
+    axes = drawn(atlas, "sliding", "strength").figure.axes[0]
+    (other,) = axes.child_axes
+    basic = float(atlas["strength/sliding"]["basic_friction_angle"])
+    axes.figure.draw_without_rendering()
+    np.testing.assert_allclose(np.subtract(other.get_ylim(), axes.get_ylim()), basic)
+    held = next(line for line in axes.lines if line.get_label().startswith("held above"))
+    assert held.get_ydata()[0] + basic == LARGEST_FRICTION_ANGLE
+
+
+# Properties
+
+
+@pytest.mark.parametrize(("specimen", "figure"), DRAWN)
+def test_every_axis_states_its_unit(atlas, specimen, figure):
+    for axes in drawn(atlas, specimen, figure).figure.axes:
+        if axes.axison and axes.lines:
+            for label in (axes.get_xlabel(), axes.get_ylabel()):
+                assert label.endswith(("(mm)", "(MPa)", "(degrees)", "(mm/mm)")), label
+
+
+@pytest.mark.parametrize(("specimen", "figure"), DRAWN)
+def test_caption_names_the_specimen_and_its_claim(atlas, specimen, figure):
+    caption = drawn(atlas, specimen, figure).caption
+    label = json.loads(atlas.attrs["configuration"])["settings"][specimen]["label"]
+    assert label in caption
+    assert "nan" not in caption
+    assert "  " not in caption
+    assert ("Fig. 1b" in caption) == (figure == "fig01_strength")
+
+
+@pytest.mark.parametrize(("specimen", "figure"), DRAWN)
+def test_a_study_that_states_no_friction_angle_is_drawn_and_told_so(atlas, specimen, figure):
+    caption = drawn(unstated(atlas), specimen, figure).caption
+    assert "nan" not in caption
+    if figure == "strength":
+        assert "states no basic friction angle" in caption
+    if figure == "fig01_strength":
+        assert "No Barton's law" in caption
+
+
+def test_no_fit_is_said_and_no_line_drawn(atlas):
+    changed = atlas.copy(deep=True)
+    laws = changed["windows/flat"].to_dataset()
+    for name in list(laws.data_vars):
+        if "exponent" in name or "hurst" in name:
+            laws[name] = xr.full_like(laws[name], np.nan, dtype=float)
+    changed["windows/flat"] = xr.DataTree(laws)
+    drawing = drawn(changed, "flat", "window_size")
+    assert "No fit of eq. 2" in drawing.caption
+    assert "No exponent" in drawing.caption
+
+
+@pytest.mark.parametrize(("specimen", "figure"), DRAWN)
+def test_drawn_twice_the_files_are_the_same(atlas, specimen, figure, tmp_path):
+    for folder in ("once", "twice"):
+        with print_style():
+            save(drawn(atlas, specimen, figure), tmp_path / folder, figure)
+    for ending in ("png", "svg", "csv", "txt"):
+        once, twice = (
+            (tmp_path / f / f"{figure}.{ending}").read_bytes() for f in ("once", "twice")
+        )
+        assert once == twice
+        assert once

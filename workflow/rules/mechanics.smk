@@ -1,0 +1,100 @@
+# Joint mechanics beside the contact states: parts of the window, laws of the area, strength, and
+# what the paper says of them.
+
+
+rule windows:
+    input:
+        specimen=rules.specimen.output[0],
+        surface_dimension=rules.surface_dimension.output[0],
+        joint=rules.joint.output[0],
+    output:
+        f"{RESULTS}/windows/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/windows/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/windows/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=60,
+    params:
+        settings=settings_of,
+        solver=SOLVER,
+        code=code("windows", "size_laws", "store"),
+    script:
+        "../scripts/windows.py"
+
+
+rule area:
+    input:
+        specimen=rules.specimen.output[0],
+        surface_dimension=rules.surface_dimension.output[0],
+        joint=rules.joint.output[0],
+        closure=rules.closure.output.closure,
+    output:
+        f"{RESULTS}/area/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/area/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/area/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        settings=settings_of,
+        code=code("area", "store"),
+    script:
+        "../scripts/area.py"
+
+
+# Strength needs sliding, and so does most of what the paper says on Figs. 4 to 7.
+rule strength:
+    input:
+        specimen=rules.specimen.output[0],
+        joint=rules.joint.output[0],
+        closure=rules.closure.output.closure,
+        dilatancy=rules.closure.output.dilatancy,
+        domains=rules.domains.output.domains,
+        area=rules.area.output[0],
+        windows=rules.windows.output[0],
+    output:
+        strength=f"{RESULTS}/strength/{{specimen}}.nc",
+        statements=f"{RESULTS}/statements/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/strength/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
+    wildcard_constraints:
+        specimen=one_of(SLIDING),
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        settings=settings_of,
+        code=code("strength", "statements", "store"),
+    script:
+        "../scripts/strength.py"
+
+
+rule area_slope:
+    output:
+        f"{RESULTS}/area_slope/surfaces.nc",
+    log:
+        f"{RESULTS}/logs/area_slope.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/area_slope.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        recipe={"size": 20.0} | config.get("area_slope", {}),
+        code=code("area_slope", "store"),
+    script:
+        "../scripts/area_slope.py"

@@ -1,0 +1,17 @@
+"""Draw the figures of the whole study from its atlas."""
+
+from pathlib import Path
+
+from _job import reported
+
+from fractalcontact.figures import draw_study_figures
+
+with reported(snakemake.log) as log:
+    captions = draw_study_figures(
+        snakemake.input[0],
+        snakemake.params.specimens,
+        Path(snakemake.output[0]).parent,
+        snakemake.params.names,
+    )
+    for name, caption in captions.items():
+        log.info("%s: %s", name, caption)
