@@ -11,7 +11,6 @@ from fractalcontact.area import (
     contact_perimeter,
     corrected_area,
     joint_statistics,
-    mean_with_interval,
 )
 from fractalcontact.closure import closure_curves
 from fractalcontact.joint import describe_joint
@@ -127,20 +126,6 @@ def test_rough_contact_on_a_coarse_grid_is_nearer_when_corrected(seed):
 
 
 # -- mean ------------------------------------------------------------------------------------------
-
-
-def test_mean_and_its_interval():
-    # t of 4 degrees of freedom: 2.776; standard deviation of 1..5 is sqrt(2.5).
-    found = mean_with_interval([1, 2, 3, 4, 5, np.nan])
-    half = 2.7764451 * np.sqrt(2.5 / 5)
-    assert found == pytest.approx((3, 3 - half, 3 + half))
-
-
-def test_mean_of_one_has_no_interval_and_of_none_no_value():
-    one = mean_with_interval([2.0])
-    assert one.value == 2
-    assert np.isnan(one.low)
-    assert np.isnan(mean_with_interval([np.nan]).value)
 
 
 # -- statistics ------------------------------------------------------------------------------------

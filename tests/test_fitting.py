@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from fractalcontact.fitting import fit_line, without_mean_plane
+from fractalcontact.fitting import fit_line, mean_interval, without_mean_plane
 
 
 def test_points_on_a_line_give_it_back_without_error():
@@ -63,3 +63,20 @@ def test_no_plane_through_a_line_of_cells():
     heights[2] = 1.0
     assert np.isnan(without_mean_plane(heights)).all()
     assert np.isnan(without_mean_plane(np.full((5, 5), np.nan))).all()
+
+
+def test_mean_interval_is_students():
+    rng = np.random.default_rng(2)
+    values = rng.normal(3, 1, (7, 2))
+    mean, low, high, n = mean_interval(values)
+    known = stats.t.interval(0.95, 6, values.mean(axis=0), stats.sem(values, axis=0))
+    np.testing.assert_allclose((low, high), known)
+    np.testing.assert_allclose(mean, values.mean(axis=0))
+    assert n.tolist() == [7, 7]
+
+
+def test_mean_of_one_value_has_no_interval_and_of_none_no_value():
+    mean, low, high, n = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
+    np.testing.assert_array_equal(mean, [1, np.nan])
+    assert np.isnan([low, high]).all()
+    assert n.tolist() == [1, 0]

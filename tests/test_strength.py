@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import xarray as xr
-from scipy import stats
 
 from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.joint import describe_joint
@@ -13,7 +12,6 @@ from fractalcontact.strength import (
     dilatancy_angle,
     from_flush,
     joint_strength,
-    mean_interval,
     peak,
     profile_roughness,
     residual,
@@ -146,23 +144,6 @@ def test_no_slope_along_the_ridges_and_hence_no_roughness_there():
     assert (along["z2"] < 1e-12).all()
     assert float(across["z2"].sel(sampling="scan")) > 0.25
     xr.testing.assert_identical(across, profile_roughness(flat_along_y, "W"))
-
-
-def test_mean_interval_is_students():
-    rng = np.random.default_rng(2)
-    values = rng.normal(3, 1, (7, 2))
-    mean, low, high, n = mean_interval(values)
-    known = stats.t.interval(0.95, 6, values.mean(axis=0), stats.sem(values, axis=0))
-    np.testing.assert_allclose((low, high), known)
-    np.testing.assert_allclose(mean, values.mean(axis=0))
-    assert n.tolist() == [7, 7]
-
-
-def test_mean_of_one_value_has_no_interval_and_of_none_no_value():
-    mean, low, high, n = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
-    np.testing.assert_array_equal(mean, [1, np.nan])
-    assert np.isnan([low, high]).all()
-    assert n.tolist() == [1, 0]
 
 
 def test_peak_is_the_first_largest_and_passes_over_what_is_missing():

@@ -1,13 +1,10 @@
 """Real contact area: its correction for the grid, its law, and the theories beside it."""
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
-from scipy import special
 
 from . import theory
-from .fitting import CONFIDENCE, FEWEST_POINTS, fit_line
+from .fitting import FEWEST_POINTS, fit_line, mean_interval
 from .joint import composite_topography, direction_spacing
 from .labels import about
 from .roughness import slope_statistics
@@ -30,39 +27,6 @@ STATISTICS = ("rms_height", "rms_slope", "m0", "m2", "m4")
 
 #: Why there is no law of the area.
 FULL_CONTACT = "the faces touch everywhere at every load"
-
-
-class Mean(NamedTuple):
-    """A mean and its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
-
-
-def mean_with_interval(values):
-    """Mean of a sample with its Student-t interval.
-
-    Parameters
-    ----------
-    values : (n,) array_like
-        NaN is left out.
-
-    Returns
-    -------
-    Mean
-        The interval is NaN for one value, all of it for none.
-    """
-    known = np.asarray(values, float)
-    known = known[np.isfinite(known)]
-    n = known.size
-    if n == 0:
-        return Mean(np.nan, np.nan, np.nan)
-    mean = float(known.mean())
-    if n == 1:
-        return Mean(mean, np.nan, np.nan)
-    half = special.stdtrit(n - 1, (1 + CONFIDENCE) / 2) * known.std(ddof=1) / np.sqrt(n)
-    return Mean(mean, float(mean - half), float(mean + half))
 
 
 def contact_perimeter(in_contact, spacing):
@@ -301,11 +265,10 @@ def _add_kappa(result, curves, e_star, touching):
         kappa = area / nominal / reduced
         result[f"{prefix}kappa"] = kappa.assign_attrs(about("1", words))
         means = xr.apply_ufunc(
-            mean_with_interval,
+            lambda values: mean_interval(values, axis=-1)[:3],
             kappa.where(light),
             input_core_dims=[["load"]],
             output_core_dims=[[], [], []],
-            vectorize=True,
         )
         ends = ("", ", lower end of the 95 % interval", ", upper end of the 95 % interval")
         for key, mean, end in zip(("", "_low", "_high"), means, ends, strict=True):

@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from . import theory
-from .area import corrected_area, mean_with_interval
+from .area import corrected_area
 from .contact import solve_contact
+from .fitting import mean_interval
 from .halfspace import HalfSpace
 from .labels import about
 from .roughness import slope_statistics
@@ -23,7 +24,8 @@ SURFACES = ("with_roll_off", "without_roll_off")
 #: so that kappa does not depend on it.
 RMS_PART = 0.01
 
-#: kappa depends on F/E* alone.
+#: kappa depends on F/E* alone, and on no length: both are units.
+SPACING = 1.0  # mm
 E_STAR = 1.0  # MPa
 
 
@@ -33,9 +35,8 @@ def area_slope(recipe):
     Parameters
     ----------
     recipe : mapping
-        ``dimension`` Delta_g, ``nodes`` a side, ``size`` of the side in mm, ``seeds``,
-        ``roll_off_share`` (roll-off length as a part of the side) and ``loads``, values of
-        p / (E* h'_rms).
+        ``dimension`` Delta_g, ``nodes`` a side, ``seeds``, ``roll_off_share`` (roll-off length as
+        a part of the side) and ``loads``, values of p / (E* h'_rms).
 
     Returns
     -------
@@ -52,23 +53,24 @@ def area_slope(recipe):
     the literature take, is 6-7 % larger at H = 0.8 and kappa with it.
     """
     loads, seeds = np.unique(recipe["loads"]), list(recipe["seeds"])
-    nodes, spacing = recipe["nodes"], recipe["size"] / recipe["nodes"]
-    space = HalfSpace((nodes, nodes), (spacing, spacing), E_STAR)
-    nominal = recipe["size"] ** 2
+    nodes = recipe["nodes"]
+    side = nodes * SPACING
+    space = HalfSpace((nodes, nodes), (SPACING, SPACING), E_STAR)
+    nominal = side**2
     share = np.full((2, len(SURFACES), len(seeds), len(loads)), np.nan)
     slope = np.full(share.shape[1:3], np.nan)
-    roll_offs = (recipe["roll_off_share"] * recipe["size"], None)
+    roll_offs = (recipe["roll_off_share"] * side, None)
     for i, roll_off in enumerate(roll_offs):
         for j, seed in enumerate(seeds):
             surface = self_affine(
                 (nodes, nodes),
-                spacing,
+                SPACING,
                 3 - recipe["dimension"],
-                rms=RMS_PART * recipe["size"],
+                rms=RMS_PART * side,
                 seed=seed,
                 roll_off=roll_off,
             )
-            slope[i, j] = slope_statistics(surface, spacing)["rms_slope"]
+            slope[i, j] = slope_statistics(surface, SPACING)["rms_slope"]
             state = None
             for k, load in enumerate(loads):
                 force = load * E_STAR * slope[i, j] * nominal
@@ -78,9 +80,8 @@ def area_slope(recipe):
     result = _labelled(share, slope, loads, seeds)
     result.attrs = {
         "nodes": nodes,
-        "size": float(recipe["size"]),
         "dimension": float(recipe["dimension"]),
-        "roll_off": float(roll_offs[0]),
+        "roll_off_share": float(recipe["roll_off_share"]),
         "persson_kappa": float(theory.PERSSON_KAPPA),
         "bush_gibson_thomas_kappa": float(theory.BUSH_GIBSON_THOMAS_KAPPA),
         "computed_kappa": list(theory.COMPUTED_KAPPA),
@@ -112,8 +113,8 @@ def _labelled(share, slope, loads, seeds):
         result[name] = (dims, shares, about("1", f"A_r/A_0 ({prefix.strip('_') or 'raw'})"))
         kappa = shares / loads
         result[f"{prefix}kappa"] = (dims, kappa, about("1", words))
-        means = np.apply_along_axis(mean_with_interval, 1, kappa)
-        for (ending, of), values in zip(ends, np.moveaxis(means, 1, 0), strict=True):
+        means = mean_interval(kappa, axis=1)[:3]
+        for (ending, of), values in zip(ends, means, strict=True):
             key = f"{prefix}mean_kappa{ending}"
             result[key] = (("surface", "load"), values, about("1", f"{of} {words}"))
         result[f"{prefix}mean_kappa_deviation"] = result[f"{prefix}kappa"].std("seed", ddof=1)

@@ -72,6 +72,41 @@ def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
     )
 
 
+class Mean(NamedTuple):
+    """Mean of independent values, its 95 % interval and how many there were."""
+
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    n: np.ndarray
+
+
+def mean_interval(values, axis: int = 0) -> Mean:
+    """Mean of independent values and its Student-t interval.
+
+    Parameters
+    ----------
+    values : array_like
+        NaN where missing.
+    axis : int
+        Along which the mean is taken.
+
+    Returns
+    -------
+    Mean
+        NaN without a value; the interval needs two.
+    """
+    values = np.asarray(values, float)
+    n = np.isfinite(values).sum(axis=axis)
+    at_least_one, at_least_two = np.maximum(n, 1), np.maximum(n, 2)
+    mean = np.where(n > 0, np.nansum(values, axis=axis) / at_least_one, np.nan)
+    squares = np.nansum((values - np.expand_dims(mean, axis)) ** 2, axis=axis)
+    error = np.sqrt(squares / (at_least_two - 1) / at_least_two)
+    half = special.stdtrit(at_least_two - 1, (1 + CONFIDENCE) / 2) * error
+    half = np.where(n > 1, half, np.nan)
+    return Mean(mean, mean - half, mean + half, n)
+
+
 def without_mean_plane(heights: np.ndarray) -> np.ndarray:
     """Heights less the least-squares plane through the cells that were measured.
 

@@ -3,13 +3,12 @@
 import numpy as np
 import xarray as xr
 
-from .fitting import fit_line
+from .fitting import fit_line, mean_interval
 from .labels import about
 from .strength import (
     FIELDS,
     dilatancy_angle,
     from_flush,
-    mean_interval,
     peak,
     residual,
     shear_strength,

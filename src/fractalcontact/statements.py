@@ -141,13 +141,21 @@ def curves_overlap(joint):
 
 
 def compliance_rises_again(joint):
-    """Closure where the faces no longer correlate, against that before."""
-    if not joint.unrelated.any() or not joint.between.any():
+    """Closure where the faces no longer correlate, against that at the offsets just before.
+
+    Those are the ones beyond the correlation length or, if none was solved there, the last within.
+    """
+    before = joint.between
+    if not before.any() and joint.initial.any():
+        before = joint.offset == joint.offset[joint.initial].max()
+    if not joint.unrelated.any() or not before.any():
         return Finding(UNKNOWN, _no_offsets("both before and after the faces lose correlation"))
-    change = joint.closure[joint.unrelated].mean() / joint.closure[joint.between].mean() - 1
+    change = joint.closure[joint.unrelated].mean() / joint.closure[before].mean() - 1
     verdict = HOLDS if change > NEARLY else PARTLY if change > 0 else FAILS
-    v = joint.offset[joint.unrelated]
-    return Finding(verdict, f"w_int {100 * change:+.0f} % at v >= {v[0]:g} mm")
+    ends = joint.offset[before].max(), joint.offset[joint.unrelated].min()
+    return Finding(
+        verdict, f"w_int {100 * change:+.0f} % from v <= {ends[0]:g} to >= {ends[1]:g} mm"
+    )
 
 
 def closure_is_hyperbolic(joint):

@@ -8,9 +8,8 @@ asperities, the sum can pass the vertical, and what is stated as strength is hel
 
 import numpy as np
 import xarray as xr
-from scipy import special
 
-from .fitting import CONFIDENCE, without_mean_plane
+from .fitting import mean_interval, without_mean_plane
 from .joint import direction_spacing, rigid_dilatancy
 from .labels import about
 from .specimen import DIRECTIONS, faces, nominal_area, window_sides, window_slices
@@ -36,32 +35,6 @@ FEWEST_STEPS = 10
 
 #: Barton's profiles go from 0 to 20 and his law was measured on them.
 JRC_RANGE = (0.0, 20.0)
-
-
-def mean_interval(values, axis=0):
-    """Mean of independent values and its 95 % Student-t interval.
-
-    Parameters
-    ----------
-    values : array_like
-        NaN where missing.
-    axis : int
-
-    Returns
-    -------
-    mean, low, high : ndarray
-        NaN without a value; the interval needs two.
-    n : ndarray of int
-    """
-    values = np.asarray(values, float)
-    n = np.isfinite(values).sum(axis=axis)
-    at_least_one, at_least_two = np.maximum(n, 1), np.maximum(n, 2)
-    mean = np.where(n > 0, np.nansum(values, axis=axis) / at_least_one, np.nan)
-    squares = np.nansum((values - np.expand_dims(mean, axis)) ** 2, axis=axis)
-    error = np.sqrt(squares / (at_least_two - 1) / at_least_two)
-    half = special.stdtrit(at_least_two - 1, (1 + CONFIDENCE) / 2) * error
-    half = np.where(n > 1, half, np.nan)
-    return mean, mean - half, mean + half, n
 
 
 def from_flush(offset, dilatancy):
@@ -154,7 +127,8 @@ def residual(midpoint, values, largest):
     Returns
     -------
     mean, low, high, n
-        As :func:`mean_interval`; with one interval of offsets there is no interval of the mean.
+        As :func:`fractalcontact.fitting.mean_interval` has them; with one interval of offsets there
+        is no interval of the mean.
     """
     beyond = np.asarray(midpoint) >= RESIDUAL_FROM * largest
     return mean_interval(np.asarray(values, float)[beyond])

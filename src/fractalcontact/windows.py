@@ -9,12 +9,11 @@ import xarray as xr
 
 from .closure import bulk_settlement
 from .contact import NotConverged, solve_contact
-from .fitting import without_mean_plane
+from .fitting import mean_interval, without_mean_plane
 from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing
 from .labels import about
 from .specimen import cell_side, faces, nominal_area, window_slices
-from .strength import mean_interval
 from .sweep import forces_of
 
 #: Sub-windows along each side of the window, by default: octaves and halves.

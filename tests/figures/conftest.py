@@ -25,7 +25,6 @@ SOLVER = {"rtol": 1e-6, "kernel": "love"}
 AREA_SLOPE = {
     "dimension": 2.2,
     "nodes": 64,
-    "size": 6.4,
     "seeds": [1, 2],
     "roll_off_share": 0.25,
     "loads": [0.01, 0.02],

@@ -17,7 +17,6 @@ SPECIMENS = ("sliding", "flat", "pair")
 RECIPE = {
     "dimension": 2.2,
     "nodes": 48,
-    "size": 20.0,
     "seeds": [1, 2, 3],
     "roll_off_share": 0.125,
     "loads": [0.005, 0.01, 0.02],

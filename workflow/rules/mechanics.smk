@@ -94,7 +94,7 @@ rule area_slope:
         mem_mb=2000,
         runtime=60,
     params:
-        recipe={"size": 20.0} | config.get("area_slope", {}),
+        recipe=config.get("area_slope"),
         code=code("area_slope", "store"),
     script:
         "../scripts/area_slope.py"

@@ -44,7 +44,7 @@ def draw(atlas, names):
         chosen = slopes.sel(surface=kind)
         _draw_surfaces(axes, chosen)
         kappa_lines(axes, slopes["load"].values, slopes.attrs)
-        share = f"1/{slopes.attrs['size'] / slopes.attrs['roll_off']:.3g}"
+        share = f"1/{1 / slopes.attrs['roll_off_share']:.3g}"
         label_short_span(axes.xaxis)
         letter(axes, which, _TITLES[kind].format(share=share))
         axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")

@@ -9,8 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ..area import mean_with_interval
-from ..fitting import fit_line, without_mean_plane
+from ..fitting import fit_line, mean_interval, without_mean_plane
 from ..specimen import faces, window_slices
 from ..units import quantity
 from ._words import PAPER, estimate, short
@@ -256,7 +255,7 @@ class Trend(NamedTuple):
         v = slide.v[half]
         lines = [fit_line(v, row[half]) for row in values]
         slope, low, high = (
-            mean_with_interval([line.slope for line in lines])
+            mean_interval([line.slope for line in lines])[:3]
             if len(lines) > 1
             else (lines[0].slope, lines[0].slope_low, lines[0].slope_high)
         )
