@@ -3,7 +3,7 @@
 import pytest
 import xarray as xr
 
-from fractalcontact.store import padded, read, write, written_whole
+from fractalcontact.store import padded, read, read_atlas, write, write_atlas, written_whole
 
 
 def test_a_broken_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -28,3 +28,30 @@ def test_padded_rows():
     assert table[0].tolist() == [1, 2]
     assert table[1, 0] == 3
     assert table[1, 1] != table[1, 1]
+
+
+def test_an_atlas_comes_back_as_it_was_however_often_it_is_read(tmp_path):
+    def labelled(values):
+        return xr.Dataset({"a": ("x", values, {"units": "mm", "long_name": "a"})})
+
+    parts = {
+        "specimens": {"rock": labelled([1.0, 2.0]), "joint_2.1": labelled([3.0])},
+        "contact": {"rock": labelled([True, False])},
+    }
+    path = tmp_path / "atlas.nc"
+    write_atlas(parts, path, study="test", configuration={"n": 1})
+    for _ in range(3):
+        atlas = read_atlas(path)
+        assert atlas["specimens/joint_2.1"].to_dataset().identical(parts["specimens"]["joint_2.1"])
+        assert atlas["contact/rock"].to_dataset().identical(parts["contact"]["rock"])
+        assert atlas.attrs["study"] == "test"
+    assert "contact" not in read_atlas(path, without=("contact",)).children
+
+
+def test_nothing_without_a_unit_enters_the_atlas(tmp_path):
+    bare = {"specimens": {"rock": xr.Dataset({"a": ("x", [1.0])})}}
+    with pytest.raises(
+        ValueError, match="specimens/rock: variable a has no units and no long_name"
+    ):
+        write_atlas(bare, tmp_path / "atlas.nc", study="test", configuration={})
+    assert not list(tmp_path.iterdir())

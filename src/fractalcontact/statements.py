@@ -250,16 +250,17 @@ def dilatancy_flattens(joint):
 
 
 def dilatancy_is_anisotropic(joint):
-    """Difference of the mean rigid dilatancy among directions."""
-    means, _ = _plateaus(joint.stages["joint"])
-    if means.size < 2:
+    """Difference of the rigid dilatancy among directions, over the last quarter of the offsets."""
+    v = joint.stages["joint"]["rigid_offset"].values
+    opened = joint.stages["joint"]["rigid_dilatancy"].values[:, v >= 0.75 * v[-1]].mean(axis=1)
+    if opened.size < 2:
         return Finding(UNKNOWN, "fewer than two directions")
-    spread = np.ptp(means) / means.mean()
+    spread = np.ptp(opened) / opened.mean()
     verdict = HOLDS if spread > LOOSELY else PARTLY if spread > NEARLY else FAILS
     return Finding(
         verdict,
-        f"levels over the second half of v differ by {100 * spread:.0f} % of their mean "
-        f"({means.min():.2f} to {means.max():.2f} mm)",
+        f"over the last quarter of v the directions differ by {100 * spread:.0f} % of their mean "
+        f"({opened.min():.2f} to {opened.max():.2f} mm)",
     )
 
 

@@ -10,8 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 import yaml
+
+from fractalcontact.figures import STUDY_FIGURES, figures_of
+from fractalcontact.store import read_atlas
 
 ROOT = Path(__file__).parents[2]
 SCANS = ROOT.parent / "shared" / "scans"
@@ -57,8 +59,10 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
     assert whole.returncode == 0, whole.stderr
     results = project / "results/smoke"
     atlas = (results / "atlas.nc").read_bytes()
-    assert len(list((results / "figures/small_twin").glob("*.png"))) == 9
-    assert len(list((results / "figures/small_joint").glob("*.svg"))) == 7
+    for name, opposite in (("small_twin", "match"), ("small_joint", "flat")):
+        drawn = {path.stem for path in (results / "figures" / name).glob("*.png")}
+        assert drawn == set(figures_of(opposite))
+    assert {path.stem for path in (results / "figures").glob("*.svg")} == set(STUDY_FIGURES)
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
 
@@ -98,7 +102,8 @@ def test_one_bad_scan_is_one_clear_error_and_the_good_one_finishes(project):
     errors = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
     for name in ("constant.npy", "unitless.npy", "empty.xyz", "far"):
         assert any(name in line for line in errors), (name, errors)
-    assert len(list((project / "results/test/figures/good").glob("*.png"))) == 9
+    drawn = {path.stem for path in (project / "results/test/figures/good").glob("*.png")}
+    assert drawn == set(figures_of("match"))
 
 
 def test_an_unknown_key_stops_before_anything_runs(project):
@@ -119,10 +124,11 @@ def test_a_real_pair_dropped_in_gives_figures(project):
     (project / "scans/granite.yaml").write_text("unit: mm\n")
     done = run(project, study)
     assert done.returncode == 0, done.stderr
-    assert len(list((project / "results/test/figures/granite").glob("*.png"))) == 9
-    with xr.open_datatree(project / "results/test/atlas.nc") as atlas:
-        specimen = atlas["specimens/granite"]
-        assert specimen.attrs["opposite"] == "scanned"
-        gap = (specimen["upper"] - specimen["lower"]).values
-        assert np.nanmean(gap) == pytest.approx(0.6365, abs=0.01)
-        assert (atlas["closure/granite/residual"] <= 1e-6).all()
+    drawn = {path.stem for path in (project / "results/test/figures/granite").glob("*.png")}
+    assert drawn == set(figures_of("match"))
+    atlas = read_atlas(project / "results/test/atlas.nc")
+    specimen = atlas["specimens/granite"]
+    assert specimen.attrs["opposite"] == "scanned"
+    gap = (specimen["upper"] - specimen["lower"]).values
+    assert np.nanmean(gap) == pytest.approx(0.6365, abs=0.01)
+    assert (atlas["closure/granite/residual"] <= 1e-6).all()

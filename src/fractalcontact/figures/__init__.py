@@ -42,7 +42,7 @@ _NEEDS_SLIDING = (
 #: Figures of a whole study. Their ``draw(atlas, names)`` takes the names of all its specimens.
 STUDY_FIGURES = ("plateau", "area_slope")
 #: What no figure of a whole study draws, and takes most of an atlas.
-_LARGE_STAGES = ("specimens", "contact")
+_LARGE_STAGES = ("contact",)
 
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")

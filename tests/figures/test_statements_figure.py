@@ -1,0 +1,40 @@
+"""The table of the paper's statements, and the figures of a whole study."""
+
+import pytest
+
+from fractalcontact.figures import STUDY_FIGURES, draw_study_figures, statements, study_figures_of
+from fractalcontact.figures.common import print_style
+
+
+@pytest.mark.parametrize("name", ["sliding", "pair"])
+def test_every_statement_is_a_row_of_the_table(atlas, name):
+    with print_style():
+        drawing = statements.draw(atlas, name)
+    judged = atlas[f"statements/{name}"].to_dataset()
+    assert drawing.data["verdict"].tolist() == judged["verdict"].values.tolist()
+    shown = " ".join(text.get_text() for text in drawing.figure.axes[0].texts).replace("\n", " ")
+    for claim in judged["claim"].values:
+        assert claim in shown
+    assert f"Of {judged.sizes['statement']} statements" in drawing.caption
+
+
+def test_no_row_is_cut_off(atlas):
+    with print_style():
+        figure = statements.draw(atlas, "pair").figure
+    figure.canvas.draw()
+    whole = figure.bbox
+    for text in figure.axes[0].texts:
+        box = text.get_window_extent()
+        assert whole.x0 <= box.x0
+        assert box.x1 <= whole.x1
+        assert whole.y0 <= box.y0
+        assert box.y1 <= whole.y1
+
+
+def test_figures_of_a_study(atlas_file, tmp_path):
+    assert study_figures_of(True, True) == list(STUDY_FIGURES)
+    assert study_figures_of(False, False) == []
+    captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, STUDY_FIGURES)
+    assert set(captions) == set(STUDY_FIGURES)
+    for name in STUDY_FIGURES:
+        assert (tmp_path / f"{name}.png").stat().st_size > 1000
