@@ -82,8 +82,9 @@ class Joint:
 
     @cached_property
     def initial(self):
-        """Offsets of the first stage of sliding: from the first to the correlation length."""
-        return (self.offset > 0) & (self.offset <= self.of_direction("correlation_length"))
+        """Offsets of the first stage of sliding: up to the correlation length, if it is reached."""
+        length = self.of_direction("correlation_length")
+        return (self.offset > 0) & (np.isnan(length) | (self.offset <= length))
 
     @cached_property
     def between(self):
@@ -154,7 +155,7 @@ def compliance_rises_again(joint):
     verdict = HOLDS if change > NEARLY else PARTLY if change > 0 else FAILS
     ends = joint.offset[before].max(), joint.offset[joint.unrelated].min()
     return Finding(
-        verdict, f"w_int {100 * change:+.0f} % from v <= {ends[0]:g} to >= {ends[1]:g} mm"
+        verdict, f"w_int {100 * change:+.0f} % from v <= {ends[0]:.3g} to >= {ends[1]:.3g} mm"
     )
 
 
@@ -215,7 +216,7 @@ def composite_dimension_rises(joint):
     decade = np.log(10)
     return Finding(
         verdict,
-        f"Delta_g {dimension[0]:.2f} at v = {v[0]:g} mm, {dimension[-1]:.2f} at {v[-1]:g} mm; "
+        f"Delta_g {dimension[0]:.2f} at v = {v[0]:.3g} mm, {dimension[-1]:.2f} at {v[-1]:.3g} mm; "
         f"{decade * line.slope:+.2f} [{decade * line.slope_low:+.2f}, "
         f"{decade * line.slope_high:+.2f}] a decade of v",
     )
@@ -275,7 +276,7 @@ def no_correlation_is_left(joint):
     limit = float(joint.stages["joint"]["correlation_limit"])
     v = joint.stages["joint"]["rigid_offset"].values
     correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offset[-1]))]
-    numbers = f"correlation {correlation:+.2f} at v = {joint.offset[-1]:g} mm"
+    numbers = f"correlation {correlation:+.2f} at v = {joint.offset[-1]:.3g} mm"
     if not np.isfinite(limit):
         return Finding(UNKNOWN, f"{numbers}; the window is too small to tell it from chance")
     verdict = HOLDS if correlation <= limit else FAILS
@@ -358,7 +359,7 @@ def _trend(v, values, chosen, symbol, *, rising):
     return Finding(
         verdict,
         f"{symbol} ~ v^e, e = {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}] "
-        f"for v = {v[0]:g} to {v[-1]:g} mm",
+        f"for v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 
 
@@ -370,7 +371,7 @@ def _level(values, symbol, v):
     verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS
     return Finding(
         verdict,
-        f"{symbol} varies by {100 * spread:.0f} % of its mean for v = {v[0]:g} to {v[-1]:g} mm",
+        f"{symbol} varies by {100 * spread:.0f} % of its mean for v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 
 

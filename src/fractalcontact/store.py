@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 #: Stages of the atlas, one group each, holding one group a specimen; strength and statements only
-#: of joints that slide, area_slope one of made surfaces where the study asks for it.
+#: of joints that slide, roll_off and area_slope one of made surfaces where the study asks.
 STAGES = {
     "specimens": "levelled faces, mask, window and where they came from",
     "surface_dimension": "Delta_g of each face by several estimators",
@@ -29,6 +29,7 @@ STAGES = {
     "domains": "box counts, Delta_sigma and clusters of the contact domains",
     "scaling": "renormalisation over resolutions",
     "statements": "what the paper says, and whether it holds here",
+    "roll_off": "rigid dilatancy of made joints with and without a roll-off",
     "area_slope": "real contact area at light load, on surfaces with and without a roll-off",
 }
 

@@ -60,6 +60,7 @@ def check_study(config, schema, source):
     resolve_settings(config, None, {}, source)
     for name, recipe in config.get("embedded", {}).items():
         resolve_embedded(recipe, f"{source}: embedded.{name}")
+    resolve_roll_off(config, source)
 
 
 def read_sidecar(path, schema):
@@ -208,6 +209,28 @@ def resolve_embedded(recipe, where):
     numbers.setdefault("outline", "square")
     numbers.setdefault("roll_off", None)
     return numbers
+
+
+def resolve_roll_off(config, source):
+    """Recipe, window (mm) and seeds of the joints made with and without a roll-off; or None.
+
+    Raises
+    ------
+    InputError
+        If the specimen named is not embedded or has no roll-off.
+    """
+    if "roll_off" not in config:
+        return None
+    asked, where = config["roll_off"], f"{source}: roll_off"
+    embedded = config.get("embedded", {})
+    name = asked["embedded"]
+    if name not in embedded:
+        raise InputError(f"{where}.embedded: no embedded {name!r}{_near(name, embedded)}")
+    recipe = resolve_embedded(embedded[name], f"{source}: embedded.{name}")
+    if recipe["roll_off"] is None:
+        raise InputError(f"{where}.embedded: {name} has no roll_off; name one that has")
+    window = quantity(asked["window"], "length", f"{where}.window")
+    return {"recipe": recipe, "window": window, "seeds": asked["seeds"]}
 
 
 def solver_settings(config):

@@ -10,6 +10,7 @@ from fractalcontact.area import area_laws, joint_statistics
 from fractalcontact.area_slope import area_slope
 from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.joint import describe_joint
+from fractalcontact.roll_off import roll_off_effect
 from fractalcontact.roughness import best_dimension, surface_dimension
 from fractalcontact.size_laws import size_laws
 from fractalcontact.specimen import make_specimen, window_sides
@@ -67,6 +68,15 @@ STUDY = {
             "resolutions": [1],
         },
     },
+}
+ROLL_OFF = {
+    "label": "made joints",
+    "size": 9.6,
+    "outline": "square",
+    "spacing": SPACING,
+    "dimension": 2.2,
+    "rms": 0.1,
+    "roll_off": 1.5,
 }
 
 
@@ -161,6 +171,7 @@ def atlas_file(tmp_path_factory):
         for stage, dataset in made.items():
             parts[stage][name] = dataset
     parts["area_slope"]["surfaces"] = area_slope(AREA_SLOPE)
+    parts["roll_off"]["surfaces"] = roll_off_effect(ROLL_OFF, 4.8, [1, 2])
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
     store.write_atlas(
         parts, path, study="tiny", configuration={"study": STUDY, "settings": settings}

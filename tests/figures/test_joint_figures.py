@@ -107,11 +107,11 @@ def test_compliance_drawn_is_the_inverse_of_the_stiffness(atlas, name):
 
 def test_plateau_holds_every_direction_of_all_that_slides(atlas):
     table = drawn(atlas, "plateau", ["flat", "sliding", "pair"]).data
-    assert table["specimen"].nunique() == 2
+    assert table["specimen"].nunique() == 2 + 2
     for name in SLIDING:
         joint = atlas[f"joints/{name}"].to_dataset()
         label = json.loads(atlas.attrs["configuration"])["settings"][name]["label"]
-        for direction, points in table[table["specimen"] == label].groupby("direction"):
+        for direction, points in table[table["specimen"] == label].groupby("direction_or_seed"):
             stored = joint.sel(direction=direction)
             np.testing.assert_array_equal(points["rigid_dilatancy_mm"], stored["rigid_dilatancy"])
             np.testing.assert_array_equal(points["composite_rms_mm"], stored["composite_rms"])
@@ -247,25 +247,39 @@ def test_a_conductance_without_a_fit_is_still_drawn(atlas):
     assert "Too few pressures" in caption
 
 
-def with_roll_off(atlas, roll_off, opened):
-    """The atlas as if its sliding specimen were embedded, with a roll-off and a dilatancy."""
-    changed = with_changes(atlas, "joints/sliding", rigid_dilatancy=opened)
-    configuration = json.loads(changed.attrs["configuration"])
-    configuration["study"]["embedded"] = {"sliding": {"roll_off": roll_off}}
-    changed.attrs["configuration"] = json.dumps(configuration)
-    return changed
+def made_to_open(atlas, shape):
+    """The atlas with another dilatancy of the joints made with and without a roll-off."""
+
+    def opened(joints):
+        noise = 1 + 0.01 * joints["seed"]
+        return noise * shape(joints["rigid_offset"]) + 0 * joints["rigid_dilatancy"]
+
+    return with_changes(atlas, "roll_off/surfaces", rigid_dilatancy=opened)
 
 
-def test_a_plateau_is_told_from_a_rise(atlas):
-    level = with_roll_off(atlas, "1 mm", lambda joint: 1 - np.exp(-10 * joint["rigid_offset"]))
-    caption = drawn(level, "plateau", ["sliding"]).caption
-    assert "beyond the roll-off length, sigma_z is" in caption
-    assert "in 1 of 1 and rises by more in 0" in caption
-    assert "(roll-off 1 mm)" in caption
-    rising = with_roll_off(atlas, None, lambda joint: joint["rigid_offset"])
-    caption = drawn(rising, "plateau", ["sliding"]).caption
-    assert "in 0 of 1 and rises by more in 1 (the intervals of 1 exclude zero)" in caption
-    assert "(no roll-off)" in caption
+@pytest.mark.parametrize(
+    ("shape", "words"),
+    [
+        (lambda v: 1 - np.exp(-10 * v), "delta_r reaches a plateau"),
+        (lambda v: v, "delta_r keeps rising"),
+        (lambda v: 2 - 0.2 * v, "delta_r falls"),
+    ],
+)
+def test_a_plateau_is_told_from_a_rise(atlas, shape, words):
+    caption = drawn(made_to_open(atlas, shape), "plateau", []).caption
+    assert caption.count(words) == 2  # shape is that of both kinds of joints
+
+
+def test_made_joints_are_drawn_with_every_seed(atlas):
+    drawing = drawn(atlas, "plateau", ["flat"])
+    joints = atlas["roll_off/surfaces"].to_dataset()
+    for surface in joints["surface"].values:
+        mean = joints["rigid_dilatancy"].sel(surface=surface).mean("direction")
+        kind = "with a" if surface == "with_roll_off" else "without a"
+        points = drawing.data[drawing.data["specimen"].str.contains(f"{kind} roll-off")]
+        assert points["direction_or_seed"].nunique() == joints.sizes["seed"]
+        stored = mean.transpose("seed", "rigid_offset").values.ravel()
+        np.testing.assert_allclose(points["rigid_dilatancy_mm"], stored)
 
 
 def test_a_scan_has_no_roll_off_that_is_known(atlas):

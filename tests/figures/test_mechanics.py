@@ -319,7 +319,7 @@ def test_area_over_offset_is_judged_by_its_slope(atlas, power, words):
 @pytest.mark.parametrize(("power", "words"), [(1.0, "nearly linear, as"), (0.6, "not all within")])
 def test_linearity_is_judged_by_the_exponents(atlas, power, words):
     changed = atlas.copy(deep=True)
-    dataset = changed["closure/flat"].to_dataset()
-    dataset["area"] = dataset["area"] * 0 + dataset["load"] ** power
-    changed["closure/flat"] = xr.DataTree(dataset)
+    laws = changed["area/flat"].to_dataset()
+    laws["exponent"] = laws["exponent"] * 0 + power
+    changed["area/flat"] = xr.DataTree(laws)
     assert words in drawn(changed, "flat", "fig04_05_closure").caption

@@ -220,7 +220,7 @@ def test_box_sides_have_labels_that_stand_apart(largest):
         axes = shown.subplots(1, 3)[1]
         sides = pd.Series(np.geomspace(0.2, 0.2 * largest, 9))
         axes.loglog(sides, 1 / sides)
-        fig09_box_counting._label_sides(axes, sides)
+        common.label_short_span(axes.xaxis, fig09_box_counting.FEW_DECADES)
         shown.draw_without_rendering()
     low, high = axes.get_xlim()
     labels = [

@@ -15,6 +15,7 @@ from fractalcontact.study import (
     check_study,
     read_sidecar,
     resolve_embedded,
+    resolve_roll_off,
     resolve_settings,
     solver_settings,
 )

@@ -81,6 +81,25 @@ rule strength:
         "../scripts/strength.py"
 
 
+rule roll_off:
+    output:
+        f"{RESULTS}/roll_off/surfaces.nc",
+    log:
+        f"{RESULTS}/logs/roll_off.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/roll_off.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=30,
+    params:
+        joints=resolve_roll_off(config, SOURCE),
+        code=code("roll_off", "store"),
+    script:
+        "../scripts/roll_off.py"
+
+
 rule area_slope:
     output:
         f"{RESULTS}/area_slope/surfaces.nc",

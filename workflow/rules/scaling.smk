@@ -42,7 +42,8 @@ SLIDING_FILES = {
     "statements": rules.strength.output.statements,
 }
 # What the study has once.
-STUDY_FILES = {"area_slope": rules.area_slope.output[0]} if "area_slope" in config else {}
+STUDY_FILES = {"roll_off": rules.roll_off.output[0], "area_slope": rules.area_slope.output[0]}
+STUDY_FILES = {stage: path for stage, path in STUDY_FILES.items() if stage in config}
 
 
 def stages_of(wildcards):

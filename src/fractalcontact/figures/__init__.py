@@ -59,19 +59,18 @@ def figures_of(opposite):
     return [name for name in FIGURES if opposite != "flat" or name not in _NEEDS_SLIDING]
 
 
-def study_figures_of(slides, area_slope):
+def study_figures_of(roll_off, area_slope):
     """Names of the figures that make sense for a whole study.
 
     Parameters
     ----------
-    slides : bool
-        Whether any of its specimens slides.
+    roll_off : bool
+        Whether it makes joints with and without a roll-off.
     area_slope : bool
         Whether it presses made surfaces at light load.
     """
-    return [
-        name for name, wanted in zip(STUDY_FIGURES, (slides, area_slope), strict=True) if wanted
-    ]
+    wanted = zip(STUDY_FIGURES, (roll_off, area_slope), strict=True)
+    return [name for name, asked in wanted if asked]
 
 
 def draw_figures(atlas_path, specimen, folder, names):

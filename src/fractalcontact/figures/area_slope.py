@@ -2,7 +2,6 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from ..theory import persson_area
 from ._words import number
@@ -14,6 +13,7 @@ from .common import (
     entries,
     group,
     heading,
+    label_short_span,
     legends_below,
     letter,
 )
@@ -100,15 +100,6 @@ def kappa_lines(axes, loads, attrs):
         label=rf"Persson: $\sqrt{{8/\pi}}$ = {number(attrs['persson_kappa'], 3)} at light load",
     )
     axes.set_xscale("log")
-
-
-def label_short_span(axis):
-    """Labels at 1, 2 and 5 on a logarithmic axis of less than two decades, where powers are few."""
-    low, high = axis.get_view_interval()
-    if high < 100 * low:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(NullFormatter())
 
 
 def _draw_surfaces(axes, chosen):

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ..area import FEWEST_NODES, LIGHT_LOAD
 from ._words import estimate, number, opening, place, short
-from .area_slope import kappa_lines, label_short_span
+from .area_slope import kappa_lines
 from .common import (
     COLOURS,
     WIDTH,
@@ -15,6 +15,7 @@ from .common import (
     finest_curves,
     group,
     heading,
+    label_short_span,
     legends_below,
     letter,
     map_offset,

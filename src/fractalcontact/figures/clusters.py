@@ -20,6 +20,7 @@ from .common import (
     finest_curves,
     group,
     heading,
+    label_short_span,
     legends_below,
     letter,
     nearest_load,
@@ -181,6 +182,7 @@ def _draw_sizes(axes, sizes):
     axes.set_ylim(bottom=0.7)
     axes.set_xlabel("cluster area $a$ (mm$^2$)")
     axes.set_ylabel(r"clusters of area $\geq a$ (number)")
+    label_short_span(axes.xaxis)
     letter(axes, "d", "sizes of clusters")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import NullLocator
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 
 from ..specimen import nominal_area
 from ..store import written_whole
@@ -130,6 +130,19 @@ def offset_axis(axes, offsets):
             axes.set_xscale("log", nonpositive="mask")
         axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xlabel("offset $v$ (mm)")
+
+
+def label_short_span(axis, below=100):
+    """Plain labels at 1, 2 and 5 on a logarithmic axis that spans less than a factor ``below``.
+
+    Powers of ten would be one there, or none, and labels between them would lie over each other.
+    To be called once everything is drawn.
+    """
+    low, high = axis.get_view_interval()
+    if high < below * low:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def map_offset(settings, offsets):

@@ -130,7 +130,7 @@ def _draw_area(axes, curves, drawn, direction, laws, area):
         share = 100 * curves["area_share"].values[i]
         offset = float(curves["offset"][i])
         known = np.isfinite(float(law["exponent"]))
-        exponent = f"exponent {_exponent(law)}" if known else f"no fit: {law['no_law'].item()}"
+        exponent = f"exponent {_exponent(law)}" if known else f"no fit: {int(law['n'])} loads"
         style = {"color": colour_of(n), "ls": "none", "marker": MARKERS[n]}
         axes.plot(
             force[fitted] / size,

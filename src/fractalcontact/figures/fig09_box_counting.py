@@ -3,16 +3,15 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from ..fitting import fit_line
 from ._domains import Loading, disagreement
 from ._maps import draw_domain
 from ._words import force_label, interval, short
-from .common import COLOURS, WIDTH, Drawing, letter
+from .common import COLOURS, WIDTH, Drawing, label_short_span, letter
 
 #: Largest over smallest box below which sides are labelled 1, 2 and 5 in every decade.
-FEW_DECADES = 30
+FEW_DECADES = 50
 
 
 def draw(atlas, name):
@@ -81,7 +80,7 @@ def _draw_counts(axes, table, estimate, i):
         axes.loglog(r, guide, style, color="0.6", lw=0.8, label=f"slope $-${slope}", zorder=0)
     axes.set_ylim(0.7, n.max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="boxes that meet it, $N(r)$ (1)")
-    _label_sides(axes, r)
+    label_short_span(axes.xaxis, FEW_DECADES)
     letter(axes, "b", "box counts")
 
 
@@ -99,16 +98,8 @@ def _draw_slopes(axes, table, counts):
         axes.axhline(slope, color="0.6", ls=style, lw=0.8, zorder=0)
     axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
-    _label_sides(axes, table["box_side_mm"])
+    label_short_span(axes.xaxis, FEW_DECADES)
     letter(axes, "c", "local slopes")
-
-
-def _label_sides(axes, sides):
-    """Plain numbers where the sides span so little that powers of ten would be one or none."""
-    if sides.max() < FEW_DECADES * sides.min():
-        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axes.xaxis.set_major_formatter(lambda value, _: short(value))
-        axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _caption(loading, i, counts, table):

@@ -1,4 +1,4 @@
-"""Why rigid dilatancy has a plateau: it follows the composite topography, over a whole study."""
+"""Why rigid dilatancy has a plateau: joints made with and without a roll-off, and the study's."""
 
 import json
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..fitting import fit_line, mean_interval, without_mean_plane
+from ..roll_off import SURFACES
 from ..specimen import faces, window_slices
 from ..units import quantity
 from ._words import PAPER, estimate, short
@@ -40,19 +41,20 @@ _MARK = {"mfc": "white", "ms": 6, "zorder": 3}
 
 @dataclass(frozen=True)
 class Slide:
-    """What one specimen does as it slides, mm; means and bands are over its directions.
+    """What one specimen, or many made ones, do as they slide, mm.
 
     Attributes
     ----------
     label : str
-    directions : list of str
+    rows : list of str
+        Directions of the specimen, or seeds of the made joints: what means and bands are over.
     v : (n,) ndarray
         Offsets.
-    opened, spread : (directions, n) ndarray
+    opened, spread : (rows, n) ndarray
         Rigid dilatancy delta_r, and standard deviation sigma_z of the composite topography.
-    expected : (directions, n) ndarray
+    expected : (rows, n) ndarray
         sigma_z from the heights of the faces and their correlation.
-    correlation : (directions, n) ndarray
+    correlation : (rows, n) ndarray
         Of the two faces.
     face : float
         Standard deviation sigma of a face in the window.
@@ -65,7 +67,7 @@ class Slide:
     """
 
     label: str
-    directions: list
+    rows: list
     v: np.ndarray
     opened: np.ndarray
     spread: np.ndarray
@@ -88,7 +90,7 @@ class Slide:
         lost = joint["uncorrelated_offset"].values
         return cls(
             label=settings_of(atlas, name)["label"],
-            directions=joint["direction"].values.tolist(),
+            rows=joint["direction"].values.tolist(),
             v=joint["rigid_offset"].values,
             opened=joint["rigid_dilatancy"].values,
             spread=joint["composite_rms"].values,
@@ -100,6 +102,29 @@ class Slide:
             if np.isfinite(lost).any()
             else np.nan,
             matched=specimen.attrs["opposite"] == "match",
+        )
+
+    @classmethod
+    def made(cls, atlas, surface):
+        """The slides of the joints made with, or without, a roll-off; means of their directions."""
+        joints = group(atlas, "roll_off", "surfaces")
+        joints = joints.sel(surface=surface).transpose("seed", "direction", "rigid_offset")
+        expected = joints["face_rms"] * np.sqrt(np.maximum(2 - 2 * joints["face_correlation"], 0))
+        roll_off = float(joints.attrs["roll_off"]) if surface == "with_roll_off" else None
+        words = f"with a roll-off at {short(roll_off)} mm" if roll_off else "without a roll-off"
+        mean = joints.mean("direction")
+        return cls(
+            label=f"{joints.sizes['seed']} made joints {words}",
+            rows=[f"seed {seed}" for seed in joints["seed"].values],
+            v=joints["rigid_offset"].values,
+            opened=mean["rigid_dilatancy"].values,
+            spread=mean["composite_rms"].values,
+            expected=expected.mean("direction").values,
+            correlation=mean["face_correlation"].values,
+            face=float(np.sqrt(np.mean(joints["face_rms"].values ** 2))),
+            roll_off=roll_off,
+            uncorrelated=np.nan,
+            matched=True,
         )
 
     @property
@@ -121,24 +146,23 @@ def draw(atlas, names):
     Parameters
     ----------
     atlas : xr.DataTree
+        Of a study that makes joints with and without a roll-off.
     names : sequence of str
-        Specimens of the study, of which at least one slides; the others are passed over.
+        Its specimens; those that do not slide are passed over.
 
     Returns
     -------
     Drawing
     """
-    slides = [
-        Slide.of(atlas, name) for name in names if settings_of(atlas, name)["opposite"] != "flat"
-    ]
+    made = [Slide.made(atlas, surface) for surface in SURFACES]
+    sliding = [name for name in names if settings_of(atlas, name)["opposite"] != "flat"]
+    slides = made + [Slide.of(atlas, name) for name in sliding]
     figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
     panels = figure.subplots(1, 3, sharex=True)
     _prepare(panels, slides)
     for n, slide in enumerate(slides):
         _draw_slide(panels, n, slide)
     _start_at_zero(panels)
-    if not any(slide.matched for slide in slides):
-        panels[2].text(0.5, 0.5, "no matching faces", transform=panels[2].transAxes, ha="center")
     legends_below(figure, entries(panels[0]), _marks())
     table = pd.concat([_table(slide) for slide in slides], ignore_index=True)
     return Drawing(figure, table, _caption(slides))
@@ -174,7 +198,7 @@ def _draw_slide(panels, n, slide):
 def _marks():
     """Entries of the legend for what is marked on every curve."""
     return [
-        heading("bands: from the least to the most of the directions"),
+        heading("bands: from the least to the most of the joints, or directions"),
         Line2D([], [], color="0.3", label=r"(b) $\sqrt{2}\,\sigma\,\sqrt{1-\rho(v)}$", **_EXPECTED),
         Line2D([], [], ls="none", marker=_ROLL_OFF, color="0.3", label="roll-off length", **_MARK),
         Line2D(
@@ -219,13 +243,13 @@ def _start_at_zero(panels):
 
 
 def _table(slide):
-    """Every direction of one specimen."""
-    directions, n = slide.opened.shape
+    """Every direction of one specimen, or every made joint."""
+    rows, n = slide.opened.shape
     return pd.DataFrame(
         {
             "specimen": slide.label,
-            "direction": np.repeat(slide.directions, n),
-            "offset_mm": np.tile(slide.v, directions),
+            "direction_or_seed": np.repeat(slide.rows, n),
+            "offset_mm": np.tile(slide.v, rows),
             "rigid_dilatancy_mm": slide.opened.ravel(),
             "composite_rms_mm": slide.spread.ravel(),
             "composite_rms_expected_mm": slide.expected.ravel(),
@@ -246,10 +270,10 @@ class Trend(NamedTuple):
 
     @classmethod
     def of(cls, slide, values):
-        """Trend of one quantity, (directions, n): the mean slope of the directions.
+        """Trend of one quantity, (rows, n): the mean slope of the rows.
 
-        Its interval comes from how the directions differ; from the points of the line where there
-        is but one direction, which takes neighbouring offsets as independent.
+        Its interval comes from how the rows differ; from the points of the line where there is but
+        one, which takes neighbouring offsets as independent.
         """
         half = slide.second_half
         v = slide.v[half]
@@ -265,11 +289,11 @@ class Trend(NamedTuple):
 def _caption(slides):
     return (
         f"Why rigid dilatancy has a plateau (Figs. 6a and 7a of {PAPER}). "
-        f"(a) Rigid dilatancy, mean of the directions; (b) standard deviation of the composite "
-        f"topography, with sqrt(2) sigma sqrt(1 - rho(v)) from the heights sigma of the faces and "
-        f"their correlation rho; (c) their ratio. {_explanation(slides)} Slopes over the second "
-        f"half of v, with intervals from how the directions differ: "
-        f"{'; '.join(_slope_words(slide) for slide in slides)}."
+        f"(a) Rigid dilatancy, mean of the made joints or of a specimen's directions; (b) standard "
+        f"deviation of the composite topography, with sqrt(2) sigma sqrt(1 - rho(v)) from the "
+        f"heights sigma of the faces and their correlation rho; (c) their ratio. "
+        f"{_explanation(slides[: len(SURFACES)])} Over the second half of v, with intervals from "
+        f"how joints or directions differ: {'; '.join(_slope_words(slide) for slide in slides)}."
     )
 
 
@@ -293,41 +317,19 @@ def _slope_words(slide):
     )
 
 
-def _explanation(slides):
-    """Whether delta_r follows sigma_z, and whether the roll-off length decides on its plateau."""
-    passed = [s for s in slides if s.roll_off is not None and 2 * s.roll_off <= s.v[-1]]
-    without = [s for s in slides if s.roll_off is None]
-    sentences = [_following(slides)]
-    if passed:
-        missed = max(_missed(slide) for slide in passed)
-        lost = [s.uncorrelated / s.roll_off for s in passed if np.isfinite(s.uncorrelated)]
-        where = f", at {_span(lost)} times the roll-off length," if lost else ""
-        sentences.append(
-            f"Where the second half of v lies beyond the roll-off length, sigma_z is what the "
-            f"correlation makes it to {100 * missed:.2g} % (rms): once the faces have none left to "
-            f"lose{where} it saturates at sqrt(2) sigma, and {_levels(passed)}."
-        )
-    if without:
-        missed = max(_missed(slide) for slide in without)
-        left = np.concatenate([slide.correlation[:, -1] for slide in without])
-        sentences.append(
-            f"Without a roll-off the heights have no sigma of their own (the formula misses by "
-            f"{100 * missed:.2g} %), a correlation of {_span(left)} is left at the largest v, and "
-            f"{_levels(without)}."
-        )
-    return " ".join(sentences)
-
-
-def _following(slides):
-    """How constant delta_r / sigma_z is while sigma_z grows; from flush faces alone."""
-    matched = [slide for slide in slides if slide.matched and slide.v.size > 1]
-    if not matched:
-        return "No specimen starts from matching faces, whose dilatancy could be compared."
-    grown = [s.spread.mean(axis=0)[-1] / s.spread.mean(axis=0)[s.v > 0][0] for s in matched]
-    ratios = [s.ratio.mean(axis=0)[s.v > 0] for s in matched]
+def _explanation(made):
+    """Whether delta_r follows sigma_z, and what the roll-off does to both."""
+    with_it, without = made
+    ratios = [slide.ratio.mean(axis=0)[slide.v > 0] for slide in made]
+    grown = [slide.spread.mean(axis=0)[-1] / slide.spread.mean(axis=0)[1] for slide in made]
     return (
-        f"delta_r follows sigma_z: from the first offset to the last sigma_z grows "
-        f"{_span(grown)} times, their ratio stays between {_span(np.concatenate(ratios), ' and ')}."
+        f"delta_r follows sigma_z: while sigma_z grows {grown[0]:.3g} times with the roll-off and "
+        f"{grown[1]:.3g} times without, their ratio stays between "
+        f"{_span(np.concatenate(ratios), ' and ')}. With the roll-off the faces lose all "
+        f"correlation (rho {_span(with_it.correlation[:, with_it.second_half].mean(axis=1))} over "
+        f"the second half of v), sigma_z follows from it to {100 * _missed(with_it):.2g} % (rms) "
+        f"and stays at sqrt(2) sigma, and delta_r {_level(with_it)}. Without, waves as long as the "
+        f"window are left: sigma_z goes on growing, and delta_r {_level(without)}."
     )
 
 
@@ -336,17 +338,14 @@ def _missed(slide):
     return np.sqrt(np.mean((slide.expected - slide.spread) ** 2) / np.mean(slide.spread**2))
 
 
-def _levels(slides):
-    """How many level off, and how many keep rising."""
-    trends = [Trend.of(slide, slide.opened) for slide in slides]
-    level = sum(abs(trend.change) <= LEVEL for trend in trends)
-    rising = [trend for trend in trends if trend.change > LEVEL]
-    sure = sum(trend.low > 0 for trend in rising)
-    beyond = f" (the intervals of {sure} exclude zero)" if rising else ""
-    return (
-        f"over the second half of v delta_r changes by less than {100 * LEVEL:g} % in {level} of "
-        f"{len(slides)} and rises by more in {len(rising)}{beyond}"
-    )
+def _level(slide):
+    """Whether the dilatancy levels off, by its change over the second half of v."""
+    trend = Trend.of(slide, slide.opened)
+    if abs(trend.change) <= LEVEL:
+        return "reaches a plateau"
+    if trend.low > 0:
+        return "keeps rising"
+    return "falls" if trend.high < 0 else "shows no trend beyond its interval"
 
 
 def _span(values, joint=" to "):
