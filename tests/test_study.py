@@ -1,6 +1,7 @@
 """A study is checked before anything runs; what is wrong is named by its key."""
 
 import copy
+import math
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from fractalcontact.study import (
     check_study,
     read_sidecar,
     resolve_embedded,
+    resolve_roll_off,
     resolve_settings,
     window_arguments,
 )
@@ -54,6 +56,17 @@ def broken(study, path, value):
         (("defaults", "directions"), ["X"], r"defaults.directions.0: 'X' is not right; expected E"),
         (("defaults", "material"), "sandston", r"no material 'sandston'; did you mean 'sandstone'"),
         (("specimens", "concrete_twin", "map_load"), "7 kN", r"map_load: '7 kN' is not among"),
+        (
+            ("materials", "concrete", "basic_friction_angle"),
+            "35 mm",
+            r"angle: '35 mm' is not an ang",
+        ),
+        (("materials", "concrete", "basic_friction_angle"), "95 deg", r"an angle below 90"),
+        (("materials", "concrete", "joint_wall_strength"), "40", r"strength: '40' has no unit"),
+        (("roll_off", "embedded"), "sandstone", r"no embedded 'sandstone'; did you mean 'sandst"),
+        (("roll_off", "embedded"), "joint_2.1", r"roll_off.embedded: joint_2.1 has no roll_off"),
+        (("roll_off", "seeds"), [1], r"roll_off.seeds: \[1\]"),
+        (("area_slope", "loads"), [0.5], r"area_slope.loads.0: 0.5 is not right"),
         (("solver", "rtol"), "1e-6", r"solver.rtol: '1e-6' is not right; expected a number"),
         (("embedded", "concrete_twin", "size"), "4 N", r"embedded.concrete_twin.size: '4 N'"),
         (("embedded", "concrete_twin", "dimension"), 3.2, r"embedded.concrete_twin.dimension: 3.2"),
@@ -95,3 +108,19 @@ def test_the_window_is_cut_to_the_coarsest_prefractal(study):
 def test_embedded_lengths_are_in_millimetres(study):
     recipe = resolve_embedded({**study["embedded"]["concrete_twin"], "size": "4 cm"}, "here")
     assert (recipe["size"], recipe["outline"]) == (40, "square")
+
+
+def test_strength_of_the_material_is_missing_where_it_is_not_stated(study):
+    material = resolve_settings(study, "concrete_twin", {}, "paper")["material"]
+    assert (material["basic_friction_angle"], material["joint_wall_strength"]) == (35, 40)
+    del study["materials"]["concrete"]["basic_friction_angle"]
+    material = resolve_settings(study, "concrete_twin", {}, "paper")["material"]
+    assert math.isnan(material["basic_friction_angle"])
+
+
+def test_joints_with_and_without_a_roll_off_follow_an_embedded_specimen(study):
+    joints = resolve_roll_off(study, "paper")
+    assert joints["window"] == 20
+    assert joints["recipe"]["roll_off"] == 5
+    del study["roll_off"]
+    assert resolve_roll_off(study, "paper") is None

@@ -81,9 +81,9 @@ def write(dataset, path):
         dataset.to_netcdf(temporary, engine="netcdf4", encoding=_encoding(dataset))
 
 
-def read(path, group=None):
-    """A dataset written by :func:`write`, or one group of an atlas, in memory."""
-    with xr.open_dataset(path, engine="netcdf4", group=group) as dataset:
+def read(path):
+    """A dataset written by :func:`write`, in memory."""
+    with xr.open_dataset(path, engine="netcdf4") as dataset:
         return dataset.load()
 
 
@@ -150,19 +150,22 @@ def read_atlas(path, without=()):
 
     Notes
     -----
-    Group by group: xarray's ``open_datatree`` ends in a segmentation fault inside netCDF4 where a
-    process has opened the same file before.
+    Group by group, from a file opened once. xarray's ``open_datatree`` ends in a segmentation fault
+    inside netCDF4 where a process has opened the same file before, and to open every group for
+    itself takes a quarter of a second each, because all the others are gone through.
     """
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
-        names = [
-            group.path
-            for name, stage in file.groups.items()
-            if name not in without
-            for group in [stage, *stage.groups.values()]
-        ]
-    return xr.DataTree.from_dict({name: read(path, name) for name in ["/", *names]})
+        groups = {"/": file}
+        for name, stage in file.groups.items():
+            if name not in without:
+                groups |= {g.path: g for g in (stage, *stage.groups.values())}
+        loaded = {
+            name: xr.open_dataset(xr.backends.NetCDF4DataStore(found)).load()
+            for name, found in groups.items()
+        }
+    return xr.DataTree.from_dict(loaded)
 
 
 def _checksums(specimens):
