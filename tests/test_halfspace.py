@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from fractalcontact.fourier import THREADED_CELLS
 from fractalcontact.halfspace import (
     RIGID_PLATE_SELF_TERMS,
-    THREADED_CELLS,
     HalfSpace,
     love_displacement,
     rectangle_mean_displacement,

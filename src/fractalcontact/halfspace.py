@@ -9,14 +9,8 @@ from functools import cached_property
 import numpy as np
 from scipy import fft
 
-from . import threads
+from .fourier import Convolution, fast_length
 from .screening import ContactInverse
-
-#: Columns transformed at a time: few enough to stay near the processor, from zero padding to the
-#: rows that are wanted.
-COLUMNS = 64
-#: On fewer cells than this a second thread costs more than it brings.
-THREADED_CELLS = 150_000
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
@@ -120,7 +114,7 @@ class HalfSpace:
         self.kernel = kernel
         #: Side of the square as large as a cell: the solver's unit of length in the plane.
         self.cell = float(np.sqrt(dy * dx))
-        self._padded = (fft.next_fast_len(2 * ny - 1), fft.next_fast_len(2 * nx - 1, real=True))
+        self._padded = (fast_length(2 * ny - 1), fast_length(2 * nx - 1))
 
     def __eq__(self, other):
         if not isinstance(other, HalfSpace):
@@ -183,38 +177,27 @@ class HalfSpace:
         return coarse
 
     def convolve(self, values):
-        """Dimensionless operator K: (..., ny, nx) to (..., ny, nx), in the precision of ``values``.
-
-        The transforms skip what zero padding makes known: rows are transformed before the columns
-        are padded, and only the wanted rows are transformed back.
-        """
-        (ny, nx), (padded_y, padded_x) = self.shape, self._padded
-        spectrum = self._spectrum_single if values.dtype == np.float32 else self._spectrum
-        workers = threads.count() if values.size >= THREADED_CELLS else 1
-        work = fft.rfft(values, n=padded_x, axis=-1, workers=workers)
-        width = work.shape[-1]
-
-        def columns(first, last):
-            for k in range(first, last):
-                some = slice(k * COLUMNS, min((k + 1) * COLUMNS, width))
-                column = fft.fft(work[..., some], n=padded_y, axis=-2)
-                column *= spectrum[:, some]
-                work[..., some] = fft.ifft(column, axis=-2, overwrite_x=True)[..., :ny, :]
-
-        blocks = -(-width // COLUMNS)
-        threads.in_parts(columns, blocks, smallest=2 if workers > 1 else blocks)
-        return fft.irfft(work, n=padded_x, axis=-1, workers=workers)[..., :nx]
+        """Dimensionless operator K on fields (..., ny, nx), in the precision of ``values``."""
+        convolution = self._single if values.dtype == np.float32 else self._double
+        if values.ndim == 2:
+            return convolution(values)
+        fields = [convolution(field) for field in values.reshape(-1, *self.shape)]
+        return np.stack(fields).reshape(values.shape)
 
     @cached_property
+    def _double(self):
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
+
+    @cached_property
+    def _single(self):
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
+
     def _spectrum(self):
-        (ny, nx), (padded_y, padded_x) = self.shape, self._padded
-        influence = self.influence()
-        # Even in both directions, so the circulant's spectrum is real.
-        rows = np.minimum(np.arange(padded_y), padded_y - np.arange(padded_y))
-        columns = np.minimum(np.arange(padded_x), padded_x - np.arange(padded_x))
-        circulant = influence[np.minimum(rows, ny - 1)][:, np.minimum(columns, nx - 1)]
-        return np.ascontiguousarray(fft.rfft2(circulant).real)
-
-    @cached_property
-    def _spectrum_single(self):
-        return self._spectrum.astype(np.float32)
+        """Transform of the influence in its circulant: even both ways, and so real and even."""
+        spectrum = self.influence()
+        for axis in (1, 0):
+            n, padded = self.shape[axis], self._padded[axis]
+            distance = np.minimum(np.arange(padded), padded - np.arange(padded))
+            circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)
+            spectrum = fft.rfft(circulant, axis=axis).real
+        return spectrum

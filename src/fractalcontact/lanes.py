@@ -1,0 +1,148 @@
+"""Several numbers at once, for numba: the processor's vectors, as values in compiled functions.
+
+The compiler does not find these by itself in a Fourier transform, where it would have to prove that
+none of many rows of numbers overlap. Supported are ``load``, ``store``, +, - and scaling.
+"""
+
+import operator
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic, models, overload, register_model
+
+#: Numbers in one; a whole line of the processor's cache in single precision.
+WIDTH = 16
+#: A product may be added without being rounded first.
+FUSED = ("contract",)
+
+
+class Lanes(types.Type):
+    """Type of :data:`WIDTH` numbers of a ``dtype``."""
+
+    def __init__(self, dtype):
+        super().__init__(name=f"Lanes({dtype})")
+        self.dtype = dtype
+
+
+@register_model(Lanes)
+class _LanesModel(models.PrimitiveModel):
+    def __init__(self, dmm, fe_type):
+        number = dmm.lookup(fe_type.dtype).get_value_type()
+        super().__init__(dmm, fe_type, ir.VectorType(number, WIDTH))
+
+
+def _pointer(context, builder, array_type, array, start, lanes):
+    data = context.make_array(array_type)(context, builder, array).data
+    vector = context.get_value_type(lanes)
+    return builder.bitcast(builder.gep(data, [start]), vector.as_pointer())
+
+
+@intrinsic
+def load(typing_context, array, start):
+    """The numbers of a flat contiguous array from ``start`` on; nothing checks its end."""
+    lanes = Lanes(array.dtype)
+
+    def generate(context, builder, signature, args):
+        pointer = _pointer(context, builder, array, *args, lanes)
+        return builder.load(pointer, align=array.dtype.bitwidth // 8)
+
+    return lanes(array, types.intp), generate
+
+
+@intrinsic
+def store(typing_context, array, start, values):
+    """Put them there."""
+    if not isinstance(values, Lanes):
+        return None
+
+    def generate(context, builder, signature, args):
+        pointer = _pointer(context, builder, array, *args[:2], values)
+        builder.store(args[2], pointer, align=array.dtype.bitwidth // 8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, values), generate
+
+
+def _elementwise(method):
+    @intrinsic
+    def operation(typing_context, first, second):
+        def generate(context, builder, signature, args):
+            return getattr(builder, method)(*args, flags=FUSED)
+
+        return first(first, second), generate
+
+    return operation
+
+
+_add, _subtract, _multiply = map(_elementwise, ("fadd", "fsub", "fmul"))
+
+
+@intrinsic
+def _spread(typing_context, number, like):
+    """One number in every lane."""
+
+    def generate(context, builder, signature, args):
+        vector = context.get_value_type(like)
+        alone = builder.insert_element(
+            ir.Constant(vector, ir.Undefined), args[0], ir.Constant(ir.IntType(32), 0)
+        )
+        everywhere = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
+        return builder.shuffle_vector(alone, ir.Constant(vector, ir.Undefined), everywhere)
+
+    return like(like.dtype, like), generate
+
+
+@overload(operator.add)
+def _lanes_add(first, second):
+    if isinstance(first, Lanes) and first == second:
+        return lambda first, second: _add(first, second)
+
+
+@overload(operator.sub)
+def _lanes_subtract(first, second):
+    if isinstance(first, Lanes) and first == second:
+        return lambda first, second: _subtract(first, second)
+
+
+@overload(operator.mul)
+def _lanes_multiply(first, second):
+    if isinstance(first, Lanes) and first == second:
+        return lambda first, second: _multiply(first, second)
+    if isinstance(second, Lanes) and isinstance(first, types.Float):
+        return lambda first, second: _multiply(_spread(first, second), second)
+
+
+@intrinsic
+def transpose(typing_context, source, first, source_step, target, start, target_step):
+    """Turn a square of :data:`WIDTH` x WIDTH numbers, rows of it being ``step`` numbers apart."""
+    lanes = Lanes(source.dtype)
+
+    def generate(context, builder, signature, args):
+        from_array, first, from_step, to_array, start, to_step = args
+        align = source.dtype.bitwidth // 8
+
+        def row(start, step, k):
+            return builder.add(start, builder.mul(step, ir.Constant(step.type, k)))
+
+        rows = []
+        for k in range(WIDTH):
+            at = row(first, from_step, k)
+            pointer = _pointer(context, builder, source, from_array, at, lanes)
+            rows.append(builder.load(pointer, align=align))
+        # Each round interleaves rows half the square apart; as many as halve it away turn it.
+        picked = [place for k in range(WIDTH) for place in (k, k + WIDTH)]
+        halves = [
+            ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), half)
+            for half in (picked[:WIDTH], picked[WIDTH:])
+        ]
+        for _ in range(WIDTH.bit_length() - 1):
+            pairs = zip(rows[: WIDTH // 2], rows[WIDTH // 2 :], strict=True)
+            rows = [builder.shuffle_vector(a, b, half) for a, b in pairs for half in halves]
+        for k in range(WIDTH):
+            at = row(start, to_step, k)
+            pointer = _pointer(context, builder, target, to_array, at, lanes)
+            builder.store(rows[k], pointer, align=align)
+        return context.get_dummy_value()
+
+    arguments = source, types.intp, types.intp, target, types.intp, types.intp
+    return types.void(*arguments), generate
