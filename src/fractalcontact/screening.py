@@ -19,6 +19,7 @@ from numba import njit
 
 from . import threads
 from .balancing import SmoothCorrection, inverted, times
+from .lanes import WIDTH, load, store
 
 #: Blocks to each side of a node's own in which preceding nodes condition it ...
 REACH = 2
@@ -147,30 +148,33 @@ def _representatives(rows, ny, nx, shifts):
         offsets[k + 1] = offsets[k] + widths[k, 0] * widths[k, 1]
     first = np.full(offsets[levels], -1, np.int32)
     level = np.zeros(ny * nx, np.int8)
-    for node in rows:
-        first[node] = node
+    standing = rows.copy()
+    first[standing] = standing
     for k in range(1, levels):
-        grow_y, grow_x = shifts[k, 0] - shifts[k - 1, 0], shifts[k, 1] - shifts[k - 1, 1]
-        for y in range(widths[k - 1, 0]):
-            for x in range(widths[k - 1, 1]):
-                node = first[offsets[k - 1] + y * widths[k - 1, 1] + x]
-                parent = offsets[k] + (y >> grow_y) * widths[k, 1] + (x >> grow_x)
-                if node >= 0 and first[parent] < 0:
-                    first[parent] = node
-                    level[node] = k
+        n = 0
+        for node in standing:
+            y, x = (node // nx) >> shifts[k, 0], (node % nx) >> shifts[k, 1]
+            block = offsets[k] + y * widths[k, 1] + x
+            if first[block] < 0:
+                first[block] = node
+                level[node] = k
+                standing[n] = node
+                n += 1
+        standing = standing[:n]
     return first, offsets, widths, level
 
 
 @njit(cache=True, nogil=True)
 def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new):
+    """Columns start ... stop of the factor: taken over where nothing changed, else solved."""
     first, offsets, widths, level = blocks
     old_rows, old_slot, (old_count, old_near, old_weight, old_own) = old
     count, near, weight, own = new
-    members = np.empty(MOST + 1, np.int64)
-    ys = np.empty(MOST + 1, np.int64)
-    xs = np.empty(MOST + 1, np.int64)
-    lower = np.empty((MOST + 1, MOST + 1), np.float32)
-    column = np.empty(MOST + 1, np.float32)
+    members = np.empty(MOST, np.int64)
+    waiting = np.empty(WIDTH, np.int64)
+    lower = np.empty((MOST + 1) * (MOST + 1) * WIDTH, np.float32)
+    column = np.empty((MOST + 1) * WIDTH, np.float32)
+    lanes = 0
     for i in range(start, stop):
         node = rows[i]
         y, x = node // nx, node % nx
@@ -200,39 +204,70 @@ def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new)
                 weight[i, a] = old_weight[before, a]
             own[i] = old_own[before]
             continue
-        members[n] = node
-        for a in range(n + 1):
-            ys[a], xs[a] = members[a] // nx, members[a] % nx
-        _column(ys, xs, n, influence, lower, column)
-        for a in range(n):
-            weight[i, a] = column[a]
-        own[i] = column[n]
+        waiting[lanes] = i
+        lanes += 1
+        if lanes == WIDTH:
+            _solve_columns(waiting, rows, nx, influence, new, lower, column)
+            lanes = 0
+    _solve_columns(waiting[:lanes], rows, nx, influence, new, lower, column)
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
-def _column(ys, xs, n, influence, lower, column):
-    """Last column of the inverse of the Cholesky factor's transpose, on n + 1 nodes.
+@njit(cache=True)
+def _solve_columns(nodes, rows, nx, influence, factor, lower, column):
+    """Last column of the inverse of the transposed Cholesky factor, for a node in each lane.
 
-    The diagonal of ``lower`` is kept inverted.
+    Lanes with fewer nodes than others have empty rows before their last, which change nothing, to
+    the bit. The diagonal of ``lower`` is kept inverted.
     """
+    count, near, weight, own = factor
+    n = 0
+    for i in nodes:
+        n = max(n, count[i])
+    side = (MOST + 1) * WIDTH
+    ys = np.zeros((MOST + 1, WIDTH), np.int32)
+    xs = np.zeros((MOST + 1, WIDTH), np.int32)
+    there = np.zeros((MOST + 1, WIDTH), np.float32)
+    for lane in range(nodes.size):
+        i = nodes[lane]
+        for a in range(count[i]):
+            node = rows[near[i, a]]
+            ys[a, lane], xs[a, lane], there[a, lane] = node // nx, node % nx, 1
+        ys[n, lane], xs[n, lane], there[n, lane] = rows[i] // nx, rows[i] % nx, 1
     for a in range(n + 1):
         for b in range(a):
-            s = influence[abs(ys[a] - ys[b]), abs(xs[a] - xs[b])]
-            for c in range(b):
-                s -= lower[a, c] * lower[b, c]
-            lower[a, b] = s * lower[b, b]
-        s = influence[0, 0]
-        for c in range(a):
-            s -= lower[a, c] * lower[a, c]
-        lower[a, a] = np.float32(1) / np.sqrt(max(s, LEAST_OWN * influence[0, 0]))
-    for a in range(n):
-        column[a] = 0.0
-    column[n] = lower[n, n]
+            here = a * side + b * WIDTH
+            for lane in range(WIDTH):
+                distance = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
+                both = there[a, lane] * there[b, lane]
+                lower[here + lane] = both * influence[distance]
+    for a in range(n + 1):
+        for b in range(a):
+            here = a * side + b * WIDTH
+            s = load(lower, here)
+            for c in range(0, b * WIDTH, WIDTH):
+                s = s - load(lower, a * side + c) * load(lower, b * side + c)
+            store(lower, here, s * load(lower, b * (side + WIDTH)))
+        here = a * (side + WIDTH)
+        lower[here : here + WIDTH] = influence[0, 0]
+        s = load(lower, here)
+        for c in range(0, a * WIDTH, WIDTH):
+            s = s - load(lower, a * side + c) * load(lower, a * side + c)
+        store(lower, here, s)
+        for lane in range(here, here + WIDTH):
+            lower[lane] = np.float32(1) / np.sqrt(max(lower[lane], LEAST_OWN * influence[0, 0]))
+    column[: n * WIDTH] = 0
+    store(column, n * WIDTH, load(lower, n * (side + WIDTH)))
     for a in range(n, 0, -1):
-        # Row by row, so that the inner loop runs along memory.
-        for c in range(a):
-            column[c] -= lower[a, c] * column[a]
-        column[a - 1] *= lower[a - 1, a - 1]
+        known = load(column, a * WIDTH)
+        for c in range(0, a * WIDTH, WIDTH):
+            store(column, c, load(column, c) - load(lower, a * side + c) * known)
+        here = (a - 1) * WIDTH
+        store(column, here, load(column, here) * load(lower, (a - 1) * (side + WIDTH)))
+    for lane in range(nodes.size):
+        i = nodes[lane]
+        for a in range(count[i]):
+            weight[i, a] = column[a * WIDTH + lane]
+        own[i] = column[n * WIDTH + lane]
 
 
 @njit(cache=True, fastmath=True)
