@@ -94,6 +94,8 @@ class Ours(Solver):
 def forget(space):
     """Drop what a half-space has kept of the last contact set: a cold solve must not find it."""
     vars(space).pop("inverse", None)
+    for coarse in space._coarser.values():
+        forget(coarse)
 
 
 @contextmanager

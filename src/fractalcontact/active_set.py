@@ -19,8 +19,12 @@ from .set_equations import CLIPPING_PASSES, Operator, SetEquations
 
 # Corrections of the contact set before the solver gives up: trials needed at most some twenty.
 MAX_CORRECTIONS = 200
-# The linear solve for a set is stopped at this share of its first residual, as the set will change.
-REDUCTION = 0.3
+# The linear solve for a set is stopped at a share of its first residual, as the set will change:
+# so many times the share of the set that changed last, within these limits.
+REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.5
+# A violation no larger than so many tolerances is expected to fall below one in a single step,
+# whose displacement is then computed in double precision at once.
+NEARLY = 4.0
 # After so many corrections the set may be swinging for ever: seen on combs and checkerboards under
 # a given force, once in 2,000 scenes under a given closure. Then closures are given instead of the
 # force, sets are solved to PATIENT_REDUCTION without clipping, and while nodes leave none enters.
@@ -121,9 +125,12 @@ class ActiveSet:
         """
         problem = self.problem
         pressure, displacement = self._loaded(pressure, displacement)
+        pressure = pressure.copy()
         if displacement is None:
-            displacement = self.operator(pressure.astype(np.float32)).astype(float)
+            displacement = self.operator(pressure.astype(np.float32))
+        displacement = displacement.astype(float)
         closure = self._mean_gap(pressure, displacement) if problem.by_force else problem.load
+        free, foreseen = np.empty(0, np.int32), False
         for correction in range(MAX_CORRECTIONS):
             examined = self._examine(pressure, displacement, closure)
             if examined.worst <= self.rtol * abs(closure):
@@ -138,9 +145,21 @@ class ActiveSet:
                 inside = (pressure[examined.free] > 0) & (pressure[examined.free] < problem.cap)
                 examined = replace(examined, free=examined.free[inside])
             self.operator.inverse.update(examined.free, fresh=correction == 0)
-            pressure, displacement, closure = self._correct(
-                pressure, displacement, closure, examined, patient
-            )
+            changed = _differing(free, examined.free) / max(examined.free.size, 1)
+            free = examined.free
+            reduction = min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
+            if patient:
+                reduction = PATIENT_REDUCTION
+            elif not foreseen and examined.worst <= NEARLY * self.rtol * abs(closure):
+                # Once only: where one step gains too little, conjugate gradients must follow.
+                foreseen, reduction = True, None
+            closure = self._correct(pressure, displacement, closure, examined, reduction)
+            if reduction is None:
+                solution = self._verified(pressure, closure)
+                if solution.residual <= self.rtol:
+                    return solution
+                pressure, displacement = solution.pressure, solution.displacement
+                closure = solution.closure
             if problem.by_force and correction == PATIENCE:
                 return self._by_closures(self._verified(pressure, closure))
         return self._verified(pressure, closure)
@@ -204,8 +223,12 @@ class ActiveSet:
         residual = max(worst / abs(closure), lacking)
         return Solution(pressure, displacement, closure, residual, self.operator.applications)
 
-    def _correct(self, pressure, displacement, closure, examined, patient):
-        """Pressure, displacement and closure after one correction of the set."""
+    def _correct(self, pressure, displacement, closure, examined, reduction):
+        """Correct pressure and displacement in place; returns the closure.
+
+        ``reduction`` is the share of the first residual at which the linear solve stops. Without
+        one a single step is taken, and the displacement left for a verification.
+        """
         problem, free, beyond = self.problem, examined.free, examined.beyond
         gap = displacement[free] + problem.clearance[free] - closure
         bound = np.where(pressure[beyond] < 0, 0.0, problem.cap)
@@ -218,20 +241,22 @@ class ActiveSet:
             np.finfo(float).tiny,
         )
         equations = SetEquations(self.operator, free, -gap / scale)
-        reduction = PATIENT_REDUCTION if patient else REDUCTION
-        goal = max(reduction, SINGLE_REACHES, SAFETY * self.rtol * abs(closure) / scale)
         start = pressure[free] / scale
         wanted = None if lacking is None else start.sum() + lacking / scale
+        patient = reduction == PATIENT_REDUCTION
         bounds = (-np.inf, np.inf) if patient else (0.0, problem.cap / scale)
-        equations.clipped_step(start, bounds, beyond, back / scale, wanted)
-        equations.conjugate_gradients(goal, by_force=problem.by_force)
-        pressure = pressure.copy()
+        equations.clipped_step(start, bounds, wanted)
+        if reduction is not None:
+            equations.carry_out(beyond, back / scale)
+            goal = max(reduction, SINGLE_REACHES, SAFETY * self.rtol * abs(closure) / scale)
+            equations.conjugate_gradients(goal, by_force=problem.by_force)
+            _add(displacement, scale, equations.image)
         pressure[beyond] = bound
         pressure[free] += scale * equations.solution.astype(float)
         # Exactly at the bound, where rounding leaves them next to it.
         pressure[free[equations.at_zero]] = 0.0
         pressure[free[equations.at_cap]] = problem.cap
-        return pressure, displacement + scale * equations.image, closure + scale * equations.common
+        return closure + scale * equations.common
 
 
 @dataclass(frozen=True)
@@ -286,6 +311,29 @@ def _with_total(pressure, total, cap):
             break
         pressure = np.where(below, np.minimum(pressure * (1 + lacking / part), cap), pressure)
     return pressure
+
+
+@njit(cache=True)
+def _add(values, scale, change):
+    """values += scale * change, without arrays in between."""
+    for i in range(values.size):
+        values[i] += scale * change[i]
+
+
+@njit(cache=True)
+def _differing(first, second):
+    """How many numbers are in one only of two ascending arrays."""
+    a, b, common = 0, 0, 0
+    while a < first.size and b < second.size:
+        if first[a] == second[b]:
+            common += 1
+            a += 1
+            b += 1
+        elif first[a] < second[b]:
+            a += 1
+        else:
+            b += 1
+    return first.size + second.size - 2 * common
 
 
 @njit(cache=True)

@@ -168,13 +168,19 @@ class HalfSpace:
     def coarser(self, factor):
         """The same half-space on cells ``factor`` times as long and as wide, covering the window.
 
-        Distances counted in cells are the same, and so is the influence.
+        Distances counted in cells are the same, and so is the influence. Made once and kept.
         """
+        if factor in self._coarser:
+            return self._coarser[factor]
         shape = tuple(-(-n // factor) for n in self.shape)
         sides = tuple(factor * d for d in self.spacing)
         coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
         coarse._influence = self.influence()[: shape[0], : shape[1]]
-        return coarse
+        return self._coarser.setdefault(factor, coarse)
+
+    @cached_property
+    def _coarser(self):
+        return {}
 
     def convolve(self, values):
         """Dimensionless operator K on fields (..., ny, nx), in the precision of ``values``."""

@@ -77,10 +77,10 @@ class SetEquations:
         self.at_zero = self.at_cap = np.zeros(free.size, bool)
         self.common = 0.0
 
-    def clipped_step(self, start, bounds, beyond, back, total):
+    def clipped_step(self, start, bounds, total):
         """The approximate inverse's whole step, clipped so that start + x keeps within bounds.
 
-        ``back`` on the nodes ``beyond`` goes with it; with a ``total``, start + x has that sum.
+        With a ``total``, start + x has that sum. What the step does is left to `carry_out`.
         """
         low, high = bounds
         aim = start + self.inverse(self.residual)
@@ -102,7 +102,10 @@ class SetEquations:
         self.at_zero, self.at_cap = end <= low, end >= high
         self.inside[self.at_zero | self.at_cap] = 0
         self.solution = (end - start).astype(np.float32)
-        self.image += self.operator.on((self.free, self.solution), (beyond, back))
+
+    def carry_out(self, beyond, back):
+        """The image of the step, and of ``back`` on the nodes ``beyond``, which goes with it."""
+        self.image = self.operator.on((self.free, self.solution), (beyond, back))
         self.residual = (self.residual - self.image[self.free]) * self.inside
 
     def conjugate_gradients(self, goal, *, by_force):
