@@ -59,6 +59,7 @@ class ContactInverse:
         self._rows = np.empty(0, np.int32)
         self._slot = np.full(space.shape[0] * space.shape[1], -1, np.int32)
         self._factor = _empty_factor(0)
+        self._first = _representatives(self._rows, *space.shape, self._shifts)[0]
         self._exact = None
 
     def update(self, rows, *, fresh):
@@ -79,11 +80,13 @@ class ContactInverse:
         slot = np.full(self._slot.size, -1, np.int32)
         slot[rows] = np.arange(rows.size, dtype=np.int32)
         blocks = _representatives(rows, *self._shape, self._shifts)
+        touched = _touched(self._first, blocks, self._shifts, nx)
+        self._first = blocks[0]
         factor = _empty_factor(rows.size)
-        old = (self._rows, self._slot, self._factor)
+        old, known = (self._rows, self._slot, self._factor), (*blocks, touched)
         threads.in_parts(
             lambda start, stop: _factorise(
-                start, stop, rows, slot, blocks, self._shifts, nx, self._influence, old, factor
+                start, stop, rows, slot, known, self._shifts, nx, self._influence, old, factor
             ),
             rows.size,
             smallest=CHUNK,
@@ -164,10 +167,37 @@ def _representatives(rows, ny, nx, shifts):
     return first, offsets, widths, level
 
 
+@njit(cache=True)
+def _touched(before, blocks, shifts, nx):
+    """For every level, the blocks whose nodes are conditioned otherwise than ``before``."""
+    first, offsets, widths, _ = blocks
+    touched = np.zeros(first.size, np.bool_)
+    for k in range(widths.shape[0]):
+        for y in range(widths[k, 0]):
+            for x in range(widths[k, 1]):
+                block = offsets[k] + y * widths[k, 1] + x
+                if before[block] != first[block]:
+                    _touch(touched, offsets[k], widths[k], y, x)
+                    # Both have come to, or lost, precedence on the level below.
+                    for node in (before[block], first[block]):
+                        if k > 0 and node >= 0:
+                            y_below = (node // nx) >> shifts[k - 1, 0]
+                            x_below = (node % nx) >> shifts[k - 1, 1]
+                            _touch(touched, offsets[k - 1], widths[k - 1], y_below, x_below)
+    return touched
+
+
+@njit(cache=True)
+def _touch(touched, offset, width, y, x):
+    for by in range(max(y - REACH, 0), min(y + REACH + 1, width[0])):
+        for bx in range(max(x - REACH, 0), min(x + REACH + 1, width[1])):
+            touched[offset + by * width[1] + bx] = True
+
+
 @njit(cache=True, nogil=True)
 def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new):
     """Columns start ... stop of the factor: taken over where nothing changed, else solved."""
-    first, offsets, widths, level = blocks
+    first, offsets, widths, level, touched = blocks
     old_rows, old_slot, (old_count, old_near, old_weight, old_own) = old
     count, near, weight, own = new
     members = np.empty(MOST, np.int64)
@@ -180,6 +210,13 @@ def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new)
         y, x = node // nx, node % nx
         k = level[node]
         block_y, block_x = y >> shifts[k, 0], x >> shifts[k, 1]
+        before = old_slot[node]
+        if before >= 0 and not touched[offsets[k] + block_y * widths[k, 1] + block_x]:
+            count[i], own[i] = old_count[before], old_own[before]
+            for a in range(count[i]):
+                near[i, a] = slot[old_rows[old_near[before, a]]]
+                weight[i, a] = old_weight[before, a]
+            continue
         n = 0
         for by in range(max(block_y - REACH, 0), min(block_y + REACH + 1, widths[k, 0])):
             for bx in range(max(block_x - REACH, 0), min(block_x + REACH + 1, widths[k, 1])):
@@ -192,18 +229,6 @@ def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new)
         count[i] = n
         for a in range(n):
             near[i, a] = slot[members[a]]
-        before = old_slot[node]
-        same = before >= 0 and old_count[before] == n
-        if same:
-            for a in range(n):
-                if old_rows[old_near[before, a]] != members[a]:
-                    same = False
-                    break
-        if same:
-            for a in range(n):
-                weight[i, a] = old_weight[before, a]
-            own[i] = old_own[before]
-            continue
         waiting[lanes] = i
         lanes += 1
         if lanes == WIDTH:
