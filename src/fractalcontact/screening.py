@@ -80,7 +80,8 @@ class ContactInverse:
         slot = np.full(self._slot.size, -1, np.int32)
         slot[rows] = np.arange(rows.size, dtype=np.int32)
         blocks = _representatives(rows, *self._shape, self._shifts)
-        touched = _touched(self._first, blocks, self._shifts, nx)
+        changed = np.flatnonzero(self._first != blocks[0])
+        touched = _touched(changed, self._first, blocks, self._shifts, nx)
         self._first = blocks[0]
         factor = _empty_factor(rows.size)
         old, known = (self._rows, self._slot, self._factor), (*blocks, touched)
@@ -168,22 +169,21 @@ def _representatives(rows, ny, nx, shifts):
 
 
 @njit(cache=True)
-def _touched(before, blocks, shifts, nx):
-    """For every level, the blocks whose nodes are conditioned otherwise than ``before``."""
+def _touched(changed, before, blocks, shifts, nx):
+    """For every level, the blocks whose nodes may be conditioned otherwise than ``before``."""
     first, offsets, widths, _ = blocks
     touched = np.zeros(first.size, np.bool_)
-    for k in range(widths.shape[0]):
-        for y in range(widths[k, 0]):
-            for x in range(widths[k, 1]):
-                block = offsets[k] + y * widths[k, 1] + x
-                if before[block] != first[block]:
-                    _touch(touched, offsets[k], widths[k], y, x)
-                    # Both have come to, or lost, precedence on the level below.
-                    for node in (before[block], first[block]):
-                        if k > 0 and node >= 0:
-                            y_below = (node // nx) >> shifts[k - 1, 0]
-                            x_below = (node % nx) >> shifts[k - 1, 1]
-                            _touch(touched, offsets[k - 1], widths[k - 1], y_below, x_below)
+    k = 0
+    for block in changed:
+        while block >= offsets[k + 1]:
+            k += 1
+        y, x = divmod(block - offsets[k], widths[k, 1])
+        _touch(touched, offsets[k], widths[k], y, x)
+        # Both have come to, or lost, precedence on the level below.
+        for node in (before[block], first[block]):
+            if k > 0 and node >= 0:
+                y, x = (node // nx) >> shifts[k - 1, 0], (node % nx) >> shifts[k - 1, 1]
+                _touch(touched, offsets[k - 1], widths[k - 1], y, x)
     return touched
 
 
