@@ -93,9 +93,7 @@ class Ours(Solver):
 
 def forget(space):
     """Drop what a half-space has kept of the last contact set: a cold solve must not find it."""
-    vars(space).pop("inverse", None)
-    for coarse in space._coarser.values():
-        forget(coarse)
+    space.forget()
 
 
 @contextmanager

@@ -115,7 +115,7 @@ class ActiveSet:
         Parameters
         ----------
         pressure : (n,) ndarray
-            Where to start; may violate the bounds.
+            Where to start; may violate the bounds. Overwritten, and so is the displacement.
         displacement : (n,) ndarray, optional
             K of it, where known.
 
@@ -125,10 +125,8 @@ class ActiveSet:
         """
         problem = self.problem
         pressure, displacement = self._loaded(pressure, displacement)
-        pressure = pressure.copy()
         if displacement is None:
-            displacement = self.operator(pressure.astype(np.float32))
-        displacement = displacement.astype(float)
+            displacement = self.operator(pressure.astype(np.float32)).astype(float)
         closure = self._mean_gap(pressure, displacement) if problem.by_force else problem.load
         free, foreseen = np.empty(0, np.int32), False
         for correction in range(MAX_CORRECTIONS):

@@ -286,6 +286,7 @@ def _coarse_start(problem):
     load = problem.load / 2 if problem.by_force else problem.load
     coarse = Problem(coarse_space, pooled, load, problem.by_force, 2 * problem.cap)
     found = ActiveSet(coarse, COARSE_RTOL).solve(_coarse_start(coarse))
+    coarse_space.forget()
     pressure = found.pressure.reshape(coarse_space.shape) / 2
     return np.repeat(np.repeat(pressure, 2, axis=0), 2, axis=1)[:ny, :nx].ravel()
 

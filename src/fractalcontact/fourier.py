@@ -62,12 +62,13 @@ class Convolution:
         (radices_x, roots_x, frequency_x) = _plan(padded[1], dtype)
         waves = padded[0] // 2 + 1
         self._blocks, self._waves = -(-shape[1] // ROW), -(-waves // WIDTH)
-        lanes = np.zeros((self._waves * WIDTH, padded[1]), dtype)
-        mirrored = np.minimum(frequency_x, padded[1] - frequency_x)
-        lanes[:waves] = (spectrum / (padded[0] * padded[1])).astype(dtype)[:, mirrored]
+        lanes = np.zeros((self._waves * WIDTH, spectrum.shape[1]), dtype)
+        lanes[:waves] = spectrum
+        lanes[:waves] /= padded[0] * padded[1]
         lanes = lanes.reshape(self._waves, WIDTH, -1).transpose(0, 2, 1)
+        mirrored = np.minimum(frequency_x, padded[1] - frequency_x)
         self._along_y = radices_y, roots_y, np.argsort(frequency_y)
-        self._along_x = np.ascontiguousarray(lanes).ravel(), radices_x, roots_x
+        self._along_x = np.ascontiguousarray(lanes), mirrored, radices_x, roots_x
 
     def __call__(self, field):
         """The convolution of a field, (ny, nx), of this precision."""
@@ -279,7 +280,7 @@ def _forward_along_y(start, stop, field, spectra, radices, roots, place):
 
 
 @njit(cache=True, nogil=True)
-def _multiply_along_x(start, stop, nx, spectra, kernel, radices, roots):
+def _multiply_along_x(start, stop, nx, spectra, kernel, mirrored, radices, roots):
     """Convolve along x, for some blocks of wave numbers along y, in place."""
     n = roots.shape[0]
     x = np.empty(n * ROW, spectra.dtype)
@@ -287,8 +288,9 @@ def _multiply_along_x(start, stop, nx, spectra, kernel, radices, roots):
         x[: nx * ROW] = spectra[waves, : nx * ROW]
         x[nx * ROW :] = 0
         _transform(x, radices, roots, False)
+        factors = kernel[waves].reshape(-1)
         for k in range(n):
-            factor = load(kernel, (waves * n + k) * WIDTH)
+            factor = load(factors, mirrored[k] * WIDTH)
             store(x, k * ROW, factor * load(x, k * ROW))
             store(x, k * ROW + WIDTH, factor * load(x, k * ROW + WIDTH))
         _transform(x, radices, roots, True)

@@ -137,6 +137,10 @@ class HalfSpace:
         """Approximate inverse of K on a contact set, kept because the next set is much the same."""
         return ContactInverse(self)
 
+    def forget(self):
+        """Drop the approximate inverse, to save the memory or to start anew."""
+        vars(self).pop("inverse", None)
+
     @property
     def cell_area(self):
         """Area of one cell, mm2."""
