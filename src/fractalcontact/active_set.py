@@ -21,7 +21,7 @@ from .set_equations import CLIPPING_PASSES, Operator, SetEquations
 MAX_CORRECTIONS = 200
 # The linear solve for a set is stopped at a share of its first residual, as the set will change:
 # so many times the share of the set that changed last, within these limits.
-REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.5
+REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
 # A violation no larger than so many tolerances is expected to fall below one in a single step,
 # whose displacement is then computed in double precision at once.
 NEARLY = 4.0
