@@ -24,7 +24,7 @@ MAX_CORRECTIONS = 200
 REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
 # A violation no larger than so many tolerances is expected to fall below one in a single step,
 # whose displacement is then computed in double precision at once.
-NEARLY = 4.0
+NEARLY = 2.0
 # After so many corrections the set may be swinging for ever: seen on combs and checkerboards under
 # a given force, once in 2,000 scenes under a given closure. Then closures are given instead of the
 # force, sets are solved to PATIENT_REDUCTION without clipping, and while nodes leave none enters.
