@@ -4,12 +4,21 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.statements import FAILS, HOLDS, PARTLY, STATEMENTS, UNKNOWN, Joint, judge
+from fractalcontact.statements import (
+    FAILS,
+    HOLDS,
+    PARTLY,
+    UNKNOWN,
+    Joint,
+    judge,
+    statements_for,
+)
 
 V = np.array([0.1, 0.2, 0.4, 1.2, 1.4, 5.0, 10.0])
 # Correlated up to 0.5 mm by 1/e, not at all from 2 mm on.
 RIGID = np.linspace(0, 10, 101)
-SETTINGS = {"map_load": (1000.0, "force")}
+LOADS = [10.0, 100.0, 1000.0, 10000.0]
+SETTINGS = {"map_load": (1000.0, "force"), "map_offset": 0.4}
 
 
 def stages(**changes):
@@ -24,14 +33,41 @@ def stages(**changes):
         "window_exponent": np.full(7, 0.4),
         "dilatancy": [1 - np.exp(-RIGID), 1.5 * (1 - np.exp(-RIGID))],
         "limit": 0.1,
+        "delta_area": [0.2, 0.8, 1.4, 1.9],
+        "delta_box": [0.2, 0.8, 1.4, 1.9],
+        "half": 0.05,
+        "disagree": np.zeros(4, bool),
+        "density_exponent": -0.3,
+        "strength_exponent": np.full((2, 1), -0.3),
         "length": 0.5,
         "uncorrelated": 2.0,
     } | changes
     dims = ("direction", "offset", "resolution", "load")
-    coords = {"direction": ["W"], "offset": V, "resolution": [1], "load": [1000.0]}
+    coords = {"direction": ["W"], "offset": V, "resolution": [1], "load": LOADS}
 
     def states(name):
-        return dims, np.reshape(np.asarray(values[name], float), (1, len(V), 1, 1))
+        """Values over the offsets, the same under every load."""
+        of_offset = np.reshape(np.asarray(values[name], float), (1, len(V), 1, 1))
+        return dims, np.broadcast_to(of_offset, (1, len(V), 1, len(LOADS)))
+
+    def over_loads(found):
+        """Values over the loads, the same at every offset."""
+        return ("direction", "offset", "load"), np.broadcast_to(found, (1, len(V), len(LOADS)))
+
+    area, box = (np.asarray(values[f"delta_{key}"], float) for key in ("area", "box"))
+    half = values["half"]
+    scaling = {
+        "delta_area": area,
+        "delta_box": box,
+        "delta_sigma": area,
+        "delta_sigma_low": area - half,
+        "delta_sigma_high": area + half,
+        "difference": area - box,
+        "disagree": values["disagree"],
+        "n": np.full(4, 4),
+        "r2": np.full(4, 0.99),
+    }
+    of_box = {"": box, "_low": box - half, "_high": box + half}
 
     of_offsets = ("direction", "offset", "resolution")
     slid = xr.Dataset(
@@ -46,13 +82,18 @@ def stages(**changes):
         {"direction": ["W", "E"], "contact_direction": ["W"], "rigid_offset": RIGID, "offset": V},
     )
     ends = {"": 0, "_low": -0.1, "_high": 0.1}
-    windows = {
-        f"closure_exponent{end}": (
+    windows = {"nominal_pressure": ("load", [10.0])}
+    for end, by in ends.items():
+        windows[f"closure_exponent{end}"] = (
             ("offset", "load"),
             np.asarray(values["window_exponent"])[:, np.newaxis] + by,
         )
-        for end, by in ends.items()
-    }
+        density = np.full((len(V), 1), values["density_exponent"] + by)
+        windows[f"area_exponent{end}"] = (("offset", "load"), density)
+        windows[f"similar_strength_exponent{end}"] = (
+            ("share", "load"),
+            values["strength_exponent"] + by,
+        )
     specimen = xr.Dataset(
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
     )
@@ -67,7 +108,26 @@ def stages(**changes):
             },
             coords,
         ),
-        "domains": xr.Dataset({"morisita": states("morisita")}, coords),
+        "domains": xr.Dataset(
+            {
+                "morisita": states("morisita"),
+                **{
+                    f"delta_sigma{end}": (
+                        dims,
+                        np.broadcast_to(found, (1, len(V), len(LOADS)))[:, :, np.newaxis],
+                    )
+                    for end, found in of_box.items()
+                },
+                "fit_min": (dims, np.full((1, len(V), 1, len(LOADS)), 0.1)),
+                "fit_max": (dims, np.full((1, len(V), 1, len(LOADS)), 5.0)),
+                "reason": (dims, np.full((1, len(V), 1, len(LOADS)), "too few")),
+            },
+            coords,
+        ),
+        "scaling": xr.Dataset(
+            {name: over_loads(found) for name, found in scaling.items()},
+            {"direction": ["W"], "offset": V, "load": LOADS},
+        ),
         "area": xr.Dataset(
             {"exponent": (("direction", "offset"), [values["exponent"]])},
             {"direction": ["W"], "offset": V},
@@ -83,7 +143,7 @@ def verdict(name, **changes):
 
 def test_a_joint_as_the_paper_has_it():
     found = judge(stages(), SETTINGS)
-    assert found.sizes["statement"] == len(STATEMENTS)
+    assert found.sizes["statement"] == len(statements_for(True))
     assert set(found["verdict"].values) == {HOLDS}
     assert found.attrs == {"direction": "W", "force": 1000.0}
 
@@ -125,6 +185,25 @@ ALIKE = [1 - np.exp(-RIGID)] * 2
         ("dilatancy_flattens", {"dilatancy": [0.1 * RIGID, 0.2 * RIGID]}, FAILS),
         ("dilatancy_is_anisotropic", {"dilatancy": ALIKE}, FAILS),
         ("domains_cluster", {"morisita": np.full(7, 2.0) - 0.1 * np.arange(7)}, FAILS),
+        ("area_is_lacunar", {"delta_area": np.full(4, 1.98)}, PARTLY),
+        ("area_is_lacunar", {"delta_area": np.full(4, 2.1)}, FAILS),
+        ("area_is_lacunar", {"delta_area": np.full(4, np.nan)}, UNKNOWN),
+        ("boxes_follow_one_law", {"half": 0.2}, PARTLY),
+        ("boxes_follow_one_law", {"half": 0.5}, FAILS),
+        ("boxes_follow_one_law", {"delta_box": np.full(4, np.nan)}, FAILS),
+        ("estimates_agree", {"disagree": np.array([0, 1, 1, 0], bool)}, PARTLY),
+        ("estimates_agree", {"disagree": np.ones(4, bool)}, FAILS),
+        ("estimates_agree", {"delta_box": np.full(4, np.nan)}, UNKNOWN),
+        ("dimension_rises_by_area", {"delta_area": np.linspace(1.9, 1.2, 4)}, FAILS),
+        ("dimension_rises_by_boxes", {"delta_box": np.array([1, 1.9, 0.9, 1.9])}, PARTLY),
+        ("dimension_rises_by_boxes", {"delta_box": np.full(4, np.nan)}, UNKNOWN),
+        ("dimension_spans_all", {"delta_box": np.linspace(0.5, 1.9, 4)}, PARTLY),
+        ("dimension_spans_all", {"delta_box": np.linspace(0.5, 1.5, 4)}, FAILS),
+        ("larger_domains_are_less_dense", {"density_exponent": -0.05}, PARTLY),
+        ("larger_domains_are_less_dense", {"density_exponent": 0.3}, FAILS),
+        ("strength_falls_with_size", {"strength_exponent": np.array([[-0.3], [0.0]])}, PARTLY),
+        ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), 0.3)}, FAILS),
+        ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), np.nan)}, UNKNOWN),
         ("no_correlation_is_left", {"limit": -0.1}, FAILS),
         ("no_correlation_is_left", {"limit": np.nan}, UNKNOWN),
     ],

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-#: Stages of the atlas, one group each, holding one group a specimen; strength and statements only
-#: of joints that slide, roll_off and area_slope one of made surfaces where the study asks.
+#: Stages of the atlas, one group each, holding one group a specimen; strength only of joints
+#: that slide, roll_off and area_slope one of made surfaces where the study asks.
 STAGES = {
     "specimens": "levelled faces, mask, window and where they came from",
     "surface_dimension": "Delta_g of each face by several estimators",
@@ -28,6 +28,7 @@ STAGES = {
     "windows": "closure, roughness and strength of parts of the window",
     "domains": "box counts, Delta_sigma and clusters of the contact domains",
     "scaling": "renormalisation over resolutions",
+    "contact_maps": "measured contact maps, one group a map",
     "statements": "what the paper says, and whether it holds here",
     "roll_off": "rigid dilatancy of made joints with and without a roll-off",
     "area_slope": "real contact area at light load, on surfaces with and without a roll-off",

@@ -239,7 +239,7 @@ def solver_settings(config):
 
 
 def _material(config, material, where, source):
-    """Name, E (MPa), Poisson's ratio, E* of two like bodies (MPa), and what strength needs."""
+    """Name, E (MPa), Poisson's ratio, E* of two like bodies (MPa), and what may be stated."""
     if isinstance(material, Mapping):
         label, definition = "own", material
     else:
@@ -260,13 +260,14 @@ def _material(config, material, where, source):
         "e_star": modulus / (2 * (1 - poisson**2)),
         "basic_friction_angle": _if_stated(definition, "basic_friction_angle", "angle", where),
         "joint_wall_strength": _if_stated(definition, "joint_wall_strength", "pressure", where),
+        "hardness": _if_stated(definition, "hardness", "pressure", where, math.inf),
     }
 
 
-def _if_stated(definition, key, kind, where):
-    """A quantity that only the strength of the joint needs; NaN where the study has none."""
+def _if_stated(definition, key, kind, where, otherwise=math.nan):
+    """A quantity that not every study needs; NaN, or something else, where it is not stated."""
     if key not in definition:
-        return math.nan
+        return otherwise
     value = quantity(definition[key], kind, f"{where}.{key}")
     if not 0 < value < (90 if kind == "angle" else math.inf):
         raise InputError(f"{where}.{key}: {definition[key]!r} must be positive, an angle below 90")

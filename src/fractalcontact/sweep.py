@@ -5,6 +5,7 @@ import xarray as xr
 
 from .area import contact_perimeter, corrected_area
 from .contact import NotConverged, solve_contact
+from .errors import InputError
 from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing, prefractal, rigid_dilatancy
 from .labels import about
@@ -52,6 +53,41 @@ def force_range(loads, specimen):
     return None if loads is None else tuple(forces_of(loads, nominal_area(specimen))[[0, -1]])
 
 
+def chosen_offset(wanted, offsets):
+    """The offset whose contact domains are looked at: the study's, else the third; mm.
+
+    Parameters
+    ----------
+    wanted : float or None
+        ``map_offset`` of the settings.
+    offsets : (n,) array_like
+        Those solved.
+    """
+    if wanted is None:
+        return float(offsets[min(2, len(offsets) - 1)])
+    return float(min(offsets, key=lambda offset: abs(offset - wanted)))
+
+
+def hardness_of(settings, specimen):
+    """Largest pressure of the material, MPa, or infinity.
+
+    Raises
+    ------
+    InputError
+        If a load of the study is more than the whole window carries at that pressure.
+    """
+    hardness = settings["material"].get("hardness", np.inf)
+    area = nominal_area(specimen)
+    largest = forces_of(settings["loads"], area)[-1]
+    if largest >= hardness * area:
+        raise InputError(
+            f"specimen {specimen.attrs['name']}: load {largest:g} N is more than the window of "
+            f"{area:.4g} mm2 carries at a hardness of {hardness:g} MPa; write loads below "
+            f"{hardness * area:.4g} N"
+        )
+    return hardness
+
+
 def contact_states(specimen, direction, cells, settings, resolutions, solver):
     """Solve the contact at some offsets and resolutions, under every load of the study.
 
@@ -79,8 +115,11 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
     ------
     NotConverged
         If any state could not be verified; the message names it.
+    InputError
+        As :func:`hardness_of`.
     """
     forces = forces_of(settings["loads"], nominal_area(specimen))
+    hardness = hardness_of(settings, specimen)
     cells = np.asarray(cells, int)
     shape = (1, len(cells), len(resolutions), len(forces))
     scalars = {name: np.full(shape, np.nan) for name in SCALARS}
@@ -94,7 +133,12 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
             for j, force in enumerate(forces):
                 try:
                     state = solve_contact(
-                        composite, space, force=force, start=state, rtol=solver["rtol"]
+                        composite,
+                        space,
+                        force=force,
+                        start=state,
+                        rtol=solver["rtol"],
+                        hardness=hardness,
                     )
                 except NotConverged as error:
                     error.add_note(

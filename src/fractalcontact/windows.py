@@ -14,7 +14,7 @@ from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing
 from .labels import about
 from .specimen import cell_side, faces, nominal_area, window_slices
-from .sweep import forces_of
+from .sweep import forces_of, hardness_of
 
 #: Sub-windows along each side of the window, by default: octaves and halves.
 PARTS = (1, 2, 3, 4, 6, 8)
@@ -132,6 +132,7 @@ def window_states(
     settlement = np.full((len(parts), len(pressures)), np.nan)
     sides = np.full((len(parts), 2), np.nan)
     spacing = np.array([specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]])
+    solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
     for k, n in enumerate(parts):
         sub = tuple(side // n for side in shape)
         sides[k] = sub * spacing
@@ -148,7 +149,7 @@ def window_states(
             shapes["tilt_share"][k, taken, i] = tilt_share(composites)
             for j, composite in enumerate(composites):
                 where = f"{n} x {n} parts, sub-window {chosen[k][j]}, offset {offset} cells"
-                found = _load_steps(composite, space, forces, settlement[k], solver["rtol"], where)
+                found = _load_steps(composite, space, forces, settlement[k], solving, where)
                 for name, values in found.items():
                     states[name][k, j, i] = values
     made = cells * direction_spacing(specimen, direction)
@@ -210,7 +211,7 @@ def _sub_windows(specimen, direction, cells, parts, chosen, seated):
     return np.array([without_mean_plane(w) for w in windows]) if seated else windows
 
 
-def _load_steps(composite, space, forces, settlement, rtol, where):
+def _load_steps(composite, space, forces, settlement, solving, where):
     """States of one sub-window under rising loads; name to (n_load,) values."""
     ny, nx = space.shape
     area = space.cell_area * ny * nx
@@ -218,7 +219,7 @@ def _load_steps(composite, space, forces, settlement, rtol, where):
     state = None
     for j, force in enumerate(forces):
         try:
-            state = solve_contact(composite, space, force=force, start=state, rtol=rtol)
+            state = solve_contact(composite, space, force=force, start=state, **solving)
             found["stiffness"][j] = state.stiffness
         except NotConverged as error:
             error.add_note(f"{where}, F = {force:g} N")

@@ -164,10 +164,9 @@ def atlas_file(tmp_path_factory):
             "domains": domains,
             "scaling": scaling_over_resolutions(curves, domains, SPACING),
         }
+        made["statements"] = judge(made | {"specimen": specimen, "joint": joint}, chosen)
         if name != "flat":
             made["strength"] = joint_strength(dilatancy, joint, specimen, chosen)
-            stages = made | {"specimen": specimen, "joint": joint}
-            made["statements"] = judge(stages, chosen)
         for stage, dataset in made.items():
             parts[stage][name] = dataset
     parts["area_slope"]["surfaces"] = area_slope(AREA_SLOPE)

@@ -16,6 +16,7 @@ from fractalcontact.figures._domains import Loading, trend
 from fractalcontact.figures._size_effect import fractal_pressure, size_effect
 from fractalcontact.fitting import fit_line
 from fractalcontact.scaling import renormalisation
+from fractalcontact.sweep import chosen_offset
 
 NAMES = (
     "fig08_prefractals",
@@ -37,7 +38,7 @@ def finest(atlas, stage, specimen):
     """A stage at the drawn offset and the finest resolution, straight from the atlas."""
     settings = common.settings_of(atlas, specimen)
     data = common.group(atlas, stage, specimen)
-    offset = common.map_offset(settings, data["offset"].values)
+    offset = chosen_offset(settings["map_offset"], data["offset"].values)
     data = data.sel(direction=settings["contact_directions"][0], offset=offset)
     return data.sel(resolution=data["resolution"].min())
 

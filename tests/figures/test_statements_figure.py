@@ -6,7 +6,7 @@ from fractalcontact.figures import STUDY_FIGURES, draw_study_figures, statements
 from fractalcontact.figures.common import print_style
 
 
-@pytest.mark.parametrize("name", ["sliding", "pair"])
+@pytest.mark.parametrize("name", ["sliding", "pair", "flat"])
 def test_every_statement_is_a_row_of_the_table(atlas, name):
     with print_style():
         drawing = statements.draw(atlas, name)

@@ -8,6 +8,7 @@ import yaml
 from snakemake.exceptions import WorkflowError
 
 from fractalcontact.catalogue import find_scans
+from fractalcontact.contact_map import is_contact_map
 from fractalcontact.errors import InputError
 from fractalcontact.figures import figures_of, study_figures_of
 from fractalcontact.joint import AUTOMATIC_OFFSETS
@@ -26,7 +27,7 @@ SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/pape
 
 
 def read_study():
-    """Scan files and settings of every specimen, embedded ones included."""
+    """Scan files, settings of every specimen, embedded ones included, and contact maps."""
     check_study(config, SCHEMA, SOURCE)
     folder = config.get("scans", "scans")
     scans = find_scans(folder) if folder else {}
@@ -42,17 +43,20 @@ def read_study():
         raise InputError(
             f"{SOURCE}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
         )
-    settings = {
-        name: resolve_settings(config, name, read_sidecar(scan.sidecar, SCHEMA)[1], SOURCE)
-        for name, scan in scans.items()
-    }
+    settings, maps = {}, {}
+    for name, scan in scans.items():
+        options, own = read_sidecar(scan.sidecar, SCHEMA)
+        if is_contact_map(options):
+            maps[name] = scan
+        else:
+            settings[name] = resolve_settings(config, name, own, SOURCE)
     for name in config.get("embedded", {}):
         settings[name] = resolve_settings(config, name, {}, SOURCE)
-    return scans, settings
+    return scans, settings, maps
 
 
 try:
-    SCANS, SETTINGS = read_study()
+    SCANS, SETTINGS, MAPS = read_study()
 except InputError as error:
     raise WorkflowError(str(error))
 
@@ -68,6 +72,7 @@ def one_of(names):
 
 wildcard_constraints:
     specimen=one_of(SPECIMENS),
+    map=one_of(MAPS),
     direction="E|N|W|S|none",
     part=r"\d+",
     level=r"\d+",

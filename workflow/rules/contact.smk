@@ -72,6 +72,29 @@ rule closure:
         "../scripts/closure.py"
 
 
+# A measured map of contact goes straight to the analysis of domains.
+rule contact_map:
+    input:
+        scan=lambda wc: str(MAPS[wc.map].lower),
+        sidecar=lambda wc: str(MAPS[wc.map].sidecar),
+        schema=SCHEMA_FILE,
+    output:
+        f"{RESULTS}/contact_maps/{{map}}.nc",
+    log:
+        f"{RESULTS}/logs/contact_map/{{map}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/contact_map/{{map}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    params:
+        code=code("contact_map", "study", "store"),
+    script:
+        "../scripts/contact_map.py"
+
+
 # Box counts, dimension and clusters of every contact domain.
 rule domains:
     input:

@@ -1,5 +1,4 @@
-# Joint mechanics beside the contact states: parts of the window, laws of the area, strength, and
-# what the paper says of them.
+# Joint mechanics beside the contact states: parts of the window, laws of the area, strength.
 
 
 rule windows:
@@ -50,19 +49,14 @@ rule area:
         "../scripts/area.py"
 
 
-# Strength needs sliding, and so does most of what the paper says on Figs. 4 to 7.
+# Strength needs sliding.
 rule strength:
     input:
         specimen=rules.specimen.output[0],
         joint=rules.joint.output[0],
-        closure=rules.closure.output.closure,
         dilatancy=rules.closure.output.dilatancy,
-        domains=rules.domains.output.domains,
-        area=rules.area.output[0],
-        windows=rules.windows.output[0],
     output:
-        strength=f"{RESULTS}/strength/{{specimen}}.nc",
-        statements=f"{RESULTS}/statements/{{specimen}}.nc",
+        f"{RESULTS}/strength/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/strength/{{specimen}}.log",
     benchmark:
@@ -76,7 +70,7 @@ rule strength:
         runtime=10,
     params:
         settings=settings_of,
-        code=code("strength", "statements", "store"),
+        code=code("strength", "store"),
     script:
         "../scripts/strength.py"
 

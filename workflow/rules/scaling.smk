@@ -24,6 +24,34 @@ rule scaling:
         "../scripts/scaling.py"
 
 
+# What the paper says, held against all of this.
+rule statements:
+    input:
+        specimen=rules.specimen.output[0],
+        joint=rules.joint.output[0],
+        closure=rules.closure.output.closure,
+        area=rules.area.output[0],
+        windows=rules.windows.output[0],
+        domains=rules.domains.output.domains,
+        scaling=rules.scaling.output[0],
+    output:
+        f"{RESULTS}/statements/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/statements/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/statements/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        settings=settings_of,
+        code=code("statements", "store"),
+    script:
+        "../scripts/statements.py"
+
+
 STAGE_FILES = {
     "specimens": rules.specimen.output[0],
     "surface_dimension": rules.surface_dimension.output[0],
@@ -35,19 +63,19 @@ STAGE_FILES = {
     "windows": rules.windows.output[0],
     "domains": rules.domains.output.domains,
     "scaling": rules.scaling.output[0],
+    "statements": rules.statements.output[0],
 }
 # What only joints that slide have.
-SLIDING_FILES = {
-    "strength": rules.strength.output.strength,
-    "statements": rules.strength.output.statements,
-}
+SLIDING_FILES = {"strength": rules.strength.output[0]}
+# Measured contact maps stand in every atlas, beside the domains computed there.
+MAP_FILES = {"contact_maps": expand(rules.contact_map.output, map=MAPS)} if MAPS else {}
 # What the study has once.
 STUDY_FILES = {"roll_off": rules.roll_off.output[0], "area_slope": rules.area_slope.output[0]}
 STUDY_FILES = {stage: path for stage, path in STUDY_FILES.items() if stage in config}
 
 
 def stages_of(wildcards):
-    return STAGE_FILES | (SLIDING_FILES if wildcards.specimen in SLIDING else {})
+    return STAGE_FILES | MAP_FILES | (SLIDING_FILES if wildcards.specimen in SLIDING else {})
 
 
 # An atlas of one specimen: its figures need no other, so a new scan redraws only its own, and one
@@ -77,6 +105,7 @@ rule atlas:
     input:
         **{stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()},
         **{stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()},
+        **MAP_FILES,
         **STUDY_FILES,
     output:
         f"{RESULTS}/atlas.nc",

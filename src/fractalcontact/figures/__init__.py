@@ -22,12 +22,12 @@ FIGURES = (
     "fig06_07_dilatancy",
     "strength",
     "clusters",
-    "statements",
     "fig08_prefractals",
     "fig09_box_counting",
     "fig10_scaling",
     "fig12_evolution",
     "fig13_size_effect",
+    "statements",
 )
 _NEEDS_SLIDING = (
     "fig01_strength",
@@ -36,7 +36,6 @@ _NEEDS_SLIDING = (
     "fig06_07_dilatancy",
     "strength",
     "clusters",
-    "statements",
 )
 
 #: Figures of a whole study. Their ``draw(atlas, names)`` takes the names of all its specimens.

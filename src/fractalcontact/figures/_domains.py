@@ -8,8 +8,9 @@ import xarray as xr
 from ..fitting import FEWEST_POINTS
 from ..scaling import RESOLUTION
 from ..specimen import window_sides
+from ..sweep import chosen_offset
 from ._words import force_label, interval, number, opening, place, short
-from .common import COLOURS, MARKERS, group, map_offset, nearest_load, settings_of, spread
+from .common import COLOURS, MARKERS, group, nearest_load, settings_of, spread
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ class Loading:
         settings = settings_of(atlas, name)
         direction = settings["contact_directions"][0]
         stages = {stage: group(atlas, stage, name) for stage in ("contact", "domains", "scaling")}
-        offset = map_offset(settings, stages["scaling"]["offset"].values)
+        offset = chosen_offset(settings["map_offset"], stages["scaling"]["offset"].values)
         chosen = {
             stage: data.sel(direction=direction).sel(offset=offset, method="nearest")
             for stage, data in stages.items()

@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ..area import FEWEST_NODES, LIGHT_LOAD
+from ..sweep import chosen_offset
 from ._words import estimate, number, opening, place, short
 from .area_slope import kappa_lines
 from .common import (
@@ -18,7 +19,6 @@ from .common import (
     label_short_span,
     legends_below,
     letter,
-    map_offset,
     settings_of,
 )
 
@@ -72,7 +72,7 @@ def _drawn_offset(settings, laws):
     """The offset of the maps, unless the faces are flush there and have slid elsewhere."""
     offsets = laws["offset"].values
     rough = offsets[np.isfinite(laws["reduced_pressure"]).all("load").values]
-    return map_offset(settings, rough if rough.size else offsets)
+    return chosen_offset(settings["map_offset"], rough if rough.size else offsets)
 
 
 def _draw_area(axes, curve, law):

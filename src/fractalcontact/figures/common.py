@@ -145,14 +145,6 @@ def label_short_span(axis, below=100):
         axis.set_minor_formatter(NullFormatter())
 
 
-def map_offset(settings, offsets):
-    """The offset whose contact domains are drawn: the study's, else the third; mm."""
-    wanted = settings["map_offset"]
-    if wanted is None:
-        return float(offsets[min(2, len(offsets) - 1)])
-    return float(min(offsets, key=lambda offset: abs(offset - wanted)))
-
-
 def spread(n, most):
     """Indices of up to ``most`` of n things, the first and the last among them."""
     return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))

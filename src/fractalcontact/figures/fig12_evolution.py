@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from ._domains import Loading, disagreement, trend
 from ._maps import draw_domain
-from ._words import force_label, short, wrapped
-from .common import WIDTH, Drawing, letter
+from ._words import force_label, interval, short, wrapped
+from .common import MARKERS, WIDTH, Drawing, colour_of, group, letter
 
 #: Contact domains drawn.
 _MOST_MAPS = 6
@@ -44,10 +44,70 @@ def draw(atlas, name):
         letter(axes, which, f"{force_label(loading.forces[i])}\n$A_r/A_0$ = {share:.2g} %")
         axes.label_outer()
     axes = bottom.subplots()
+    measured = measured_maps(atlas)
     _draw_dimensions(axes, loading)
+    _draw_measured(axes, measured, nominal)
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
     figure.suptitle(loading.title, fontsize=9)
-    return Drawing(figure, _table(loading, finest), _caption(loading, shown))
+    table = pd.concat([_table(loading, finest), *_measured_rows(measured, nominal)])
+    caption = f"{_caption(loading, shown)}{_measured_words(measured)}"
+    return Drawing(figure, table.reset_index(drop=True), caption)
+
+
+def measured_maps(atlas):
+    """Measured contact maps that were dropped in with the scans, by name."""
+    if "contact_maps" not in atlas.children:
+        return {}
+    return {name: group(atlas, "contact_maps", name) for name in atlas["contact_maps"].children}
+
+
+def _measured_rows(measured, nominal):
+    """Rows of the table for the maps: their load is that of the window at their pressure."""
+    return [
+        pd.DataFrame(
+            {
+                "load_N": [float(found["nominal_pressure"]) * nominal],
+                "area_mm2": [float(found["area_share"]) * nominal],
+                "estimator": [f"box counting, measured: {found.attrs['label']}"],
+                "delta_sigma": [float(found["delta_sigma"])],
+                "delta_sigma_low": [float(found["delta_sigma_low"])],
+                "delta_sigma_high": [float(found["delta_sigma_high"])],
+                "reason": [found["reason"].item()],
+            }
+        )
+        for found in measured.values()
+    ]
+
+
+def _draw_measured(axes, measured, nominal):
+    """Measured domains at the force that gives the window their nominal pressure."""
+    for n, found in enumerate(measured.values()):
+        value, low, high = (float(found[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
+        pressure = float(found["nominal_pressure"])
+        style = {"color": colour_of(n + 3), "marker": MARKERS[(n + 3) % len(MARKERS)]}
+        label = f"measured: {found.attrs['label']}"
+        if np.isfinite(pressure):
+            reach = [[max(value - low, 0)], [max(high - value, 0)]]
+            axes.errorbar(
+                pressure * nominal, value, yerr=reach, ls="none", capsize=2, label=label, **style
+            )
+        else:  # without a load it has no place along F
+            axes.axhline(value, color=style["color"], ls="-.", lw=0.9, label=f"{label}, no load")
+    if measured:
+        axes.autoscale(axis="x")
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
+
+
+def _measured_words(measured):
+    words = [
+        f"{found.attrs['label']} ({100 * float(found['area_share']):.2g} % in contact): "
+        + (
+            found["reason"].item()
+            or interval(*(float(found[f"delta_sigma{end}"]) for end in ("", "_low", "_high")))
+        )
+        for found in measured.values()
+    ]
+    return f" Measured domains, by box counting: {'; '.join(words)}." if words else ""
 
 
 def _table(loading, area):

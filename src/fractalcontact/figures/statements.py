@@ -1,4 +1,4 @@
-"""What the paper says of Figs. 4 to 7, and whether it holds for this joint: a table."""
+"""What the paper says, and whether it holds for this joint: a table."""
 
 from textwrap import fill
 
@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ..statements import FAILS, HOLDS, PARTLY, UNKNOWN
-from ._words import TOWARDS, force_label, opening
+from ._words import force_label, opening, place
 from .common import COLOURS, WIDTH, Drawing, group, settings_of
 
 #: A sign for each verdict, so that the table can be read without its colours.
@@ -25,7 +25,7 @@ def draw(atlas, name):
     ----------
     atlas : xr.DataTree
     name : str
-        A specimen of the atlas that slides.
+        A specimen of the atlas.
 
     Returns
     -------
@@ -65,11 +65,10 @@ def _caption(label, found, table):
     summary = ", ".join(
         f"{counts[key]} {_noun(key, counts[key])}" for key in SIGNS if key in counts
     )
-    direction = TOWARDS.get(found.attrs["direction"], found.attrs["direction"])
     return (
-        f"{opening('the statements on Figs. 4 to 7', label)} Of {len(table)} statements "
-        f"{summary}. Judged by rules of our own, which the paper does not give, sliding towards "
-        f"{direction} and where a load is needed at F = {force_label(found.attrs['force'])}."
+        f"{opening('the statements', label, place(found.attrs['direction']))} Of {len(table)} "
+        f"statements {summary}. Judged by rules of our own, which the paper does not give, and "
+        f"where a load is needed at F = {force_label(found.attrs['force'])}."
     )
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from ..sweep import chosen_offset
 from ._sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
 from ._words import PAPER, estimate, place, short
 from .common import (
@@ -15,7 +16,6 @@ from .common import (
     group,
     legends_below,
     letter,
-    map_offset,
     settings_of,
     spread,
 )
@@ -41,7 +41,7 @@ def draw(atlas, name):
     laws = group(atlas, "windows", name)
     offsets = laws["offset"].values
     flat = str(laws["direction"].values) == "none"
-    mapped = int(np.argmin(np.abs(offsets - map_offset(settings, offsets))))
+    mapped = int(np.argmin(np.abs(offsets - chosen_offset(settings["map_offset"], offsets))))
     shown = [] if flat else [int(i) for i in spread(len(offsets), _OFFSETS)]
 
     figure = Figure(figsize=(WIDTH, 4.6))

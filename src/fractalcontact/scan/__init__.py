@@ -19,7 +19,7 @@ from .raw import RawScan
 from .text import is_text, read_text
 from .x3p import read_x3p
 
-__all__ = ["read_faces", "read_scan"]
+__all__ = ["read_faces", "read_matrix", "read_scan"]
 
 LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to
 _TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
@@ -79,6 +79,34 @@ def read_faces(lower_path, upper_path=None, options=None):
     if upper_path is None:
         return read_scan(lower_path, options), None
     return grid_pair(_measure(Path(lower_path), options), _measure(Path(upper_path), options))
+
+
+def read_matrix(path, options=None):
+    """Read a file that holds a matrix, whatever its numbers mean.
+
+    Parameters
+    ----------
+    path : path-like
+    options : mapping, optional
+        As for `read_scan`.
+
+    Returns
+    -------
+    values : (ny, nx) ndarray
+        Times the length of ``unit_z`` in mm; NaN where missing, y ascending.
+    spacing : (float, float)
+        (dx, dy) in mm.
+    provenance : dict
+
+    Raises
+    ------
+    InputError
+        As `read_scan`, but for numbers that cannot be heights; also if the file holds points.
+    """
+    measured = _measure(Path(path), options)
+    if measured.layout != "matrix":
+        raise InputError(f"{path}: holds points, a matrix is needed; 'layout: matrix' if it is one")
+    return measured.values, measured.spacing, measured.provenance
 
 
 def _measure(path: Path, options) -> Measured:

@@ -1,144 +1,36 @@
-"""What the paper says of Figs. 4 to 7, held against what was computed for a joint.
-
-Every statement is judged by a number and a rule that stands in its function; the rules are ours,
-for the paper gives none. All are judged in the first direction whose contact was solved, at the
-scan's own resolution and at the load of the contact maps, where one is needed.
-"""
-
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple
+"""What the paper says of closure, contact area and dilatancy (sect. 5, Figs. 4 to 7)."""
 
 import numpy as np
-import xarray as xr
 
-from .fitting import fit_line
-from .labels import about
-from .specimen import nominal_area
-from .sweep import forces_of
+from ..fitting import fit_line
+from .findings import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    NEARLY,
+    PARTLY,
+    UNKNOWN,
+    Finding,
+    level,
+    no_offsets,
+    share,
+    trend,
+)
 
-HOLDS, PARTLY, FAILS, UNKNOWN = "holds", "holds in part", "does not hold", "cannot be told"
-
-#: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
-NEARLY, LOOSELY = 0.1, 0.25
 #: Rms misfit up to which a closure curve is called a hyperbola, of the largest closure.
 GOOD_FIT = 0.02
 #: A rank correlation is believed below this probability of chance.
 CHANCE = 0.05
 
 
-class Finding(NamedTuple):
-    """Verdict on one statement and the numbers that say so."""
-
-    verdict: str
-    numbers: str
-
-
-@dataclass(frozen=True)
-class Joint:
-    """A joint's stages, and what several statements ask of them.
-
-    Attributes
-    ----------
-    stages : dict of str to xr.Dataset
-        ``specimen``, ``joint``, ``closure``, ``dilatancy``, ``area``, ``windows``, ``domains``.
-    settings : dict
-    """
-
-    stages: dict
-    settings: dict
-
-    @cached_property
-    def direction(self):
-        """The direction judged."""
-        return str(self.stages["joint"]["contact_direction"].values[0])
-
-    @cached_property
-    def force(self):
-        """Load of the contact maps, N."""
-        specimen = self.stages["specimen"]
-        return float(forces_of([self.settings["map_load"]], nominal_area(specimen))[0])
-
-    def at_load(self, stage, name):
-        """A variable over offsets, at the load of the maps."""
-        values = self.stages[stage][name].sel(direction=self.direction)
-        values = values.sel(resolution=values["resolution"].min())
-        return values.sel(load=self.force, method="nearest").values
-
-    @cached_property
-    def offset(self):
-        """Offsets solved, mm."""
-        return self.stages["closure"]["offset"].values
-
-    @cached_property
-    def closure(self):
-        """w_int over offsets, mm."""
-        return self.at_load("closure", "interface_closure")
-
-    def of_direction(self, name):
-        """A variable of the joint in the direction judged."""
-        return self.stages["joint"][name].sel(direction=self.direction).values
-
-    @cached_property
-    def initial(self):
-        """Offsets of the first stage of sliding: up to the correlation length, if it is reached."""
-        length = self.of_direction("correlation_length")
-        return (self.offset > 0) & (np.isnan(length) | (self.offset <= length))
-
-    @cached_property
-    def between(self):
-        """Offsets beyond the correlation length at which the faces still correlate."""
-        unrelated = self.of_direction("uncorrelated_offset")
-        beyond = self.offset > self.of_direction("correlation_length")
-        return beyond & (~np.isfinite(unrelated) | (self.offset < unrelated))
-
-    @cached_property
-    def unrelated(self):
-        """Offsets at which the faces no longer correlate."""
-        return self.offset >= self.of_direction("uncorrelated_offset")
-
-
-def judge(stages, settings):
-    """Judge every statement of :data:`STATEMENTS` for a joint.
-
-    Parameters
-    ----------
-    stages : dict of str to xr.Dataset
-        As :class:`Joint` has them.
-    settings : dict
-        From :func:`fractalcontact.study.resolve_settings`.
-
-    Returns
-    -------
-    xr.Dataset
-        ``figure``, ``claim``, ``verdict`` and ``numbers`` over (statement,), all text; a statement
-        is named after the function that judges it.
-    """
-    joint = Joint(stages, settings)
-    found = [check(joint) for _, _, check in STATEMENTS]
-    names = [check.__name__ for _, _, check in STATEMENTS]
-    columns = {
-        "figure": ([figure for figure, _, _ in STATEMENTS], "figures of the paper"),
-        "claim": ([claim for _, claim, _ in STATEMENTS], "what the paper says"),
-        "verdict": ([finding.verdict for finding in found], "whether it holds for this joint"),
-        "numbers": ([finding.numbers for finding in found], "the numbers that say so"),
-    }
-    result = xr.Dataset(
-        {name: ("statement", text, about("1", words)) for name, (text, words) in columns.items()},
-        coords={"statement": names},
-    )
-    return result.assign_attrs(direction=joint.direction, force=joint.force)
-
-
 def compliance_rises_at_first(joint):
     """Closure against offset up to the correlation length, as a power of v."""
-    return _trend(joint.offset, joint.closure, joint.initial, "w_int", rising=True)
+    return trend(joint.offset, joint.closure, joint.initial, "w_int", rising=True)
 
 
 def curves_overlap(joint):
     """Spread of the closure beyond the correlation length."""
-    return _level(joint.closure[joint.between], "w_int", joint.offset[joint.between])
+    return level(joint.closure[joint.between], "w_int", joint.offset[joint.between])
 
 
 def compliance_rises_again(joint):
@@ -150,7 +42,7 @@ def compliance_rises_again(joint):
     if not before.any() and joint.initial.any():
         before = joint.offset == joint.offset[joint.initial].max()
     if not joint.unrelated.any() or not before.any():
-        return Finding(UNKNOWN, _no_offsets("both before and after the faces lose correlation"))
+        return Finding(UNKNOWN, no_offsets("both before and after the faces lose correlation"))
     change = joint.closure[joint.unrelated].mean() / joint.closure[before].mean() - 1
     verdict = HOLDS if change > NEARLY else PARTLY if change > 0 else FAILS
     ends = joint.offset[before].max(), joint.offset[joint.unrelated].min()
@@ -170,7 +62,7 @@ def closure_is_hyperbolic(joint):
         return Finding(FAILS, f"none of {slid.sum()} curves could be fitted")
     good = int((misfit[fitted] <= GOOD_FIT).sum())
     return Finding(
-        _share(good, slid.sum()),
+        share(good, slid.sum()),
         f"{good} of {slid.sum()} curves within {100 * GOOD_FIT:g} % rms; misfits "
         f"{100 * misfit[fitted].min():.1f} to {100 * misfit[fitted].max():.1f} %",
     )
@@ -185,7 +77,7 @@ def area_is_linear(joint):
         return Finding(UNKNOWN, "no law of the area could be fitted")
     near = int((np.abs(exponent - 1) <= NEARLY).sum())
     return Finding(
-        _share(near, exponent.size),
+        share(near, exponent.size),
         f"A_r ~ F^m, m = {exponent.min():.2f} to {exponent.max():.2f}; "
         f"{near} of {exponent.size} within {NEARLY:g} of 1",
     )
@@ -194,14 +86,14 @@ def area_is_linear(joint):
 def area_falls(joint):
     """Contact area against offset, as a power of v."""
     area = joint.at_load("closure", "area_share")
-    return _trend(joint.offset, area, joint.offset > 0, "A_r", rising=False)
+    return trend(joint.offset, area, joint.offset > 0, "A_r", rising=False)
 
 
 def area_settles(joint):
     """Spread of the contact area beyond the correlation length."""
     beyond = joint.between | joint.unrelated
     area = joint.at_load("closure", "area_share")
-    return _level(area[beyond], "A_r", joint.offset[beyond])
+    return level(area[beyond], "A_r", joint.offset[beyond])
 
 
 def composite_dimension_rises(joint):
@@ -211,7 +103,7 @@ def composite_dimension_rises(joint):
     v, dimension = joint.offset[slid], dimension[slid]
     line = fit_line(np.log(v), dimension)
     if not np.isfinite(line.slope):
-        return Finding(UNKNOWN, _no_offsets("three"))
+        return Finding(UNKNOWN, no_offsets("three"))
     verdict = HOLDS if line.slope_low > 0 else PARTLY if line.slope > 0 else FAILS
     decade = np.log(10)
     return Finding(
@@ -229,7 +121,7 @@ def compliance_goes_with_dimension(joint):
     dimension = joint.stages["joint"]["composite_dimension"].values
     usable = np.isfinite(dimension) & np.isfinite(joint.closure) & (joint.offset > 0)
     if usable.sum() < 4:
-        return Finding(UNKNOWN, _no_offsets("four"))
+        return Finding(UNKNOWN, no_offsets("four"))
     rank, chance = stats.spearmanr(dimension[usable], joint.closure[usable])
     verdict = PARTLY if rank > 0 else FAILS
     verdict = HOLDS if rank > 0 and chance < CHANCE else verdict
@@ -240,10 +132,10 @@ def dilatancy_flattens(joint):
     """Change of the rigid dilatancy over the second half of the offsets, by direction."""
     means, changes = _plateaus(joint.stages["joint"])
     if not changes.size:
-        return Finding(UNKNOWN, _no_offsets("three rigid"))
+        return Finding(UNKNOWN, no_offsets("three rigid"))
     flat = int((np.abs(changes) <= NEARLY).sum())
     return Finding(
-        _share(flat, changes.size),
+        share(flat, changes.size),
         f"{flat} of {changes.size} directions change by at most {100 * NEARLY:g} % over the second "
         f"half of v ({100 * changes.min():+.0f} to {100 * changes.max():+.0f} %); mean level "
         f"{means.min():.2f} to {means.max():.2f} mm",
@@ -268,7 +160,7 @@ def dilatancy_is_anisotropic(joint):
 def domains_cluster(joint):
     """Morisita's index of the contact domains against offset, as a power of v."""
     index = joint.at_load("domains", "morisita")
-    return _trend(joint.offset, index, joint.offset > 0, "Morisita's index", rising=True)
+    return trend(joint.offset, index, joint.offset > 0, "Morisita's index", rising=True)
 
 
 def no_correlation_is_left(joint):
@@ -302,8 +194,21 @@ def larger_samples_close_more(joint):
     )
 
 
+def _plateaus(joint):
+    """Mean level (mm) and relative change of the rigid dilatancy over the second half of v."""
+    v = joint["rigid_offset"].values
+    second = v >= v[-1] / 2
+    means, changes = [], []
+    for opened in joint["rigid_dilatancy"].values:
+        line = fit_line(v[second], opened[second])
+        if np.isfinite(line.slope):
+            means.append(opened[second].mean())
+            changes.append(line.slope * (line.x_max - line.x_min) / means[-1])
+    return np.array(means), np.array(changes)
+
+
 #: Figure, claim in our words, and what judges it.
-STATEMENTS: tuple[tuple[str, str, Callable], ...] = (
+STATEMENTS = (
     (
         "4, 5",
         "In the first stages of sliding the joint becomes more compliant with v",
@@ -331,53 +236,3 @@ STATEMENTS: tuple[tuple[str, str, Callable], ...] = (
     ("6, 7", "Contact domains become less homogeneous with v and cluster", domains_cluster),
     ("6", "At the largest v no correlation of the faces is left", no_correlation_is_left),
 )
-
-
-def _plateaus(joint):
-    """Mean level (mm) and relative change of the rigid dilatancy over the second half of v."""
-    v = joint["rigid_offset"].values
-    second = v >= v[-1] / 2
-    means, changes = [], []
-    for opened in joint["rigid_dilatancy"].values:
-        line = fit_line(v[second], opened[second])
-        if np.isfinite(line.slope):
-            means.append(opened[second].mean())
-            changes.append(line.slope * (line.x_max - line.x_min) / means[-1])
-    return np.array(means), np.array(changes)
-
-
-def _trend(v, values, chosen, symbol, *, rising):
-    """Whether values go with v as a power whose interval has the sign wanted."""
-    chosen = chosen & (values > 0)
-    line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
-    if not np.isfinite(line.slope):
-        return Finding(UNKNOWN, _no_offsets("three"))
-    sign = 1 if rising else -1
-    sure = min(sign * line.slope_low, sign * line.slope_high) > 0
-    verdict = HOLDS if sure else PARTLY if sign * line.slope > 0 else FAILS
-    v = v[chosen]
-    return Finding(
-        verdict,
-        f"{symbol} ~ v^e, e = {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}] "
-        f"for v = {v[0]:.3g} to {v[-1]:.3g} mm",
-    )
-
-
-def _level(values, symbol, v):
-    """Whether values stay the same: their range as a share of their mean."""
-    if len(values) < 2:
-        return Finding(UNKNOWN, _no_offsets("two"))
-    spread = np.ptp(values) / np.mean(values)
-    verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS
-    return Finding(
-        verdict,
-        f"{symbol} varies by {100 * spread:.0f} % of its mean for v = {v[0]:.3g} to {v[-1]:.3g} mm",
-    )
-
-
-def _share(good, total):
-    return HOLDS if good == total else PARTLY if good else FAILS
-
-
-def _no_offsets(needed):
-    return f"too few offsets: {needed} needed here"

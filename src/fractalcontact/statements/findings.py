@@ -1,0 +1,148 @@
+"""What judges a statement: the joint's stages, verdicts, and rules that several share."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ..fitting import fit_line
+from ..specimen import nominal_area
+from ..sweep import chosen_offset, forces_of
+
+HOLDS, PARTLY, FAILS, UNKNOWN = "holds", "holds in part", "does not hold", "cannot be told"
+
+#: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
+NEARLY, LOOSELY = 0.1, 0.25
+
+
+class Finding(NamedTuple):
+    """Verdict on one statement and the numbers that say so."""
+
+    verdict: str
+    numbers: str
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint's stages, and what several statements ask of them.
+
+    Attributes
+    ----------
+    stages : dict of str to xr.Dataset
+        ``specimen``, ``joint``, ``closure``, ``dilatancy``, ``area``, ``windows``, ``domains``.
+    settings : dict
+    """
+
+    stages: dict
+    settings: dict
+
+    @cached_property
+    def direction(self):
+        """The direction judged."""
+        return str(self.stages["joint"]["contact_direction"].values[0])
+
+    @cached_property
+    def force(self):
+        """Load of the contact maps, N."""
+        specimen = self.stages["specimen"]
+        return float(forces_of([self.settings["map_load"]], nominal_area(specimen))[0])
+
+    def at_load(self, stage, name):
+        """A variable over offsets, at the load of the maps."""
+        values = self.stages[stage][name].sel(direction=self.direction)
+        values = values.sel(resolution=values["resolution"].min())
+        return values.sel(load=self.force, method="nearest").values
+
+    def map_states(self, stage):
+        """A stage at the offset of the contact maps (and the finest resolution), over loads."""
+        states = self.stages[stage].sel(direction=self.direction)
+        states = states.sel(offset=self.map_offset, method="nearest")
+        if "resolution" in states["delta_sigma"].dims:
+            states = states.sel(resolution=states["resolution"].min())
+        return states
+
+    def map_state(self, stage):
+        """A stage at the offset and load of the contact maps."""
+        return self.map_states(stage).sel(load=self.force, method="nearest")
+
+    def map_windows(self):
+        """Parts of the window at the offset and nearest to the load of the contact maps."""
+        windows = self.stages["windows"].sel(offset=self.map_offset, method="nearest")
+        return windows.sel(load=self.force, method="nearest")
+
+    @cached_property
+    def map_offset(self):
+        """Offset of the contact maps, mm."""
+        return chosen_offset(self.settings["map_offset"], self.offset)
+
+    @cached_property
+    def offset(self):
+        """Offsets solved, mm."""
+        return self.stages["closure"]["offset"].values
+
+    @cached_property
+    def closure(self):
+        """w_int over offsets, mm."""
+        return self.at_load("closure", "interface_closure")
+
+    def of_direction(self, name):
+        """A variable of the joint in the direction judged."""
+        return self.stages["joint"][name].sel(direction=self.direction).values
+
+    @cached_property
+    def initial(self):
+        """Offsets of the first stage of sliding: up to the correlation length, if it is reached."""
+        length = self.of_direction("correlation_length")
+        return (self.offset > 0) & (np.isnan(length) | (self.offset <= length))
+
+    @cached_property
+    def between(self):
+        """Offsets beyond the correlation length at which the faces still correlate."""
+        unrelated = self.of_direction("uncorrelated_offset")
+        beyond = self.offset > self.of_direction("correlation_length")
+        return beyond & (~np.isfinite(unrelated) | (self.offset < unrelated))
+
+    @cached_property
+    def unrelated(self):
+        """Offsets at which the faces no longer correlate."""
+        return self.offset >= self.of_direction("uncorrelated_offset")
+
+
+def trend(v, values, chosen, symbol, *, rising):
+    """Whether values go with v as a power whose interval has the sign wanted."""
+    chosen = chosen & (values > 0)
+    line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
+    if not np.isfinite(line.slope):
+        return Finding(UNKNOWN, no_offsets("three"))
+    sign = 1 if rising else -1
+    sure = min(sign * line.slope_low, sign * line.slope_high) > 0
+    verdict = HOLDS if sure else PARTLY if sign * line.slope > 0 else FAILS
+    v = v[chosen]
+    return Finding(
+        verdict,
+        f"{symbol} ~ v^e, e = {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}] "
+        f"for v = {v[0]:.3g} to {v[-1]:.3g} mm",
+    )
+
+
+def level(values, symbol, v):
+    """Whether values stay the same: their range as a share of their mean."""
+    if len(values) < 2:
+        return Finding(UNKNOWN, no_offsets("two"))
+    spread = np.ptp(values) / np.mean(values)
+    verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS
+    return Finding(
+        verdict,
+        f"{symbol} varies by {100 * spread:.0f} % of its mean for v = {v[0]:.3g} to {v[-1]:.3g} mm",
+    )
+
+
+def share(good, total):
+    """Verdict on a claim that holds in some of all cases."""
+    return HOLDS if good == total else PARTLY if good else FAILS
+
+
+def no_offsets(needed):
+    """Why a claim cannot be told."""
+    return f"too few offsets: {needed} needed here"

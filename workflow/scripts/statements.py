@@ -1,0 +1,13 @@
+"""Which of the paper's statements hold for this joint."""
+
+from _job import reported
+
+from fractalcontact import store
+from fractalcontact.statements import judge
+
+with reported(snakemake.log) as log:
+    stages = {name: store.read(path) for name, path in snakemake.input.items()}
+    statements = judge(stages, snakemake.params.settings)
+    store.write(statements, snakemake.output[0])
+    for row in zip(*(statements[key].values for key in ("claim", "verdict", "numbers"))):
+        log.info("%s: %s (%s)", *row)
