@@ -186,6 +186,48 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
     )
 
 
+def map_pressures(specimen, joint, settings, solver):
+    """Pressures of the states whose contact domains are looked at, under every load.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    joint : xr.Dataset
+        From :func:`fractalcontact.joint.describe_joint`.
+    settings : dict
+        From :func:`fractalcontact.study.resolve_settings`.
+    solver : dict
+        ``rtol`` and ``kernel``.
+
+    Returns
+    -------
+    forces : (n_load,) ndarray
+        N, ascending.
+    pressures : (n_load, ny, nx) ndarray
+        MPa, at the scan's spacing, the map offset and the first contact direction.
+
+    Raises
+    ------
+    NotConverged, InputError
+        As :func:`contact_states`.
+    """
+    direction = settings["contact_directions"][0]
+    offsets = joint["offset"].values
+    wanted = chosen_offset(settings["map_offset"], np.sort(offsets))
+    cells = joint["offset_cells"].sel(contact_direction=direction).values[offsets == wanted][0]
+    composite = composite_topography(specimen, direction, cells)
+    space = _space(specimen, 1, settings, solver)
+    forces = forces_of(settings["loads"], nominal_area(specimen))
+    hardness = hardness_of(settings, specimen)
+    pressures, state = [], None
+    for force in forces:
+        state = solve_contact(
+            composite, space, force=force, start=state, rtol=solver["rtol"], hardness=hardness
+        )
+        pressures.append(state.pressure)
+    return forces, np.array(pressures)
+
+
 def combine(parts):
     """One dataset from the parts that several jobs solved.
 
