@@ -88,6 +88,40 @@ def hardness_of(settings, specimen):
     return hardness
 
 
+def load_steps(composite, space, forces, solving, where):
+    """States under rising forces, each started from the one before.
+
+    Parameters
+    ----------
+    composite : (ny, nx) ndarray
+        h, mm.
+    space : HalfSpace
+    forces : (n,) array_like
+        N, ascending.
+    solving : dict
+        Options of :func:`fractalcontact.contact.solve_contact`.
+    where : str
+        What is pressed, for errors.
+
+    Yields
+    ------
+    ContactState
+
+    Raises
+    ------
+    NotConverged
+        If a state could not be verified; its note names it.
+    """
+    state = None
+    for force in forces:
+        try:
+            state = solve_contact(composite, space, force=force, start=state, **solving)
+        except NotConverged as error:
+            error.add_note(f"{where}, F = {force:g} N")
+            raise
+        yield state
+
+
 def contact_states(specimen, direction, cells, settings, resolutions, solver):
     """Solve the contact at some offsets and resolutions, under every load of the study.
 
@@ -119,7 +153,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
         As :func:`hardness_of`.
     """
     forces = forces_of(settings["loads"], nominal_area(specimen))
-    hardness = hardness_of(settings, specimen)
+    solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
     cells = np.asarray(cells, int)
     shape = (1, len(cells), len(resolutions), len(forces))
     scalars = {name: np.full(shape, np.nan) for name in SCALARS}
@@ -129,23 +163,11 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
         touching = np.zeros((1, len(cells), len(forces), *space.shape), bool)
         for i, n in enumerate(cells):
             composite = prefractal(composite_topography(specimen, direction, n), factor)
-            state = None
-            for j, force in enumerate(forces):
-                try:
-                    state = solve_contact(
-                        composite,
-                        space,
-                        force=force,
-                        start=state,
-                        rtol=solver["rtol"],
-                        hardness=hardness,
-                    )
-                except NotConverged as error:
-                    error.add_note(
-                        f"specimen {specimen.attrs['name']}, direction {direction}, offset {n} "
-                        f"cells, resolution {factor}, F = {force:g} N"
-                    )
-                    raise
+            where = (
+                f"specimen {specimen.attrs['name']}, direction {direction}, offset {n} cells, "
+                f"resolution {factor}"
+            )
+            for j, state in enumerate(load_steps(composite, space, forces, solving, where)):
                 touching[0, i, j] = state.in_contact
                 of_domain = {
                     "nodes": np.count_nonzero(state.in_contact),
@@ -218,14 +240,10 @@ def map_pressures(specimen, joint, settings, solver):
     composite = composite_topography(specimen, direction, cells)
     space = _space(specimen, 1, settings, solver)
     forces = forces_of(settings["loads"], nominal_area(specimen))
-    hardness = hardness_of(settings, specimen)
-    pressures, state = [], None
-    for force in forces:
-        state = solve_contact(
-            composite, space, force=force, start=state, rtol=solver["rtol"], hardness=hardness
-        )
-        pressures.append(state.pressure)
-    return forces, np.array(pressures)
+    solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
+    where = f"specimen {specimen.attrs['name']}, direction {direction}, offset {cells} cells"
+    states = load_steps(composite, space, forces, solving, where)
+    return forces, np.array([state.pressure for state in states])
 
 
 def combine(parts):

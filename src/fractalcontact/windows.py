@@ -8,13 +8,12 @@ import numpy as np
 import xarray as xr
 
 from .closure import bulk_settlement
-from .contact import NotConverged, solve_contact
 from .fitting import mean_interval, without_mean_plane
 from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing
 from .labels import about
 from .specimen import cell_side, faces, nominal_area, window_slices
-from .sweep import forces_of, hardness_of
+from .sweep import forces_of, hardness_of, load_steps
 
 #: Sub-windows along each side of the window, by default: octaves and halves.
 PARTS = (1, 2, 3, 4, 6, 8)
@@ -149,7 +148,7 @@ def window_states(
             shapes["tilt_share"][k, taken, i] = tilt_share(composites)
             for j, composite in enumerate(composites):
                 where = f"{n} x {n} parts, sub-window {chosen[k][j]}, offset {offset} cells"
-                found = _load_steps(composite, space, forces, settlement[k], solving, where)
+                found = _pressed(composite, space, forces, settlement[k], solving, where)
                 for name, values in found.items():
                     states[name][k, j, i] = values
     made = cells * direction_spacing(specimen, direction)
@@ -211,21 +210,14 @@ def _sub_windows(specimen, direction, cells, parts, chosen, seated):
     return np.array([without_mean_plane(w) for w in windows]) if seated else windows
 
 
-def _load_steps(composite, space, forces, settlement, solving, where):
+def _pressed(composite, space, forces, settlement, solving, where):
     """States of one sub-window under rising loads; name to (n_load,) values."""
     ny, nx = space.shape
     area = space.cell_area * ny * nx
     found = {name: np.full(len(forces), np.nan) for name in STATES}
-    state = None
-    for j, force in enumerate(forces):
-        try:
-            state = solve_contact(composite, space, force=force, start=state, **solving)
-            found["stiffness"][j] = state.stiffness
-        except NotConverged as error:
-            error.add_note(f"{where}, F = {force:g} N")
-            raise
-        found["closure"][j] = state.closure
-        found["area"][j] = state.area
+    for j, state in enumerate(load_steps(composite, space, forces, solving, where)):
+        for name in ("closure", "area", "stiffness"):
+            found[name][j] = getattr(state, name)
     found["area_share"] = found["area"] / area
     # Faces that match everywhere have nothing to close, as in `closure.closure_curves`.
     if np.ptp(composite) == 0:
