@@ -18,7 +18,8 @@ SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default --cor
 FLOCK := $(shell command -v flock 2>/dev/null)
 ifneq ($(FLOCK),)
 GUARD := $(FLOCK) --nonblock --no-fork .snakemake.guard
-UNLOCK = $(BIN)/snakemake --configfile $(STUDY) --unlock --quiet all &&
+# What is wrong with the study is said by the run itself: here it would be kept quiet.
+UNLOCK = $(BIN)/snakemake --configfile $(STUDY) --unlock --quiet all;
 else
 GUARD :=
 UNLOCK :=
