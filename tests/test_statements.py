@@ -38,6 +38,7 @@ def stages(**changes):
         "half": 0.05,
         "disagree": np.zeros(4, bool),
         "density_exponent": -0.3,
+        "size_verdict": [["agrees"] * 2, ["agrees", "undecided"]],
         "strength_exponent": np.full((2, 1), -0.3),
         "length": 0.5,
         "uncorrelated": 2.0,
@@ -132,6 +133,13 @@ def stages(**changes):
             {"exponent": (("direction", "offset"), [values["exponent"]])},
             {"direction": ["W"], "offset": V},
         ),
+        "size_test": xr.Dataset(
+            {
+                "verdict": (("estimator", "load"), values["size_verdict"]),
+                "slope": ("load", [-0.6, -0.4]),
+            },
+            {"estimator": ["area", "box"]},
+        ),
         "windows": xr.Dataset(windows, {"offset": V, "load": [1000.0]}),
     }
 
@@ -199,6 +207,13 @@ ALIKE = [1 - np.exp(-RIGID)] * 2
         ("dimension_rises_by_boxes", {"delta_box": np.full(4, np.nan)}, UNKNOWN),
         ("dimension_spans_all", {"delta_box": np.linspace(0.5, 1.9, 4)}, PARTLY),
         ("dimension_spans_all", {"delta_box": np.linspace(0.5, 1.5, 4)}, FAILS),
+        (
+            "size_effect_follows",
+            {"size_verdict": [["agrees"] * 2, ["measured flatter"] * 2]},
+            PARTLY,
+        ),
+        ("size_effect_follows", {"size_verdict": [["measured steeper"] * 2] * 2}, FAILS),
+        ("size_effect_follows", {"size_verdict": [["not tested", "ambiguous"]] * 2}, UNKNOWN),
         ("larger_domains_are_less_dense", {"density_exponent": -0.05}, PARTLY),
         ("larger_domains_are_less_dense", {"density_exponent": 0.3}, FAILS),
         ("strength_falls_with_size", {"strength_exponent": np.array([[-0.3], [0.0]])}, PARTLY),

@@ -1,24 +1,23 @@
-"""The contact domain D: its box counts and its dimension Delta_sigma."""
+"""The dimension Delta_sigma of a contact domain, from its box counts."""
 
 import itertools
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
+from .box_counts import RATIOS, box_count, box_sizes, boxes_along, mean_count, whole_sizes
 from .fitting import LineFit, fit_line
+from .power_law import SMALLEST, SMALLEST_TOLD, Law, best_law, law_dimension
+from .resampling import BLOCKS, FEWEST_SCALES, interval, jackknife_error, wave_error
 
-#: Box sizes in each doubling.
-SIZES_PER_OCTAVE = 4
+#: Scales with all but this share of the nodes alone, or of the boxes occupied, are saturated.
+SATURATED = 0.02
 
-#: Whole ratios by which a deterministic set may repeat itself; their powers are among the sizes.
-RATIOS = (2, 3, 4, 5)
+#: Largest box of the law of mean counts, as a share of the domain's extent.
+LARGEST_BOX = 1 / 3
 
-#: Boxes of no size cover more than this many times an oblong extent.
-MOST_OVERHANG = 1.1
-
-#: A dimension needs this many scales that say something, and as many different counts among them.
-FEWEST_SCALES = 4
+#: No set in the plane has another dimension, whatever a regression says.
+DIMENSIONS = (0.0, 2.0)
 
 
 @dataclass(frozen=True)
@@ -35,120 +34,8 @@ class BoxDimension:
     count: np.ndarray
     used: np.ndarray
     reason: str
-
-
-def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np.ndarray:
-    """Box sides in cells whose grids fit an extent, about `SIZES_PER_OCTAVE` in each doubling.
-
-    Each is a whole part of one of the sides: in every quarter of an octave the one whose boxes
-    overhang the extent least, if that is within `MOST_OVERHANG`. In a square they divide it
-    exactly, the powers of `RATIOS` among them. (Boxes of whole cells overhang most extents, and a
-    filled square then seems to have a dimension other than 2.)
-
-    Parameters
-    ----------
-    extent : int or (ny, nx)
-        Cells along the sides of what is to be covered, a window or a domain.
-    largest : float, optional
-        No box is larger; by default the shorter side, beyond which a filled window seems a line.
-
-    Returns
-    -------
-    (k,) float64
-        Ascending, from 1; ``[1.]`` for an extent too short to divide.
-    """
-    sides = sorted({int(n) for n in np.broadcast_to(extent, 2)})
-    largest = sides[0] if largest is None else largest
-    parts = {n / k for n in sides for k in range(2, n // 2 + 1) if n / k <= largest}
-    best = {}
-    for r in sorted(parts):
-        place = SIZES_PER_OCTAVE * np.log2(sides[-1] / r)
-        # Rounded, so that of sizes that all fit the one nearest to its place is taken.
-        rank = round(_overhang(sides, r), 9), abs(place - round(place)), r
-        best[round(place)] = min(best.get(round(place), rank), rank)
-    powers = {sides[-1] / ratio**k for ratio in RATIOS for k in range(1, sides[-1].bit_length())}
-    exact = {r for r in powers & parts if _overhang(sides, r) < 1 + 1e-9}
-    fitting = {r for overhang, _, r in best.values() if overhang <= MOST_OVERHANG}
-    return np.array(sorted({1.0} | exact | fitting))
-
-
-def _overhang(sides: list[int], r: float) -> float:
-    """What boxes of side r cover over what there is; a side shorter than a box does not count."""
-    return float(np.prod([_boxes_along(n, r) * r / n for n in sides if n >= r]))
-
-
-def _boxes_along(n: int, sizes: np.ndarray) -> np.ndarray:
-    """Boxes that cover n cells; the small number keeps n / (n / k) at k."""
-    return np.ceil(n / sizes - 1e-9)
-
-
-def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) -> np.ndarray:
-    """Fewest boxes of each size that meet a domain, over origins of the grid of boxes.
-
-    Parameters
-    ----------
-    domain : (ny, nx) bool array_like
-        Nodes in contact. A node is in the box that holds its centre.
-    sizes : (k,) array_like
-        Box sides in cells, at least 1, not necessarily whole.
-    max_shifts : int
-        Origins tried along each axis, evenly spaced over a box; never more than cells in its side.
-
-    Returns
-    -------
-    (k,) int64
-        N(r). Time grows with the number of cells for each size, no more than that.
-
-    Raises
-    ------
-    ValueError
-        If a size is below 1 or the domain is not a (y, x) grid.
-    """
-    domain = np.asarray(domain, dtype=bool)
-    sizes = np.asarray(sizes, dtype=float)
-    if domain.ndim != 2:
-        raise ValueError(f"a contact domain is a (y, x) grid, not of shape {domain.shape}")
-    if sizes.size and sizes.min() < 1:
-        raise ValueError(f"a box is at least one cell wide, not {sizes.min()}")
-    # Nodes below and left of each corner: four look-ups then tell how many are in a box.
-    nodes = np.zeros((domain.shape[0] + 1, domain.shape[1] + 1), np.int32)
-    np.cumsum(np.cumsum(domain, axis=0, dtype=np.int32), axis=1, out=nodes[1:, 1:])
-    return np.array(
-        [
-            _fewest_boxes(nodes, *(_edges(n, size, max_shifts) for n in domain.shape))
-            for size in sizes
-        ],
-        dtype=np.int64,
-    )
-
-
-def _edges(n: int, size: float, max_shifts: int) -> np.ndarray:
-    """First cell of each box along one axis, a row for each origin of the grid."""
-    shifts = max(min(int(np.ceil(size)), max_shifts), 1)
-    origins = -size * np.arange(shifts) / shifts
-    boxes = int(np.ceil(n / size)) + 2
-    edges = origins[:, np.newaxis] + size * np.arange(boxes)
-    # The cell whose centre is the first beyond the edge; the small number keeps n/k * k at n.
-    return np.clip(np.ceil(edges - 0.5 - 1e-9), 0, n).astype(np.int64)
-
-
-@numba.njit(cache=True)
-def _fewest_boxes(nodes, edges_y, edges_x):
-    """N(r) over all pairs of origins: rows of edges along y and x."""
-    fewest = nodes[-1, -1]  # no more boxes than nodes
-    for ys in edges_y:
-        for xs in edges_x:
-            count = 0
-            for i in range(ys.size - 1):
-                bottom, top = nodes[ys[i]], nodes[ys[i + 1]]
-                for j in range(xs.size - 1):
-                    left, right = xs[j], xs[j + 1]
-                    if top[right] - bottom[right] != top[left] - bottom[left]:
-                        count += 1
-                if count >= fewest:
-                    break
-            fewest = min(fewest, count)
-    return fewest
+    estimator: str = ""
+    misfit: float = float("nan")
 
 
 def box_dimension(
@@ -160,15 +47,6 @@ def box_dimension(
 ) -> BoxDimension:
     """Box-counting dimension Delta_sigma of a contact domain.
 
-    A scale says nothing where every node is alone in its box (N(r) = N(s) beyond r = s) or where
-    every box of the window is occupied; such scales are left out, unless the whole window touches
-    (dimension 2) or a single node does (0), which is then what all scales say.
-
-    N(r) is a whole number from 1 to the number of nodes. Sets of so few nodes that fewer than
-    `FEWEST_SCALES` different counts are left have no dimension: a line through a staircase of two
-    or three treads tells where their edges happen to be, and through a single tread it would claim
-    0 without error.
-
     Parameters
     ----------
     domain : (ny, nx) bool array_like
@@ -178,31 +56,45 @@ def box_dimension(
     fit_range : (float, float), optional
         Smallest and largest box side of the fit, mm; by default all that say something.
     sizes : (k,) array_like, optional
-        Box sides in cells, ascending; by default `box_sizes` of the domain's own extent. Give them
-        where several domains are to share one axis.
+        Box sides in cells, ascending, of the fewest counts; by default `box_sizes` of the domain's
+        own extent. Give them where several domains are to share one axis.
 
     Returns
     -------
     BoxDimension
         `dimension`, `low`, `high`; `r_min`, `r_max` of the fit in mm and its `n` scales; `r` (mm),
-        `count` and `used` of all scales; `reason` why there is no dimension (NaN), else "".
+        `count` (the fewest boxes) and `used` of all sizes; `reason` why there is no dimension
+        (NaN), else ""; `estimator`, "exact", "mean" or "fewest" (for "mean", `n` are the scales of
+        the law and `used` the fewest counts within its range); `misfit`, the root mean square of
+        the counts about the law, as a share of them.
 
     Notes
     -----
-    The scales are counts of one and the same set, so the regression's t-interval alone is too
-    narrow. The interval given spans it and the slopes fitted to every run of neighbouring scales
-    that covers half of the range or more: how much the value depends on the range chosen.
+    A scale says nothing where all but `SATURATED` of the nodes are alone in their box, or of the
+    boxes of the window occupied; such scales are left out, unless as much of the window touches
+    (then that is what all scales say: dimension 2) or a single node does (0). Fewer than
+    `FEWEST_SCALES` scales left, or different counts among them, are no dimension: a line through a
+    staircase of two or three treads tells where their edges happen to be, and through a single
+    tread it would claim 0 without error.
 
-    A set that repeats itself exactly in a fixed ratio has a staircase for N(r), on which only sizes
-    in that ratio lie on one line. Where the counts at extent / ratio^k, one of `RATIOS`, are an
-    exact geometric series, the value comes from them, and the interval still spans the slopes of
-    all sizes. `n` and `used` tell. A rough contact domain has no such ratio and keeps all sizes.
+    Three estimators, the first that can be had:
 
-    Known bias: boxes of a few cells have few origins to choose from, so that a Cantor dust drawn as
-    all cells it passes through reads 0.06 to 0.17 high; leaving out sizes below 2 or 3 cells does
-    not mend it, as fewer periods of the staircase are left. A dust that the window cuts off within
-    a period is up to 0.08 off. A filled strip of 5 x 1 inside a larger window reads 0.05 low: to
-    boxes wider than itself it is a line. The interval often does not reach the exact value there.
+    - "exact": the fewest boxes where they lie on a line but for rounding, at all sizes or at the
+      extent / ratio^k with one of `RATIOS`: squares, lines and sets that repeat themselves.
+    - "mean": the law of :mod:`fractalcontact.power_law` fitted to the mean counts over all origins,
+      from the resolution to `LARGEST_BOX` of the extent. All rough contact domains.
+    - "fewest": the line through the fewest boxes, where the domain is too small for the law.
+
+    The interval spans: the t-interval of the value by the jackknife, `BLOCKS` x `BLOCKS` parts of
+    the domain left out one by one; the law on the lower and the upper half of the scales; the
+    other laws that fit almost as well; and the slope of the fewest boxes. The scales are counts of
+    one set and no independent points: the error of a regression alone is far too small. An exact
+    value has the slopes of every run of sizes over half of the range or more instead.
+
+    Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean; a dust that
+    the window cuts off within a period up to 0.12 high, inside its interval; flights of long steps
+    of index 1.5 read 0.14 low at 512, and half of their intervals miss; two squares side by side,
+    or a filled strip of 5 x 1, read 1.7 to 1.9, being lines to boxes wider than themselves.
     """
     domain = np.asarray(domain, dtype=bool)
     extent = _cropped(domain)
@@ -215,17 +107,15 @@ def box_dimension(
     if nodes == 0:
         return no_dimension(r, count, "no node is in contact")
 
-    ny, nx = domain.shape
-    alone = (count == nodes) & (sizes > 1)
-    alone |= (sizes == 1) & alone.any()
-    full = count == _boxes_along(ny, sizes) * _boxes_along(nx, sizes)
-    if nodes == 1 or nodes == domain.size:
+    boxes = np.prod([boxes_along(n, sizes) for n in domain.shape], axis=0)
+    alone, full = _saturated(count, sizes, nodes, boxes)
+    if nodes == 1 or nodes >= (1 - SATURATED) * domain.size:
+        alone[:] = full[:] = False
         used = np.ones(sizes.size, dtype=bool)
     else:
         used = ~alone & ~full & (count > 1)
-    if fit_range is not None:
-        tolerance = 1e-9 * spacing
-        used &= (r >= fit_range[0] - tolerance) & (r <= fit_range[1] + tolerance)
+    limits = (0, np.inf) if fit_range is None else np.asarray(fit_range) / spacing
+    used &= (sizes >= limits[0] - 1e-9) & (sizes <= limits[1] + 1e-9)
     if used.sum() < FEWEST_SCALES:
         return no_dimension(
             r,
@@ -233,7 +123,6 @@ def box_dimension(
             f"{used.sum()} of {sizes.size} scales say something, {FEWEST_SCALES} are needed "
             f"({alone.sum()} with every node alone, {full.sum()} with every box occupied)",
         )
-
     distinct = np.unique(count[used]).size
     if nodes > 1 and distinct < FEWEST_SCALES:
         return no_dimension(
@@ -242,23 +131,97 @@ def box_dimension(
             f"{nodes} nodes give {distinct} different counts, {FEWEST_SCALES} are needed",
         )
 
+    ladder = _best_scales(sizes, {max(extent.shape), max(domain.shape)}, count, used)
+    exact = nodes == 1 or nodes == domain.size or _is_exact(sizes, count, ladder)
+    law = None if exact else _law_of_means(extent, limits, -_line(sizes, count, used).slope)
+    if law is not None:
+        value, ends, scales, misfit = law
+        low, high = np.clip(ends, *DIMENSIONS)
+        inside = (sizes >= scales[0] - 1e-9) & (sizes <= scales[-1] + 1e-9)
+        return BoxDimension(
+            dimension=value,
+            low=float(low),
+            high=float(high),
+            r_min=float(scales[0] * spacing),
+            r_max=float(scales[-1] * spacing),
+            n=scales.size,
+            r=r,
+            count=count,
+            used=used & inside,
+            reason="",
+            estimator="mean",
+            misfit=misfit,
+        )
+    return _from_fewest(r, count, used, ladder, "exact" if exact else "fewest")
+
+
+def _saturated(count, sizes, nodes, boxes):
+    """Scales at which nearly every node is alone in its box, and nearly every box occupied."""
+    alone = (count >= (1 - SATURATED) * nodes) & (sizes > 1)
+    alone |= (sizes == 1) & alone.any()
+    return alone, count >= (1 - SATURATED) * boxes
+
+
+def _law_of_means(extent, limits, fewest):
+    """Dimension, ends of its interval, scales and misfit of the mean counts' law; None if few."""
+    side = max(extent.shape)
+    sizes = whole_sizes(LARGEST_BOX * side)
+    sizes = sizes[(sizes >= limits[0] - 1e-9) & (sizes <= limits[1] + 1e-9)]
+    parts = mean_count(extent, sizes, blocks=BLOCKS)
+    count = parts.sum(axis=(1, 2))
+    all_boxes = np.prod([(n - 1) / sizes + 1 for n in extent.shape], axis=0)
+    # What fills its own extent is dense at every scale: then no scale is saturated.
+    nodes = np.count_nonzero(extent)
+    filled = nodes >= (1 - SATURATED) * extent.size
+    says = count < (1 - SATURATED) * nodes
+    says &= filled | (count < (1 - SATURATED) * all_boxes)
+    says &= sizes >= SMALLEST_TOLD
+    sizes, parts, count = sizes[says].astype(float), parts[says], count[says]
+    if np.count_nonzero(sizes >= SMALLEST) < FEWEST_SCALES:
+        return None
+    law, rivals = best_law(sizes, count, side)
+    if law is None:
+        return None
+    kept = sizes >= SMALLEST
+    sizes, parts, count = sizes[kept], parts[kept], count[kept]
+    slopes = [law.dimension, fewest, *(rival.dimension for rival in rivals)]
+    half = sizes.size // 2
+    if half >= FEWEST_SCALES:
+        for part in (slice(half + 1), slice(-half - 1, None)):
+            slopes.append(law_dimension(law, sizes[part], count[part], side))
+    error = jackknife_error(_without_parts(law, sizes, parts, side))
+    ends = interval(law.dimension, slopes, error, wave_error(law.misfit, sizes))
+    return law.dimension, ends, sizes, law.misfit
+
+
+def _without_parts(law: Law, sizes, parts, side):
+    """Dimensions of a law with one occupied part of the domain after another left out."""
+    parts = parts.reshape(sizes.size, -1)
+    left = parts.sum(axis=1)[:, np.newaxis] - parts[:, parts[0] > 0]
+    return [law_dimension(law, sizes, count, side) for count in left.T]
+
+
+def _from_fewest(r, count, used, ladder, estimator):
+    """The line through the fewest boxes, and an interval that spans the choice of range."""
     line = _line(r, count, used)
     parts = _slopes_of_parts(np.log(r[used]), np.log(count[used]))
     slopes = [line.slope_low, line.slope_high, *parts]
-    used = _best_scales(sizes, {max(extent.shape), max(domain.shape)}, count, used)
-    line = _line(r, count, used)
+    line = _line(r, count, ladder)
     slopes += [line.slope_low, line.slope_high]
+    law = np.exp(line.intercept + line.slope * np.log(r[ladder]))
     return BoxDimension(
         dimension=0.0 - line.slope,  # a constant count gives 0, not -0
-        low=0.0 - max(slopes),
-        high=0.0 - min(slopes),
-        r_min=float(r[used].min()),
-        r_max=float(r[used].max()),
+        low=float(np.clip(0.0 - max(slopes), *DIMENSIONS)),
+        high=float(np.clip(0.0 - min(slopes), *DIMENSIONS)),
+        r_min=float(r[ladder].min()),
+        r_max=float(r[ladder].max()),
         n=line.n,
         r=r,
         count=count,
-        used=used,
+        used=ladder,
         reason="",
+        estimator=estimator,
+        misfit=float(np.sqrt(np.mean((law / count[ladder] - 1) ** 2))),
     )
 
 
@@ -303,6 +266,31 @@ def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> list[float]:
         for j in range(i + 3, x.size + 1)
         if x[j - 1] - x[i] >= half
     ]
+
+
+def local_slopes(
+    r: np.ndarray, count: np.ndarray, octaves: float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Local slope -d log N / d log r of box counts, over so many octaves.
+
+    Parameters
+    ----------
+    r, count : (k,) array_like
+        Ascending box sides and N(r).
+    octaves : float
+        Neighbouring sizes are so close that whole counts make their slopes jump.
+
+    Returns
+    -------
+    middle, slope : (j,) ndarray
+        Geometric middle of each pair of sides, and the slope between them.
+    """
+    r, count = np.asarray(r, float), np.asarray(count, float)
+    step = 2.0**octaves
+    start = np.flatnonzero(step * r <= r[-1] * (1 + 1e-9)) if r.size else np.empty(0, int)
+    end = np.searchsorted(r, step * r[start] * (1 - 1e-9))
+    slope = -np.log(count[end] / count[start]) / np.log(r[end] / r[start])
+    return np.sqrt(r[start] * r[end]), slope
 
 
 def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:

@@ -85,7 +85,7 @@ class SetEquations:
         low, high = bounds
         aim = start + self.inverse(self.residual)
         end = np.clip(aim, low, high)
-        if total is not None:
+        if total is not None and self.free.size:  # none is free where all that touches yields
             ones = self.inverse(np.ones(self.free.size, np.float32)).astype(float)
             # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
             ones = np.maximum(ones, LEAST_SHARE * ones.mean())

@@ -28,9 +28,13 @@ STAGES = {
     "windows": "closure, roughness and strength of parts of the window",
     "domains": "box counts, Delta_sigma and clusters of the contact domains",
     "scaling": "renormalisation over resolutions",
+    "domain_measures": "lacunarity and generalised dimensions of the contact at the map offset",
+    "size_test": "the direct test of eq. 6, and the whole predicted from its parts",
     "contact_maps": "measured contact maps, one group a map",
     "statements": "what the paper says, and whether it holds here",
     "roll_off": "rigid dilatancy of made joints with and without a roll-off",
+    "dimension_test": "both estimates of Delta_sigma on made surfaces",
+    "estimator_bias": "estimators of Delta_g on surfaces of known dimension",
     "area_slope": "real contact area at light load, on surfaces with and without a roll-off",
 }
 

@@ -208,8 +208,8 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver):
     )
 
 
-def map_pressures(specimen, joint, settings, solver):
-    """Pressures of the states whose contact domains are looked at, under every load.
+def map_states(specimen, joint, settings, solver):
+    """Contact domains and pressures of the states that are looked at closely, under every load.
 
     Parameters
     ----------
@@ -223,10 +223,9 @@ def map_pressures(specimen, joint, settings, solver):
 
     Returns
     -------
-    forces : (n_load,) ndarray
-        N, ascending.
-    pressures : (n_load, ny, nx) ndarray
-        MPa, at the scan's spacing, the map offset and the first contact direction.
+    xr.Dataset
+        ``in_contact`` and ``pressure`` (load, y, x) at the scan's spacing, with the scalars
+        ``direction``, the first whose contact is solved, and ``offset``, that of the maps.
 
     Raises
     ------
@@ -235,15 +234,26 @@ def map_pressures(specimen, joint, settings, solver):
     """
     direction = settings["contact_directions"][0]
     offsets = joint["offset"].values
-    wanted = chosen_offset(settings["map_offset"], np.sort(offsets))
-    cells = joint["offset_cells"].sel(contact_direction=direction).values[offsets == wanted][0]
+    offset = chosen_offset(settings["map_offset"], np.sort(offsets))
+    cells = joint["offset_cells"].sel(contact_direction=direction).values[offsets == offset][0]
     composite = composite_topography(specimen, direction, cells)
     space = _space(specimen, 1, settings, solver)
     forces = forces_of(settings["loads"], nominal_area(specimen))
     solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
     where = f"specimen {specimen.attrs['name']}, direction {direction}, offset {cells} cells"
-    states = load_steps(composite, space, forces, solving, where)
-    return forces, np.array([state.pressure for state in states])
+    states = list(load_steps(composite, space, forces, solving, where))
+    dims = ("load", "y", "x")
+    return xr.Dataset(
+        {
+            "in_contact": (dims, [s.in_contact for s in states], about("1", "contact domain")),
+            "pressure": (dims, [s.pressure for s in states], about("MPa", "pressure p")),
+        },
+        coords={
+            "load": ("load", forces, about("N", "normal force F")),
+            "direction": direction,
+            "offset": ((), offset, about("mm", "shear offset v")),
+        },
+    )
 
 
 def combine(parts):

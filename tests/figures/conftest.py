@@ -9,15 +9,19 @@ from fractalcontact.analysis import analyse_domains, scaling_over_resolutions
 from fractalcontact.area import area_laws, joint_statistics
 from fractalcontact.area_slope import area_slope
 from fractalcontact.closure import closure_curves, elastic_dilatancy
+from fractalcontact.dimension_test import dimension_test
+from fractalcontact.domain_measures import measures_of_states
+from fractalcontact.estimator_bias import estimator_bias
 from fractalcontact.joint import describe_joint
 from fractalcontact.roll_off import roll_off_effect
 from fractalcontact.roughness import best_dimension, surface_dimension
 from fractalcontact.size_laws import size_laws
+from fractalcontact.size_test import size_test
 from fractalcontact.specimen import make_specimen, window_sides
 from fractalcontact.statements import judge
 from fractalcontact.strength import joint_strength, profile_roughness
 from fractalcontact.study import resolve_settings, window_arguments
-from fractalcontact.sweep import combine, contact_states, domains_of, force_range
+from fractalcontact.sweep import combine, contact_states, domains_of, force_range, map_states
 from fractalcontact.synthesis import self_affine
 from fractalcontact.windows import window_states
 
@@ -69,6 +73,17 @@ STUDY = {
         },
     },
 }
+DIMENSION_TEST = {
+    "dimensions": [2.2],
+    "sizes": [32, 64],
+    "seeds": [1, 2],
+    "loads": [0.02, 0.1],
+    "resolutions": [1, 2, 4],
+    "hardness": 0.5,
+    "capped_loads": [0.1, 0.5, 0.9],
+    "capped_size": 32,
+}
+ESTIMATOR_BIAS = {"hurst": [0.8], "sizes": [64], "seeds": [1, 2]}
 ROLL_OFF = {
     "label": "made joints",
     "size": 9.6,
@@ -164,12 +179,28 @@ def atlas_file(tmp_path_factory):
             "domains": domains,
             "scaling": scaling_over_resolutions(curves, domains, SPACING),
         }
+        made["size_test"] = size_test(
+            specimen,
+            chosen["contact_directions"][0],
+            np.sort(joint["offset_cells"][0].values),
+            chosen,
+            SOLVER,
+        )
+        looked_at = map_states(specimen, joint, chosen, SOLVER)
+        made["domain_measures"] = measures_of_states(
+            looked_at["in_contact"].values,
+            looked_at["pressure"].values,
+            SPACING,
+            looked_at["load"].values,
+        ).assign_coords(direction=looked_at["direction"], offset=looked_at["offset"])
         made["statements"] = judge(made | {"specimen": specimen, "joint": joint}, chosen)
         if name != "flat":
             made["strength"] = joint_strength(dilatancy, joint, specimen, chosen)
         for stage, dataset in made.items():
             parts[stage][name] = dataset
     parts["area_slope"]["surfaces"] = area_slope(AREA_SLOPE)
+    parts["dimension_test"]["surfaces"] = dimension_test(DIMENSION_TEST)
+    parts["estimator_bias"]["surfaces"] = estimator_bias(ESTIMATOR_BIAS)
     parts["roll_off"]["surfaces"] = roll_off_effect(ROLL_OFF, 4.8, [1, 2])
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
     store.write_atlas(

@@ -119,6 +119,8 @@ def test_estimates_of_dimension_are_those_of_the_atlas(atlas):
     assert table["estimator"].tolist() == stored["estimator"].values.tolist()
     for end in ("", "_low", "_high"):
         np.testing.assert_array_equal(table[f"dimension{end}"], stored[f"dimension{end}"])
+        for axis in "xy":
+            np.testing.assert_array_equal(table[f"hurst_{axis}{end}"], stored[f"hurst_{axis}{end}"])
 
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
@@ -270,6 +272,31 @@ def test_a_surface_without_a_dimension_is_still_drawn(atlas):
     ends = dict.fromkeys(("dimension", "dimension_low", "dimension_high"), np.nan)
     drawing = drawn(with_changes(atlas, "surface_dimension/flat", **ends), "flat", "fig02_relief")
     assert "No dimension could be fitted" in drawing.caption
+
+
+def test_axes_are_told_apart_only_where_their_intervals_are(atlas):
+    ends = {"hurst_x": 0.5, "hurst_x_low": 0.45, "hurst_x_high": 0.55}
+    ends |= {"hurst_y": 0.8, "hurst_y_low": 0.7, "hurst_y_high": 0.9}
+    group = "surface_dimension/flat"
+    apart = drawn(with_changes(atlas, group, **ends), "flat", "fig02_relief").caption
+    assert "0.50 along x and 0.80 along y" in apart
+    assert "7 of 7 estimators tell them apart" in apart
+    wider = with_changes(atlas, group, **(ends | {"hurst_y_low": 0.5}))
+    assert "no estimator tells them apart" in drawn(wider, "flat", "fig02_relief").caption
+    none = with_changes(atlas, group, **dict.fromkeys(ends, np.nan))
+    assert "No estimator could tell" in drawn(none, "flat", "fig02_relief").caption
+
+
+def test_a_dimension_out_of_bounds_is_said(atlas):
+    group = "surface_dimension/flat"
+    within = {"dimension": 2.2, "dimension_low": 2.1, "dimension_high": 2.3}
+    for changes, words in (
+        ({}, "with their intervals"),
+        ({"dimension_low": 1.9}, "but not all their intervals"),
+        ({"dimension_low": 1.8, "dimension": 1.9}, "Not all lie between 2 and 3"),
+    ):
+        changed = with_changes(atlas, group, **(within | changes))
+        assert words in drawn(changed, "flat", "fig02_relief").caption
 
 
 def test_one_solved_offset_is_enough(atlas):

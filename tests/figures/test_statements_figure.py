@@ -2,7 +2,7 @@
 
 import pytest
 
-from fractalcontact.figures import STUDY_FIGURES, draw_study_figures, statements, study_figures_of
+from fractalcontact.figures import EXPERIMENTS, draw_study_figures, statements, study_figures_of
 from fractalcontact.figures.common import print_style
 
 
@@ -32,9 +32,10 @@ def test_no_row_is_cut_off(atlas):
 
 
 def test_figures_of_a_study(atlas_file, tmp_path):
-    assert study_figures_of(True, True) == list(STUDY_FIGURES)
-    assert study_figures_of(False, False) == []
-    captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, STUDY_FIGURES)
-    assert set(captions) == set(STUDY_FIGURES)
-    for name in STUDY_FIGURES:
+    names = study_figures_of(EXPERIMENTS)
+    assert names == list(EXPERIMENTS.values())
+    assert study_figures_of({"study": "x", "area_slope": {}}) == ["area_slope"]
+    captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, names)
+    assert set(captions) == set(names)
+    for name in names:
         assert (tmp_path / f"{name}.png").stat().st_size > 1000

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import yaml
 
-from fractalcontact.figures import STUDY_FIGURES, figures_of
+from fractalcontact.figures import EXPERIMENTS, figures_of
 from fractalcontact.store import read_atlas
 
 ROOT = Path(__file__).parents[2]
@@ -62,7 +62,7 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
     for name, opposite in (("small_twin", "match"), ("small_joint", "flat")):
         drawn = {path.stem for path in (results / "figures" / name).glob("*.png")}
         assert drawn == set(figures_of(opposite))
-    assert {path.stem for path in (results / "figures").glob("*.svg")} == set(STUDY_FIGURES)
+    assert {path.stem for path in (results / "figures").glob("*.svg")} == set(EXPERIMENTS.values())
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
 

@@ -10,7 +10,7 @@ from snakemake.exceptions import WorkflowError
 from fractalcontact.catalogue import find_scans
 from fractalcontact.contact_map import is_contact_map
 from fractalcontact.errors import InputError
-from fractalcontact.figures import figures_of, study_figures_of
+from fractalcontact.figures import EXPERIMENTS, figures_of, study_figures_of
 from fractalcontact.joint import AUTOMATIC_OFFSETS
 from fractalcontact.study import (
     check_study,

@@ -1,6 +1,6 @@
 # Figures of every specimen, each from its own atlas: PNG, SVG, numbers as CSV, caption as text.
 
-STUDY_FIGURES = study_figures_of("roll_off" in config, "area_slope" in config)
+STUDY_FIGURES = study_figures_of(config)
 
 
 def pictures(opposite):

@@ -24,6 +24,94 @@ rule scaling:
         "../scripts/scaling.py"
 
 
+# The direct test of eq. 6, on parts of the window.
+rule size_test:
+    input:
+        specimen=rules.specimen.output[0],
+        joint=rules.joint.output[0],
+    output:
+        f"{RESULTS}/size_test/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/size_test/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/size_test/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=60,
+    params:
+        settings=settings_of,
+        solver=SOLVER,
+        code=code("size_test", "store"),
+    script:
+        "../scripts/size_test.py"
+
+
+# Lacunarity, correlation dimension and generalised dimensions of the domains that are drawn.
+rule domain_measures:
+    input:
+        specimen=rules.specimen.output[0],
+        joint=rules.joint.output[0],
+    output:
+        f"{RESULTS}/domain_measures/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/domain_measures/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/domain_measures/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=30,
+    params:
+        settings=settings_of,
+        solver=SOLVER,
+        code=code("sweep", "domain_measures", "store"),
+    script:
+        "../scripts/domain_measures.py"
+
+
+# Experiments on made surfaces: whether the two estimates of Delta_sigma agree in any limit, and how
+# far the estimators of Delta_g are off.
+rule dimension_test:
+    output:
+        f"{RESULTS}/dimension_test/surfaces.nc",
+    log:
+        f"{RESULTS}/logs/dimension_test.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/dimension_test.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=4000,
+        runtime=120,
+    params:
+        recipe=config.get("dimension_test"),
+        code=code("dimension_test", "store"),
+    script:
+        "../scripts/dimension_test.py"
+
+
+rule estimator_bias:
+    output:
+        f"{RESULTS}/estimator_bias/surfaces.nc",
+    log:
+        f"{RESULTS}/logs/estimator_bias.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/estimator_bias.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        recipe=config.get("estimator_bias"),
+        code=code("estimator_bias", "store"),
+    script:
+        "../scripts/estimator_bias.py"
+
+
 # What the paper says, held against all of this.
 rule statements:
     input:
@@ -34,6 +122,7 @@ rule statements:
         windows=rules.windows.output[0],
         domains=rules.domains.output.domains,
         scaling=rules.scaling.output[0],
+        size_test=rules.size_test.output[0],
     output:
         f"{RESULTS}/statements/{{specimen}}.nc",
     log:
@@ -62,7 +151,9 @@ STAGE_FILES = {
     "area": rules.area.output[0],
     "windows": rules.windows.output[0],
     "domains": rules.domains.output.domains,
+    "domain_measures": rules.domain_measures.output[0],
     "scaling": rules.scaling.output[0],
+    "size_test": rules.size_test.output[0],
     "statements": rules.statements.output[0],
 }
 # What only joints that slide have.
@@ -70,8 +161,9 @@ SLIDING_FILES = {"strength": rules.strength.output[0]}
 # Measured contact maps stand in every atlas, beside the domains computed there.
 MAP_FILES = {"contact_maps": expand(rules.contact_map.output, map=MAPS)} if MAPS else {}
 # What the study has once.
-STUDY_FILES = {"roll_off": rules.roll_off.output[0], "area_slope": rules.area_slope.output[0]}
-STUDY_FILES = {stage: path for stage, path in STUDY_FILES.items() if stage in config}
+STUDY_FILES = {
+    stage: getattr(rules, stage).output[0] for stage in EXPERIMENTS if stage in config
+}
 
 
 def stages_of(wildcards):

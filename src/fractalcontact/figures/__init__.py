@@ -24,12 +24,16 @@ FIGURES = (
     "clusters",
     "fig08_prefractals",
     "fig09_box_counting",
+    "domain_measures",
     "fig10_scaling",
+    "size_test",
+    "fig11_slope_angle",
     "fig12_evolution",
     "fig13_size_effect",
     "statements",
 )
 _NEEDS_SLIDING = (
+    "fig11_slope_angle",
     "fig01_strength",
     "fig03_composite",
     "compliance",
@@ -38,8 +42,14 @@ _NEEDS_SLIDING = (
     "clusters",
 )
 
-#: Figures of a whole study. Their ``draw(atlas, names)`` takes the names of all its specimens.
-STUDY_FIGURES = ("plateau", "area_slope")
+#: Experiments on made surfaces that a study may ask for, with the figure of each: stage and key of
+#: the configuration to module name. Their ``draw(atlas, names)`` takes all specimens of the study.
+EXPERIMENTS = {
+    "roll_off": "plateau",
+    "area_slope": "area_slope",
+    "dimension_test": "dimension_test",
+    "estimator_bias": "estimator_bias",
+}
 #: What no figure of a whole study draws, and takes most of an atlas.
 _LARGE_STAGES = ("contact",)
 
@@ -58,18 +68,15 @@ def figures_of(opposite):
     return [name for name in FIGURES if opposite != "flat" or name not in _NEEDS_SLIDING]
 
 
-def study_figures_of(roll_off, area_slope):
-    """Names of the figures that make sense for a whole study.
+def study_figures_of(experiments):
+    """Names of the figures of a whole study.
 
     Parameters
     ----------
-    roll_off : bool
-        Whether it makes joints with and without a roll-off.
-    area_slope : bool
-        Whether it presses made surfaces at light load.
+    experiments : container of str
+        Those of :data:`EXPERIMENTS` it asks for, other names do not matter: its configuration.
     """
-    wanted = zip(STUDY_FIGURES, (roll_off, area_slope), strict=True)
-    return [name for name, asked in wanted if asked]
+    return [figure for experiment, figure in EXPERIMENTS.items() if experiment in experiments]
 
 
 def draw_figures(atlas_path, specimen, folder, names):

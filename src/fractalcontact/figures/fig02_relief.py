@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 
+from ..roughness import dimension_table
 from ..specimen import window_sides
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ._words import interval, length_unit, opening
@@ -137,10 +138,11 @@ def _draw_dimensions(axes, dimension):
         return []
     errors = np.stack([values - low, high - values])[:, fitted]
     axes.errorbar(values[fitted], rows[fitted], xerr=errors, fmt="o", color=COLOURS[1], capsize=2)
-    mean = axes.axvline(values[fitted].mean(), color=COLOURS[2], ls="--", lw=0.8)
+    found = dimension_table(dimension)
+    mean = axes.axvline(found["mean"], color=COLOURS[2], ls="--", lw=0.8)
     mean.set_label(
-        rf"mean $\Delta_g$ {values[fitted].mean():.2f}, "
-        f"range {values[fitted].min():.2f} to {values[fitted].max():.2f}"
+        rf"mean $\Delta_g$ {found['mean']:.2f}, "
+        f"range {found['lowest']:.2f} to {found['highest']:.2f}"
     )
     axes.grid(axis="x", color="0.9", lw=0.5)
     return [mean]
@@ -155,6 +157,11 @@ def _table(dimension):
             "dimension": dimension["dimension"].values,
             "dimension_low": dimension["dimension_low"].values,
             "dimension_high": dimension["dimension_high"].values,
+            **{
+                f"hurst_{axis}{end}": dimension[f"hurst_{axis}{end}"].values
+                for axis in "xy"
+                for end in ("", "_low", "_high")
+            },
             "fit_min_mm": dimension["fit_min"].values,
             "fit_max_mm": dimension["fit_max"].values,
             "points": dimension["n"].values,
@@ -193,24 +200,47 @@ def _words(dimension):
     known = np.isfinite(dimension["dimension"].values)
     if not known.any():
         return "No dimension could be fitted: the scan has too few scales."
-    values, low, high, first, last = (
+    low, high, first, last = (
         dimension[key].values[known]
-        for key in ("dimension", "dimension_low", "dimension_high", "fit_min", "fit_max")
+        for key in ("dimension_low", "dimension_high", "fit_min", "fit_max")
     )
     agree = (
         "their 95 % intervals have a value in common"
         if low.max() <= high.min()
-        else "their 95 % intervals have no value in common: they differ by more than the "
-        "regressions' own errors"
+        else "their 95 % intervals have no value in common: they do not measure the same"
     )
-    fractal = (
-        "All lie between 2 and 3, as a self-affine surface's must."
-        if (low > 2).all() and (high < 3).all()
-        else "Not all intervals lie between 2 and 3: not every estimator shows a self-affine "
-        "surface."
-    )
+    found = dimension_table(dimension)
     return (
-        f"Delta_g of the lower face by {known.sum()} estimators is {values.min():.2f} to "
-        f"{values.max():.2f}, mean {values.mean():.2f} (dashed), fitted over {first.min():.3g} to "
-        f"{last.max():.3g} mm; {agree}. {fractal}"
+        f"Delta_g of the lower face by {found['n']} estimators is {found['lowest']:.2f} to "
+        f"{found['highest']:.2f}, mean {found['mean']:.2f} (dashed), fitted over {first.min():.3g} "
+        f"to {last.max():.3g} mm; {agree}. {_self_affine_words(found, low, high)} "
+        f"{_axes_words(dimension)}"
     )
+
+
+def _self_affine_words(found, low, high):
+    """Whether the estimates and their intervals lie where a self-affine surface's must."""
+    if not (found["lowest"] > 2 and found["highest"] < 3):
+        return "Not all lie between 2 and 3: not every estimator shows a self-affine surface."
+    if (low > 2).all() and (high < 3).all():
+        return "All lie between 2 and 3 with their intervals, as a self-affine surface's must."
+    return "All lie between 2 and 3, as a self-affine surface's must, but not all their intervals."
+
+
+def _axes_words(dimension):
+    """Whether profiles along x and along y have the same Hurst exponent."""
+    along = [dimension[f"hurst_{axis}"].values for axis in "xy"]
+    both = np.isfinite(along).all(axis=0)
+    if not both.any():
+        return "No estimator could tell the axes apart."
+    mean_x, mean_y = (values[both].mean() for values in along)
+    apart = (dimension["hurst_x_low"] > dimension["hurst_y_high"]) | (
+        dimension["hurst_y_low"] > dimension["hurst_x_high"]
+    )
+    apart = int(apart.values[both].sum())
+    verdict = (
+        f"{apart} of {both.sum()} estimators tell them apart by their 95 % intervals"
+        if apart
+        else "no estimator tells them apart by its 95 % intervals"
+    )
+    return f"H of profiles is {mean_x:.2f} along x and {mean_y:.2f} along y (means): {verdict}."

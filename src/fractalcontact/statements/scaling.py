@@ -8,6 +8,9 @@ from .findings import FAILS, HOLDS, LOOSELY, NEARLY, PARTLY, UNKNOWN, Finding, s
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.
 NEAR_POINTS, NEAR_FULL = 0.25, 1.75
 
+#: Verdicts of the size test that decide something; the first is in favour of eq. 6.
+DECIDED = ("agrees", "measured steeper", "measured flatter")
+
 #: The two estimates of Delta_sigma, as their variables and in words.
 ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 
@@ -79,6 +82,25 @@ def dimension_spans_all(joint):
     )
 
 
+def size_effect_follows(joint):
+    """Verdicts of the direct test of eq. 6, over loads, with either estimate of Delta_sigma."""
+    test = joint.stages["size_test"].sel(estimator=list(ESTIMATES))
+    decided = test["verdict"].isin(DECIDED).values
+    if not decided.any():
+        return Finding(UNKNOWN, "no load at which the parts decide")
+    agree = (test["verdict"] == DECIDED[0]).values
+    words = ", ".join(
+        f"{ESTIMATES[key]} at {agree[i].sum()} of {decided[i].sum()} loads"
+        for i, key in enumerate(ESTIMATES)
+    )
+    slope = test["slope"].values[decided.any(axis=0)]
+    return Finding(
+        share(int(agree.sum()), int(decided.sum())),
+        f"the measured slope of log sigma_0 over log b, {slope.min():.2f} to {slope.max():.2f}, "
+        f"agrees with -(2 - Delta_sigma) {words}",
+    )
+
+
 def larger_domains_are_less_dense(joint):
     """Exponent of A_r/A_0 against window size at one nominal pressure."""
     windows = joint.map_windows()
@@ -121,6 +143,7 @@ STATEMENTS = (
     ("12, 13", "Delta_sigma rises with F, judged by A_r(s)", dimension_rises_by_area),
     ("12, 13", "Delta_sigma rises with F, judged by box counts", dimension_rises_by_boxes),
     ("12", "Delta_sigma goes from 0 to 2 as the load grows", dimension_spans_all),
+    ("10, 13", "Eq. 6: at one sigma*, sigma_0 goes as b^-(2 - Delta_sigma)", size_effect_follows),
     ("7", "Domains of larger joints are less dense", larger_domains_are_less_dense),
     (
         "1b, 11",

@@ -1,0 +1,163 @@
+"""The power law that mean box counts follow: the set's resolution and its outline told apart.
+
+The places of a gliding box that meet a set of dimension D fill the area V(r) = r^2 N(r). For a set
+drawn on a grid and cut off by an outline
+
+    V = rho^(2-D) [a_0 + a_1 (rho / L) + a_2 (rho / L)^2],    rho = r - c,
+
+with all a >= 0. Of the two corrections
+
+- c is what a node stands for. A box of r cells spans r - 1 from the centre of its first cell to
+  that of its last: of points sampled at centres (contact solved at nodes), c = 1. If every cell is
+  marked that holds some point of the set, what counts is the whole box: c = 0.
+- the bracket is what hangs over the outline: Steiner's formula for a filled figure (D = 2, area,
+  half perimeter in the mean, 1), which boxes of a tenth of its side would take for a set of 1.8;
+  the outline of a set of dimension D is taken to have D - 1.
+
+The thresholds below were chosen on carpets, dusts, percolation clusters and random cascades, where
+D is then found within 0.02. On other sets, drawn as whole cells, that they were not chosen on
+(Vicsek's, Sierpinski's triangle, dusts and carpets of ratios 4 and 5, upright and turned) the
+median error is 0.03 and the largest 0.07, mostly upwards, where whole cells pass for centres.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+#: Values of D that are tried first, and then about the best of them.
+_COARSE = np.linspace(0, 2, 101)
+_FINE = np.linspace(-0.02, 0.02, 41)
+
+#: An outline adds at most this times what the inside counts, at boxes as large as the extent.
+#: (A filled square has 2, one turned by 45 degrees 4.)
+MOST_OUTLINE = 4.0
+
+#: A further term of the outline has to make the misfit smaller by this ratio.
+TERM_GAIN = 1.5
+
+#: Cells marked whole (c = 0) are believed where their law fits better by this ratio than that of
+#: centres, and to this share: without an outline (log-periodic sets wave by 2 %), and with one.
+WHOLE_GAIN = 1.6
+WHOLE_MISFIT = 0.026
+WHOLE_MISFIT_OUTLINE = 0.0015
+
+#: Other laws are almost as good where their misfit is at most this times as large.
+RIVAL = 2.0
+
+#: Smallest box, cells, by which forms of the law are told apart, and of the fit itself: the
+#: smaller the box, the more what a node stands for shows, which is wanted in the one only.
+SMALLEST_TOLD = 3
+SMALLEST = 4
+
+#: What a node can stand for: all of its cell, or its centre.
+_WHOLE, _CENTRE = 0, 1
+
+
+@dataclass(frozen=True)
+class Law:
+    """A fitted law: D, misfit (relative, root mean square), c, number of terms of the outline."""
+
+    dimension: float
+    misfit: float
+    c: int
+    outline: int
+
+
+def best_law(sizes: np.ndarray, count: np.ndarray, side: float) -> tuple[Law | None, list[Law]]:
+    """The law that mean box counts follow, and its rivals.
+
+    Parameters
+    ----------
+    sizes, count : (k,) float ndarray
+        Box sides in cells and the mean number of boxes over all origins.
+    side : float
+        Extent L of the set, cells.
+
+    Returns
+    -------
+    law : Law or None
+        Nodes are taken for centres (c = 1) unless counts plainly follow the law of whole cells.
+        None where no law with such terms fits.
+    rivals : list of Law
+        Those with other terms that fit almost as well.
+    """
+    forms = [Law(np.nan, np.inf, c, outline) for c in (_WHOLE, _CENTRE) for outline in range(3)]
+    laws = [_fit(form, sizes, count, side) for form in forms]
+    laws = {(law.c, law.outline): law for law in laws if law is not None}
+    if not laws:
+        return None, []
+    law = _whole_cells(laws) or _simplest([law for law in laws.values() if law.c == _CENTRE])
+    law = law or _simplest(list(laws.values()))
+    kept = sizes >= SMALLEST
+    law = _fit(law, sizes[kept], count[kept], side) or law
+    rivals = [other for other in laws.values() if other.misfit <= RIVAL * law.misfit]
+    return law, rivals
+
+
+def _whole_cells(laws):
+    """The law of cells marked whole, where that of centres is plainly worse."""
+    centres = {law.outline: law.misfit for law in laws.values() if law.c == _CENTRE}
+    limits = ((2, WHOLE_MISFIT_OUTLINE), (1, WHOLE_MISFIT_OUTLINE), (0, WHOLE_MISFIT))
+    for outline, most in limits:
+        whole = laws.get((_WHOLE, outline))
+        if whole is None or whole.misfit > min([most, *centres.values()]):
+            continue
+        rivals = [misfit for terms, misfit in centres.items() if terms <= outline]
+        if min(rivals, default=np.inf) >= WHOLE_GAIN * whole.misfit:
+            return whole
+    return None
+
+
+def _simplest(laws):
+    """The law with the fewest terms that one more would not make much better."""
+    best = None
+    for law in laws:
+        if best is None or law.misfit < best.misfit / TERM_GAIN:
+            best = law
+    return best
+
+
+def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> float:
+    """D of a law of the same form fitted to other counts; NaN if none fits.
+
+    Parameters
+    ----------
+    law : Law
+    sizes, count : (k,) float ndarray
+    side : float
+        Extent L of the set, cells.
+    """
+    fitted = _fit(law, sizes, count, side)
+    return np.nan if fitted is None else fitted.dimension
+
+
+def _fit(law, sizes, count, side):
+    """The law of this form with the least misfit; None if its factors cannot be."""
+    if sizes.size <= law.outline + 2:
+        return None
+    at = 0.0
+    for grid in (_COARSE, _FINE):
+        tried = np.clip(at + grid, 0, 2)
+        misfit = _misfits(law, sizes, count, side, tried)
+        if not np.isfinite(misfit).any():
+            return None
+        i = int(np.argmin(misfit))
+        at = float(tried[i])
+    return replace(law, dimension=at, misfit=float(misfit[i]))
+
+
+def _misfits(law, sizes, count, side, dimensions):
+    """Relative misfit at each D, the factors a by least squares; infinite where they are none."""
+    rho = sizes - law.c
+    areas = count * sizes**2
+    terms = (rho / side)[:, np.newaxis] ** np.arange(law.outline + 1)
+    power = rho ** (2 - dimensions[:, np.newaxis]) / areas
+    power /= power.max(axis=1, keepdims=True)
+    columns = power[:, :, np.newaxis] * terms
+    normal = np.einsum("dki,dkj->dij", columns, columns)
+    a = np.linalg.solve(normal, columns.sum(axis=1)[:, :, np.newaxis])[:, :, 0]
+    misfit = np.sqrt(np.mean((np.einsum("dki,di->dk", columns, a) - 1) ** 2, axis=1))
+    inside, outline = a[:, :1], a[:, 1:]
+    possible = (inside[:, 0] > 0) & (outline >= -1e-9 * inside).all(axis=1)
+    possible &= (outline <= MOST_OUTLINE * inside).all(axis=1)
+    return np.where(possible, misfit, np.inf)

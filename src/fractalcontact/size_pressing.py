@@ -1,0 +1,195 @@
+"""Parts of a joint, all of them pressed at one offset: what the test of eq. 6 is made from."""
+
+import numpy as np
+import xarray as xr
+
+from .closure import bulk_settlement
+from .contact import NotConverged, solve_contact
+from .halfspace import HalfSpace
+from .joint import composite_topography, direction_spacing, prefractal
+from .labels import about
+from .specimen import nominal_area
+from .sweep import forces_of, hardness_of
+from .windows import FEWEST_CELLS, PARTS, split
+
+#: A resolution is used if the smallest sub-windows keep so many nodes a side at it.
+FEWEST_ACROSS = 12
+#: The whole window is tested at the study's loads and at so many doublings of the largest: loads no
+#: rock would stand as an elastic body, but where small windows hold nodes enough.
+BEYOND = 3
+#: So many more doublings may be needed for small windows to have the sigma* of the whole.
+DOUBLINGS = 3
+#: Loads stay below this part of what the hardness lets a window carry.
+LARGEST_PART = 0.98
+
+
+def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
+    """Press all sub-windows of several sizes under the study's loads and some beyond.
+
+    Parameters
+    ----------
+    specimen, direction, settings, solver, parts
+        As for :func:`size_test`.
+    cells : int
+        Offset in cells.
+
+    Returns
+    -------
+    pressed : xr.Dataset
+        ``nodes`` (part, window, resolution, step) in contact, ``interface_closure`` (part, window,
+        step) at the finest resolution, ``side`` b and ``windows`` (part), ``ladder_pressure``
+        (step) whose first steps are those of the loads.
+    domains : (load, ny, nx) bool ndarray
+        Contact domain of the whole window at the finest resolution.
+
+    Notes
+    -----
+    Sub-windows are cut to whole cells of the coarsest resolution, so that all of them cover the
+    same area at each.
+    """
+    composite = composite_topography(specimen, direction, cells)
+    spacing = np.array([specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]])
+    parts = [n for n in parts if n == 1 or min(composite.shape) // n >= FEWEST_CELLS]
+    smallest = min(composite.shape) // max(parts)
+    factors = [k for k in settings["resolutions"] if k == 1 or smallest // k >= FEWEST_ACROSS]
+    hardness = hardness_of(settings, specimen)
+    area = nominal_area(specimen)
+    of_study = forces_of(settings["loads"], area) / area
+    pressures = _ladder(of_study, hardness)
+    tested = pressures[: len(of_study) + BEYOND]
+    shape = (len(parts), max(parts) ** 2, len(factors), len(pressures))
+    nodes, closure = np.full(shape, np.nan), np.full((*shape[:2], shape[3]), np.nan)
+    sides = np.empty((len(parts), 2))
+    solving = {"rtol": solver["rtol"], "hardness": hardness}
+    domains = None
+    for i, n in enumerate(parts):
+        windows = _cut(composite, n, max(factors))
+        sub = np.array(windows.shape[1:])
+        sides[i] = sub * spacing
+        for k, factor in enumerate(factors):
+            space = HalfSpace(
+                tuple(sub // factor),
+                tuple(spacing * factor),
+                settings["material"]["e_star"],
+                kernel=solver["kernel"],
+            )
+            loads = pressures * sides[i].prod()
+            settlement = bulk_settlement(loads, space.modulus, *sides[i])
+            for j, window in enumerate(windows):
+                where = f"{n} x {n} parts, sub-window {j}, resolution {factor}"
+                states = _load_steps(prefractal(window, factor), space, loads, solving, where)
+                touching = np.array([state.in_contact for state in states])
+                nodes[i, j, k] = touching.sum(axis=(1, 2))
+                if factor == factors[0]:
+                    settled = np.ptp(window) > 0  # faces that match everywhere: nothing to close
+                    closure[i, j] = settled * ([s.closure for s in states] - settlement)
+                    if n == 1:
+                        domains = touching[: len(tested)]
+    pressed = xr.Dataset(
+        {
+            "nodes": (
+                ("part", "window", "resolution", "step"),
+                nodes,
+                about("1", "nodes in contact"),
+            ),
+            "interface_closure": (
+                ("part", "window", "step"),
+                closure,
+                about("mm", "interface closure w_int = w - w_b of a sub-window"),
+            ),
+            "side": ("part", np.sqrt(sides.prod(axis=1)), about("mm", "side b of the sub-windows")),
+            "windows": ("part", np.square(parts), about("1", "sub-windows pressed of each size")),
+            "nominal_pressure": (
+                "load",
+                tested,
+                about("MPa", "nominal pressure sigma_0 of the whole window"),
+            ),
+            "beyond_study": (
+                "load",
+                tested > of_study[-1],
+                about("1", "whether the load is larger than those of the study"),
+            ),
+            "ladder_pressure": (
+                "step",
+                pressures,
+                about("MPa", "nominal pressures that every window was pressed with"),
+            ),
+            "spacing": (
+                "resolution",
+                np.sqrt(spacing.prod()) * np.array(factors),
+                about("mm", "spacing s"),
+            ),
+        },
+        coords={
+            "part": ("part", parts, about("1", "sub-windows along a side of the window")),
+            "resolution": ("resolution", factors, about("1", "multiple k of the scan's spacing")),
+            "load": ("load", tested * area, about("N", "force on the whole window")),
+            "direction": direction,
+            "offset": (
+                (),
+                cells * direction_spacing(specimen, direction),
+                about("mm", "shear offset v"),
+            ),
+        },
+    )
+    return pressed, domains
+
+
+def whole_areas(specimen, direction, cells, settings, solver, loads):
+    """Real area of the whole window at all resolutions of the study.
+
+    Parameters
+    ----------
+    specimen, direction, cells, settings, solver
+        As for :func:`press_parts`.
+    loads : xr.DataArray (load,)
+        Forces, N.
+
+    Returns
+    -------
+    xr.DataArray (resolution, load)
+        mm2.
+    """
+    composite = composite_topography(specimen, direction, cells)
+    spacing = np.array([specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]])
+    factors = settings["resolutions"]
+    solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
+    areas = []
+    for factor in factors:
+        h = prefractal(composite, factor)
+        space = HalfSpace(
+            h.shape,
+            tuple(spacing * factor),
+            settings["material"]["e_star"],
+            kernel=solver["kernel"],
+        )
+        states = _load_steps(h, space, loads.values, solving, f"resolution {factor}")
+        areas.append([state.area for state in states])
+    coords = {"resolution": factors, "load": loads}
+    return xr.DataArray(areas, dims=("resolution", "load"), coords=coords)
+
+
+def _ladder(pressures, hardness):
+    """The study's pressures and doublings of the largest, as far as the hardness lets them."""
+    beyond = pressures[-1] * 2.0 ** np.arange(1, BEYOND + DOUBLINGS + 1)
+    return np.r_[pressures, beyond[beyond < LARGEST_PART * hardness]]
+
+
+def _cut(composite, parts, multiple):
+    """All sub-windows (n, ny, nx), cut to a multiple of cells."""
+    windows = split(composite, parts)
+    ny, nx = (n // multiple * multiple for n in windows.shape[1:])
+    return windows[:, :ny, :nx]
+
+
+def _load_steps(composite, space, forces, solving, where):
+    """States of one sub-window under rising forces."""
+    states = []
+    for force in forces:
+        try:
+            start = states[-1] if states else None
+            states.append(solve_contact(composite, space, force=force, start=start, **solving))
+        except NotConverged as error:
+            error.add_note(f"{where}, F = {force:g} N")
+            raise
+    return states

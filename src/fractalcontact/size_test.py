@@ -1,0 +1,402 @@
+"""The direct test of eq. 6: parts of one joint pressed until they reach the same sigma*.
+
+Eq. 6 has a joint of side b reach a given sigma* at the nominal pressure sigma_0 ~ b^-(2 - Delta).
+Here windows of several sizes are cut from one joint, the pressure at which each has the sigma* of
+the whole window is found, and its slope over b is held against Delta_sigma by each estimator.
+
+What the test comes to: sigma* = F / H_D with H_D the geometric mean of N_n s_n^Delta over the
+resolutions. With one Delta and the same resolutions for all windows, as eq. 6 needs them, the
+powers of s_n are the same constant everywhere: equal sigma* is equal real mean pressure sigma_n,
+whatever Delta is. So one slope is measured, in which Delta does not occur; the estimators differ
+in what they predict for it. And where the real area goes with the load alone, A_r = kappa F,
+sigma_n is the same at any sigma_0: sigma* then tells nothing of sigma_0, and no b can come in. A
+size effect appears just where the part of the window in contact at a given sigma_0 depends on b.
+"""
+
+import numpy as np
+import xarray as xr
+
+from .domain import box_dimension
+from .fitting import fit_line
+from .joint import direction_spacing
+from .labels import about
+from .scaling import FEWEST_NODES, renormalisation
+from .size_prediction import predict_whole, predict_whole_strength
+from .size_pressing import press_parts, whole_areas
+from .specimen import cell_side
+from .windows import PARTS, split
+
+#: A slope whose 95 % interval is wider than this decides nothing.
+WIDEST = 1.0
+#: Slopes that differ by less than this are the same but for rounding.
+_ROUNDING = 1e-9
+
+#: Estimators of Delta_sigma in the whole window under each load: its area over resolutions, boxes
+#: of all sizes at its finest resolution, and the number of sub-windows that its contact domain
+#: meets, which are boxes too, but of the sizes of the test alone.
+ESTIMATORS = {
+    "area": "A_r(s)",
+    "box": "box counting",
+    "box_sizes": "windows met",
+}
+
+#: What may come of one estimator under one load.
+VERDICTS = (
+    "agrees",
+    "measured steeper",
+    "measured flatter",
+    "undecided",
+    "ambiguous",
+    "not tested",
+)
+
+
+def size_test(specimen, direction, cells, settings, solver, parts=PARTS):
+    """Slope of log sigma_0 over log b at equal sigma*, beside what eq. 6 predicts.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    direction : str
+    cells : (n,) int array_like
+        Offsets in cells, ascending. Contact is tested at the study's map offset (without one the
+        third); strength takes all of them.
+    settings : dict
+        From :func:`fractalcontact.study.resolve_settings`.
+    solver : dict
+        ``rtol`` and ``kernel``.
+    parts : sequence of int
+        Sub-windows along each side; all of them are pressed. Sizes below `FEWEST_CELLS` cells a
+        side are left out.
+
+    Returns
+    -------
+    xr.Dataset
+        Over (estimator, load): ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of the whole
+        window with intervals, ``slope_difference`` and ``verdict``. Over (load): the measured
+        ``slope`` of all windows of a size taken together and ``window_slope`` of the median of
+        windows one by one, each with ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``;
+        ``share_exponent`` and ``sensitivity``, which explain it. Over (load, part):
+        ``equal_pressure``, ``window_pressure``, ``windows_below``, ``windows_above``,
+        ``windows_unknown``, ``crossings``; and what is predicted for the whole window, see
+        :func:`fractalcontact.size_prediction.predict_whole`. Loads ``beyond_study`` are those of
+        :data:`fractalcontact.size_pressing.BEYOND`.
+
+    Notes
+    -----
+    All windows of a size together have sigma_n = sum F / sum A_n. Windows one by one are what a
+    laboratory would test, but small ones hold few nodes: a window with fewer than `FEWEST_NODES` at
+    a resolution has no sigma* that means anything, and a mean over those that are left would be one
+    over the few whose contacts are many and soft. So their median is taken, with the windows whose
+    place is only known to lie below or above the loads pressed. The verdict rests on all windows
+    together; a size counts where they hold `FEWEST_NODES` on the average. Without that rule the
+    lightest loads show the slope -2 exactly: one node in every window.
+
+    The sizes are pieces of one joint and not independent, and the interval is that of a regression
+    over them. Where a curve sigma*(sigma_0) meets the target several times, the geometric mean of
+    the places is taken and they are counted; where that is so for the whole window, its sigma* does
+    not tell sigma_0 and the verdict is "ambiguous". The composite topography of a sub-window is
+    pressed as it lies, see :func:`fractalcontact.windows.window_states`.
+
+    Raises
+    ------
+    NotConverged
+        If a state could not be verified; the message names it.
+    """
+    cells = np.asarray(cells, int)
+    spacing = direction_spacing(specimen, direction)
+    chosen = _map_cells(cells, spacing, settings["map_offset"])
+    pressed, domains = press_parts(specimen, direction, chosen, settings, solver, parts)
+    result = pressed.drop_vars(["nodes", "interface_closure"])
+    areas = whole_areas(specimen, direction, chosen, settings, solver, pressed["load"])
+    result = result.merge(_dimensions(specimen, pressed, domains, areas, settings))
+    result = result.merge(_equal_pressures(pressed, result.sizes["load"]))
+    result = result.merge(_verdicts(result))
+    result = result.merge(predict_whole(pressed, result["delta_sigma"], FEWEST_NODES))
+    if direction != "none":
+        result = result.merge(
+            predict_whole_strength(
+                specimen, direction, cells, settings, solver, result["delta_sigma"]
+            )
+        )
+    return result.assign_attrs(opposite=specimen.attrs["opposite"], summary=summary(result))
+
+
+def _map_cells(cells, spacing, wanted):
+    """The offset, in cells, whose contact the study draws."""
+    if wanted is None:
+        return int(cells[min(2, len(cells) - 1)])
+    return int(cells[np.argmin(np.abs(cells * spacing - wanted))])
+
+
+# -- what eq. 6 predicts ---------------------------------------------------------------------------
+
+
+def _dimensions(specimen, pressed, domains, areas, settings):
+    """Delta_sigma of the whole window by every estimator, with sigma* and the slope predicted."""
+    spacing = cell_side(specimen)
+    s = spacing * areas["resolution"]
+    if settings["scaling_range"] is not None:
+        first, last = settings["scaling_range"]
+        areas = areas.where((s >= first - 1e-9 * spacing) & (s <= last + 1e-9 * spacing))
+    by_area = renormalisation(s, areas, pressed["load"])
+    boxes = [box_dimension(d, spacing, fit_range=settings["box_range"]) for d in domains]
+    lines = [_meeting_line(domain, pressed) for domain in domains]
+    found = {
+        "area": [by_area[f"delta_sigma{end}"].values for end in ("", "_low", "_high")],
+        "box": np.transpose([(box.dimension, box.low, box.high) for box in boxes]),
+        "box_sizes": np.transpose([(-x.slope, -x.slope_high, -x.slope_low) for x in lines]),
+    }
+    delta = np.array([found[name] for name in ESTIMATORS])
+    star = delta[:, 0] - 2  # sigma* = sigma_n s_n^(2 - Delta), geometric mean over the resolutions
+    star = real_pressures(pressed)[0][0, : len(domains)] * np.exp(
+        -star * np.log(pressed["spacing"].values).mean()
+    )
+    dims = ("estimator", "load")
+    result = xr.Dataset(
+        {
+            "sigma_star": (
+                dims,
+                star,
+                about("N mm^-delta_sigma", "fractal mean pressure sigma* of the whole window"),
+            )
+        },
+        coords={"estimator": list(ESTIMATORS)},
+    )
+    for ending, words, n in (
+        ("", "", 0),
+        ("_low", ", lower end of the 95 % interval", 1),
+        ("_high", ", upper end of the 95 % interval", 2),
+    ):
+        text = f"dimension of the contact domain of the whole window{words}"
+        result[f"delta_sigma{ending}"] = (dims, delta[:, n], about("1", text))
+        text = f"slope -(2 - Delta_sigma) of eq. 6{words}"
+        result[f"predicted_slope{ending}"] = (dims, delta[:, n] - 2, about("1", text))
+    result["box_fit_min"] = ("load", [b.r_min for b in boxes], about("mm", "smallest box fitted"))
+    result["box_fit_max"] = ("load", [b.r_max for b in boxes], about("mm", "largest box fitted"))
+    return result
+
+
+def _meeting_line(domain, pressed):
+    """Line through log N over log b, N sub-windows that the domain of the whole window meets."""
+    met = [split(domain, n).any(axis=(1, 2)).sum() for n in pressed["part"].values]
+    count = np.array(met, float)
+    return fit_line(-np.log(pressed["part"].values), np.log(np.where(count > 0, count, np.nan)))
+
+
+# -- what is measured ------------------------------------------------------------------------------
+
+
+def equal_pressure(pressures, values, target):
+    """Pressures at which a curve has a value, by lines between the logarithms.
+
+    Parameters
+    ----------
+    pressures, values : (n,) array_like
+        The curve; NaN where it is not known.
+    target : float
+
+    Returns
+    -------
+    pressure : float
+        Geometric mean of all places where the curve has the value; 0 if all of the curve lies above
+        it, so that the place is below the pressures known, infinity if all lies below; NaN without
+        a curve.
+    crossings : int
+    """
+    known = np.isfinite(values)
+    if not known.any():
+        return np.nan, 0
+    x, above = np.log(pressures), np.log(values) - np.log(target)
+    places = []
+    for i in np.flatnonzero(known[:-1] & known[1:]):
+        left, right = above[i], above[i + 1]
+        if (left < 0) != (right < 0):
+            places.append(x[i] - left * (x[i + 1] - x[i]) / (right - left))
+        elif left == 0 and not known[:i].any():  # the curve starts at the value
+            places.append(x[i])
+    if places:
+        return float(np.exp(np.mean(places))), len(places)
+    return (0.0 if np.nanmin(above) >= 0 else np.inf), 0
+
+
+def real_pressures(pressed):
+    """Geometric mean of sigma_n over the resolutions, MPa, of each size and of each window.
+
+    Returns
+    -------
+    together : (part, step) ndarray
+        Of all windows of a size: sum of F over sum of A_n. NaN where they hold fewer than
+        `FEWEST_NODES` nodes on the average at a resolution.
+    single : (part, window, step) ndarray
+        NaN where the window holds fewer at a resolution.
+    """
+    s = pressed["spacing"]
+    nodes = pressed["nodes"]
+    force = pressed["ladder_pressure"] * pressed["side"] ** 2
+
+    def mean(n):
+        of_resolution = np.log(force / (n.where(n >= FEWEST_NODES - 1e-9) * s**2))
+        return np.exp(of_resolution.mean("resolution", skipna=False))
+
+    together = mean(nodes.mean("window")).transpose("part", "step")
+    return together.values, mean(nodes).transpose("part", "window", "step").values
+
+
+def _equal_pressures(pressed, n_loads):
+    """Pressures at equal sigma* and their slope over b; what explains it."""
+    log_b, pressures = np.log(pressed["side"].values), pressed["ladder_pressure"].values
+    together, single = real_pressures(pressed)
+    parts, windows = single.shape[:2]
+    equal, times = np.full((n_loads, parts), np.nan), np.zeros((n_loads, parts), int)
+    one = np.full((n_loads, parts, windows), np.nan)
+    for load in np.flatnonzero(np.isfinite(together[0, :n_loads])):
+        target = together[0, load]
+        for i in range(parts):
+            equal[load, i], times[load, i] = equal_pressure(pressures, together[i], target)
+            for j in range(int(pressed["windows"][i])):
+                one[load, i, j], _ = equal_pressure(pressures, single[i, j], target)
+    equal = _found(equal)
+    median = _median(one)
+    with_whole = np.isfinite(together[0, :n_loads, np.newaxis])
+    below, above = ((one == end).sum(axis=2) for end in (0, np.inf))
+    unknown = with_whole * (pressed["windows"].values - np.isfinite(np.log1p(one)).sum(axis=2))
+    of_size = ("load", "part")
+    result = xr.Dataset(
+        {
+            "real_pressure": (
+                ("part", "step"),
+                together,
+                about("MPa", "real mean pressure sigma_n, geometric mean over resolutions"),
+            ),
+            "equal_pressure": (
+                of_size,
+                equal,
+                about("MPa", "sigma_0 at which all windows of a size have the sigma* of the whole"),
+            ),
+            "crossings": (
+                of_size,
+                times,
+                about("1", "places where sigma*(sigma_0) of that size has that value"),
+            ),
+            "window_pressure": (of_size, median, about("MPa", "median of windows one by one")),
+            "windows_below": (
+                of_size,
+                below,
+                about("1", "windows above that sigma* at all loads with nodes enough"),
+            ),
+            "windows_above": (
+                of_size,
+                above,
+                about("1", "windows below that sigma* at all loads pressed"),
+            ),
+            "windows_unknown": (
+                of_size,
+                unknown - above,
+                about("1", "windows without nodes enough at any load"),
+            ),
+            "sensitivity": (
+                "load",
+                np.gradient(np.log(together[0]), np.log(pressures))[:n_loads],
+                about("1", "d log sigma* / d log sigma_0 of the whole window"),
+            ),
+        }
+    )
+    for name, curves, words in (
+        ("slope", equal, "slope of log sigma_0 over log b at equal sigma*, all windows of a size"),
+        ("window_slope", median, "slope of log sigma_0 over log b at equal sigma*, median windows"),
+        ("share_exponent", 1 / together[:, :n_loads].T, "exponent of A_r/A_0 at equal sigma_0"),
+    ):
+        _add_lines(result, name, [fit_line(log_b, row) for row in np.log(curves)], words)
+    return result
+
+
+def _found(pressures):
+    """Pressures without those known to lie below or above some value."""
+    return np.where((pressures > 0) & np.isfinite(pressures), pressures, np.nan)
+
+
+def _median(pressures):
+    """Median over the last axis, in which what lies below or above counts; NaN if it lies there."""
+    ordered = np.sort(pressures, axis=-1)  # NaN last
+    n = np.isfinite(np.where(ordered == np.inf, 0.0, ordered)).sum(axis=-1)
+    middle = np.stack([np.maximum(n - 1, 0) // 2, n // 2], axis=-1)
+    middle = np.minimum(middle, ordered.shape[-1] - 1)
+    return np.exp(np.log(_found(np.take_along_axis(ordered, middle, axis=-1))).mean(axis=-1))
+
+
+def _add_lines(result, name, lines, words):
+    for ending, field, more in (
+        ("", "slope", ""),
+        ("_low", "slope_low", ", lower end of the 95 % interval"),
+        ("_high", "slope_high", ", upper end of the 95 % interval"),
+        ("_n", "n", ", points fitted"),
+    ):
+        values = [getattr(line, field) for line in lines]
+        result[f"{name}{ending}"] = ("load", values, about("1", f"{words}{more}"))
+    for ending, field in (("_b_min", "x_min"), ("_b_max", "x_max")):
+        values = np.exp([getattr(line, field) for line in lines])
+        which = "smallest" if ending == "_b_min" else "largest"
+        result[f"{name}{ending}"] = ("load", values, about("mm", f"{which} b of that fit"))
+
+
+# -- verdicts --------------------------------------------------------------------------------------
+
+
+def _verdicts(result):
+    """Measured slope less the one predicted, and in a word whether they agree."""
+    slope, low, high = (result[f"slope{end}"] for end in ("", "_low", "_high"))
+    said, said_low, said_high = (result[f"predicted_slope{end}"] for end in ("", "_low", "_high"))
+    difference = slope - said
+    lower = difference - np.hypot(slope - low, said_high - said)
+    upper = difference + np.hypot(high - slope, said - said_low)
+    verdict = xr.where(lower > _ROUNDING, "measured flatter", "agrees")
+    verdict = xr.where(upper < -_ROUNDING, "measured steeper", verdict)
+    verdict = xr.where((verdict == "agrees") & (high - low > WIDEST), "undecided", verdict)
+    verdict = xr.where(result["crossings"].isel(part=0) > 1, "ambiguous", verdict)
+    verdict = xr.where(np.isfinite(lower), verdict, "not tested")
+    found = xr.Dataset(
+        {
+            "slope_difference": difference,
+            "slope_difference_low": lower,
+            "slope_difference_high": upper,
+            "verdict": verdict.astype(str),
+            "size_effect": (low > _ROUNDING) | (high < -_ROUNDING),
+        }
+    ).transpose("estimator", "load")
+    words = {
+        "slope_difference": "measured slope less that of eq. 6",
+        "slope_difference_low": "lower end of its 95 % interval",
+        "slope_difference_high": "upper end of its 95 % interval",
+        "verdict": "whether the measured slope agrees with that of eq. 6",
+        "size_effect": "whether the measured slope differs from zero",
+    }
+    for name, text in words.items():
+        found[name].attrs = about("1", text)
+    return found
+
+
+def summary(result):
+    """The verdicts in words: by estimator, the loads at which eq. 6 has the measured slope.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        From :func:`size_test`.
+
+    Returns
+    -------
+    str
+    """
+    known = np.isfinite(result["slope"].values)
+    if not known.any():
+        return "no load at which three sizes hold nodes enough to be tested"
+    effect = int(result["size_effect"].values[known].sum())
+    rows = [f"a slope other than zero at {effect} of {int(known.sum())} loads"]
+    for name, words in ESTIMATORS.items():
+        verdicts = result["verdict"].sel(estimator=name).values
+        tested = verdicts[verdicts != "not tested"]
+        counts = {v: int((tested == v).sum()) for v in VERDICTS[:-1]}
+        told = ", ".join(f"{v} at {n}" for v, n in counts.items() if n)
+        rows.append(f"eq. 6 with Delta_sigma from {words}: {told or 'not tested'}")
+    return "; ".join(rows)

@@ -1,0 +1,51 @@
+"""The figure of the contact domain's measures, from states of the small atlas."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fractalcontact.domain_measures import measures_of_states
+from fractalcontact.figures.common import print_style, save
+from fractalcontact.figures.domain_measures import draw
+
+
+def with_measures(atlas, name, factor=1.0):
+    """The atlas with a stage domain_measures, its pressure the distance from the rim of contact."""
+    from scipy.ndimage import distance_transform_edt
+
+    contact = atlas[f"contact/{name}"].to_dataset().isel(direction=0, offset=-1)
+    domains = contact["in_contact_1"].values
+    if factor == 0:
+        domains = np.zeros_like(domains)
+    pressures = np.array([distance_transform_edt(domain) for domain in domains])
+    found = measures_of_states(domains, pressures, 0.1, contact["load"].values)
+    found = found.assign_coords(
+        direction=str(contact["direction"].values), offset=float(contact["offset"])
+    )
+    nodes = {group.path: group.to_dataset() for group in atlas.subtree}
+    nodes[f"/domain_measures/{name}"] = found
+    return xr.DataTree.from_dict(nodes), found
+
+
+@pytest.mark.parametrize("name", ["sliding", "flat", "pair"])
+def test_drawing_shows_what_was_measured(atlas, name, tmp_path):
+    tree, found = with_measures(atlas, name)
+    with print_style():
+        drawing = draw(tree, name)
+        save(drawing, tmp_path, "domain_measures")
+    assert (tmp_path / "domain_measures.png").stat().st_size > 10_000
+    spectrum = drawing.data[drawing.data["kind"] == "spectrum"]
+    for force, points in spectrum.groupby("force_N"):
+        expected = found["generalised_dimension"].sel(load=force).dropna("order")
+        np.testing.assert_allclose(points["value"], expected)
+    assert set(drawing.data["kind"]) == {"slope", "lacunarity", "spectrum"}
+    assert "section 6" in drawing.caption
+    assert "nan" not in drawing.caption
+
+
+def test_no_contact_is_said(atlas):
+    tree, _ = with_measures(atlas, "flat", factor=0)
+    with print_style():
+        drawing = draw(tree, "flat")
+    assert "too small for a dimension" in drawing.caption
+    assert drawing.data.empty

@@ -1,0 +1,173 @@
+"""Figures of the direct test of eq. 6, of the two estimators of Delta_sigma, and Fig. 11."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fractalcontact.figures import dimension_test, fig11_slope_angle, size_test
+from fractalcontact.figures.common import print_style, save, settings_of
+
+SPECIMENS = ("sliding", "flat", "pair")
+
+
+def drawn(module, atlas, name):
+    with print_style():
+        return module.draw(atlas, name)
+
+
+def changed(atlas, group, change):
+    """The atlas with one group put through a function of its dataset."""
+    other = atlas.copy(deep=True)
+    other[group] = xr.DataTree(change(other[group].to_dataset()))
+    return other
+
+
+def axes_labels_have_units(figure):
+    axes = [a for part in (figure, *figure.subfigs) for a in part.axes]
+    assert axes
+    for one in axes:
+        labels = [label for label in (one.get_xlabel(), one.get_ylabel()) if label]
+        assert labels
+        assert all(re.search(r"\(.+\)$", label) for label in labels)
+
+
+def written_twice_alike(module, atlas, name, folder):
+    for run in ("first", "second"):
+        with print_style():
+            save(module.draw(atlas, name), folder / run, "figure")
+    for ending in ("png", "svg", "csv", "txt"):
+        first, second = (
+            (folder / run / f"figure.{ending}").read_bytes() for run in ("first", "second")
+        )
+        assert first == second
+        assert len(first) > 100
+
+
+# -- the direct test -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SPECIMENS)
+def test_direct_test_labels_and_caption(atlas, name):
+    drawing = drawn(size_test, atlas, name)
+    drawing.figure.draw_without_rendering()
+    axes_labels_have_units(drawing.figure)
+    assert settings_of(atlas, name)["label"] in drawing.caption
+    assert "eq. 6" in drawing.caption
+    assert "nan" not in drawing.caption
+
+
+@pytest.mark.parametrize("name", SPECIMENS)
+def test_direct_test_points_are_those_of_the_atlas(atlas, name):
+    test = atlas[f"size_test/{name}"].to_dataset()
+    data = drawn(size_test, atlas, name).data
+    equal = data[data["quantity"] == "equal_pressure"]
+    np.testing.assert_array_equal(equal["value_MPa"], test["equal_pressure"].values.ravel())
+    slopes = data[data["quantity"] == "slope"]
+    np.testing.assert_array_equal(slopes["slope"], test["slope"])
+    said = data[data["quantity"] == "predicted_slope"]
+    np.testing.assert_array_equal(said["slope"], test["predicted_slope"].T.values.ravel())
+    assert list(said["verdict"]) == list(test["verdict"].T.values.ravel())
+    assert ("predicted_strength" in set(data["quantity"])) == (name != "flat")
+
+
+def test_direct_test_without_a_slope(atlas):
+    def nothing_found(test):
+        for name in ("slope", "slope_low", "slope_high"):
+            test[name] = test[name] * np.nan
+        test.attrs["summary"] = "no load at which three sizes hold nodes enough to be tested"
+        return test
+
+    drawing = drawn(size_test, changed(atlas, "size_test/flat", nothing_found), "flat")
+    drawing.figure.draw_without_rendering()
+    assert "no load at which" in drawing.caption
+    assert "nan" not in drawing.caption
+
+
+def test_direct_test_is_the_same_twice(atlas, tmp_path):
+    written_twice_alike(size_test, atlas, "sliding", tmp_path)
+
+
+# -- the two estimators ----------------------------------------------------------------------------
+
+
+def test_estimators_labels_table_and_caption(atlas):
+    drawing = drawn(dimension_test, atlas, list(SPECIMENS))
+    drawing.figure.draw_without_rendering()
+    axes_labels_have_units(drawing.figure)
+    test = atlas["dimension_test/surfaces"].to_dataset()
+    free = drawing.data[drawing.data["branch"] == "elastic"]
+    np.testing.assert_array_equal(free["mean_delta_area"], test["mean_delta_area"].values.ravel())
+    assert len(drawing.data[drawing.data["branch"] == "with hardness"]) == 3
+    assert "Delta_g = 2.2" in drawing.caption
+    assert "1.39" not in drawing.caption  # the paper's value is of another surface
+
+
+def test_estimators_beside_the_papers_value(atlas):
+    def as_in_fig_8(test):
+        return test.assign_coords(dimension=("dimension", [2.1], test["dimension"].attrs))
+
+    drawing = drawn(dimension_test, changed(atlas, "dimension_test/surfaces", as_in_fig_8), [])
+    assert "The paper has 1.39 at Delta_g = 2.1" in drawing.caption
+    assert "nan" not in drawing.caption
+
+
+def test_estimators_without_a_hardness(atlas):
+    def elastic(test):
+        test = test.drop_vars([n for n in test.variables if n.startswith("capped_")])
+        del test.attrs["hardness"]
+        return test
+
+    drawing = drawn(dimension_test, changed(atlas, "dimension_test/surfaces", elastic), [])
+    drawing.figure.draw_without_rendering()
+    assert "yields" not in drawing.caption
+    assert "with hardness" not in set(drawing.data["branch"])
+
+
+def test_estimators_are_the_same_twice(atlas, tmp_path):
+    written_twice_alike(dimension_test, atlas, list(SPECIMENS), tmp_path)
+
+
+# -- Fig. 11 ---------------------------------------------------------------------------------------
+
+
+def test_slope_angle_is_where_a_block_slides():
+    assert fig11_slope_angle.slope_angle(5.0, 5.0) == pytest.approx(45)
+    assert fig11_slope_angle.slope_angle(0.0, 5.0) == 0
+
+
+@pytest.mark.parametrize("name", ["sliding", "pair"])
+def test_slope_angle_labels_table_and_caption(atlas, name):
+    drawing = drawn(fig11_slope_angle, atlas, name)
+    drawing.figure.draw_without_rendering()
+    axes_labels_have_units(drawing.figure)
+    assert "Fig. 11" in drawing.caption
+    assert "nan" not in drawing.caption
+    laws = atlas[f"windows/{name}"].to_dataset()
+    shares = laws.sizes["share"] * laws.sizes["load"] * laws.sizes["part"]
+    assert len(drawing.data) == shares
+    expected = np.degrees(np.arctan(laws["similar_strength"] / laws["nominal_pressure"]))
+    expected = expected.transpose("share", "load", "part").values.ravel()
+    np.testing.assert_allclose(drawing.data["angle_deg"], expected)
+
+
+def test_slope_angle_names_what_is_quoted(atlas):
+    caption = drawn(fig11_slope_angle, atlas, "sliding").caption
+    assert "-(2 - 1.66)" in caption
+    assert "later work of the same school" in caption
+
+
+def test_slope_angle_without_a_friction_angle(atlas):
+    def unknown(laws):
+        for name in [n for n in laws.data_vars if "strength" in n]:
+            laws[name] = laws[name] * np.nan
+        return laws
+
+    drawing = drawn(fig11_slope_angle, changed(atlas, "windows/sliding", unknown), "sliding")
+    drawing.figure.draw_without_rendering()
+    assert "No angle can be given" in drawing.caption
+
+
+def test_slope_angle_is_the_same_twice(atlas, tmp_path):
+    written_twice_alike(fig11_slope_angle, atlas, "sliding", tmp_path)
