@@ -49,7 +49,9 @@ def _table(counts):
     kept = np.isfinite(counts["box_side"].values) & np.isfinite(counts["box_count"].values)
     r, n = counts["box_side"].values[kept], counts["box_count"].values[kept]
     used = counts["box_used"].values[kept]
-    line = fit_line(np.log(r[used]), np.log(n[used]))
+    # Delta_sigma is that of the counts averaged over all origins; its line is drawn through these.
+    delta = counts["delta_sigma"].item()
+    level = np.mean(np.log(n[used]) + delta * np.log(r[used])) if used.any() else np.nan
     # Neighbouring sizes are so close that whole counts make their slopes jump: over a doubling.
     start = np.flatnonzero(2 * r <= r[-1] * (1 + 1e-9))
     end = np.searchsorted(r, 2 * r[start] * (1 - 1e-9))
@@ -61,7 +63,7 @@ def _table(counts):
             "box_side_mm": r,
             "box_count": n,
             "used": used,
-            "fitted_count": np.where(used, np.exp(line.intercept + line.slope * np.log(r)), np.nan),
+            "fitted_count": np.where(used, np.exp(level - delta * np.log(r)), np.nan),
             "slope_to_mm": to_side,
             "local_slope": slope,
         }
@@ -109,10 +111,10 @@ def _caption(loading, i, counts, table):
     if reason:
         return f"{start}(b) Box counts; no dimension: {reason}. (c) Their local slopes."
     return (
-        f"{start}(b) Box counts N(r), filled where used, with the line fitted from "
-        f"r = {short(counts['fit_min'])} to {short(counts['fit_max'])} mm "
-        f"({int(counts['fit_n'].item())} sizes): Delta_sigma = {loading.estimates[1].text(i)}, "
-        "the interval spanning the choice of range; (c) slopes over a doubling of r. "
+        f"{start}(b) Box counts N(r), filled where used, with a line of the slope that the counts "
+        f"averaged over all origins have from r = {short(counts['fit_min'])} to "
+        f"{short(counts['fit_max'])} mm: Delta_sigma = {loading.estimates[1].text(i)}, the "
+        "interval spanning parts of the window and of the range; (c) slopes over a doubling of r. "
         f"{_verdict(counts, table)} {disagreement(loading.scaling.isel(load=i))}"
     )
 
