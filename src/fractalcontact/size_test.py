@@ -391,12 +391,16 @@ def summary(result):
     known = np.isfinite(result["slope"].values)
     if not known.any():
         return "no load at which three sizes hold nodes enough to be tested"
-    effect = int(result["size_effect"].values[known].sum())
-    rows = [f"a slope other than zero at {effect} of {int(known.sum())} loads"]
+    told = known & (result["crossings"].isel(part=0).values == 1)
+    effect = int(result["size_effect"].values[told].sum())
+    rows = [
+        f"of {int(known.sum())} loads tested sigma* tells sigma_0 at {int(told.sum())}, and the "
+        f"slope differs from zero at {effect}"
+    ]
     for name, words in ESTIMATORS.items():
         verdicts = result["verdict"].sel(estimator=name).values
         tested = verdicts[verdicts != "not tested"]
         counts = {v: int((tested == v).sum()) for v in VERDICTS[:-1]}
-        told = ", ".join(f"{v} at {n}" for v, n in counts.items() if n)
-        rows.append(f"eq. 6 with Delta_sigma from {words}: {told or 'not tested'}")
+        found = ", ".join(f"{v} at {n}" for v, n in counts.items() if n)
+        rows.append(f"eq. 6 with Delta_sigma from {words}: {found or 'not tested'}")
     return "; ".join(rows)
