@@ -465,3 +465,24 @@ def test_error_and_state_survive_the_way_between_processes(monkeypatch):
     assert str(copy) == str(error)
     assert copy.residual == 0.5
     np.testing.assert_array_equal(copy.state.pressure, state.pressure)
+
+
+@pytest.mark.parametrize("beyond", [0.0, 1e-12, -1e-12, 1e-9, -1e-9])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_force_that_whole_nodes_carry_at_the_cap(seed, beyond):
+    """Nothing lies between the bounds then, and the closure is known to an interval only."""
+    space = HalfSpace((12, 12), (0.2, 0.2), 1e4)
+    rng = np.random.default_rng(seed)
+    peaks = rng.permutation(144)[:30]
+    heights = np.full(144, -5.0)
+    heights[peaks] = rng.uniform(-0.1, 0, 30)
+    hardness = 1000.0
+    force = 30 * hardness * space.cell_area * (1 + beyond)
+    lighter = solve_contact(heights.reshape(12, 12), space, force=force / 2, hardness=hardness)
+    for start in (None, lighter):
+        state = solve_contact(
+            heights.reshape(12, 12), space, force=force, hardness=hardness, start=start
+        )
+        assert state.force == pytest.approx(force, rel=1e-6)
+        assert np.flatnonzero(state.in_contact).tolist() == sorted(peaks)
+        assert state.pressure.max() <= hardness * (1 + 1e-12)

@@ -198,10 +198,15 @@ class ActiveSet:
         return pressure * factor, None if displacement is None else displacement * factor
 
     def _mean_gap(self, pressure, displacement):
-        """The closure that a given force leaves open: it makes the mean gap in contact vanish."""
+        """The closure that a given force leaves open: it makes the mean gap in contact vanish.
+
+        Where all that touches is at the cap, any closure does that presses all of it and nothing
+        else; it is the least of these.
+        """
         loaded = between_bounds(pressure, self.problem.cap)
         if loaded.size == 0:
-            loaded = np.flatnonzero(pressure > 0)
+            capped = np.flatnonzero(pressure > 0)
+            return (displacement[capped] + self.problem.clearance[capped]).max()
         return (displacement[loaded] + self.problem.clearance[loaded]).mean()
 
     def _verified(self, pressure, closure):

@@ -9,5 +9,6 @@ with reported(snakemake.log) as log:
     stages = {name: store.read(path) for name, path in snakemake.input.items()}
     statements = judge(stages, snakemake.params.settings)
     store.write(statements, snakemake.output[0])
-    for row in zip(*(statements[key].values for key in ("claim", "verdict", "numbers"))):
+    columns = (statements[key].values for key in ("claim", "verdict", "numbers"))
+    for row in zip(*columns, strict=True):
         log.info("%s: %s (%s)", *row)
