@@ -486,3 +486,15 @@ def test_a_force_that_whole_nodes_carry_at_the_cap(seed, beyond):
         assert state.force == pytest.approx(force, rel=1e-6)
         assert np.flatnonzero(state.in_contact).tolist() == sorted(peaks)
         assert state.pressure.max() <= hardness * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_loads_up_to_where_the_whole_window_yields(seed):
+    """Few nodes lie between the bounds there, and what a load lacks goes to them alone."""
+    space = HalfSpace((64, 64), (0.1, 0.1), 1e4)
+    heights = self_affine((64, 64), 0.1, 0.8, seed=seed, rms=0.3)
+    hardness, state = 1000.0, None
+    most = hardness * 6.4**2
+    for share in (0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 0.98, 0.9875, 0.99875, 0.9999):
+        state = solve_contact(heights, space, force=share * most, hardness=hardness, start=state)
+        assert state.force == pytest.approx(share * most, rel=1e-6)

@@ -173,7 +173,10 @@ class ActiveSet:
             self.operator.applications += search.operator.applications
             total = solution.pressure.sum()
             if abs(total / problem.load - 1) <= SAFETY * self.rtol:
-                break
+                # What is missing goes to the nodes between the bounds, which may be few.
+                verified = self._verified(solution.pressure, solution.closure)
+                if verified.residual <= self.rtol:
+                    return verified
             low, high = (closure, high) if total < problem.load else (low, closure)
             free = between_bounds(solution.pressure, problem.cap)
             slope, _ = stiffness(self.operator, free)
@@ -201,13 +204,16 @@ class ActiveSet:
         """The closure that a given force leaves open: it makes the mean gap in contact vanish.
 
         Where all that touches is at the cap, any closure does that presses all of it and nothing
-        else; it is the least of these.
+        else. It is the least of these; where there is none, the mean still leads on.
         """
         loaded = between_bounds(pressure, self.problem.cap)
-        if loaded.size == 0:
-            capped = np.flatnonzero(pressure > 0)
-            return (displacement[capped] + self.problem.clearance[capped]).max()
-        return (displacement[loaded] + self.problem.clearance[loaded]).mean()
+        if loaded.size:
+            return (displacement[loaded] + self.problem.clearance[loaded]).mean()
+        reached, capped = displacement + self.problem.clearance, pressure > 0
+        least = reached[capped].max()
+        if least <= reached[~capped].min(initial=np.inf):
+            return least
+        return reached[capped].mean()
 
     def _verified(self, pressure, closure):
         """The pressure put within its bounds, with a displacement in double precision."""
