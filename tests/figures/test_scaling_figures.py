@@ -217,7 +217,7 @@ def test_legends_hide_nothing(atlas, figure, specimen):
         assert all(axes.get_tightbbox().y0 >= frame.y1 - 1 for axes in drawn.get_axes())
 
 
-@pytest.mark.parametrize("largest", [3.0, 6.0, 25.0, 400.0])
+@pytest.mark.parametrize("largest", [3.0, 6.0, 25.0, 45.0, 60.0, 400.0])
 def test_box_sides_have_labels_that_stand_apart(largest):
     """Over less than a decade matplotlib writes every minor tick, one over the other."""
     with common.print_style():

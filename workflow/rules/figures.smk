@@ -102,8 +102,14 @@ rule study_figures:
 
 def collect_figures(wildcards):
     study = rules.study_figures.output if STUDY_FIGURES else []
-    return list(study) + expand(
-        f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=SLIDING, name=figures_of("match")
-    ) + expand(
-        f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=FLAT, name=figures_of("flat")
+    return (
+        list(study)
+        + expand(
+            f"{RESULTS}/figures/{{specimen}}/{{name}}.png",
+            specimen=SLIDING,
+            name=figures_of("match"),
+        )
+        + expand(
+            f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=FLAT, name=figures_of("flat")
+        )
     )

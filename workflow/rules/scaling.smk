@@ -161,9 +161,7 @@ SLIDING_FILES = {"strength": rules.strength.output[0]}
 # Measured contact maps stand in every atlas, beside the domains computed there.
 MAP_FILES = {"contact_maps": expand(rules.contact_map.output, map=MAPS)} if MAPS else {}
 # What the study has once.
-STUDY_FILES = {
-    stage: getattr(rules, stage).output[0] for stage in EXPERIMENTS if stage in config
-}
+STUDY_FILES = {stage: getattr(rules, stage).output[0] for stage in EXPERIMENTS if stage in config}
 
 
 def stages_of(wildcards):

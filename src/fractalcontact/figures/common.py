@@ -135,14 +135,15 @@ def offset_axis(axes, offsets):
 def label_short_span(axis, below=100):
     """Plain labels at 1, 2 and 5 on a logarithmic axis that spans less than a factor ``below``.
 
-    Powers of ten would be one there, or none, and labels between them would lie over each other.
+    Powers of ten would be one there, or none. Labels between those lie over each other on any axis
+    and are left out.
     To be called once everything is drawn.
     """
     low, high = axis.get_view_interval()
+    axis.set_minor_formatter(NullFormatter())
     if high < below * low:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(NullFormatter())
 
 
 def spread(n, most):
