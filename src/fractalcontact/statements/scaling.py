@@ -11,6 +11,9 @@ NEAR_POINTS, NEAR_FULL = 0.25, 1.75
 #: Verdicts of the size test that decide something; the first is in favour of eq. 6.
 DECIDED = ("agrees", "measured steeper", "measured flatter")
 
+#: An interval of the difference of the two estimates that is wider decides nothing.
+WIDEST = 1.0
+
 #: The two estimates of Delta_sigma, as their variables and in words.
 ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 
@@ -47,9 +50,15 @@ def boxes_follow_one_law(joint):
 def estimates_agree(joint):
     """Whether A_r(s) and box counting have one Delta_sigma, over all loads."""
     states = joint.map_states("scaling")
-    known = np.isfinite(states["difference"].values)
+    width = (states["difference_high"] - states["difference_low"]).values
+    known = width <= WIDEST
     if not known.any():
-        return Finding(UNKNOWN, "no load with both estimates")
+        both = int(np.isfinite(width).sum())
+        return Finding(
+            UNKNOWN,
+            f"{both} loads with both estimates, none with an interval of their difference within "
+            f"{WIDEST:g}",
+        )
     agree = int((~states["disagree"].values[known].astype(bool)).sum())
     difference = states["difference"].values[known]
     return Finding(
