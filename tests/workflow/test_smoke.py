@@ -48,6 +48,8 @@ def run(project, study="config/smoke.yaml", *options):
 def small_study(project, **changes):
     study = yaml.safe_load((project / "config/smoke.yaml").read_text())
     study |= {"study": "test", "scans": "scans", "embedded": {}, "specimens": {}}
+    for experiment in EXPERIMENTS:
+        study.pop(experiment, None)
     study["defaults"] |= {"window": "auto", "offsets": "auto", "loads": ["1 MPa", "10 MPa"]}
     study |= changes
     (project / "config/test.yaml").write_text(yaml.safe_dump(study))

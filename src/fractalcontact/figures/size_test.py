@@ -143,6 +143,7 @@ def _draw_slopes(axes, test):
         )
     axes.axhline(0, color="0.5", lw=0.6)
     axes.set_xscale("log")
+    axes.set_xlim(pressure[0] / 1.3, pressure[-1] * 1.3)
     axes.set_ylim(-2.3, 0.8)
     axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
     axes.set_ylabel(r"slope of $\log\sigma_0$ over $\log b$ (1)")
@@ -166,14 +167,15 @@ def _draw_errors(axes, test, quantity, which):
         style = {"color": colour_of(i), "marker": MARKERS[i], "ms": 3}
         axes.plot(pressure[known], ratio[known], lw=0.8, **style)
     axes.axhline(1, color="0.5", lw=0.6)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
     axes.set_ylabel(f"{words}: predicted / solved (1)")
     letter(axes, which, f"prediction of {words}")
     if not drawn:
+        # Without data a logarithmic axis has no limits.
         nothing_in(axes, "nothing to predict from")
         return
+    axes.set_xscale("log")
+    axes.set_yscale("log")
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, 0.5), max(high, 2))
     plain_decades(axes.yaxis)
