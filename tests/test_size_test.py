@@ -11,6 +11,7 @@ from fractalcontact.halfspace import HalfSpace
 from fractalcontact.joint import composite_topography
 from fractalcontact.scaling import hausdorff_measure
 from fractalcontact.scan import read_faces
+from fractalcontact.size_laws import joint_by_size
 from fractalcontact.size_prediction import PREDICTORS, predict_whole
 from fractalcontact.size_pressing import BEYOND, DOUBLINGS, press_parts
 from fractalcontact.size_test import (
@@ -61,7 +62,14 @@ def pressed_apart(heights, opposite, cells, upper=None, window=9.6, **material):
         reach=0.0 if opposite == "flat" else 1.6,
     )
     direction = "none" if opposite == "flat" else "W"
-    return specimen, size_test(specimen, direction, cells, settings(opposite, **material), SOLVER)
+    return specimen, found_of(specimen, direction, cells, settings(opposite, **material))
+
+
+def found_of(specimen, direction, cells, chosen):
+    """The test, with the strength of the parts as the stage before it has it."""
+    no_dimension = (np.nan,) * 3
+    windows = joint_by_size(specimen, direction, cells, chosen, SOLVER, no_dimension)
+    return size_test(specimen, direction, cells, chosen, SOLVER, windows)
 
 
 @pytest.fixture(scope="module")
@@ -284,7 +292,7 @@ def test_granite_pair():
     )
     lower, upper = read_faces(*pair, {"unit": "mm"})
     specimen = make_specimen(lower, upper, window=26.0, name="granite", multiple=4, reach=3.0)
-    found = size_test(specimen, "W", [0, 1, 2, 4, 8], settings(), SOLVER)
+    found = found_of(specimen, "W", [0, 1, 2, 4, 8], settings())
     assert found.attrs["opposite"] == "scanned"
     assert np.isfinite(found["delta_sigma"].sel(estimator="box_sizes")).any()
     # So few nodes touch that no slope is known to 1.

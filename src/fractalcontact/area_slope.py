@@ -10,11 +10,11 @@ import xarray as xr
 
 from . import theory
 from .area import corrected_area
-from .contact import solve_contact
 from .fitting import mean_interval
 from .halfspace import HalfSpace
 from .labels import about
 from .roughness import slope_statistics
+from .sweep import load_steps
 from .synthesis import self_affine
 
 #: Kinds of surface: with a roll-off many hills share the load, without it a few carry all.
@@ -71,10 +71,9 @@ def area_slope(recipe):
                 roll_off=roll_off,
             )
             slope[i, j] = slope_statistics(surface, SPACING)["rms_slope"]
-            state = None
-            for k, load in enumerate(loads):
-                force = load * E_STAR * slope[i, j] * nominal
-                state = solve_contact(surface, space, force=force, start=state)
+            forces = loads * E_STAR * slope[i, j] * nominal
+            where = f"made surface, seed {seed}, roll-off {roll_off}"
+            for k, state in enumerate(load_steps(surface, space, forces, {}, where)):
                 corrected = corrected_area(state.in_contact, space.spacing)
                 share[:, i, j, k] = state.area / nominal, corrected / nominal
     result = _labelled(share, slope, loads, seeds)

@@ -10,15 +10,15 @@ loads, and with a hardness up to where the whole window yields.
 import numpy as np
 import xarray as xr
 
-from .contact import solve_contact
 from .correlation import correlation_dimension
 from .domain import box_count, box_dimension
 from .fitting import fit_line, mean_interval
 from .halfspace import HalfSpace
 from .joint import prefractal
-from .labels import about
+from .labels import INTERVAL, about
 from .roughness import slope_statistics
 from .scaling import renormalisation
+from .sweep import load_steps
 from .synthesis import self_affine
 
 #: The problem depends on no length and no stress: both are units.
@@ -29,12 +29,6 @@ RMS_PART = 0.01
 
 #: What the paper reads off its Fig. 8, of a surface of this dimension.
 PAPER_DELTA_SIGMA, PAPER_DIMENSION = 1.39, 2.1
-
-_ENDS = {
-    "": "",
-    "_low": ", lower end of the 95 % interval",
-    "_high": ", upper end of the 95 % interval",
-}
 
 #: What is kept of every surface under every load.
 FIELDS = {
@@ -149,9 +143,9 @@ def _estimates(surface, forces, factors, hardness=np.inf):
     for j, factor in enumerate(factors):
         h = prefractal(surface, factor)
         space = HalfSpace(h.shape, (factor * spacing,) * 2, E_STAR)
-        state = None
-        for i, force in enumerate(forces):
-            state = solve_contact(h, space, force=force, start=state, hardness=hardness)
+        where = f"made surface of {size} x {size} nodes, resolution {factor}"
+        states = load_steps(h, space, forces, {"hardness": hardness}, where)
+        for i, state in enumerate(states):
             nodes[i, j] = np.count_nonzero(state.in_contact)
             if j == 0:
                 boxes.append(box_dimension(state.in_contact, spacing))
@@ -161,7 +155,7 @@ def _estimates(surface, forces, factors, hardness=np.inf):
     area = xr.DataArray(nodes, dims=("load", "resolution")) * s**2
     by_area = renormalisation(s, area, xr.DataArray(forces, dims="load"))
     return {
-        **{f"delta_area{end}": by_area[f"delta_sigma{end}"].values for end in _ENDS},
+        **{f"delta_area{end}": by_area[f"delta_sigma{end}"].values for end in INTERVAL},
         "delta_box": [box.dimension for box in boxes],
         "delta_box_low": [box.low for box in boxes],
         "delta_box_high": [box.high for box in boxes],
@@ -232,8 +226,8 @@ def _add_means(result, last):
         values = result[name]
         dims = tuple(dim for dim in values.dims if dim != "seed")
         found = mean_interval(values.values, axis=values.dims.index("seed"))
-        for ending, mean in zip(_ENDS, found[:3], strict=True):
-            words = f"mean over seeds of {values.attrs['long_name']}{_ENDS[ending]}"
+        for ending, mean in zip(INTERVAL, found[:3], strict=True):
+            words = f"mean over seeds of {values.attrs['long_name']}{INTERVAL[ending]}"
             result[f"mean_{name}{ending}"] = (dims, mean, about("1", words))
         result[f"mean_{name}_n"] = (dims, found.n, about("1", "seeds that have it"))
 
@@ -252,7 +246,7 @@ def _add_trends(result):
         lines = [fit_line(x, rows[index].ravel()) for index in np.ndindex(rows.shape[:2])]
         for ending, field in (("", "slope"), ("_low", "slope_low"), ("_high", "slope_high")):
             fitted = np.reshape([getattr(line, field) for line in lines], rows.shape[:2])
-            text = f"change of the difference {words}{_ENDS[ending]}"
+            text = f"change of the difference {words}{INTERVAL[ending]}"
             result[f"{name}{ending}"] = (dims, fitted, about("1", text))
 
 

@@ -286,11 +286,16 @@ def local_slopes(
         Geometric middle of each pair of sides, and the slope between them.
     """
     r, count = np.asarray(r, float), np.asarray(count, float)
-    step = 2.0**octaves
-    start = np.flatnonzero(step * r <= r[-1] * (1 + 1e-9)) if r.size else np.empty(0, int)
-    end = np.searchsorted(r, step * r[start] * (1 - 1e-9))
+    start, end = spans(r, octaves)
     slope = -np.log(count[end] / count[start]) / np.log(r[end] / r[start])
     return np.sqrt(r[start] * r[end]), slope
+
+
+def spans(r: np.ndarray, octaves: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """Places (start, end) of the box sides between which :func:`local_slopes` are taken."""
+    step = 2.0**octaves
+    start = np.flatnonzero(step * r <= r[-1] * (1 + 1e-9)) if r.size else np.empty(0, int)
+    return start, np.searchsorted(r, step * r[start] * (1 - 1e-9))
 
 
 def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:

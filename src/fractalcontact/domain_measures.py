@@ -44,11 +44,16 @@ def domain_measures(domain, spacing, pressure=None):
         where there is none.
     """
     domain = np.asarray(domain, dtype=bool)
+    return _row(domain, spacing, lacunarity(domain, spacing), pressure)
+
+
+def _row(domain, spacing, gliding, pressure):
+    """:func:`domain_measures` of a domain whose lacunarity is known."""
     box = box_dimension(domain, spacing)
     slopes = {
         "box_dimension": (box.dimension, box.low, box.high, box.r_min, box.r_max, box.n),
         "correlation_dimension": correlation_dimension(domain, spacing),
-        "lacunarity_slope": lacunarity(domain, spacing).slope if domain.any() else NO_SLOPE,
+        "lacunarity_slope": gliding.slope if domain.any() else NO_SLOPE,
     }
     mass = domain if pressure is None else pressure
     for q, slope in generalised_dimensions(mass, spacing).items():
@@ -94,8 +99,8 @@ def measures_of_states(domains, pressures, spacing, forces):
             f"domains {domains.shape}, pressures {pressures.shape} and {forces.size} forces "
             "do not belong together"
         )
-    rows = [domain_measures(d, spacing, p) for d, p in zip(domains, pressures, strict=True)]
     curves = [lacunarity(domain, spacing) for domain in domains]
+    rows = [_row(d, spacing, *of) for d, *of in zip(domains, curves, pressures, strict=True)]
     side, slopes = _local_slopes(domains, spacing)
     variables = {}
     for name, long_name in SLOPES.items():

@@ -9,7 +9,7 @@ import xarray as xr
 
 from .fitting import fit_line, mean_interval, without_mean_plane
 from .joint import direction_spacing, face_correlation, rigid_dilatancy
-from .labels import about
+from .labels import INTERVAL, about
 from .roughness import slope_statistics
 from .specimen import DIRECTIONS, faces, largest_offset, make_specimen, window_slices
 from .synthesis import embedded_surface
@@ -64,11 +64,8 @@ def roll_off_effect(recipe, window, seeds):
     opened = result["rigid_dilatancy"].mean("direction").transpose("surface", "seed", ...).values
     slopes = [[fit_line(v[second], row[second]).slope for row in rows] for rows in opened]
     found = mean_interval(slopes, axis=1)
-    for ending, values in (("", found.value), ("_low", found.low), ("_high", found.high)):
-        words = "slope of the rigid dilatancy over the second half of v, mean over seeds"
-        words += {"": "", "_low": ", lower end of its 95 % interval"}.get(
-            ending, ", upper end of its 95 % interval"
-        )
+    for (ending, end), values in zip(INTERVAL.items(), found[:3], strict=True):
+        words = f"slope of the rigid dilatancy over the second half of v, mean over seeds{end}"
         result[f"slope{ending}"] = ("surface", values, about("1", words))
     result.attrs = {"roll_off": recipe["roll_off"], "window": window, "label": recipe["label"]}
     return result

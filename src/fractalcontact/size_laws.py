@@ -10,11 +10,12 @@ from .strength import (
     dilatancy_angle,
     from_flush,
     peak,
+    profile_roughness,
     residual,
     shear_strength,
 )
 from .theory import LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
-from .windows import ENDINGS, FIRST_CELLS, LAST_PART
+from .windows import ENDINGS, FIRST_CELLS, LAST_PART, window_states
 
 #: Offsets, as shares of the side b, at which sizes are compared. Barton and Bandis put the peak of
 #: a laboratory joint at 1 to 3 % of its length (L/500 (JRC/L)^0.33, in m).
@@ -34,6 +35,36 @@ _OVER_LOADS = {
     "interface_compliance": ("compliance_exponent", "exponent of interface compliance against b"),
     "area_share": ("area_exponent", "exponent of A_r/A_0 against b"),
 }
+
+
+def joint_by_size(specimen, direction, cells, settings, solver, dimension):
+    """Press parts of the window, and fit how closure, roughness and strength go with their size.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    direction : str
+    cells : (n,) int array_like
+        Offsets in cells, ascending.
+    settings : dict
+        From :func:`fractalcontact.study.resolve_settings`.
+    solver : dict
+        ``rtol`` and ``kernel``.
+    dimension : (float, float, float)
+        As for :func:`size_laws`.
+
+    Returns
+    -------
+    xr.Dataset
+        From :func:`size_laws`.
+    """
+    states = window_states(specimen, direction, cells, settings, solver)
+    slides = direction != "none"
+    roughness = float(profile_roughness(specimen, direction)["jrc_used"]) if slides else np.nan
+    lags = settings["surface_range"]
+    # A window of side b looks at waves of b, a lag at waves of twice its length.
+    sides = None if lags is None else [2 * lag for lag in lags]
+    return size_laws(states, settings["material"], roughness, dimension, sides)
 
 
 def size_laws(states, material, roughness, dimension, fit_range=None):

@@ -4,19 +4,11 @@ import numpy as np
 import xarray as xr
 
 from .fitting import fit_line, mean_interval
-from .labels import about
-from .size_laws import strength_by_size
-from .windows import window_states
+from .labels import INTERVAL, about
 
 #: How the whole window is predicted from smaller ones; the middle ones are eq. 6 with Delta_sigma
 #: by each estimator.
 PREDICTORS = ("power_law", "eq6_area", "eq6_box", "eq6_box_sizes", "no_size_effect")
-
-_ENDS = {
-    "": "",
-    "_low": ", lower end of the 95 % interval",
-    "_high": ", upper end of the 95 % interval",
-}
 
 
 def predict_whole(pressed, delta_sigma, fewest_nodes):
@@ -81,13 +73,13 @@ def predict_whole(pressed, delta_sigma, fewest_nodes):
     return result
 
 
-def predict_whole_strength(specimen, direction, cells, settings, solver, delta_sigma):
+def predict_whole_strength(laws, delta_sigma):
     """Shear strength of the whole window at v/b as small windows predict it, and as solved.
 
     Parameters
     ----------
-    specimen, direction, cells, settings, solver
-        As for :func:`fractalcontact.windows.window_states`.
+    laws : xr.Dataset
+        From :func:`fractalcontact.size_laws.joint_by_size`, of a joint that slides.
     delta_sigma : xr.DataArray (estimator, load)
         Of the whole window.
 
@@ -104,13 +96,11 @@ def predict_whole_strength(specimen, direction, cells, settings, solver, delta_s
     Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0 fall as
     b^-(2 - Delta).
     """
-    states = window_states(specimen, direction, cells, settings, solver)
-    laws = strength_by_size(states, settings["material"], np.nan)
     at = int(np.argmax(np.isfinite(laws["similar_slope"]).all("load").sum("part").values))
     chosen = laws.isel(share=at)
     strength = chosen["similar_strength"].transpose("part", "load").values
     strength = np.where(strength > 0, strength, np.nan)
-    b, forces = states["side"].values, states["load"].values
+    b, forces = laws["side"].values, laws["load"].values
     delta = delta_sigma.sel(load=forces, method="nearest").values
     ratio = b[1:] / b[0]
     smaller = strength[1:].T
@@ -166,7 +156,7 @@ def _on_curve(at, pressures, curves):
 
 def _add(result, name, found, direct, dim, units, words):
     """Predictions (predictor, 3, n), the value solved and the errors, into ``result``."""
-    for i, (ending, more) in enumerate(_ENDS.items()):
+    for i, (ending, more) in enumerate(INTERVAL.items()):
         text = f"{words} of the whole window, predicted from smaller ones{more}"
         result[f"predicted_{name}{ending}"] = (("predictor", dim), found[:, i], about(units, text))
     text = f"{words} of the whole window, solved"

@@ -4,12 +4,11 @@ import numpy as np
 import xarray as xr
 
 from .closure import bulk_settlement
-from .contact import NotConverged, solve_contact
 from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing, prefractal
 from .labels import about
 from .specimen import nominal_area
-from .sweep import forces_of, hardness_of
+from .sweep import forces_of, hardness_of, load_steps
 from .windows import FEWEST_CELLS, PARTS, split
 
 #: A resolution is used if the smallest sub-windows keep so many nodes a side at it.
@@ -77,7 +76,8 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
             settlement = bulk_settlement(loads, space.modulus, *sides[i])
             for j, window in enumerate(windows):
                 where = f"{n} x {n} parts, sub-window {j}, resolution {factor}"
-                states = _load_steps(prefractal(window, factor), space, loads, solving, where)
+                h = prefractal(window, factor)
+                states = list(load_steps(h, space, loads, solving, where))
                 touching = np.array([state.in_contact for state in states])
                 nodes[i, j, k] = touching.sum(axis=(1, 2))
                 if factor == factors[0]:
@@ -135,15 +135,15 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     return pressed, domains
 
 
-def whole_areas(specimen, direction, cells, settings, solver, loads):
+def whole_areas(specimen, direction, cells, settings, solver, pressed):
     """Real area of the whole window at all resolutions of the study.
 
     Parameters
     ----------
     specimen, direction, cells, settings, solver
         As for :func:`press_parts`.
-    loads : xr.DataArray (load,)
-        Forces, N.
+    pressed : xr.Dataset
+        From :func:`press_parts`, which has solved some of the resolutions.
 
     Returns
     -------
@@ -154,8 +154,15 @@ def whole_areas(specimen, direction, cells, settings, solver, loads):
     spacing = np.array([specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]])
     factors = settings["resolutions"]
     solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
+    loads = pressed["load"]
+    known = pressed["nodes"].sel(part=1).isel(window=0, step=slice(len(loads)))
+    # That of press_parts is cut to whole cells of its coarsest resolution.
+    uncut = not any(n % known["resolution"].max() for n in composite.shape)
     areas = []
     for factor in factors:
+        if uncut and factor in known["resolution"]:
+            areas.append(known.sel(resolution=factor).values * np.prod(spacing * factor))
+            continue
         h = prefractal(composite, factor)
         space = HalfSpace(
             h.shape,
@@ -163,7 +170,7 @@ def whole_areas(specimen, direction, cells, settings, solver, loads):
             settings["material"]["e_star"],
             kernel=solver["kernel"],
         )
-        states = _load_steps(h, space, loads.values, solving, f"resolution {factor}")
+        states = load_steps(h, space, loads.values, solving, f"resolution {factor}")
         areas.append([state.area for state in states])
     coords = {"resolution": factors, "load": loads}
     return xr.DataArray(areas, dims=("resolution", "load"), coords=coords)
@@ -180,16 +187,3 @@ def _cut(composite, parts, multiple):
     windows = split(composite, parts)
     ny, nx = (n // multiple * multiple for n in windows.shape[1:])
     return windows[:, :ny, :nx]
-
-
-def _load_steps(composite, space, forces, solving, where):
-    """States of one sub-window under rising forces."""
-    states = []
-    for force in forces:
-        try:
-            start = states[-1] if states else None
-            states.append(solve_contact(composite, space, force=force, start=start, **solving))
-        except NotConverged as error:
-            error.add_note(f"{where}, F = {force:g} N")
-            raise
-    return states

@@ -19,11 +19,12 @@ import xarray as xr
 from .domain import box_dimension
 from .fitting import fit_line
 from .joint import direction_spacing
-from .labels import about
+from .labels import INTERVAL, about
 from .scaling import FEWEST_NODES, renormalisation
 from .size_prediction import predict_whole, predict_whole_strength
 from .size_pressing import press_parts, whole_areas
 from .specimen import cell_side
+from .sweep import chosen_offset
 from .windows import PARTS, split
 
 #: A slope whose 95 % interval is wider than this decides nothing.
@@ -51,7 +52,7 @@ VERDICTS = (
 )
 
 
-def size_test(specimen, direction, cells, settings, solver, parts=PARTS):
+def size_test(specimen, direction, cells, settings, solver, windows, parts=PARTS):
     """Slope of log sigma_0 over log b at equal sigma*, beside what eq. 6 predicts.
 
     Parameters
@@ -60,11 +61,13 @@ def size_test(specimen, direction, cells, settings, solver, parts=PARTS):
     direction : str
     cells : (n,) int array_like
         Offsets in cells, ascending. Contact is tested at the study's map offset (without one the
-        third); strength takes all of them.
+        third).
     settings : dict
         From :func:`fractalcontact.study.resolve_settings`.
     solver : dict
         ``rtol`` and ``kernel``.
+    windows : xr.Dataset
+        From :func:`fractalcontact.size_laws.joint_by_size`: strength of the parts at all offsets.
     parts : sequence of int
         Sub-windows along each side; all of them are pressed. Sizes below `FEWEST_CELLS` cells a
         side are left out.
@@ -104,29 +107,18 @@ def size_test(specimen, direction, cells, settings, solver, parts=PARTS):
         If a state could not be verified; the message names it.
     """
     cells = np.asarray(cells, int)
-    spacing = direction_spacing(specimen, direction)
-    chosen = _map_cells(cells, spacing, settings["map_offset"])
+    offsets = cells * direction_spacing(specimen, direction)
+    chosen = int(cells[offsets == chosen_offset(settings["map_offset"], offsets)][0])
     pressed, domains = press_parts(specimen, direction, chosen, settings, solver, parts)
     result = pressed.drop_vars(["nodes", "interface_closure"])
-    areas = whole_areas(specimen, direction, chosen, settings, solver, pressed["load"])
+    areas = whole_areas(specimen, direction, chosen, settings, solver, pressed)
     result = result.merge(_dimensions(specimen, pressed, domains, areas, settings))
     result = result.merge(_equal_pressures(pressed, result.sizes["load"]))
     result = result.merge(_verdicts(result))
     result = result.merge(predict_whole(pressed, result["delta_sigma"], FEWEST_NODES))
     if direction != "none":
-        result = result.merge(
-            predict_whole_strength(
-                specimen, direction, cells, settings, solver, result["delta_sigma"]
-            )
-        )
+        result = result.merge(predict_whole_strength(windows, result["delta_sigma"]))
     return result.assign_attrs(opposite=specimen.attrs["opposite"], summary=summary(result))
-
-
-def _map_cells(cells, spacing, wanted):
-    """The offset, in cells, whose contact the study draws."""
-    if wanted is None:
-        return int(cells[min(2, len(cells) - 1)])
-    return int(cells[np.argmin(np.abs(cells * spacing - wanted))])
 
 
 # -- what eq. 6 predicts ---------------------------------------------------------------------------
@@ -163,11 +155,7 @@ def _dimensions(specimen, pressed, domains, areas, settings):
         },
         coords={"estimator": list(ESTIMATORS)},
     )
-    for ending, words, n in (
-        ("", "", 0),
-        ("_low", ", lower end of the 95 % interval", 1),
-        ("_high", ", upper end of the 95 % interval", 2),
-    ):
+    for n, (ending, words) in enumerate(INTERVAL.items()):
         text = f"dimension of the contact domain of the whole window{words}"
         result[f"delta_sigma{ending}"] = (dims, delta[:, n], about("1", text))
         text = f"slope -(2 - Delta_sigma) of eq. 6{words}"
@@ -326,14 +314,10 @@ def _median(pressures):
 
 
 def _add_lines(result, name, lines, words):
-    for ending, field, more in (
-        ("", "slope", ""),
-        ("_low", "slope_low", ", lower end of the 95 % interval"),
-        ("_high", "slope_high", ", upper end of the 95 % interval"),
-        ("_n", "n", ", points fitted"),
-    ):
-        values = [getattr(line, field) for line in lines]
+    for ending, more in INTERVAL.items():
+        values = [getattr(line, f"slope{ending}") for line in lines]
         result[f"{name}{ending}"] = ("load", values, about("1", f"{words}{more}"))
+    result[f"{name}_n"] = ("load", [x.n for x in lines], about("1", f"{words}, points fitted"))
     for ending, field in (("_b_min", "x_min"), ("_b_max", "x_max")):
         values = np.exp([getattr(line, field) for line in lines])
         which = "smallest" if ending == "_b_min" else "largest"

@@ -7,7 +7,7 @@ the dimension and not to the way a surface was made.
 
 import numpy as np
 
-from .fitting import without_mean_plane
+from .synthesis import check_surface, levelled
 
 #: Ratio of neighbouring frequencies of the Weierstrass-Mandelbrot surface (Berry & Lewis).
 FREQUENCY_RATIO = 1.5
@@ -46,7 +46,7 @@ def weierstrass_mandelbrot(shape, spacing, hurst, *, rms, seed):
     gamma^n, from waves of twice the longer side to waves of two nodes, in evenly spread directions
     with random phases. The whole fan of directions is turned at random from frequency to frequency.
     """
-    _check(shape, hurst, spacing, rms)
+    check_surface(shape, hurst, spacing, rms)
     generator = np.random.Generator(np.random.PCG64(seed))
     y, x = (np.arange(n, dtype=float) for n in shape)
     octaves = np.log(max(shape)) / np.log(FREQUENCY_RATIO)
@@ -62,7 +62,7 @@ def weierstrass_mandelbrot(shape, spacing, hurst, *, rms, seed):
             # cos(a + b) from one sine and cosine of each row and column.
             wave = np.cos(along_y) * np.cos(along_x) - np.sin(along_y) * np.sin(along_x)
             heights += FREQUENCY_RATIO ** (-hurst * n) * wave
-    return _levelled(heights, rms)
+    return levelled(heights, rms)
 
 
 def random_midpoint(shape, spacing, hurst, *, rms, seed):
@@ -77,7 +77,7 @@ def random_midpoint(shape, spacing, hurst, *, rms, seed):
     neighbours and adds to all nodes a number of standard deviation 2^(-H step). Displacing the new
     nodes alone leaves creases along the old ones.
     """
-    _check(shape, hurst, spacing, rms)
+    check_surface(shape, hurst, spacing, rms)
     generator = np.random.Generator(np.random.PCG64(seed))
     heights = generator.standard_normal((3, 3))
     step = 0
@@ -89,7 +89,7 @@ def random_midpoint(shape, spacing, hurst, *, rms, seed):
             finer[::2], finer[1::2] = old, (old[1:] + old[:-1]) / 2
             heights = np.moveaxis(finer, 0, axis)
         heights = heights + 2.0 ** (-hurst * step) * generator.standard_normal(heights.shape)
-    return _levelled(heights[: shape[0], : shape[1]], rms)
+    return levelled(heights[: shape[0], : shape[1]], rms)
 
 
 def cantor_punch(generations, *, parts=2, narrowing=1.5, lowering=1.3):
@@ -171,18 +171,3 @@ def extruded(profile, rows):
     (rows, nx) ndarray
     """
     return np.tile(np.asarray(profile), (rows, 1))
-
-
-def _check(shape, hurst, spacing, rms):
-    if not 0 < hurst < 1:
-        raise ValueError(f"the Hurst exponent must lie between 0 and 1, not {hurst}")
-    if min(spacing, rms) <= 0:
-        raise ValueError(f"spacing and rms must be positive, not {spacing}, {rms}")
-    if min(shape) < 2:
-        raise ValueError(f"a surface needs at least 2 x 2 cells, not {shape}")
-
-
-def _levelled(heights, rms):
-    """Heights about their mean plane, scaled to an rms."""
-    heights = without_mean_plane(heights)
-    return heights * (rms / np.sqrt(np.mean(heights**2)))

@@ -68,14 +68,9 @@ def self_affine(
     Spectral synthesis: Saupe in Peitgen & Saupe (1988), The Science of Fractal Images; spectrum
     with a roll-off: Persson et al., J. Phys. Condens. Matter 17 (2005) R1.
     """
-    if not 0 < hurst < 1:
-        raise ValueError(f"the Hurst exponent must lie between 0 and 1, not {hurst}")
-    if min(spacing, rms) <= 0 or (roll_off is not None and roll_off <= 0):
-        raise ValueError(
-            f"spacing, rms and roll_off must be positive, not {spacing}, {rms}, {roll_off}"
-        )
-    if min(shape) < 2:
-        raise ValueError(f"a surface needs at least 2 x 2 cells, not {shape}")
+    check_surface(shape, hurst, spacing, rms)
+    if roll_off is not None and roll_off <= 0:
+        raise ValueError(f"roll_off must be positive, not {roll_off}")
 
     side = scipy.fft.next_fast_len(EMBEDDING * max(shape), real=True)
     noise = np.random.Generator(np.random.PCG64(seed)).standard_normal((side, side))
@@ -84,8 +79,29 @@ def self_affine(
     spectrum *= np.sqrt(_power_spectral_density(side, spacing, hurst, roll_off))
     surface = scipy.fft.irfft2(spectrum, s=(side, side), workers=1)
 
-    patch = without_mean_plane(surface[: shape[0], : shape[1]])
-    return patch * (rms / np.sqrt(np.mean(patch**2)))
+    return levelled(surface[: shape[0], : shape[1]], rms)
+
+
+def check_surface(shape, hurst, spacing, rms):
+    """Refuse what no surface can be made of.
+
+    Raises
+    ------
+    ValueError
+        If H, a length or the shape is out of range.
+    """
+    if not 0 < hurst < 1:
+        raise ValueError(f"the Hurst exponent must lie between 0 and 1, not {hurst}")
+    if min(spacing, rms) <= 0:
+        raise ValueError(f"spacing and rms must be positive, not {spacing}, {rms}")
+    if min(shape) < 2:
+        raise ValueError(f"a surface needs at least 2 x 2 cells, not {shape}")
+
+
+def levelled(heights, rms):
+    """Heights about their mean plane, scaled to an rms."""
+    heights = without_mean_plane(heights)
+    return heights * (rms / np.sqrt(np.mean(heights**2)))
 
 
 def _power_spectral_density(

@@ -15,15 +15,14 @@ from fractalcontact.estimator_bias import estimator_bias
 from fractalcontact.joint import describe_joint
 from fractalcontact.roll_off import roll_off_effect
 from fractalcontact.roughness import best_dimension, surface_dimension
-from fractalcontact.size_laws import size_laws
+from fractalcontact.size_laws import joint_by_size
 from fractalcontact.size_test import size_test
 from fractalcontact.specimen import make_specimen, window_sides
 from fractalcontact.statements import judge
-from fractalcontact.strength import joint_strength, profile_roughness
+from fractalcontact.strength import joint_strength
 from fractalcontact.study import resolve_settings, window_arguments
 from fractalcontact.sweep import combine, contact_states, domains_of, force_range, map_states
 from fractalcontact.synthesis import self_affine
-from fractalcontact.windows import window_states
 
 SPACING = 0.1  # mm
 SOLVER = {"rtol": 1e-6, "kernel": "love"}
@@ -118,16 +117,6 @@ def _scans():
     }
 
 
-def windows_of(specimen, joint, settings, dimension):
-    """Parts of the window, as the workflow presses them."""
-    direction = settings["contact_directions"][0]
-    cells = np.sort(joint["offset_cells"][0].values)
-    states = window_states(specimen, direction, cells, settings, SOLVER)
-    slides = direction != "none"
-    roughness = float(profile_roughness(specimen, direction)["jrc_used"]) if slides else np.nan
-    return size_laws(states, settings["material"], roughness, dimension)
-
-
 @pytest.fixture(scope="session")
 def atlas_file(tmp_path_factory):
     """Path of an atlas with the specimens sliding, flat and pair."""
@@ -166,7 +155,14 @@ def atlas_file(tmp_path_factory):
             chosen["material"]["e_star"],
             best_dimension(dimension)[0],
         )
-        windows = windows_of(specimen, joint, chosen, best_dimension(dimension))
+        of_solved = (
+            specimen,
+            chosen["contact_directions"][0],
+            np.sort(joint["offset_cells"][0].values),
+            chosen,
+            SOLVER,
+        )
+        windows = joint_by_size(*of_solved, best_dimension(dimension))
         made = {
             "specimens": specimen,
             "surface_dimension": dimension,
@@ -179,13 +175,7 @@ def atlas_file(tmp_path_factory):
             "domains": domains,
             "scaling": scaling_over_resolutions(curves, domains, SPACING),
         }
-        made["size_test"] = size_test(
-            specimen,
-            chosen["contact_directions"][0],
-            np.sort(joint["offset_cells"][0].values),
-            chosen,
-            SOLVER,
-        )
+        made["size_test"] = size_test(*of_solved, windows)
         looked_at = map_states(specimen, joint, chosen, SOLVER)
         made["domain_measures"] = measures_of_states(
             looked_at["in_contact"].values,

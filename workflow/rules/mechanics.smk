@@ -20,7 +20,7 @@ rule windows:
     params:
         settings=settings_of,
         solver=SOLVER,
-        code=code("windows", "size_laws", "store"),
+        code=code("size_laws", "store"),
     script:
         "../scripts/windows.py"
 

@@ -29,6 +29,7 @@ rule size_test:
     input:
         specimen=rules.specimen.output[0],
         joint=rules.joint.output[0],
+        windows=rules.windows.output[0],
     output:
         f"{RESULTS}/size_test/{{specimen}}.nc",
     log:

@@ -14,6 +14,7 @@ with reported(snakemake.log) as log:
         np.sort(store.read(snakemake.input.joint)["offset_cells"][0].values),
         settings,
         snakemake.params.solver,
+        store.read(snakemake.input.windows),
     )
     store.write(result, snakemake.output[0])
     log.info("%s", result)

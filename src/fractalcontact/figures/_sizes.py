@@ -3,8 +3,12 @@
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from ._words import estimate, length_unit
+from ._words import estimate, length_unit, short
 
+#: Where more than this share of the sub-windows had their angle held, a marker is left open.
+MOSTLY = 0.5
+#: Why no strength is drawn.
+NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
 #: Over more decades than this, 1, 2 and 5 would crowd.
 _FEW_DECADES = 2.5
 #: The frame ends at this part of the smallest mean; a bar as much shorter leaves it for certain.
@@ -31,6 +35,24 @@ def size_axis(axes, b, of):
     plain_decades(axes.xaxis)
     axes.xaxis.set_major_formatter(lambda value, _: f"{value / size:g}")
     axes.set_xlabel(f"side $b$ of the {of} ({name})")
+
+
+def share_shown(laws, name):
+    """Index of the smallest v/b at which all sizes have a value, else most of them."""
+    known = np.isfinite(laws[name].values).all(axis=2).sum(axis=1)
+    return int(np.argmax(known))
+
+
+def share_words(laws, share):
+    """A v/b in per cent."""
+    return f"{short(100 * float(laws['share'][share]))} %"
+
+
+def draw_means(axes, b, mean, held, colour, marker):
+    """Means over sub-windows against b; open where most of the sub-windows had their angle held."""
+    mostly = held > MOSTLY
+    for chosen, face in ((mostly, "white"), (~mostly, colour)):
+        axes.plot(b[chosen], mean[chosen], ls="none", marker=marker, mec=colour, mfc=face)
 
 
 def nothing_in(axes, why):

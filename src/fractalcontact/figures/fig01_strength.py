@@ -6,12 +6,17 @@ from matplotlib.figure import Figure
 
 from ..theory import LARGEST_FRICTION_ANGLE
 from ._sizes import (
+    MOSTLY,
+    NO_STRENGTH,
     along_size,
     apart,
     draw_bars,
+    draw_means,
     interval_text,
     logarithmic,
     nothing_in,
+    share_shown,
+    share_words,
     size_axis,
 )
 from ._words import opening, place, short
@@ -27,8 +32,6 @@ from .common import (
     settings_of,
 )
 
-#: Where more than this share of the sub-windows had their angle held, a marker is left open.
-_MOSTLY = 0.5
 #: Joints that Bandis et al. (1981) sheared, mm.
 _MEASURED = (50.0, 400.0)
 #: Sizes a comparison needs.
@@ -51,7 +54,7 @@ def draw(atlas, name):
     """
     settings = settings_of(atlas, name)
     laws = group(atlas, "windows", name)
-    share = _share_shown(laws)
+    share = share_shown(laws, "similar_slope")
     figure = Figure(figsize=(WIDTH, 4.6))
     strength, slope = figure.subplots(1, 2)
     _draw_strength(strength, laws, share)
@@ -62,12 +65,6 @@ def draw(atlas, name):
     return Drawing(figure, _table(laws), _caption(settings, laws, share))
 
 
-def _share_shown(laws):
-    """Index of the smallest v/b at which all sizes can be compared, else most of them."""
-    known = np.isfinite(laws["similar_slope"].values).all(axis=2).sum(axis=1)
-    return int(np.argmax(known))
-
-
 def _draw_strength(axes, laws, share):
     b, loads = laws["side"].values, laws.sizes["load"]
     drawn = np.isfinite(laws["similar_strength"][share].values).any()
@@ -75,9 +72,7 @@ def _draw_strength(axes, laws, share):
         colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
         mean, low, high = along_size(laws.isel(share=share), "similar_strength", (j,))
         beside = apart(b, j, loads)
-        held = laws["similar_held"].values[share, :, j] > _MOSTLY
-        for chosen, face in ((held, "white"), (~held, colour)):
-            axes.plot(beside[chosen], mean[chosen], ls="none", marker=marker, mec=colour, mfc=face)
+        draw_means(axes, beside, mean, laws["similar_held"].values[share, :, j], colour, marker)
         draw_bars(axes, beside, mean, low, high, colour)
         barton = laws["barton_strength"].values[:, j]
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
@@ -89,16 +84,14 @@ def _draw_strength(axes, laws, share):
     size_axis(axes, b, "joint")
     if drawn:
         logarithmic(axes, laws["similar_strength"].values[share])
-        if (laws["similar_held"].values[share] > _MOSTLY).any():
+        if (laws["similar_held"].values[share] > MOSTLY).any():
             axes.plot([], [], "o", color="k", mfc="white", label=_held_label())
     else:
-        nothing_in(
-            axes, "no strength: the study states no basic\nfriction angle, or no offset fits"
-        )
+        nothing_in(axes, NO_STRENGTH)
     if np.isfinite(laws["barton_strength"]).any():
         axes.plot([], [], "k--", lw=0.8, label="Barton and Bandis' scale law")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
-    letter(axes, "a", f"strength at $v$ = {_percent(laws, share)} of $b$")
+    letter(axes, "a", f"strength at $v$ = {share_words(laws, share)} of $b$")
 
 
 def _held_label():
@@ -134,11 +127,7 @@ def _draw_slope(axes, laws, share):
     else:
         nothing_in(axes, "no offset lies at one v/b of the sizes")
     axes.set_ylabel(r"slope $d\delta/dv$ of the dilatancy curve (mm/mm)")
-    letter(axes, "b", f"dilatancy at $v$ = {_percent(laws, share)} of $b$")
-
-
-def _percent(laws, share):
-    return f"{short(100 * float(laws['share'][share]))} %"
+    letter(axes, "b", f"dilatancy at $v$ = {share_words(laws, share)} of $b$")
 
 
 def _table(laws):
@@ -178,7 +167,7 @@ def _caption(settings, laws, share):
     where = place(str(laws["direction"].values))
     return (
         f"{opening('Fig. 1b', settings['label'], where)} Computed, without laboratory points. "
-        f"(a) Shear strength of sub-windows at v = {_percent(laws, share)} of their side, mean "
+        f"(a) Shear strength of sub-windows at v = {share_words(laws, share)} of their side, mean "
         "with its 95 % interval; open markers: most of them held at "
         f"{LARGEST_FRICTION_ANGLE:g} degrees. (b) Slope of their dilatancy curve there, which "
         f"nothing holds. {_similar_words(laws, share)} {_same_offset_words(laws)} "
@@ -222,7 +211,7 @@ def _similar_words(laws, share):
 def _peak_words(laws):
     held = float(np.nanmean(laws["held_share"]))
     words = f"The peak over all offsets is held in {short(100 * held)} % of the sub-windows"
-    if held > _MOSTLY:
+    if held > MOSTLY:
         return f"{words}, which says nothing of size"
     low, high = (laws[f"strength_exponent_{end}"].values for end in ("low", "high"))
     return (

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from ..domain import local_slopes, spans
 from ..fitting import fit_line
 from ._domains import Loading, disagreement
 from ._maps import draw_domain
@@ -52,12 +53,10 @@ def _table(counts):
     # Delta_sigma is that of the counts averaged over all origins; its line is drawn through these.
     delta = counts["delta_sigma"].item()
     level = np.mean(np.log(n[used]) + delta * np.log(r[used])) if used.any() else np.nan
-    # Neighbouring sizes are so close that whole counts make their slopes jump: over a doubling.
-    start = np.flatnonzero(2 * r <= r[-1] * (1 + 1e-9))
-    end = np.searchsorted(r, 2 * r[start] * (1 - 1e-9))
     to_side, slope = np.full((2, r.size), np.nan)
+    start, end = spans(r)
     to_side[start] = r[end]
-    slope[start] = -np.log(n[end] / n[start]) / np.log(r[end] / r[start])
+    _, slope[start] = local_slopes(r, n)
     return pd.DataFrame(
         {
             "box_side_mm": r,

@@ -4,8 +4,20 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ._sizes import along_size, apart, draw_bars, nothing_in, plain_decades, size_axis
-from ._words import estimate, opening, place, short
+from ._sizes import (
+    NO_STRENGTH,
+    along_size,
+    apart,
+    draw_bars,
+    draw_means,
+    interval_text,
+    nothing_in,
+    plain_decades,
+    share_shown,
+    share_words,
+    size_axis,
+)
+from ._words import opening, place, short
 from .common import (
     MARKERS,
     WIDTH,
@@ -20,8 +32,6 @@ from .common import (
 
 #: Delta_sigma that later work of the paper's school takes from Bandis' shear tests.
 QUOTED_DELTA = 1.66
-#: Where more than this share of the sub-windows had their angle held, a marker is left open.
-_MOSTLY = 0.5
 
 
 def draw(atlas, name):
@@ -40,11 +50,10 @@ def draw(atlas, name):
     """
     settings = settings_of(atlas, name)
     laws = group(atlas, "windows", name)
-    known = np.isfinite(laws["similar_strength"].values).all(axis=2).sum(axis=1)
-    share = int(np.argmax(known))
+    share = share_shown(laws, "similar_strength")
     figure = Figure(figsize=(WIDTH, 4.4))
     angle, strength = figure.subplots(1, 2)
-    drawn = bool(known[share])
+    drawn = bool(np.isfinite(laws["similar_strength"].values[share]).all(axis=1).any())
     _draw_angle(angle, laws, share, drawn)
     _draw_ratio(strength, laws, share, drawn)
     figure.suptitle(f"{settings['label']}, {place(str(laws['direction'].values))}", fontsize=9)
@@ -71,9 +80,7 @@ def _draw_angle(axes, laws, share, drawn):
         ends = along_size(laws.isel(share=share), "similar_strength", (j,))
         mean, low, high = (slope_angle(values, pressure) for values in ends)
         beside = apart(b, j, len(pressures))
-        held = laws["similar_held"].values[share, :, j] > _MOSTLY
-        for chosen, face in ((held, "white"), (~held, colour)):
-            axes.plot(beside[chosen], mean[chosen], ls="none", marker=marker, mec=colour, mfc=face)
+        draw_means(axes, beside, mean, laws["similar_held"].values[share, :, j], colour, marker)
         draw_bars(axes, beside, mean, np.maximum(low, 0), high, colour)
         barton = slope_angle(laws["barton_strength"].values[:, j], pressure)
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
@@ -85,11 +92,9 @@ def _draw_angle(axes, laws, share, drawn):
     size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)
     axes.set_ylabel("limit slope angle (degrees)")
-    letter(axes, "a", f"angle at $v$ = {_percent(laws, share)} of $b$")
+    letter(axes, "a", f"angle at $v$ = {share_words(laws, share)} of $b$")
     if not drawn:
-        nothing_in(
-            axes, "no strength: the study states no basic\nfriction angle, or no offset fits"
-        )
+        nothing_in(axes, NO_STRENGTH)
 
 
 def _draw_ratio(axes, laws, share, drawn):
@@ -99,7 +104,7 @@ def _draw_ratio(axes, laws, share, drawn):
         values = laws["similar_strength"].values[share, :, j]
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)], "ls": "none"}
         axes.plot(apart(b, j, len(pressures)), values / values[0], **style)
-        exponent = _exponent(laws, share, j)
+        exponent = interval_text(laws, "similar_strength_exponent", (share, j))
         label = rf"$\sigma_n$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
         axes.plot([], [], **style, label=label)
     slope = QUOTED_DELTA - 2
@@ -118,19 +123,6 @@ def _draw_ratio(axes, laws, share, drawn):
     known = ratio[np.isfinite(ratio) & (ratio > 0)]
     axes.set_ylim(0.7 * min(known.min(), 1), 1.4 * max(known.max(), quoted))
     plain_decades(axes.yaxis)
-
-
-def _exponent(laws, share, j):
-    return estimate(
-        *(
-            float(laws[f"similar_strength_exponent{end}"].values[share, j])
-            for end in ("", "_low", "_high")
-        )
-    )
-
-
-def _percent(laws, share):
-    return f"{short(100 * float(laws['share'][share]))} %"
 
 
 def _table(laws):
@@ -179,7 +171,7 @@ def _caption(settings, laws, share, drawn):
     counts = ", ".join(str(n) for n in laws["windows"].values)
     return (
         f"{first} Computed, not the paper's tilt tests. (a) Limit slope angle atan(tau/sigma_n) of "
-        f"{counts} sub-windows (from the largest down) at v = {_percent(laws, share)} of their "
+        f"{counts} sub-windows (from the largest down) at v = {share_words(laws, share)} of their "
         "side, mean with its 95 % interval. (b) Their strength over that of the whole window; the "
         f"dotted line has the exponent -(2 - {QUOTED_DELTA:g}) that later work of the same school "
         "quotes for Bandis' shear tests on joints of 50 to 400 mm, and is no result of this model. "
