@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from fractalcontact import figures
-from fractalcontact.figures import _words, common, fig09_box_counting
+from fractalcontact.figures import _words, common
 from fractalcontact.figures._domains import Loading, trend
 from fractalcontact.figures._size_effect import fractal_pressure, size_effect
 from fractalcontact.fitting import fit_line
@@ -225,7 +225,7 @@ def test_box_sides_have_labels_that_stand_apart(largest):
         axes = shown.subplots(1, 3)[1]
         sides = pd.Series(np.geomspace(0.2, 0.2 * largest, 9))
         axes.loglog(sides, 1 / sides)
-        common.label_short_span(axes.xaxis, fig09_box_counting.FEW_DECADES)
+        common.label_short_span(axes.xaxis)
         shown.draw_without_rendering()
     low, high = axes.get_xlim()
     labels = [

@@ -132,8 +132,8 @@ def offset_axis(axes, offsets):
     axes.set_xlabel("offset $v$ (mm)")
 
 
-def label_short_span(axis, below=100):
-    """Plain labels at 1, 2 and 5 on a logarithmic axis that spans less than a factor ``below``.
+def label_short_span(axis):
+    """Plain labels at 1, 2 and 5 on a logarithmic axis that spans less than two decades.
 
     Powers of ten would be one there, or none. Labels between those lie over each other on any axis
     and are left out.
@@ -141,7 +141,7 @@ def label_short_span(axis, below=100):
     """
     low, high = axis.get_view_interval()
     axis.set_minor_formatter(NullFormatter())
-    if high < below * low:
+    if high < 100 * low:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
 

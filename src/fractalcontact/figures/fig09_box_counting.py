@@ -11,9 +11,6 @@ from ._maps import draw_domain
 from ._words import force_label, interval, short
 from .common import COLOURS, WIDTH, Drawing, label_short_span, letter
 
-#: Largest over smallest box below which sides are labelled 1, 2 and 5 in every decade.
-FEW_DECADES = 50
-
 
 def draw(atlas, name):
     """A contact domain, its box counts N(r) with the line fitted, and their local slopes.
@@ -81,7 +78,7 @@ def _draw_counts(axes, table, estimate, i):
         axes.loglog(r, guide, style, color="0.6", lw=0.8, label=f"slope $-${slope}", zorder=0)
     axes.set_ylim(0.7, n.max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="boxes that meet it, $N(r)$ (1)")
-    label_short_span(axes.xaxis, FEW_DECADES)
+    label_short_span(axes.xaxis)
     letter(axes, "b", "box counts")
 
 
@@ -99,7 +96,7 @@ def _draw_slopes(axes, table, counts):
         axes.axhline(slope, color="0.6", ls=style, lw=0.8, zorder=0)
     axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
-    label_short_span(axes.xaxis, FEW_DECADES)
+    label_short_span(axes.xaxis)
     letter(axes, "c", "local slopes")
 
 
