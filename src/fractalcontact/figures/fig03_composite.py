@@ -13,10 +13,6 @@ from ._maps import HALO, draw_map, missing_patch, node_position, scan_extent, wi
 from ._words import length_unit, opening, place
 from .common import COLOURS, WIDTH, Drawing, group, letter, settings_of
 
-#: Up to this the faces under the window are said to be uncorrelated. A window holds few features of
-#: the size of the roll-off length, and their chance alone gives an r of this order.
-UNCORRELATED = 0.2
-
 _TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
 
 
@@ -34,6 +30,10 @@ class Slid:
         delta_r, mm.
     composite : (ny, nx) ndarray
         h, mm.
+    correlation : float
+        Of the two faces under the window.
+    chance : float
+        The correlation that chance alone gives; NaN where the window is too small to say.
     """
 
     specimen: xr.Dataset
@@ -41,6 +41,8 @@ class Slid:
     offset: float
     dilatancy: float
     composite: np.ndarray
+    correlation: float
+    chance: float
 
     @classmethod
     def of(cls, atlas, name):
@@ -50,13 +52,15 @@ class Slid:
         last = int(joint["offset"].values.argmax())
         cells = int(joint["offset_cells"].values[0, last])
         # The n-th rigid offset is n cells along the first contact direction.
-        dilatancy = joint["rigid_dilatancy"].sel(direction=direction).values[cells]
+        slid = joint.sel(direction=direction).isel(rigid_offset=cells)
         return cls(
             group(atlas, "specimens", name),
             direction,
             float(joint["offset"].values[last]),
-            float(dilatancy),
+            float(slid["rigid_dilatancy"]),
             joint["composite"].values[last],
+            float(slid["face_correlation"]),
+            float(joint["correlation_limit"]),
         )
 
     @property
@@ -102,12 +106,6 @@ class Slid:
         first, last = min(before.start, after.start), max(before.stop, after.stop)
         margin = (last - first) // 20
         return table.iloc[max(first - margin, 0) : last + margin].reset_index(drop=True)
-
-    def correlation(self):
-        """Correlation of the two faces' heights under the window."""
-        _, upper = faces(self.specimen)
-        under = upper[window_slices(self.specimen)]
-        return float(np.corrcoef((self.composite + under).ravel(), under.ravel())[0, 1])
 
 
 def draw(atlas, name):
@@ -231,12 +229,12 @@ def _draw_composite(figure, axes, slid):
 
 
 def _caption(label, slid):
-    correlation = slid.correlation()
-    verdict = (
-        "hardly any correlation is left, as the paper says of its largest offset"
-        if abs(correlation) <= UNCORRELATED
-        else "some correlation is left, unlike in the paper at its largest offset"
-    )
+    if np.isnan(slid.chance):
+        verdict = "the window is too small to tell that from chance"
+    elif slid.correlation <= slid.chance:
+        verdict = "no more than chance gives, as the paper says of its largest offset"
+    else:
+        verdict = "some correlation is left, unlike in the paper at its largest offset"
     return (
         f"{opening('Fig. 3', label, place(slid.direction))} (a) Window before and after "
         f"an offset v = {slid.offset:.3g} mm, the largest solved. (b) The faces along the line of "
@@ -244,5 +242,5 @@ def _caption(label, slid):
         f"delta_r = {slid.dilatancy:.3g} mm; heights are stretched. (c) Composite topography h "
         f"over the window, its largest value touching first; standard deviation "
         f"{slid.composite.std():.3g} mm. The heights of the two faces under the window correlate "
-        f"with r = {correlation:.2f}: {verdict}."
+        f"with r = {slid.correlation:.2f}: {verdict}."
     )
