@@ -4,7 +4,7 @@ from snakemake.utils import min_version
 
 min_version("9.0")
 
-if "study" not in config:
+if not workflow.configfiles:
 
     configfile: "config/paper.yaml"
 

@@ -116,6 +116,15 @@ def test_an_unknown_key_stops_before_anything_runs(project):
     assert not (project / "results").exists()
 
 
+def test_a_study_without_a_name_is_not_taken_for_the_default_one(project):
+    study = small_study(project)
+    text = (project / study).read_text().replace("study: test\n", "")
+    (project / study).write_text(text)
+    done = run(project, study)
+    assert done.returncode != 0
+    assert f"{study}: missing key 'study'" in done.stdout + done.stderr
+
+
 @pytest.mark.scans
 @pytest.mark.skipif(not SCANS.is_dir(), reason="the real scans are not beside the project")
 def test_a_real_pair_dropped_in_gives_figures(project):
