@@ -127,17 +127,50 @@ def write_atlas(parts, path, *, study, configuration):
             "scan_checksums": json.dumps(_checksums(parts["specimens"]), sort_keys=True),
         }
     )
-    nodes = {"/": root}
-    encoding = {}
+    groups = {"/": root}
     for stage, specimens in parts.items():
-        nodes[f"/{stage}"] = xr.Dataset(attrs={"description": STAGES[stage]})
+        groups[f"/{stage}"] = xr.Dataset(attrs={"description": STAGES[stage]})
         for name, dataset in specimens.items():
             _demand_labels(dataset, f"{stage}/{name}")
-            nodes[f"/{stage}/{name}"] = dataset
-            encoding[f"/{stage}/{name}"] = _encoding(dataset)
-    tree = xr.DataTree.from_dict(nodes)
+            groups[f"/{stage}/{name}"] = dataset
     with written_whole(path) as temporary:
-        tree.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+        _write_groups(groups, temporary)
+
+
+class _LastOfAll:
+    """Takes note of what is to be written, and writes once every variable of a file is declared.
+
+    Each change from declaring to writing makes the netCDF library go through the whole file: with
+    two thousand variables that was nine tenths of the time.
+    """
+
+    def __init__(self):
+        self.noted = []
+
+    def add(self, source, target, region=None):
+        """Called by xarray for each variable."""
+        self.noted.append((source, target))
+
+    def write(self):
+        """Write everything noted."""
+        for source, target in self.noted:
+            target[...] = source
+
+
+def _write_groups(groups, path):
+    """Write datasets into the groups of one file, which is opened once.
+
+    ``DataTree.to_netcdf`` opens it again for every group and goes through all that are there.
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path, "w") as file:
+        writer = _LastOfAll()
+        for name, dataset in groups.items():
+            group = file if name == "/" else file.createGroup(name)
+            backend = xr.backends.NetCDF4DataStore(group)
+            dataset.dump_to_store(backend, encoding=_encoding(dataset), writer=writer)
+        writer.write()
 
 
 def read_atlas(path, without=()):
