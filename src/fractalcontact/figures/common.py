@@ -71,6 +71,10 @@ def print_style():
 def save(drawing, folder, name):
     """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
+    # The layout is found once; each file would find it anew, which takes longer than to draw it.
+    drawing.figure.set_dpi(DPI)
+    drawing.figure.draw_without_rendering()
+    drawing.figure.set_layout_engine("none")
     for ending, options in (("png", {}), ("svg", {"metadata": {"Date": None}})):
         with written_whole(folder / f"{name}.{ending}") as path:
             drawing.figure.savefig(path, format=ending, dpi=DPI, **options)
