@@ -267,6 +267,15 @@ def test_faces_that_do_not_match_are_left_and_that_is_said():
         assert record["note"].startswith("NOTE: the faces do not match")
 
 
+def test_faces_that_nowhere_cover_each_other_do_not_match():
+    z = self_affine((120, 120), 0.1, 0.7, rms=1.0, seed=6)
+    strips = labelled(z[:10]), labelled(z[:, 50:60], x0=50.0)
+    _, how = find_motion(*strips)
+    assert how["match"] == 0.0
+    with pytest.raises(InputError, match="rock: the faces share no area"):
+        register(*strips, "rigid", "rock")
+
+
 @pytest.mark.parametrize(
     ("signs", "message"),
     [

@@ -80,6 +80,8 @@ def _refine(lower, upper, motion: Motion, mode: str) -> tuple[Motion, bool]:
     surface = Surface(upper)
     small = _SMALL_STEP * min(lower.attrs["spacing_x"], lower.attrs["spacing_y"])
     gap, spread = _gap(lower, surface, motion, x, y)
+    if not np.isfinite(spread):  # no shift brings enough cells together: there is no start
+        return motion, False
     enough = np.isfinite(gap).sum() / 2  # nor may a better gap be bought by parting the faces
     for _ in range(_MOST_STEPS):
         both = np.isfinite(gap)
