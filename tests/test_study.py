@@ -105,6 +105,20 @@ def test_the_window_is_cut_to_the_coarsest_prefractal(study):
     assert arguments["reach"] == dict.fromkeys("ENWS", 8.0)
 
 
+def test_cleaning_reaches_the_specimen_and_registration_the_reader(study, tmp_path):
+    arguments = window_arguments(resolve_settings(study, "concrete_twin", {}, "paper.yaml"))
+    assert (arguments["outliers"], arguments["fill_holes"]) == ("keep", 0)
+    sidecar = tmp_path / "concrete_twin.yaml"
+    sidecar.write_text("outliers: mask\nfill_holes: 5\nregistration: none\nmirror_upper: x\n")
+    scan, settings = read_sidecar(sidecar, SCHEMA)
+    assert scan == {"registration": "none", "mirror_upper": "x"}
+    arguments = window_arguments(resolve_settings(study, "concrete_twin", settings, "paper.yaml"))
+    assert (arguments["outliers"], arguments["fill_holes"]) == ("mask", 5)
+    sidecar.write_text("fill_holes: true\n")
+    with pytest.raises(InputError, match="fill_holes: True is not right; expected rows and col"):
+        read_sidecar(sidecar, SCHEMA)
+
+
 def test_embedded_lengths_are_in_millimetres(study):
     recipe = resolve_embedded({**study["embedded"]["concrete_twin"], "size": "4 cm"}, "here")
     assert (recipe["size"], recipe["outline"]) == (40, "square")

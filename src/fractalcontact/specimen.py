@@ -6,6 +6,7 @@ import math
 import numpy as np
 import xarray as xr
 
+from .cleaning import clean_faces
 from .errors import InputError
 
 DIRECTIONS = {"E": ("x", 1), "N": ("y", 1), "W": ("x", -1), "S": ("y", -1)}
@@ -21,13 +22,15 @@ def make_specimen(
     upper=None,
     *,
     opposite="match",
+    outliers="keep",
+    fill_holes=0,
     window=None,
     window_centre=None,
     multiple=1,
     reach=0.0,
     name="specimen",
 ) -> xr.Dataset:
-    """Level the faces, mark the cells present in all of them and place the window.
+    """Clean and level the faces, mark the cells present in all of them and place the window.
 
     Parameters
     ----------
@@ -36,6 +39,10 @@ def make_specimen(
         was scanned.
     opposite : {"match", "flat"}
         What faces a single scanned face: its perfect match, or a rigid plane.
+    outliers : {"keep", "mask"}
+        Whether outlying cells stay as they are or become missing, see `cleaning.find_outliers`.
+    fill_holes : int
+        Rows and columns of the largest hole that is filled, see `cleaning.fill_holes`; 0 for none.
     window : float, (float, float) or None
         Side in mm, or sides (y, x). None: half the largest hole-free square, in its middle, so
         that it can slide by a quarter of that square; the whole square against a plane.
@@ -53,8 +60,9 @@ def make_specimen(
     Returns
     -------
     Dataset
-        ``lower``, ``upper`` (if scanned) and ``valid`` (y, x); the window in cells as the
-        attributes ``window_y0, window_x0, window_ny, window_nx``.
+        ``lower``, ``upper`` (if scanned), ``valid``, ``outlier`` and ``filled`` (y, x); the window
+        in cells as the attributes ``window_y0, window_x0, window_ny, window_nx``; what was done to
+        the faces as ``cleaning``, ``levelling`` and, for two, ``registration`` (JSON).
 
     Raises
     ------
@@ -66,6 +74,10 @@ def make_specimen(
     scans = [lower] if upper is None else [lower, upper]
     if upper is not None and not (lower.x.equals(upper.x) and lower.y.equals(upper.y)):
         raise InputError(f"{name}: the two faces are not on one grid; read them together")
+    attributes = [dict(scan.attrs) for scan in scans]
+    scans, cells, cleaning = clean_faces(
+        scans, outliers=outliers, largest_hole=fill_holes, name=name
+    )
     valid = np.logical_and.reduce([np.isfinite(scan.values) for scan in scans])
     if valid.sum() < 3:
         raise InputError(f"{name}: the faces have no cells in common; they must share one frame")
@@ -80,16 +92,22 @@ def make_specimen(
         valid,
         {"units": "1", "long_name": "cell present in every scanned face"},
     )
+    for key, words in (("outlier", "outlying cell"), ("filled", "harmonically filled cell")):
+        in_any = {"units": "1", "long_name": f"{words} of any scanned face"}
+        specimen[key] = (("y", "x"), cells[key], in_any)
     specimen.attrs = {
         "name": name,
         "faces": len(scans),
         "opposite": opposite if upper is None else "scanned",
         "spacing_x": float(lower.attrs["spacing_x"]),
         "spacing_y": float(lower.attrs["spacing_y"]),
+        **cleaning,
         **levelling,
     }
-    for face, scan in zip(("lower", "upper"), scans, strict=False):
-        specimen.attrs[f"{face}_scan"] = json.dumps(scan.attrs, sort_keys=True)
+    for face, attrs in zip(("lower", "upper"), attributes, strict=False):
+        if "registration" in attrs:
+            specimen.attrs["registration"] = attrs.pop("registration")
+        specimen.attrs[f"{face}_scan"] = json.dumps(attrs, sort_keys=True)
     specimen.attrs |= _place_window(specimen, window, window_centre, multiple, reach)
     return specimen
 

@@ -137,6 +137,8 @@ def resolve_settings(config, name, sidecar, source):
         "label": merged.get("label", config.get("embedded", {}).get(name, {}).get("label", name)),
         "material": _material(config, merged["material"], where("material"), source),
         "opposite": merged.get("opposite", "match"),
+        "outliers": merged.get("outliers", "keep"),
+        "fill_holes": merged.get("fill_holes", 0),
         "window": _optional(merged.get("window", "auto"), where("window")),
         "window_centre": None,
         "directions": ["none"] if flat else directions,
@@ -175,7 +177,7 @@ def resolve_settings(config, name, sidecar, source):
 
 
 def window_arguments(settings):
-    """Where :func:`fractalcontact.specimen.make_specimen` is to place the window.
+    """How :func:`fractalcontact.specimen.make_specimen` is to clean faces and place the window.
 
     The window is cut to whole cells of the coarsest pre-fractal, so that all resolutions cover the
     same area, and placed where the offsets of the study can slide it.
@@ -185,6 +187,8 @@ def window_arguments(settings):
     flat = settings["opposite"] == "flat"
     return {
         "opposite": settings["opposite"],
+        "outliers": settings["outliers"],
+        "fill_holes": settings["fill_holes"],
         "window": settings["window"],
         "window_centre": None if centre is None else (centre[1], centre[0]),
         "multiple": math.lcm(*settings["resolutions"]),

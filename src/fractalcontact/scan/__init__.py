@@ -14,7 +14,15 @@ from .arrays import read_npy, read_npz
 from .faces import Measured, grid_one, grid_pair
 from .instruments import instrument_formats, read_instrument
 from .mesh import read_mesh
-from .options import MATRIX_KEYS, POINT_KEYS, ScanOptions, length_mm, parse_options, spacing_mm
+from .options import (
+    MATRIX_KEYS,
+    PAIR_KEYS,
+    POINT_KEYS,
+    ScanOptions,
+    length_mm,
+    parse_options,
+    spacing_mm,
+)
 from .raw import RawScan
 from .text import is_text, read_text
 from .x3p import read_x3p
@@ -53,10 +61,11 @@ def read_scan(path, options=None) -> xr.DataArray:
 
 
 def read_faces(lower_path, upper_path=None, options=None):
-    """Read the faces of one joint onto one common grid.
+    """Read the faces of one joint onto one common grid, brought together.
 
-    Points are gridded at the coarser of the two spacings over the area both cover; matrices must
-    have the same spacing and are cropped to the rectangle both cover.
+    Points are gridded at the coarser of the two spacings; matrices must have the same spacing. The
+    upper face is moved to where the gap is most even, see `pairs.register`, and both are cropped to
+    the rectangle they cover.
 
     Parameters
     ----------
@@ -64,21 +73,31 @@ def read_faces(lower_path, upper_path=None, options=None):
     upper_path : path-like or None
         None if one face was scanned.
     options : mapping, optional
-        As for `read_scan`, for both faces.
+        As for `read_scan`, for both faces; and ``registration`` (rigid, translation or none) and
+        ``mirror_upper`` (x or y).
 
     Returns
     -------
     lower : DataArray
     upper : DataArray or None
+        With the attribute ``registration``: what was done, as JSON.
 
     Raises
     ------
     InputError
-        As `read_scan`; also if the two grids differ or share no area.
+        As `read_scan`; also if the two grids differ, a mirror image of the upper face matches
+        instead of the face, or the faces share no area.
     """
+    pair = parse_options(options, str(lower_path))
     if upper_path is None:
+        for key in PAIR_KEYS:
+            if getattr(pair, key) is not None:
+                raise InputError(
+                    f"{lower_path}: key '{key}' needs two faces, here is one; remove it"
+                )
         return read_scan(lower_path, options), None
-    return grid_pair(_measure(Path(lower_path), options), _measure(Path(upper_path), options))
+    lower, upper = (_measure(Path(path), options) for path in (lower_path, upper_path))
+    return grid_pair(lower, upper, pair.registration or "rigid", pair.mirror_upper)
 
 
 def read_matrix(path, options=None):

@@ -1,6 +1,6 @@
 """From measured numbers in mm to labelled heights; two faces onto one grid."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +8,7 @@ import xarray as xr
 
 from ..errors import InputError
 from . import points as cloud
+from .pairs import MIRRORS, register
 from .raw import SMALLEST_SIDE
 
 #: Two matrices are one grid when their spacings agree this well (relative).
@@ -58,24 +59,38 @@ def grid_one(scan: Measured) -> xr.DataArray:
     return _interpolated_heights(scan, points, lattice)
 
 
-def grid_pair(lower: Measured, upper: Measured) -> tuple[xr.DataArray, xr.DataArray]:
-    """Put two faces on one common grid, cropped to the area both cover.
+def grid_pair(
+    lower: Measured, upper: Measured, registration="rigid", mirror_upper=None
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Put two faces on one common grid, registered, cropped to the area both cover.
+
+    Parameters
+    ----------
+    lower, upper : Measured
+    registration : {"rigid", "translation", "none"}
+        See `pairs.register`.
+    mirror_upper : {"x", "y"} or None
+        The direction that runs the other way in an upper face scanned on its back.
 
     Raises
     ------
     InputError
-        If one is a matrix and the other is not, or two matrices have different grids.
+        If one is a matrix and the other is not, two matrices have different spacings, or as
+        `pairs.register`.
     """
     if (lower.layout == "matrix") != (upper.layout == "matrix"):
         raise InputError(
             f"{lower.path} is a {lower.layout} scan and {upper.path} is a {upper.layout} scan; "
             "export both faces in the same way"
         )
+    where = f"{lower.path} and {upper.path}"
+    if mirror_upper is not None:
+        upper = _turned_over(upper, mirror_upper)
     if lower.layout == "matrix":
         z_l, z_u = _matrix_heights(lower), _matrix_heights(upper)
         if reason := _differing_grid(z_l, z_u):
-            raise InputError(f"{lower.path} and {upper.path}: {reason}; resample one of them")
-        return _crop_to_common(z_l, z_u, lower, upper)
+            raise InputError(f"{where}: {reason}; resample one of them")
+        return register(z_l, z_u, registration, where, mirrored=mirror_upper)
     points = [_usable_points(scan) for scan in (lower, upper)]
     lattices = [_own_lattice(s, p) for s, p in zip((lower, upper), points, strict=True)]
     if None not in lattices:
@@ -83,15 +98,35 @@ def grid_pair(lower: Measured, upper: Measured) -> tuple[xr.DataArray, xr.DataAr
             _placed_heights(*face) for face in zip((lower, upper), points, lattices, strict=True)
         )
         if not _differing_grid(z_l, z_u):
-            return _crop_to_common(z_l, z_u, lower, upper)
+            return register(z_l, z_u, registration, where, mirrored=mirror_upper)
     # One sidecar serves both faces, so `grid` is the same for both.
     spacing = lower.grid or max(cloud.neighbour_distance(p) for p in points)
-    lattice = cloud.covering_lattice(points, spacing, f"{lower.path} and {upper.path}")
-    z_l, z_u = (
-        _interpolated_heights(scan, p, lattice)
-        for scan, p in zip((lower, upper), points, strict=True)
-    )
-    return z_l, z_u
+
+    def gridded(scan, points):
+        lattice = cloud.covering_lattice([points], spacing, str(scan.path))
+        return _interpolated_heights(scan, points, lattice)
+
+    def regrid(motions):
+        moved = points[1]
+        for motion in motions:
+            moved = motion.move_points(moved)
+        return gridded(upper, moved)
+
+    z_l, z_u = gridded(lower, points[0]), regrid([])
+    return register(z_l, z_u, registration, where, mirrored=mirror_upper, regrid=regrid)
+
+
+def _turned_over(scan: Measured, axis: str) -> Measured:
+    """A face scanned on its back as it lies in the joint, about its own middle."""
+    if scan.layout == "matrix":
+        sign_x, sign_y, sign_z = MIRRORS[axis]
+        values = sign_z * scan.values[::sign_y, ::sign_x]
+    else:
+        middle = (np.nanmin(scan.values, axis=0) + np.nanmax(scan.values, axis=0)) / 2
+        values = middle + MIRRORS[axis] * (scan.values - middle)
+    turned = f"turned over, {axis} and z run the other way"
+    notes = "; ".join(note for note in (scan.provenance["notes"], turned) if note)
+    return replace(scan, values=values, provenance=scan.provenance | {"notes": notes})
 
 
 def _usable_points(scan: Measured) -> np.ndarray:
@@ -197,18 +232,3 @@ def _differing_grid(z_l: xr.DataArray, z_u: xr.DataArray) -> str | None:
         if abs(shift - round(shift)) > SAME_NODES:
             return f"their cells are {shift - round(shift):.3f} of a cell apart along {axis}"
     return None
-
-
-def _crop_to_common(z_l, z_u, lower: Measured, upper: Measured):
-    """Keep the rectangle both faces cover; the grids are known to coincide."""
-    for axis in "xy":
-        shift = round(float(z_u[axis][0] - z_l[axis][0]) / z_l.attrs[f"spacing_{axis}"])
-        start, stop = max(0, shift), min(z_l.sizes[axis], z_u.sizes[axis] + shift)
-        if stop - start < SMALLEST_SIDE:
-            raise InputError(
-                f"{lower.path} and {upper.path}: the faces share only {max(0, stop - start)} cells "
-                f"along {axis}; both must be given in one coordinate frame"
-            )
-        z_l = z_l.isel({axis: slice(start, stop)})
-        z_u = z_u.isel({axis: slice(start - shift, stop - shift)})
-    return z_l, z_u.assign_coords(x=z_l.x, y=z_l.y)

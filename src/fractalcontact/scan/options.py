@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from ..errors import InputError
+from ..registration import MODES
 from ..units import length_factor, quantity
 
 
@@ -22,8 +23,12 @@ class ScanOptions:
     columns: tuple | None = None
     missing: float | None = None
     grid: float | str | None = None
+    registration: str | None = None
+    mirror_upper: str | None = None
 
 
+#: Keys that say how two faces lie to each other.
+PAIR_KEYS = ("registration", "mirror_upper")
 #: Keys that mean nothing for the other layout, and what is meant by them.
 MATRIX_KEYS = ("spacing", "first_row")
 POINT_KEYS = ("columns", "grid")
@@ -54,6 +59,8 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
             length_factor(unit, f"{where}: {key}")
     _one_of(options, "layout", ("matrix", "points"), where)
     _one_of(options, "first_row", ("bottom", "top"), where)
+    _one_of(options, "registration", MODES, where)
+    _one_of(options, "mirror_upper", ("x", "y"), where)
     if (variable := options.get("variable")) is not None:
         _require(isinstance(variable, str), where, "variable", variable, "the name of an array")
     if (missing := options.get("missing")) is not None:

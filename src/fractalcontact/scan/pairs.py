@@ -1,0 +1,266 @@
+"""Two gridded faces brought together, and what was done to the upper one in numbers and words."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from ..errors import InputError
+from ..face_match import LARGEST_ROTATION, for_comparison, mirror_images
+from ..fitting import without_mean_plane
+from ..registration import find_motion
+from ..surface_motion import Motion, Surface, correlation, grid_nodes
+from .raw import SMALLEST_SIDE
+
+#: A motion that lowers the gap's spread by less than this share is not made: interpolating between
+#: cells costs roughness, and the spread is not known better.
+SMALLEST_GAIN = 0.01
+#: Faces whose match, the correlation without their longest waves, is below the first do not belong
+#: together: faces that have nothing to do with each other reach 0.5. The granite pair, a joint
+#: that does not close quite, reaches 0.83.
+POOR_MATCH, GOOD_MATCH = 0.5, 0.7
+#: Share of the cells that touch or overlap where faces are set down: not the one spike of a scan.
+_TOUCHING = 0.01
+#: A cloud is moved, gridded and matched again until no further tilt of this size is found: one of
+#: 0.2 degrees carries a peak sideways by 0.35 % of its height.
+_SMALL_TILT = math.tan(math.radians(0.2))
+_MOST_PASSES = 4
+#: What the upper face is, when a mirror image of it matches: by the signs of x, y and z.
+_IMAGES = {
+    (-1, 1, -1): "was scanned on its back: its heights point down and its x runs the other way",
+    (1, -1, -1): "was scanned on its back: its heights point down and its y runs the other way",
+    (1, 1, -1): "is a cast, or its heights point down",
+    (-1, -1, -1): "is a cast, or its heights point down, and it is turned by 180 degrees",
+    (-1, -1, 1): "is turned by 180 degrees",
+    (-1, 1, 1): "is mirrored: its x runs the other way",
+    (1, -1, 1): "is mirrored: its y runs the other way",
+}
+#: What the sidecar's key `mirror_upper` does to x, y and z.
+MIRRORS = {None: (1, 1, 1), "x": (-1, 1, -1), "y": (1, -1, -1)}
+
+
+def register(lower, upper, mode, where, *, mirrored=None, regrid=None):
+    """Move the upper face to where the spread of the gap is least; crop both to what they share.
+
+    Nothing is moved if the spread would fall by less than 1 %, or if the faces do not match. The
+    mean gap is a measurement and stays, so the upper face slides along its mean plane. Where the
+    mean gap is not known, because the face was turned over or shares no area with the lower one as
+    given, the upper face is set down until 1 % of the cells touch.
+
+    Parameters
+    ----------
+    lower, upper : DataArray (y, x)
+        Heights in mm; the cells of both grids coincide, or are whole cells apart.
+    mode : {"rigid", "translation", "none"}
+    where : str
+        Both files, for errors.
+    mirrored : {"x", "y"} or None
+        How the upper face was turned over before.
+    regrid : callable, optional
+        Grids the upper face anew from its points after a list of motions. Without it the face is
+        interpolated between its cells, unless moving it by whole cells does as well.
+
+    Returns
+    -------
+    lower, upper : DataArray (y, x)
+        On one grid. The upper one has the attribute ``registration``, JSON: ``mode``; ``applied``;
+        ``shift_x_mm``, ``shift_y_mm``, ``rotation_degrees`` (from East to North),
+        ``tilt_x_degrees``, ``tilt_y_degrees`` (positive where the face rises towards larger x or
+        y) of the motion of the upper face, 0 if it was not moved; ``gap_mean_before_mm``,
+        ``gap_sd_before_mm``, ``correlation_before`` (of the levelled faces) and the same
+        ``_after``, null where they share no area; ``match``; and in words ``note``.
+
+    Raises
+    ------
+    InputError
+        If a mirror image of the upper face matches and the face itself does not, or the faces
+        share no area.
+    """
+    before = gap_statistics(lower, upper)
+    if mirrored:  # the height it was turned over at means nothing
+        before["gap_mean"] = None
+
+    def as_given(note, match=None):
+        return _finished(lower, upper, _record(mode, None, match, before, before, note), where)
+
+    if mode == "none":
+        return as_given("not moved, as the sidecar asks")
+    motion, found = find_motion(lower, upper, mode)
+    match = found["match"]
+    if match < POOR_MATCH:
+        _refuse_mirror_image(lower, upper, mirrored, where)
+        return as_given(
+            f"NOTE: the faces do not match (correlation without long waves {match:.2f}) and are "
+            "left as they are; faces of one joint do, unless one is turned by more than "
+            f"{LARGEST_ROTATION} degrees",
+            match,
+        )
+    moved, motion, how = _moved(lower, upper, motion, mode, regrid)
+    moved = moved + _lift(lower, moved, before["gap_mean"])
+    after = gap_statistics(lower, moved)
+    gain = 1 - after["gap_sd"] / before["gap_sd"] if before["gap_sd"] else 0.0
+    if before["gap_sd"] is not None and gain < SMALLEST_GAIN:
+        return as_given(
+            f"not moved: the best motion lowers the spread of the gap by {100 * max(gain, 0):.2g} "
+            f"%, less than {100 * SMALLEST_GAIN:g} %",
+            match,
+        )
+    note = f"upper face moved {how}"
+    if before["gap_mean"] is None:
+        note += "; its height is not known: set down until 1 % of the cells touch"
+    if not found["converged"]:
+        note += "; NOTE: the search had not come to rest"
+    moved.attrs = upper.attrs
+    return _finished(lower, moved, _record(mode, motion, match, before, after, note), where)
+
+
+def gap_statistics(lower: xr.DataArray, upper: xr.DataArray) -> dict:
+    """Mean and spread of the gap in mm and correlation of the levelled faces.
+
+    All are None where the faces share less than 8 x 8 cells: there is no gap to speak of.
+    """
+    pair = _common_rectangle(lower, upper)
+    gap = None if pair is None else pair[1].values - pair[0].values
+    if gap is None or np.isfinite(gap).sum() < SMALLEST_SIDE**2:
+        return dict.fromkeys(("gap_mean", "gap_sd", "correlation"))
+    both = np.isfinite(gap)
+    levelled = [without_mean_plane(np.where(both, face.values, np.nan)) for face in pair]
+    return {
+        "gap_mean": float(gap[both].mean()),
+        "gap_sd": float(gap[both].std()),
+        "correlation": correlation(*levelled),
+    }
+
+
+def crop_to_common(lower, upper, where):
+    """Keep the rectangle both faces cover; their cells are known to coincide.
+
+    Raises
+    ------
+    InputError
+        If it has fewer than 8 cells along a side.
+    """
+    pair = _common_rectangle(lower, upper)
+    if pair is None:
+        raise InputError(
+            f"{where}: the faces share no area of {SMALLEST_SIDE} x {SMALLEST_SIDE} cells; give "
+            "both in one coordinate frame, and write 'registration: none' only if they are"
+        )
+    return pair
+
+
+def _common_rectangle(lower, upper):
+    """Both faces on the rectangle of cells they share, None if it is too small."""
+    for axis in "xy":
+        shift = round(float(upper[axis][0] - lower[axis][0]) / lower.attrs[f"spacing_{axis}"])
+        start, stop = max(0, shift), min(lower.sizes[axis], upper.sizes[axis] + shift)
+        if stop - start < SMALLEST_SIDE:
+            return None
+        lower = lower.isel({axis: slice(start, stop)})
+        upper = upper.isel({axis: slice(start - shift, stop - shift)})
+    return lower, upper.assign_coords(x=lower.x, y=lower.y)
+
+
+def _moved(lower, upper, motion, mode, regrid):
+    """The upper face after the motion, but for its height; the motion made; how, in words."""
+    if regrid is not None:
+        moved, motion = _move_points(lower, motion, mode, regrid)
+        return moved, motion, "before its points were gridded"
+    moved = lower.copy(data=Surface(upper)(*motion.back(*grid_nodes(lower))))
+    moved = _tilted(moved, motion)
+    by_cells, cell_motion = _move_by_cells(upper, motion)
+    spread, spread_by_cells = (gap_statistics(lower, face)["gap_sd"] for face in (moved, by_cells))
+    if spread_by_cells is not None and spread_by_cells * (1 - SMALLEST_GAIN) <= spread:
+        return by_cells, cell_motion, "by whole cells"
+    return moved, motion, "and interpolated between its cells by a cubic spline"
+
+
+def _move_by_cells(upper, motion: Motion):
+    """The nearest motion that needs no interpolation: whole cells, and the tilt."""
+    steps = [
+        upper.attrs[f"spacing_{axis}"] * round(shift / upper.attrs[f"spacing_{axis}"])
+        for axis, shift in zip("xy", motion.shift, strict=True)
+    ]
+    end = (motion.start[0] + steps[0], motion.start[1] + steps[1])
+    motion = replace(motion, end=end, rotation=0.0)
+    moved = upper.assign_coords(x=upper.x + steps[0], y=upper.y + steps[1])
+    return _tilted(moved, motion), motion
+
+
+def _move_points(lower, motion, mode, regrid):
+    """Move the points and grid them; where a tilt carried peaks sideways, correct what is left."""
+    motions, total = [motion], motion
+    for _ in range(_MOST_PASSES):
+        moved = regrid(motions)
+        if math.hypot(*motion.slope) < _SMALL_TILT:
+            break
+        motion, _ = find_motion(lower, moved, mode)
+        motions.append(motion)
+        total = total.then(motion)
+    else:
+        moved = regrid(motions)
+    return moved, total
+
+
+def _tilted(heights, motion):
+    return heights + motion.rise(*grid_nodes(heights))
+
+
+def _lift(lower, moved, mean_gap) -> float:
+    """What brings the mean gap to what it was, or the faces to touch if it was not known."""
+    lower, moved = _common_rectangle(lower, moved)
+    gap = moved.values - lower.values
+    if mean_gap is None:
+        return -float(np.nanquantile(gap, _TOUCHING))
+    return mean_gap - float(np.nanmean(gap))
+
+
+def _refuse_mirror_image(lower, upper, mirrored, where) -> None:
+    """Raise if the upper face does not match but a mirror image of it does."""
+    matches = mirror_images(*for_comparison(lower, upper))
+    signs = max(matches, key=matches.get)
+    if matches[signs] < GOOD_MATCH:
+        return
+    total = tuple(a * b for a, b in zip(signs, MIRRORS[mirrored], strict=True))
+    remedies = {
+        MIRRORS[None]: "remove 'mirror_upper' from the sidecar",
+        MIRRORS["x"]: "write 'mirror_upper: x' in the sidecar",
+        MIRRORS["y"]: "write 'mirror_upper: y' in the sidecar",
+    }
+    reversed_axes = " and ".join(axis for axis, sign in zip("xyz", total, strict=True) if sign < 0)
+    remedy = remedies.get(total, f"change the sense of {reversed_axes} in its file")
+    if mirrored and total not in remedies:
+        remedy += " and remove 'mirror_upper'"
+    seen = f", with 'mirror_upper: {mirrored}'," if mirrored else ""
+    raise InputError(
+        f"{where}: the upper face{seen} {_IMAGES[signs]} (a correlation of {matches[signs]:.2f} "
+        f"says so, as it stands there is none); {remedy}"
+    )
+
+
+def _record(mode, motion, match, before, after, note) -> dict:
+    made = motion or Motion()
+    return {
+        "mode": mode,
+        "applied": motion is not None,
+        "shift_x_mm": made.shift[0],
+        "shift_y_mm": made.shift[1],
+        "rotation_degrees": math.degrees(made.rotation),
+        "tilt_x_degrees": math.degrees(math.atan(made.slope[0])),
+        "tilt_y_degrees": math.degrees(math.atan(made.slope[1])),
+        "gap_mean_before_mm": before["gap_mean"],
+        "gap_mean_after_mm": after["gap_mean"],
+        "gap_sd_before_mm": before["gap_sd"],
+        "gap_sd_after_mm": after["gap_sd"],
+        "correlation_before": before["correlation"],
+        "correlation_after": after["correlation"],
+        "match": match,
+        "note": note,
+    }
+
+
+def _finished(lower, upper, record, where):
+    lower, upper = crop_to_common(lower, upper, where)
+    return lower, upper.assign_attrs(registration=json.dumps(record))
