@@ -1,7 +1,6 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
 import hashlib
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -10,21 +9,33 @@ import xarray as xr
 from ..catalogue import split_file_name
 from ..errors import InputError
 from ..units import length_factor
+from . import netcdf, tiff
+from .archives import check_archive
 from .arrays import read_npy, read_npz
 from .faces import Measured, grid_one, grid_pair
+from .hdf5 import read_hdf5
 from .instruments import instrument_formats, read_instrument
+from .matlab import read_mat
 from .mesh import read_mesh
 from .options import MATRIX_KEYS, POINT_KEYS, ScanOptions, length_mm, parse_options, spacing_mm
-from .raw import RawScan
+from .raw import RawScan, refuse_larger
 from .text import is_text, read_text
 from .x3p import read_x3p
 
 __all__ = ["read_faces", "read_matrix", "read_scan"]
 
-LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to
 _TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
 _MESH = (".obj", ".ply", ".stl")
-_ARRAY = (".npy", ".npz")
+_TIFF = (".tif", ".tiff")
+#: Containers of matrices and others with one reader an extension.
+_READERS = {
+    ".npy": read_npy,
+    ".npz": read_npz,
+    ".x3p": read_x3p,
+    ".h5": read_hdf5,
+    ".hdf5": read_hdf5,
+    ".mat": read_mat,
+}
 
 
 def read_scan(path, options=None) -> xr.DataArray:
@@ -146,22 +157,23 @@ def _measure(path: Path, options) -> Measured:
 
 def _read_raw(path: Path, options: ScanOptions) -> RawScan:
     """Choose the reader by extension, and by content where one extension serves two formats."""
+    check_archive(path)
     extension = path.suffix.lower()
-    if extension == ".npy":
-        return read_npy(path, options)
-    if extension == ".npz":
-        return read_npz(path, options)
+    if extension in _READERS:
+        return _READERS[extension](path, options)
     if extension in _MESH:
         return read_mesh(path)
-    if extension == ".x3p":
-        return read_x3p(path)
+    if extension == ".nc" and not netcdf.is_surface_topography(path):
+        return netcdf.read_netcdf(path, options)
+    if extension in _TIFF and not tiff.is_park_systems(path):
+        return tiff.read_tiff(path, options)
     if extension in _TEXT and is_text(path):
         return read_text(path, options)
     if extension.lstrip(".") in instrument_formats():
         return read_instrument(path, options)
     if extension in _TEXT:
         raise InputError(f"{path}: not a text file; damaged, or the wrong extension?")
-    known = sorted({*_TEXT, *_MESH, *_ARRAY, ".x3p", *(f".{e}" for e in instrument_formats())})
+    known = sorted({*_TEXT, *_MESH, *_READERS, *(f".{e}" for e in instrument_formats())})
     raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
 
 
@@ -172,17 +184,7 @@ def _check_size(path: Path) -> None:
     size = path.stat().st_size
     if size == 0:
         raise InputError(f"{path}: the file is empty")
-    if size <= LARGEST_FILE and zipfile.is_zipfile(path):
-        try:
-            with zipfile.ZipFile(path) as archive:
-                size = max(size, sum(member.file_size for member in archive.infolist()))
-        except zipfile.BadZipFile as error:
-            raise InputError(f"{path}: a damaged archive ({error})") from error
-    if size > LARGEST_FILE:
-        raise InputError(
-            f"{path}: {size / 1024**3:.1f} GiB to read, more than the {LARGEST_FILE / 1024**3:g} "
-            "GiB allowed; export a part of it or a coarser grid"
-        )
+    refuse_larger(size, path)
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
