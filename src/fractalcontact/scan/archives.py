@@ -64,7 +64,7 @@ def _check_directory(members: list[zipfile.ZipInfo], path: Path) -> None:
     refuse_larger(inflated, path)
     if inflated > UNSUSPICIOUS and inflated > LARGEST_RATIO * packed:
         raise InputError(
-            f"{path}: the archive inflates {inflated / max(packed, 1):.0f} times, which no measured "
+            f"{path}: the archive inflates {inflated / max(packed, 1):.0f} times, as no measured "
             "surface does; export the scan again"
         )
 
@@ -75,7 +75,7 @@ def _check_member(member: zipfile.ZipInfo, path: Path) -> None:
     name = PurePosixPath(member.filename.replace("\\", "/"))
     if name.is_absolute() or ".." in name.parts or ":" in member.filename:
         raise InputError(
-            f"{path}: its member {member.filename!r} points out of the archive; do not use this file"
+            f"{path}: its member {member.filename!r} points out of the archive; do not use it"
         )
     if stat.S_ISLNK(member.external_attr >> 16):
         raise InputError(f"{path}: its member {member.filename!r} is a link; export the scan again")
@@ -91,7 +91,7 @@ def _check_member(member: zipfile.ZipInfo, path: Path) -> None:
 def _check_content(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> None:
     """Inflate a member once, to see that it holds what the directory promises."""
     honest = copy.copy(member)
-    honest.file_size = member.file_size + 1  # zipfile would cut off what comes after the promise
+    honest.file_size += 2 * _CHUNK  # zipfile would cut off what comes after the promise
     xml = _XmlCheck(path, member) if member.filename.lower().endswith(".xml") else None
     size = 0
     with archive.open(honest) as stream:
@@ -102,8 +102,8 @@ def _check_content(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path
     if size != member.file_size:
         than = "more" if size > member.file_size else "less"
         raise InputError(
-            f"{path}: its member {member.filename!r} holds {than} than the {member.file_size} bytes "
-            "the archive promises; export the scan again"
+            f"{path}: its member {member.filename!r} holds {than} than the {member.file_size} "
+            "bytes the archive promises; export the scan again"
         )
 
 

@@ -65,10 +65,10 @@ def _tables_of(file) -> dict:
     tables = {}
 
     def collect(name, item):
+        is_data = isinstance(item, h5py.Dataset) and item.shape and min(item.shape) > 1
         # MATLAB keeps the content of cells and structs under #refs#.
-        if isinstance(item, h5py.Dataset) and not name.startswith("#"):
-            if is_table(item.shape or (), item.dtype) and min(item.shape) > 1:
-                tables[name] = item
+        if is_data and is_table(item.shape, item.dtype) and not name.startswith("#"):
+            tables[name] = item
 
     file.visititems(collect)
     return tables

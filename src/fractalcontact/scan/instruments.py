@@ -10,7 +10,7 @@ from .options import ScanOptions
 from .raw import RawScan, stated_unit
 
 #: Formats read elsewhere in this package, with stricter checks.
-_OWN_FORMATS = {"xyz", "asc", "npy", "npz", "x3p", "mat", "h5"}
+_OWN_FORMATS = {"xyz", "asc", "npy", "npz", "x3p", "mat", "h5", "nc"}
 #: Extensions in use that SurfaceTopography does not list.
 _MORE_EXTENSIONS = {"di": "di"}
 
@@ -22,9 +22,9 @@ LATERAL_FAULTS = {
         "(a 160 um field came out as 160 m)",
     ),
 }
-#: Formats that state a length, not a spacing, which some programs count from the first point to the
-#: last and others over all cells: MountainsMap writes (n - 1) dx to .bcrf, TrueMap to .tmd, GelSight
-#: writes n dx to .tmd. Like SurfaceTopography and Gwyddion we take n dx.
+#: Formats that state a length, not a spacing, which some programs count from the first point to
+#: the last and others over all cells: MountainsMap writes (n - 1) dx to .bcrf, TrueMap to .tmd,
+#: GelSight writes n dx to .tmd. Like SurfaceTopography and Gwyddion we take n dx.
 LENGTH_UNCLEAR = ("bcr", "tmd")
 
 
@@ -73,18 +73,17 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
     reader = SurfaceTopography.open_topography(str(path), format=format_name)
     try:
         channel, notes = _choose_channel(reader, wanted, path)
-        # A format that states no size wants one: one unit a cell, which is not passed on.
-        given = (
-            {} if channel.physical_sizes is not None else {"physical_sizes": channel.nb_grid_pts}
-        )
+        states_size = channel.physical_sizes is not None
+        # A format that states no size wants one: any will do, it is not passed on.
+        given = {} if states_size else {"physical_sizes": channel.nb_grid_pts}
         topography = reader.topography(channel_index=channel.index, **given)
-        heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
+        heights = np.ma.filled(np.ma.array(topography.heights(), dtype=np.float64), np.nan)
     finally:
         reader.close()
     stated = {"unit_z": _length(topography.unit, path)}
-    if not given:
+    if states_size:
         stated |= {"unit_xy": stated["unit_z"], "spacing": _spacing(topography)}
-    if format_name in LATERAL_FAULTS and not given:
+    if format_name in LATERAL_FAULTS and states_size:
         factor, reason = LATERAL_FAULTS[format_name]
         stated["spacing"] = tuple(factor * step for step in stated["spacing"])
         notes += (f"lateral size corrected by {factor:g}: {reason}",)
@@ -98,7 +97,6 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
         np.ascontiguousarray(heights.T),
         "matrix",
         reader=f"SurfaceTopography {SurfaceTopography.__version__} / {format_name}",
-        first_row="bottom",
         notes=notes,
         **stated,
     )
@@ -109,8 +107,8 @@ def _choose_channel(reader, wanted: str | None, path: Path):
     channels = list(reader.channels)
     if not channels:
         raise InputError(
-            f"{path}: the file holds no channel of heights with units of length; export x, y, z as "
-            "text, or a matrix with a sidecar"
+            f"{path}: no channel of the file has x, y and heights in units of length; set them in "
+            "the program that wrote it, or export a matrix of numbers as text and add a sidecar"
         )
     names = [channel.name for channel in channels]
     if wanted is not None and wanted not in names:
@@ -120,7 +118,8 @@ def _choose_channel(reader, wanted: str | None, path: Path):
     channel = reader.default_channel if wanted is None else channels[names.index(wanted)]
     if channel.dim != 2 or not channel.is_uniform:
         raise InputError(
-            f"{path}: channel {channel.name!r} is a line scan; a surface on a regular grid is needed"
+            f"{path}: channel {channel.name!r} is a line scan; a surface on a regular grid is "
+            "needed"
         )
     if channel.data_kind.name != "HEIGHT":
         raise InputError(

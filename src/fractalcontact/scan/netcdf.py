@@ -13,12 +13,14 @@ from .raw import RawScan, reading, refuse_larger, stated_unit
 
 #: Coordinates may stray this fraction of a cell from equal steps: float32 leaves as much.
 REGULAR = 0.01
+_MASK = "mask"
 
 
 def read_netcdf(path: Path, options: ScanOptions) -> RawScan:
     """Read one 2-D variable.
 
-    Fill values, ``scale_factor`` and ``add_offset`` are applied. Dimensions called x and y, or
+    Fill values, ``scale_factor`` and ``add_offset`` are applied; where a variable ``mask`` is not
+    zero, cells are missing (SurfaceTopography writes its holes so). Dimensions called x and y, or
     with the attribute ``axis``, tell the axes apart; else rows are y. Coordinate variables give
     spacing and direction, the attribute ``units`` (or ``unit``) the units.
 
@@ -36,13 +38,12 @@ def read_netcdf(path: Path, options: ScanOptions) -> RawScan:
             name = choose_array(list(tables), options.variable, path)
             variable = tables[name]
             refuse_larger(math.prod(variable.shape) * 8, path)
-            values = np.ma.filled(variable[:].astype(np.float64), np.nan)
+            values = _values(variable)
             axes = [_axis(variable, number, path) for number in (0, 1)]
             unit_z = stated_unit(_attribute(variable, "units", "unit"))
-    letters = [axis["letter"] for axis in axes]
-    if letters in (["x", "y"], ["x", None], [None, "y"]):
+    if axes[0]["letter"] == "x" or axes[1]["letter"] == "y":
         values, axes = values.T, axes[::-1]
-    (rows, columns), notes = axes, [f"variable {name!r}"]
+    rows, columns = axes
     for number, axis in enumerate(axes):
         if axis["step"] is not None and axis["step"] < 0:
             values = np.flip(values, number)
@@ -51,21 +52,11 @@ def read_netcdf(path: Path, options: ScanOptions) -> RawScan:
         "matrix",
         reader=f"netCDF4 {netCDF4.__version__} / netcdf",
         unit_z=unit_z,
-        notes=tuple(notes),
+        notes=(f"variable {name!r}",),
         # The coordinates say where the rows lie, and they are ascending by now.
         first_row=None if rows["step"] is None else "bottom",
         **_spacing(columns, rows),
     )
-
-
-def is_surface_topography(path: Path) -> bool:
-    """Tell the files SurfaceTopography writes, which it reads best itself."""
-    import netCDF4
-
-    with reading(path, "netCDF file"):
-        _refuse_data_elsewhere(path)
-        with netCDF4.Dataset(path.resolve()) as file:
-            return "heights" in file.variables and hasattr(file.variables.get("x"), "length")
 
 
 def _refuse_data_elsewhere(path: Path) -> None:
@@ -90,13 +81,23 @@ def _tables_of(group, prefix: str = "") -> dict:
     tables = {
         prefix + name: variable
         for name, variable in group.variables.items()
-        if isinstance(variable.dtype, np.dtype)  # else a text
+        if name != _MASK
+        and isinstance(variable.dtype, np.dtype)  # else a text
         and is_table(variable.shape, variable.dtype)
         and min(variable.shape) > 1
     }
     for name, inner in group.groups.items():
         tables |= _tables_of(inner, f"{prefix}{name}/")
     return tables
+
+
+def _values(variable) -> np.ndarray:
+    values = np.ma.filled(variable[:].astype(np.float64), np.nan)
+    mask = variable.group().variables.get(_MASK)
+    if mask is not None and mask.dimensions == variable.dimensions:
+        mask.set_auto_maskandscale(False)
+        values[mask[:] != 0] = np.nan
+    return values
 
 
 def _axis(variable, number: int, path: Path) -> dict:
@@ -108,7 +109,7 @@ def _axis(variable, number: int, path: Path) -> dict:
     if coordinate is None:
         return axis
     places = np.ma.filled(coordinate[:].astype(np.float64), np.nan)
-    step = (places[-1] - places[0]) / (len(places) - 1)
+    step = (places[-1] - places[0]) / (len(places) - 1)  # NaN if an end is missing
     strays = np.abs(np.diff(places) - step).max()
     if not strays <= REGULAR * abs(step):
         raise InputError(
