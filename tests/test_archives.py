@@ -81,7 +81,7 @@ def test_too_many_members_are_refused(tmp_path, monkeypatch):
 def test_a_bomb_is_refused_by_its_ratio_alone(tmp_path):
     path = pack(tmp_path / "rock.npz", [("z.npy", bytes(archives.UNSUSPICIOUS + 1))])
     assert path.stat().st_size < 100_000
-    with pytest.raises(InputError, match="inflates .* times"):
+    with pytest.raises(InputError, match=r"inflates \d+ times"):
         check_archive(path)
 
 
