@@ -18,6 +18,7 @@ pytestmark = [
 
 MM = {"unit": "mm"}
 MIXED = {"unit_xy": "mm", "unit_z": "um"}
+UNITLESS = {"unit": "um", "spacing": 1}
 CORONA = {"unit": "m", "variable": "Z_grid", "spacing": 0.005685771715431078}
 
 #: File, sidecar, (ny, nx), (dx, dy) in mm, unit the file is in, cells missing or their share.
@@ -40,6 +41,7 @@ READ = [
     ("plu-1.plu", {}, (576, 768), (1.66e-3, 1.66e-3), "µm", 0),
     ("sur-2.sur", {}, (484, 563), (3.484e-3, 3.484e-3), "mm", 117),
     ("tmd-1.tmd", {}, (300, 300), (18.9566 / 300, 18.9566 / 300), "mm", 0),
+    ("../gwyfile/test.gwy", UNITLESS, (128, 128), (0.001, 0.001), "um", 0),
     ("../x3p/sample-land.x3p", {}, (256, 918), (2.58e-3, 2.58e-3), "m", 25292),
     ("../x3p/surface_binary.x3p", {}, (150, 200), (0.001, 0.001), "m", 180),
     ("../x3p/surface_xml.x3p", {}, (150, 200), (0.001, 0.001), "m", 180),
@@ -55,7 +57,7 @@ REFUSED = [
     ("sdf-1.sdf", {}, "4 x 7 cells are too few"),
     ("xyz-1.txt", MM, "only 16 points"),
     ("xyz-1-different-order.txt", MM, "only 16 points"),
-    ("../gwyfile/test.gwy", {}, "units of length"),
+    ("../gwyfile/test.gwy", {}, "states no unit and spacing"),
 ]
 
 

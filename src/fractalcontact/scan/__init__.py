@@ -13,11 +13,11 @@ from . import tiff
 from .archives import check_archive
 from .arrays import read_npy, read_npz
 from .faces import Measured, grid_one, grid_pair
-from .hdf5 import read_hdf5
+from .gwyddion import read_gwyddion
 from .instruments import instrument_formats, read_instrument
+from .labelled import read_labelled
 from .matlab import read_mat
 from .mesh import read_mesh
-from .netcdf import read_netcdf
 from .options import MATRIX_KEYS, POINT_KEYS, ScanOptions, length_mm, parse_options, spacing_mm
 from .plausible import check_spacing
 from .raw import RawScan, refuse_larger
@@ -34,10 +34,11 @@ _READERS = {
     ".npy": read_npy,
     ".npz": read_npz,
     ".x3p": read_x3p,
-    ".h5": read_hdf5,
-    ".hdf5": read_hdf5,
+    ".h5": read_labelled,
+    ".hdf5": read_labelled,
+    ".nc": read_labelled,
     ".mat": read_mat,
-    ".nc": read_netcdf,
+    ".gwy": read_gwyddion,
 }
 
 

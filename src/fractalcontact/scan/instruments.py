@@ -10,7 +10,7 @@ from .options import ScanOptions
 from .raw import RawScan, stated_unit
 
 #: Formats read elsewhere in this package, with stricter checks.
-_OWN_FORMATS = {"xyz", "asc", "npy", "npz", "x3p", "mat", "h5", "nc"}
+_OWN_FORMATS = {"xyz", "asc", "npy", "npz", "x3p", "mat", "h5", "nc", "gwy"}
 #: Extensions in use that SurfaceTopography does not list.
 _MORE_EXTENSIONS = {"di": "di"}
 
@@ -102,6 +102,14 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
     )
 
 
+def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> None:
+    """Refuse a ``variable`` of the sidecar that is none of the channels."""
+    if wanted is not None and wanted not in names:
+        raise InputError(
+            f"{path}: no channel {wanted!r} (key 'variable'); it has {', '.join(names)}"
+        )
+
+
 def _choose_channel(reader, wanted: str | None, path: Path):
     """The channel called ``wanted``, else the reader's first of heights."""
     channels = list(reader.channels)
@@ -111,10 +119,7 @@ def _choose_channel(reader, wanted: str | None, path: Path):
             "the program that wrote it, or export a matrix of numbers as text and add a sidecar"
         )
     names = [channel.name for channel in channels]
-    if wanted is not None and wanted not in names:
-        raise InputError(
-            f"{path}: no channel {wanted!r} (key 'variable'); it has {', '.join(names)}"
-        )
+    refuse_unknown_channel(names, wanted, path)
     channel = reader.default_channel if wanted is None else channels[names.index(wanted)]
     if channel.dim != 2 or not channel.is_uniform:
         raise InputError(

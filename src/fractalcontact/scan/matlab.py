@@ -7,9 +7,9 @@ import numpy as np
 
 from ..errors import InputError
 from .arrays import choose_array
-from .hdf5 import read_dataset
 from .options import ScanOptions
 from .raw import RawScan, reading, refuse_larger, table_to_raw
+from .variables import choose_variable, open_variables
 
 #: MATLAB's classes that are plain numbers; cells, structs, objects and functions are never opened.
 _NUMERIC = {"double", "single", *(f"{u}int{bits}" for u in ("", "u") for bits in (8, 16, 32, 64))}
@@ -35,7 +35,9 @@ def read_mat(path: Path, options: ScanOptions) -> RawScan:
 def _read_7_3(path: Path, wanted: str | None):
     import h5py
 
-    name, values, _ = read_dataset(path, wanted)
+    with open_variables(path) as variables:
+        name = choose_variable(variables, wanted, path)
+        values = variables[name].read().astype(np.float64)
     # HDF5 counts rows first, MATLAB columns.
     return name, np.ascontiguousarray(values.T), f"h5py {h5py.__version__} / mat 7.3"
 

@@ -36,6 +36,8 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         _refuse_images(page, options, path)
         refuse_larger(math.prod(page.shape) * 8, path)
         values = page.asarray().astype(np.float64)
+        if values.shape != page.shape:
+            raise ValueError(f"pixels of shape {values.shape}, its header promises {page.shape}")
         stated = _imagej(file, page) or _geotiff(page)
         missing = _nodata(page)
     notes = (f"{name} of {len(names)}",) if len(names) > 1 else ()
