@@ -341,24 +341,14 @@ def test_a_page_of_a_tiff_is_named(tmp_path):
 # --- Gwyddion ----------------------------------------------------------------------------------
 
 
-def gwy(path):
-    """A channel with a mask, as SurfaceTopography writes it."""
-    from SurfaceTopography import Topography
-
-    ny, nx = surface().shape
-    masked = np.ma.masked_invalid(surface()[::-1].T) * 1e-3  # [x, y], from the top
-    Topography(masked, (nx * DX * 1e-3, ny * DY * 1e-3), unit="m").to_gwy(str(path))
-    return path
-
-
-def test_a_gwyddion_channel_runs_from_the_top_and_keeps_its_mask(tmp_path):
-    heights = read_scan(gwy(tmp_path / "rock.gwy"))
-    np.testing.assert_allclose(heights, surface(), rtol=1e-12)
-    assert heights.attrs["spacing_x"] == pytest.approx(DX)
-    assert heights.attrs["spacing_y"] == pytest.approx(DY)
+def test_a_gwyddion_file_says_what_is_masked_and_which_channel(tmp_path):
+    path = tmp_path / "rock.gwy"
+    write(path, surface(), DX, DY)
+    heights = read_scan(path, {"variable": "Topography"})
     assert heights.attrs["file_unit"] == "m"
+    assert "under the mask" in heights.attrs["notes"]
     with pytest.raises(InputError, match="no channel 'phase'"):
-        read_scan(tmp_path / "rock.gwy", {"variable": "phase"})
+        read_scan(path, {"variable": "phase"})
 
 
 # --- sizes that cannot be ----------------------------------------------------------------------

@@ -143,6 +143,20 @@ def test_sur_states_its_steps_and_units():
     assert (heights.attrs["spacing_x"], heights.attrs["spacing_y"]) == pytest.approx(steps)
 
 
+def test_an_instrument_that_states_no_size_needs_the_sidecar(tmp_path):
+    """MetroPro writes a lateral resolution of 0 where nobody calibrated it."""
+    content = bytearray((INSTRUMENTS / "metropro-1.dat").read_bytes())
+    (resolution,) = struct.unpack_from(">f", content, 184)
+    assert resolution == pytest.approx(1.0982520e-6)  # m
+    struct.pack_into(">f", content, 184, 0.0)
+    path = tmp_path / "uncalibrated.dat"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="states no spacing"):
+        read_scan(path)
+    heights = read_scan(path, {"spacing": "1.098252 um"})
+    np.testing.assert_array_equal(heights, read_scan(INSTRUMENTS / "metropro-1.dat"))
+
+
 def test_one_measurement_in_two_formats_is_one_surface():
     """A .bcrf states the length from the first point to the last, a .mnt the steps."""
     bcr, mnt = (read_scan(INSTRUMENTS / name) for name in ("bcrf-1.bcrf", "mnt-1.mnt"))

@@ -4,6 +4,7 @@ Nothing is ever unpacked to disk; the checks on names refuse files that were mad
 """
 
 import copy
+import re
 import stat
 import zipfile
 from pathlib import Path, PurePosixPath
@@ -22,6 +23,7 @@ DEEPEST_XML = 100  # elements within elements
 _CHUNK = 1024**2
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _ENCRYPTED = 0x1
+_DRIVE = re.compile("[A-Za-z]:")
 
 
 def check_archive(path: Path) -> None:
@@ -73,7 +75,7 @@ def _check_member(member: zipfile.ZipInfo, path: Path) -> None:
     """Refuse a member that points elsewhere or cannot be read."""
     # Some Windows programs part folders by backslashes.
     name = PurePosixPath(member.filename.replace("\\", "/"))
-    if name.is_absolute() or ".." in name.parts or ":" in member.filename:
+    if name.is_absolute() or ".." in name.parts or _DRIVE.match(member.filename):
         raise InputError(
             f"{path}: its member {member.filename!r} points out of the archive; do not use it"
         )

@@ -32,7 +32,7 @@ def read_npy(path: Path, options: ScanOptions) -> RawScan:
             f"{path}: expected a 2-D array of numbers, found {values.dtype} of shape {values.shape}"
         )
     refuse_larger(values.size * 8, path)
-    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader())
+    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader("npy"))
 
 
 def read_npz(path: Path, options: ScanOptions) -> RawScan:
@@ -51,7 +51,9 @@ def read_npz(path: Path, options: ScanOptions) -> RawScan:
         with np.load(path, allow_pickle=False) as archive:
             values = archive[variable]
     notes = (f"array {variable!r} of the archive",)
-    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader(), notes=notes)
+    return table_to_raw(
+        _as_float(values), None, options, str(path), reader=_reader("npz"), notes=notes
+    )
 
 
 def _tables_of(archive: zipfile.ZipFile) -> dict[str, tuple]:
@@ -111,5 +113,5 @@ def _as_float(values) -> np.ndarray:
     return np.array(values, dtype=np.float64)
 
 
-def _reader() -> str:
-    return f"numpy {np.__version__}"
+def _reader(kind: str) -> str:
+    return f"numpy {np.__version__} / {kind}"
