@@ -1,5 +1,7 @@
 """Heights written to a file come back: the same surface whatever the format."""
 
+import json
+
 import numpy as np
 import pytest
 from scan_writers import WRITERS, write
@@ -49,3 +51,5 @@ def test_heights_holes_and_cells_come_back(tmp_path, ending, shape, dx, dy):
     assert read.attrs["spacing_y"] == pytest.approx(dy, rel=1e-6)
     assert (np.diff(read.x) > 0).all()
     assert (np.diff(read.y) > 0).all()
+    json.dumps(read.attrs)  # provenance is stored as text, so nothing but plain values
+    assert " / " in read.attrs["reader"] or ending in (".stl", ".ply", ".obj")
