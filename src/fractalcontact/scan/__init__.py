@@ -1,7 +1,6 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
 import hashlib
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +9,14 @@ import xarray as xr
 from ..catalogue import split_file_name
 from ..errors import InputError
 from ..units import length_factor
+from . import tiff
+from .archives import check_archive
 from .arrays import read_npy, read_npz
 from .faces import Measured, grid_one, grid_pair
+from .gwyddion import read_gwyddion
 from .instruments import instrument_formats, read_instrument
+from .labelled import read_labelled
+from .matlab import read_mat
 from .mesh import read_mesh
 from .options import (
     MATRIX_KEYS,
@@ -23,16 +27,27 @@ from .options import (
     parse_options,
     spacing_mm,
 )
-from .raw import RawScan
+from .plausible import check_spacing
+from .raw import RawScan, refuse_larger
 from .text import is_text, read_text
 from .x3p import read_x3p
 
 __all__ = ["read_faces", "read_matrix", "read_scan"]
 
-LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to
 _TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
 _MESH = (".obj", ".ply", ".stl")
-_ARRAY = (".npy", ".npz")
+_TIFF = (".tif", ".tiff")
+#: Containers of matrices and others with one reader an extension.
+_READERS = {
+    ".npy": read_npy,
+    ".npz": read_npz,
+    ".x3p": read_x3p,
+    ".h5": read_labelled,
+    ".hdf5": read_labelled,
+    ".nc": read_labelled,
+    ".mat": read_mat,
+    ".gwy": read_gwyddion,
+}
 
 
 def read_scan(path, options=None) -> xr.DataArray:
@@ -134,18 +149,20 @@ def _measure(path: Path, options) -> Measured:
     _check_size(path)
     raw = _read_raw(path, options)
     _refuse_idle_keys(raw, options, path)
-    notes = list(raw.notes)
-    unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, notes)
-    unit_z = _choose_unit("unit_z", raw.unit_z, options, notes)
+    overrides = []
+    unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
+    unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
-    values = _without_missing(raw, options) if raw.layout == "matrix" else raw.values.copy()
+    missing = _choose("missing", raw.missing, options, overrides)
     if raw.layout == "matrix":
+        values = _without_missing(raw.values, missing)
         values *= length_factor(unit_z, f"{path}: unit_z")
-        if (options.first_row or raw.first_row) == "top":
+        if _choose("first_row", raw.first_row, options, overrides) == "top":
             values = values[::-1].copy()
-        spacing = _choose_spacing(raw, options, unit_xy, path, notes)
+        spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
     else:
-        values[:, 2] = _without_missing(raw, options)[:, 2]
+        values = raw.values.copy()
+        values[:, 2] = _without_missing(raw.values[:, 2], missing)
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
@@ -158,29 +175,29 @@ def _measure(path: Path, options) -> Measured:
         "reader": raw.reader,
         "file_unit": unit_z if unit_xy in (None, unit_z) else f"x, y {unit_xy}; z {unit_z}",
         "layout": raw.layout,
-        "notes": "; ".join(notes),
+        "notes": "; ".join(raw.notes),
+        "overrides": "; ".join(overrides),
     }
     return Measured(path, raw.layout, values, spacing, grid, provenance)
 
 
 def _read_raw(path: Path, options: ScanOptions) -> RawScan:
     """Choose the reader by extension, and by content where one extension serves two formats."""
+    check_archive(path)
     extension = path.suffix.lower()
-    if extension == ".npy":
-        return read_npy(path, options)
-    if extension == ".npz":
-        return read_npz(path, options)
+    if extension in _READERS:
+        return _READERS[extension](path, options)
     if extension in _MESH:
         return read_mesh(path)
-    if extension == ".x3p":
-        return read_x3p(path)
+    if extension in _TIFF and not tiff.is_park_systems(path):
+        return tiff.read_tiff(path, options)
     if extension in _TEXT and is_text(path):
         return read_text(path, options)
     if extension.lstrip(".") in instrument_formats():
         return read_instrument(path, options)
     if extension in _TEXT:
         raise InputError(f"{path}: not a text file; damaged, or the wrong extension?")
-    known = sorted({*_TEXT, *_MESH, *_ARRAY, ".x3p", *(f".{e}" for e in instrument_formats())})
+    known = sorted({*_TEXT, *_MESH, *_READERS, *(f".{e}" for e in instrument_formats())})
     raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
 
 
@@ -191,17 +208,7 @@ def _check_size(path: Path) -> None:
     size = path.stat().st_size
     if size == 0:
         raise InputError(f"{path}: the file is empty")
-    if size <= LARGEST_FILE and zipfile.is_zipfile(path):
-        try:
-            with zipfile.ZipFile(path) as archive:
-                size = max(size, sum(member.file_size for member in archive.infolist()))
-        except zipfile.BadZipFile as error:
-            raise InputError(f"{path}: a damaged archive ({error})") from error
-    if size > LARGEST_FILE:
-        raise InputError(
-            f"{path}: {size / 1024**3:.1f} GiB to read, more than the {LARGEST_FILE / 1024**3:g} "
-            "GiB allowed; export a part of it or a coarser grid"
-        )
+    refuse_larger(size, path)
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
@@ -216,11 +223,21 @@ def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
             )
 
 
-def _choose_unit(key: str, stated: str | None, options: ScanOptions, notes: list) -> str | None:
-    """The sidecar's unit, else the file's; noted where they differ."""
+def _choose(key: str, stated, options: ScanOptions, overrides: list):
+    """The sidecar's value, else the file's; recorded where they differ."""
+    given = getattr(options, key)
+    if given is None:
+        return stated
+    if stated is not None and given != stated:
+        overrides.append(f"{key} {given} from the sidecar, the file says {stated}")
+    return given
+
+
+def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: list) -> str | None:
+    """The sidecar's unit, else the file's; recorded where they differ."""
     given = getattr(options, key) or options.unit
     if given and stated and length_factor(given, key) != length_factor(stated, key):
-        notes.append(f"{key} {given} from the sidecar, the file says {stated}")
+        overrides.append(f"{key} {given} from the sidecar, the file says {stated}")
     return given or stated
 
 
@@ -251,36 +268,32 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     )
 
 
-def _choose_spacing(raw, options, unit_xy, path: Path, notes: list) -> tuple[float, float]:
-    """The sidecar's spacing, else the file's, in mm; noted where they differ."""
+def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple[float, float]:
+    """The sidecar's spacing, else the file's, in mm; recorded where they differ."""
     stated = None
     if raw.spacing is not None and unit_xy is not None:
         factor = length_factor(unit_xy, f"{path}: unit_xy")
         stated = tuple(factor * spacing for spacing in raw.spacing)
     if options.spacing is not None:
         spacing = spacing_mm(options.spacing, unit_xy, f"{path}: key 'spacing'")
+        check_spacing(spacing, path)
         if stated and not np.allclose(spacing, stated, rtol=1e-6, atol=0):
-            notes.append(
+            overrides.append(
                 f"spacing {spacing[0]:.6g} x {spacing[1]:.6g} mm from the sidecar, the file says "
                 f"{stated[0]:.6g} x {stated[1]:.6g} mm"
             )
         return spacing
-    if not (np.isfinite(stated).all() and min(stated) > 0):
-        raise InputError(
-            f"{path}: the file states a cell spacing of {stated[0]:g} x {stated[1]:g} mm; write "
-            "the right one in the sidecar, such as 'spacing: 0.1 mm'"
-        )
+    check_spacing(stated, path)
     return stated
 
 
-def _without_missing(raw: RawScan, options: ScanOptions) -> np.ndarray:
-    """Values in file units with the missing number and infinities as NaN."""
-    missing = options.missing if options.missing is not None else raw.missing
-    absent = ~np.isfinite(raw.values)
+def _without_missing(values: np.ndarray, missing: float | None) -> np.ndarray:
+    """A copy, in file units, with the missing number and infinities as NaN."""
+    absent = ~np.isfinite(values)
     if missing is not None:
         # Markers such as 3.4e38 come back from text and float32 not quite the same.
-        absent |= np.isclose(raw.values, missing, rtol=1e-6, atol=0)
-    return np.where(absent, np.nan, raw.values)
+        absent |= np.isclose(values, missing, rtol=1e-6, atol=0)
+    return np.where(absent, np.nan, values)
 
 
 def _sha256(path: Path) -> str:

@@ -1,5 +1,6 @@
 """Matrices and point lists saved by numpy. Nothing pickled is ever opened."""
 
+import math
 import zipfile
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from ..errors import InputError
 from .options import ScanOptions
-from .raw import RawScan, table_to_raw
+from .raw import RawScan, reading, refuse_larger, table_to_raw
 
 _HEADER_READERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
@@ -23,16 +24,15 @@ def read_npy(path: Path, options: ScanOptions) -> RawScan:
     InputError
         If it is damaged, pickled, or no 2-D array of numbers.
     """
-    try:
+    with reading(path, ".npy array"):
         # Mapped, so that a header promising more than the file holds fails at once.
         values = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, OSError, EOFError) as error:
-        raise InputError(f"{path}: not a readable .npy array ({error})") from error
-    if not _is_table(values.shape, values.dtype):
+    if not is_table(values.shape, values.dtype):
         raise InputError(
             f"{path}: expected a 2-D array of numbers, found {values.dtype} of shape {values.shape}"
         )
-    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader())
+    refuse_larger(values.size * 8, path)
+    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader("npy"))
 
 
 def read_npz(path: Path, options: ScanOptions) -> RawScan:
@@ -43,51 +43,69 @@ def read_npz(path: Path, options: ScanOptions) -> RawScan:
     InputError
         If it is damaged, or the wanted array is absent, ambiguous or pickled.
     """
-    try:
+    with reading(path, ".npz archive"):
         with zipfile.ZipFile(path) as archive:
             tables = _tables_of(archive)
-        variable = _choose(tables, options.variable, path)
+        variable = choose_array(list(tables), options.variable, path)
+        refuse_larger(math.prod(tables[variable]) * 8, path)
         with np.load(path, allow_pickle=False) as archive:
             values = archive[variable]
-    except InputError:
-        raise
-    except (ValueError, OSError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: not a readable .npz archive ({error})") from error
     notes = (f"array {variable!r} of the archive",)
-    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader(), notes=notes)
+    return table_to_raw(
+        _as_float(values), None, options, str(path), reader=_reader("npz"), notes=notes
+    )
 
 
-def _tables_of(archive: zipfile.ZipFile) -> list[str]:
-    """Name the 2-D numeric arrays of an archive, judged by their headers alone."""
-    tables = []
+def _tables_of(archive: zipfile.ZipFile) -> dict[str, tuple]:
+    """Shapes of the 2-D numeric arrays of an archive by name, judged by their headers alone."""
+    tables = {}
     for member in archive.infolist():
         with archive.open(member) as stream:
             read_header = _HEADER_READERS.get(np.lib.format.read_magic(stream))
             if read_header is None:
                 continue
             shape, _, dtype = read_header(stream)
-        if _is_table(shape, dtype) and np.prod(shape) * dtype.itemsize <= member.file_size:
-            tables.append(member.filename.removesuffix(".npy"))
+        if is_table(shape, dtype) and math.prod(shape) * dtype.itemsize <= member.file_size:
+            tables[member.filename.removesuffix(".npy")] = shape
     return tables
 
 
-def _choose(tables: list[str], variable: str | None, path: Path) -> str:
-    has = f"it has {', '.join(tables) or 'none'}"
-    if variable is not None:
-        if variable not in tables:
+def choose_array(names: list[str], wanted: str | None, path: Path) -> str:
+    """Choose the array of heights: the one the sidecar's ``variable`` names, or the only one.
+
+    Parameters
+    ----------
+    names : list of str
+        The arrays that could be heights.
+    wanted : str or None
+    path : Path
+
+    Raises
+    ------
+    InputError
+        If the wanted one is absent, or none is named where there are several or none at all.
+    """
+    if not names:
+        raise InputError(
+            f"{path}: holds no 2-D array of real numbers, so no heights; export it again"
+        )
+    has = f"it has {', '.join(names)}"
+    if wanted is not None:
+        if wanted not in names:
             raise InputError(
-                f"{path}: key 'variable' is {variable!r}, no 2-D array of numbers; {has}"
+                f"{path}: key 'variable' is {wanted!r}, no 2-D array of numbers; {has}"
             )
-        return variable
-    if len(tables) != 1:
+        return wanted
+    if len(names) != 1:
         raise InputError(
             f"{path}: which array holds the heights? Name one 2-D array of numbers in the sidecar, "
             f"'variable: NAME'; {has}"
         )
-    return tables[0]
+    return names[0]
 
 
-def _is_table(shape: tuple, dtype: np.dtype) -> bool:
+def is_table(shape: tuple, dtype: np.dtype) -> bool:
+    """Tell a 2-D array of real numbers from everything else."""
     return len(shape) == 2 and dtype.kind in "fiu"
 
 
@@ -95,5 +113,5 @@ def _as_float(values) -> np.ndarray:
     return np.array(values, dtype=np.float64)
 
 
-def _reader() -> str:
-    return f"numpy {np.__version__}"
+def _reader(kind: str) -> str:
+    return f"numpy {np.__version__} / {kind}"

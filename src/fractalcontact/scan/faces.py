@@ -9,14 +9,13 @@ import xarray as xr
 from ..errors import InputError
 from . import points as cloud
 from .pairs import MIRRORS, register
+from .plausible import check_relief, check_spacing
 from .raw import SMALLEST_SIDE
 
 #: Two matrices are one grid when their spacings agree this well (relative).
 SAME_SPACING = 1e-6
 #: Two lattices are one grid when their nodes coincide within this fraction of a cell.
 SAME_NODES = 0.01
-LARGEST_FIELD = 1e4  # mm: no profilometer sees 10 m
-SMALLEST_FIELD = 1e-6  # mm: nor less than 1 nm
 ROUNDING = 1e-12  # relative: what interpolating a constant leaves
 
 
@@ -212,14 +211,8 @@ def _check_surface(heights: np.ndarray, lattice: cloud.Lattice, path: Path) -> N
         raise InputError(
             f"{path}: a constant surface: every height is {present[0]:g} mm, so this is no scan"
         )
-    field = max(lattice.dx * lattice.nx, lattice.dy * lattice.ny)
-    low, high = np.percentile(present, [1, 99])  # a few spikes do not make a unit wrong
-    if not SMALLEST_FIELD <= field <= LARGEST_FIELD or high - low > field:
-        raise InputError(
-            f"{path}: a field of {field:.4g} mm with a relief of {high - low:.4g} mm is not "
-            f"plausible: its unit or spacing is wrong; write the right ones in the sidecar, "
-            "'unit: um' (or 'unit_xy' and 'unit_z') and, for a matrix, 'spacing: 0.5 um'"
-        )
+    check_spacing((lattice.dx, lattice.dy), path)
+    check_relief(present, max(lattice.dx * lattice.nx, lattice.dy * lattice.ny), path)
 
 
 def _differing_grid(z_l: xr.DataArray, z_u: xr.DataArray) -> str | None:

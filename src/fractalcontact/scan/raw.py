@@ -1,13 +1,18 @@
 """What every reader of a file format hands over, in the file's own units."""
 
+import re
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import InputError
+from ..units import length_factor
 
+LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to or a header promises
 #: A matrix or grid needs at least this many cells along each side to hold any roughness.
 SMALLEST_SIDE = 8
+_UNIT = re.compile(r"[^\W\d_]{1,20}")
 
 
 @dataclass(frozen=True)
@@ -25,8 +30,8 @@ class RawScan:
         Units the file states.
     spacing : (float, float) or None
         dx, dy the file states, in ``unit_xy``.
-    first_row : {"bottom", "top"}
-        Where the first row of a matrix lies.
+    first_row : {"bottom", "top"} or None
+        Where the first row of a matrix lies; None where the file does not say.
     missing : float or None
         Number the file states for a missing cell.
     notes : tuple of str
@@ -39,9 +44,49 @@ class RawScan:
     unit_xy: str | None = None
     unit_z: str | None = None
     spacing: tuple[float, float] | None = None
-    first_row: str = "bottom"
+    first_row: str | None = None
     missing: float | None = None
     notes: tuple[str, ...] = ()
+
+
+def refuse_larger(n_bytes: int, path) -> None:
+    """Refuse what would need more than `LARGEST_FILE`, before anything is allocated."""
+    if n_bytes > LARGEST_FILE:
+        raise InputError(
+            f"{path}: {n_bytes / 1024**3:.1f} GiB to read, more than the "
+            f"{LARGEST_FILE / 1024**3:g} GiB allowed; export a part of it or a coarser grid"
+        )
+
+
+@contextmanager
+def reading(path, kind: str):
+    """Turn whatever a library raises over a damaged file into one clean `InputError`.
+
+    Parameters
+    ----------
+    path : Path
+    kind : str
+        What the file should be, for the message.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # libraries raise anything over a file that was made to break them
+        reason = f"{type(error).__name__}: {error}".splitlines()[0][:200]
+        raise InputError(f"{path}: not a readable {kind} ({reason}); export it again") from error
+
+
+def stated_unit(text) -> str | None:
+    """Take the unit of length a file states; None if it states none, or of something else."""
+    text = str(text or "").strip()
+    if not _UNIT.fullmatch(text):  # nothing else is handed to the parser of units
+        return None
+    try:
+        length_factor(text, "")
+    except InputError:
+        return None
+    return text
 
 
 def table_to_raw(table, names, options, where, **stated) -> RawScan:

@@ -37,7 +37,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     lines = _decode(path).splitlines()
     header, data = _split_header(lines, path)
     if not data:
-        raise InputError(f"{path}: the file is empty: it holds no numbers")
+        raise InputError(f"{path}: the file holds no line of numbers")
     delimiter, decimal = _sniff([line for _, line in data[:_SAMPLE]])
     data, width, notes = _uniform(data, delimiter, path)
     table = _parse([line for _, line in data], delimiter, decimal, width, path)

@@ -1,0 +1,139 @@
+"""The arrays of HDF5, netCDF-4 and classic netCDF files, looked at before any number is read.
+
+h5py and scipy open them rather than the netCDF library, which hangs over some damaged files.
+"""
+
+import math
+from collections.abc import Callable
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from .arrays import choose_array, is_table
+from .raw import refuse_larger
+
+MASK = "mask"
+_ATTRIBUTES = (
+    *("units", "unit", "axis", "scale_factor", "add_offset"),
+    *("_FillValue", "missing_value", "valid_min", "valid_max", "valid_range"),
+)
+#: What netCDF-4 writes into HDF5 for a dimension without coordinates.
+_NO_COORDINATES = b"This is a netCDF dimension but not a netCDF variable"
+
+
+@dataclass(frozen=True)
+class Variable:
+    """An array in a file.
+
+    Attributes
+    ----------
+    shape : tuple of int
+    dtype : dtype
+    dimensions : tuple of str
+        For each axis the name of the variable that holds its coordinates, if there is one.
+    attributes : dict
+        Those that say how the numbers are meant.
+    read : callable
+        Gives the numbers as stored.
+    """
+
+    shape: tuple
+    dtype: np.dtype
+    dimensions: tuple
+    attributes: dict
+    read: Callable[[], np.ndarray]
+
+
+@contextmanager
+def open_variables(path: Path):
+    """Open a file and list its variables by name, those in groups as ``group/name``."""
+    import h5py
+
+    with (_open_hdf5 if h5py.is_hdf5(path) else _open_classic)(path) as variables:
+        yield variables
+
+
+def choose_variable(variables: dict, wanted: str | None, path: Path) -> str:
+    """Choose the 2-D numeric variable that ``wanted`` names, or the only one.
+
+    Raises
+    ------
+    InputError
+        If it is absent, ambiguous or too large.
+    """
+    tables = [
+        name
+        for name, variable in variables.items()
+        if is_table(variable.shape, variable.dtype)
+        and min(variable.shape) > 1
+        and name.rpartition("/")[2] != MASK
+    ]
+    name = choose_array(tables, wanted, path)
+    refuse_larger(math.prod(variables[name].shape) * 8, path)
+    return name
+
+
+@contextmanager
+def _open_classic(path: Path):
+    from scipy.io import netcdf_file
+
+    with netcdf_file(path, mmap=False, maskandscale=False) as file:
+        yield {
+            name: Variable(
+                variable.shape,
+                variable.data.dtype,
+                variable.dimensions,
+                _attributes(variable._attributes),
+                partial(np.array, variable.data),
+            )
+            for name, variable in file.variables.items()
+        }
+
+
+@contextmanager
+def _open_hdf5(path: Path):
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        variables = {}
+
+        def collect(name, item):
+            # MATLAB keeps the content of cells and structs under #refs#.
+            if not isinstance(item, h5py.Dataset) or not item.shape or name.startswith("#"):
+                return
+            if not bytes(item.attrs.get("NAME", b"")).startswith(_NO_COORDINATES):
+                dimensions = tuple(_dimension(axis) for axis in item.dims)
+                read = partial(_read_hdf5, item, path)
+                attributes = _attributes(item.attrs)
+                variables[name] = Variable(item.shape, item.dtype, dimensions, attributes, read)
+
+        file.visititems(collect)  # links into other files are not followed
+        yield variables
+
+
+def _dimension(axis) -> str:
+    return axis[0].name.lstrip("/") if len(axis) else axis.label
+
+
+def _read_hdf5(dataset, path: Path) -> np.ndarray:
+    """The numbers, unless they lie in other files: a stranger may name any file there."""
+    if dataset.external or dataset.is_virtual:
+        raise InputError(
+            f"{path}: dataset {dataset.name!r} lies in another file; store the numbers in this one"
+        )
+    if dataset.chunks:  # one is unpacked as a whole
+        refuse_larger(math.prod(dataset.chunks) * dataset.dtype.itemsize, path)
+    return dataset[()]
+
+
+def _attributes(stored) -> dict:
+    """Those we know, texts as str."""
+    known = {name: stored[name] for name in _ATTRIBUTES if name in stored}
+    return {
+        name: value.decode(errors="replace") if isinstance(value, bytes) else value
+        for name, value in known.items()
+    }
