@@ -15,6 +15,7 @@ from .faces import Measured, grid_one, grid_pair
 from .instruments import instrument_formats, read_instrument
 from .mesh import read_mesh
 from .options import MATRIX_KEYS, POINT_KEYS, ScanOptions, length_mm, parse_options, spacing_mm
+from .points import single_precision_note
 from .raw import RawScan
 from .text import is_text, read_text
 from .x3p import read_x3p
@@ -42,7 +43,7 @@ def read_scan(path, options=None) -> xr.DataArray:
     -------
     DataArray
         ``height`` (y, x) in mm, NaN where missing; x and y in mm, ascending, cell centres. A tilt
-        is left in.
+        is left in, but scattered points and meshes steeper than 5 degrees are turned level first.
 
     Raises
     ------
@@ -55,8 +56,9 @@ def read_scan(path, options=None) -> xr.DataArray:
 def read_faces(lower_path, upper_path=None, options=None):
     """Read the faces of one joint onto one common grid.
 
-    Points are gridded at the coarser of the two spacings over the area both cover; matrices must
-    have the same spacing and are cropped to the rectangle both cover.
+    Points are gridded at the coarser of the two spacings over the area both cover, after one turn
+    for both where they lie steeply; matrices must have the same spacing and are cropped to the
+    rectangle both cover.
 
     Parameters
     ----------
@@ -119,14 +121,17 @@ def _measure(path: Path, options) -> Measured:
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, notes)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, notes)
     _require_units(raw, options, unit_xy, unit_z, path)
-    values = _without_missing(raw, options) if raw.layout == "matrix" else raw.values.copy()
     if raw.layout == "matrix":
+        values = _without_missing(raw.values, raw, options)
         values *= length_factor(unit_z, f"{path}: unit_z")
         if (options.first_row or raw.first_row) == "top":
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, notes)
     else:
-        values[:, 2] = _without_missing(raw, options)[:, 2]
+        if note := single_precision_note(raw.values):
+            notes.append(note)
+        values = raw.values.copy()
+        values[:, 2] = _without_missing(raw.values[:, 2], raw, options)
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
@@ -141,7 +146,7 @@ def _measure(path: Path, options) -> Measured:
         "layout": raw.layout,
         "notes": "; ".join(notes),
     }
-    return Measured(path, raw.layout, values, spacing, grid, provenance)
+    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles)
 
 
 def _read_raw(path: Path, options: ScanOptions) -> RawScan:
@@ -254,14 +259,14 @@ def _choose_spacing(raw, options, unit_xy, path: Path, notes: list) -> tuple[flo
     return stated
 
 
-def _without_missing(raw: RawScan, options: ScanOptions) -> np.ndarray:
-    """Values in file units with the missing number and infinities as NaN."""
+def _without_missing(values: np.ndarray, raw: RawScan, options: ScanOptions) -> np.ndarray:
+    """Heights in file units with the missing number and infinities as NaN."""
     missing = options.missing if options.missing is not None else raw.missing
-    absent = ~np.isfinite(raw.values)
+    absent = ~np.isfinite(values)
     if missing is not None:
         # Markers such as 3.4e38 come back from text and float32 not quite the same.
-        absent |= np.isclose(raw.values, missing, rtol=1e-6, atol=0)
-    return np.where(absent, np.nan, raw.values)
+        absent |= np.isclose(values, missing, rtol=1e-6, atol=0)
+    return np.where(absent, np.nan, values)
 
 
 def _sha256(path: Path) -> str:

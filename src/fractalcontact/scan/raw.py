@@ -31,6 +31,8 @@ class RawScan:
         Number the file states for a missing cell.
     notes : tuple of str
         What a user should know about the reading.
+    triangles : (m, 3) int ndarray or None
+        Of a mesh: rows of ``values``; None for a cloud.
     """
 
     values: np.ndarray
@@ -42,6 +44,7 @@ class RawScan:
     first_row: str = "bottom"
     missing: float | None = None
     notes: tuple[str, ...] = ()
+    triangles: np.ndarray | None = None
 
 
 def table_to_raw(table, names, options, where, **stated) -> RawScan:
