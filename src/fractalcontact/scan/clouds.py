@@ -12,6 +12,10 @@ from . import points as pts
 from .raw import SMALLEST_SIDE
 from .triangles import interpolate_mesh, interpolate_points, places_across
 
+#: Fewer hidden points than this share are reported but stay: at the steps of a fracture some points
+#: look hidden by chance, and an overhang that small changes no result.
+FEW_HIDDEN = 0.005
+
 
 @dataclass(frozen=True)
 class Mesh:
@@ -187,15 +191,8 @@ def _look_beneath(cloud: Cloud) -> Cloud:
     points = cloud.points[np.isfinite(cloud.points[:, 2])]
     tree = dense.plane_tree(points)
     if cloud.mesh is None and (hidden := overhangs.find_hidden(points, tree)) is not None:
-        share = float(hidden.mean())
-        points = points[~hidden]
+        cloud, points = _without_hidden(cloud, points, hidden)
         tree = dense.plane_tree(points)
-        note = (
-            f"overhangs: {hidden.sum()} points ({share:.2%}) lie beneath others and are left out, "
-            "as an instrument above would not see them"
-        )
-        attrs = cloud.attrs | {"overhang_share": share}
-        cloud = replace(cloud, attrs=attrs, notes=(*cloud.notes, note))
     density = _measure_density(points, cloud.path, tree)
     notes = cloud.notes
     if density.uneven:
@@ -205,6 +202,19 @@ def _look_beneath(cloud: Cloud) -> Cloud:
             "and much between them is interpolated",
         )
     return replace(cloud, points=points, density=density, notes=notes)
+
+
+def _without_hidden(cloud: Cloud, points: np.ndarray, hidden: np.ndarray):
+    """The cloud with its overhangs noted, and the points that remain."""
+    share = float(hidden.mean())
+    note = f"overhangs: {hidden.sum()} points ({share:.2g} of all) lie beneath others and are "
+    if share < FEW_HIDDEN:
+        note += "kept, being so few"
+    else:
+        note += "left out, as an instrument above would not see them"
+        points = points[~hidden]
+    attrs = cloud.attrs | {"overhang_share": share}
+    return replace(cloud, attrs=attrs, notes=(*cloud.notes, note)), points
 
 
 def _with_overhang_of_mesh(cloud: Cloud) -> Cloud:

@@ -7,8 +7,7 @@ from .density import sample_points
 
 #: Neighbours in the plane that are looked at: where two layers overlap, a dozen of each.
 _NEIGHBOURS = 24
-#: A point lies above another if it is steeper towards it than this: no rough surface is, twice over,
-#: over a dozen points.
+#: A point lies above another if it is steeper towards it than this ...
 _STEEPEST = np.tan(np.radians(80.0))
 #: ... and higher by so many lower quartiles of the height differences between nearest neighbours:
 #: white noise alone reaches 16 of them once in a million pairs. The quartile is that of one layer,
@@ -44,8 +43,8 @@ def find_hidden(points: np.ndarray, tree: cKDTree) -> np.ndarray | None:
         None if none of a sample of the points is hidden: then the others are not looked at.
     """
     sample = sample_points(points)
-    distances, neighbours = tree.query(sample[:, :2], k=2)
-    differences = np.abs(points[neighbours[:, 1], 2] - sample[:, 2])
+    _, nearest = tree.query(sample[:, :2], k=[2])  # the first is the point itself
+    differences = np.abs(points[nearest[:, 0], 2] - sample[:, 2])
     noise = _NOISE * float(np.quantile(differences, 0.25))
     in_sample = _hidden(sample, points, tree, noise)
     if not in_sample.any():

@@ -219,7 +219,7 @@ def _nodes_between(low, high, count):
     # Cut off in floating point: a stray vertex may lie beyond all whole numbers.
     first = min(max(0.0, low - _SLACK), float(count))
     last = min(max(-1.0, high + _SLACK), count - 1.0)
-    return range(int(math.ceil(first)), int(math.floor(last)) + 1)
+    return range(math.ceil(first), math.floor(last) + 1)
 
 
 @njit(cache=True)
