@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numba import njit
 from scipy.spatial import Delaunay, QhullError
 
 from ..errors import InputError
@@ -11,10 +10,6 @@ from .points import MOST_CELLS, Lattice
 
 #: Points triangulated at once: a few tens of thousands stay in the processor's cache.
 TILE_POINTS = 25_000
-#: A node on an edge belongs to both triangles, whatever rounding says. As a share of the triangle.
-_SLACK = 1e-9
-#: Triangles this thin, as a share of their longest side, stand upright or have no area.
-_FLAT = 1e-12
 #: Points on one line: they stray from it by less than this share of its length (root of rounding).
 _LINE = 1e-7
 #: Grids are averaged over cells that hold this many points or more, else read at their centres.
@@ -201,43 +196,15 @@ def _part(lattice: Lattice, rows: slice, columns: slice) -> Lattice:
 
 def _envelope(vertices, triangles, lattice: Lattice, across: int) -> np.ndarray:
     """Top-most heights of triangles at the nodes, or their means over the cells."""
+    from .envelope import raise_to_triangles  # compiled: only gridding pays for it
+
     # In places of the finer grid, whose first ones lie (across - 1)/2 before the first node.
     before = (across - 1) / 2
     u = (vertices[:, 0] - lattice.x0) / lattice.dx * across + before
     v = (vertices[:, 1] - lattice.y0) / lattice.dy * across + before
     heights = np.full((lattice.ny * across, lattice.nx * across), np.nan)
-    _raise_to_triangles(heights, u, v, np.ascontiguousarray(vertices[:, 2]), triangles)
+    raise_to_triangles(heights, u, v, np.ascontiguousarray(vertices[:, 2]), triangles)
     if across == 1:
         return heights
     # A cell that is covered in part stays missing: its mean would be that of another place.
     return heights.reshape(lattice.ny, across, lattice.nx, across).mean(axis=(1, 3))
-
-
-@njit(cache=True)
-def _nodes_between(low, high, count):
-    """Nodes 0 to count - 1 that lie between two places."""
-    # Cut off in floating point: a stray vertex may lie beyond all whole numbers.
-    first = min(max(0.0, low - _SLACK), float(count))
-    last = min(max(-1.0, high + _SLACK), count - 1.0)
-    return range(math.ceil(first), math.floor(last) + 1)
-
-
-@njit(cache=True)
-def _raise_to_triangles(heights, u, v, z, triangles):
-    """Raise the heights at whole u (columns) and v (rows) to the triangles above them."""
-    rows, columns = heights.shape
-    for t in range(triangles.shape[0]):
-        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        ub, vb, uc, vc = u[b] - u[a], v[b] - v[a], u[c] - u[a], v[c] - v[a]
-        twice_area = ub * vc - vb * uc
-        if not abs(twice_area) > _FLAT * (ub * ub + vb * vb + uc * uc + vc * vc):
-            continue
-        for j in _nodes_between(min(v[a], v[b], v[c]), max(v[a], v[b], v[c]), rows):
-            for i in _nodes_between(min(u[a], u[b], u[c]), max(u[a], u[b], u[c]), columns):
-                from_b = ((i - u[a]) * vc - (j - v[a]) * uc) / twice_area
-                from_c = (ub * (j - v[a]) - vb * (i - u[a])) / twice_area
-                from_a = 1.0 - from_b - from_c
-                if min(from_a, from_b, from_c) >= -_SLACK:
-                    height = from_a * z[a] + from_b * z[b] + from_c * z[c]
-                    if not heights[j, i] >= height:  # also where it is missing
-                        heights[j, i] = height
