@@ -61,10 +61,11 @@ def read_cloud(path, grid):
     start = time.perf_counter()
     heights = read_scan(path, options)
     seconds = time.perf_counter() - start
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    busy, peak = usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024 / 1e9
     cells = " x ".join(map(str, heights.shape))
     missing = heights.attrs["missing_share"]
-    sys.stdout.write(f"{seconds:8.1f} {peak:8.2f} {cells:>15} {missing:9.2%}\n")
+    sys.stdout.write(f"{seconds:8.1f} {busy:6.1f} {peak:8.2f} {cells:>15} {missing:9.2%}\n")
 
 
 def main(arguments):
@@ -79,7 +80,7 @@ def main(arguments):
     if options.read:
         read_cloud(options.read, options.grid)
         return
-    sys.stdout.write("cloud    file   points  seconds  peak GB           cells   missing\n")
+    sys.stdout.write("cloud    file   points  seconds  CPU s  peak GB           cells   missing\n")
     grid = ["--grid", str(options.grid)] if options.grid else []
     with tempfile.TemporaryDirectory() as folder:
         for name in options.clouds:

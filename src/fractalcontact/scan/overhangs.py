@@ -5,16 +5,17 @@ from scipy.spatial import cKDTree
 
 from .density import sample_points
 
-#: Neighbours in the plane that are looked at: where two layers overlap, a dozen of each.
-_NEIGHBOURS = 24
+#: Neighbours in the plane that are looked at. Where two layers overlap there are 18 of each, and
+#: by chance those above leave half a circle free once in a thousand points.
+_NEIGHBOURS = 36
 #: A point lies above another if it is steeper towards it than this ...
 _STEEPEST = np.tan(np.radians(80.0))
 #: ... and higher by so many lower quartiles of the height differences between nearest neighbours:
 #: white noise alone reaches 16 of them once in a million pairs. The quartile is that of one layer,
 #: even where two of them lie over each other everywhere.
 _NOISE = 20.0
-#: So many neighbours at its own level make a point part of a layer; else it is a spike.
-_FEWEST_FELLOWS = 3
+#: So many neighbours make a layer, above a point or at its level; fewer are spikes.
+_FEWEST = 6
 #: The points above lie on all sides if no sector wider than this is free of them. On one side of
 #: a line, at a step or at an upright wall, they leave half a circle free.
 _WIDEST_GAP = np.radians(170.0)
@@ -63,7 +64,7 @@ def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -
         beyond = noise + _STEEPEST * distances
         above = rise > beyond
         fellows = (np.abs(rise) <= beyond).sum(axis=1) - 1  # itself is the nearest
-        may_be = np.flatnonzero((above.sum(axis=1) >= 3) & (fellows >= _FEWEST_FELLOWS))
+        may_be = np.flatnonzero((above.sum(axis=1) >= _FEWEST) & (fellows >= _FEWEST))
         around = points[neighbours[may_be], :2] - block[may_be, None, :2]
         angles = np.where(above[may_be], np.arctan2(around[..., 1], around[..., 0]), np.nan)
         angles = np.sort(angles, axis=1)  # NaN last
