@@ -108,6 +108,7 @@ def test_the_top_of_a_mesh_is_what_is_seen(tmp_path):
     top = exact(heights, lambda x, y: np.sqrt(np.maximum(25 - x**2 - y**2, 0)))
     np.testing.assert_allclose(heights.values[inside], top[inside], atol=0.02)
     assert heights.attrs["overhang_share"] == pytest.approx(0.5, abs=0.01)
+    assert heights.attrs["levelled_degrees"] == 0.0  # a body has no plane
     assert "faces down" in heights.attrs["notes"]
 
 
@@ -242,15 +243,14 @@ def test_an_upright_mesh_knows_its_upper_side(tmp_path):
 
 
 def hidden_share(cloud):
-    """Share of points found hidden; a turned-up NaN height or repeat would be an error here."""
-    hidden = overhangs.find_hidden(cloud, density.plane_tree(cloud))
-    return 0.0 if hidden is None else hidden.mean()
+    share, _ = overhangs.find_hidden(cloud, density.plane_tree(cloud))
+    return share
 
 
 def test_the_lower_half_of_a_sphere_is_hidden():
     ball = np.random.default_rng(1).normal(size=(30_000, 3))
     ball *= 5 / np.linalg.norm(ball, axis=1, keepdims=True)
-    hidden = overhangs.find_hidden(ball, density.plane_tree(ball))
+    _, hidden = overhangs.find_hidden(ball, density.plane_tree(ball))
     assert not hidden[ball[:, 2] > 0].any()
     deep = ball[:, 2] < -1.0  # nearer to the rim the halves are too close to tell
     assert hidden[deep].mean() > 0.95

@@ -12,9 +12,10 @@ from . import points as pts
 from .raw import SMALLEST_SIDE
 from .triangles import interpolate_mesh, interpolate_points, places_across
 
-#: Fewer hidden points than this share are reported but stay: at the steps of a fracture some points
-#: look hidden by chance, and an overhang that small changes no result.
-FEW_HIDDEN = 0.005
+_OVERHANG_OF_POINTS = (
+    "of the points lies beneath others and is kept, being so small",
+    "of the points lies beneath others and is left out, as an instrument above would not see it",
+)
 
 
 @dataclass(frozen=True)
@@ -190,9 +191,12 @@ def _look_beneath(cloud: Cloud) -> Cloud:
         return cloud
     points = cloud.points[np.isfinite(cloud.points[:, 2])]
     tree = dense.plane_tree(points)
-    if cloud.mesh is None and (hidden := overhangs.find_hidden(points, tree)) is not None:
-        cloud, points = _without_hidden(cloud, points, hidden)
-        tree = dense.plane_tree(points)
+    if cloud.mesh is None:
+        share, hidden = overhangs.find_hidden(points, tree)
+        cloud = _with_overhang(cloud, share, _OVERHANG_OF_POINTS[hidden is not None])
+        if hidden is not None:
+            points = points[~hidden]
+            tree = dense.plane_tree(points)
     density = _measure_density(points, cloud.path, tree)
     notes = cloud.notes
     if density.uneven:
@@ -204,31 +208,23 @@ def _look_beneath(cloud: Cloud) -> Cloud:
     return replace(cloud, points=points, density=density, notes=notes)
 
 
-def _without_hidden(cloud: Cloud, points: np.ndarray, hidden: np.ndarray):
-    """The cloud with its overhangs noted, and the points that remain."""
-    share = float(hidden.mean())
-    note = f"overhangs: {hidden.sum()} points ({share:.2g} of all) lie beneath others and are "
-    if share < FEW_HIDDEN:
-        note += "kept, being so few"
-    else:
-        note += "left out, as an instrument above would not see them"
-        points = points[~hidden]
-    attrs = cloud.attrs | {"overhang_share": share}
-    return replace(cloud, attrs=attrs, notes=(*cloud.notes, note)), points
+def _with_overhang(cloud: Cloud, share: float, what: str) -> Cloud:
+    """The cloud with its share of overhangs, noted if there are any."""
+    notes = cloud.notes
+    if np.isnan(share):
+        notes += ("its triangles are not wound alike, so that overhangs cannot be told",)
+    elif share > 0:
+        notes += (f"overhangs: a share of {share:.2g} {what}",)
+    return replace(cloud, attrs=cloud.attrs | {"overhang_share": share}, notes=notes)
 
 
 def _with_overhang_of_mesh(cloud: Cloud) -> Cloud:
     down, against = overhangs.downward_share(cloud.mesh.vertices, cloud.mesh.triangles)
-    notes = cloud.notes
-    if np.isnan(against):
-        notes += ("its triangles are not wound alike, so that overhangs cannot be told",)
-    elif against > 0:
-        notes += (f"overhangs: {against:.2%} of the mesh faces down; its top-most part is used",)
-    if down > 0.5:
-        notes += (
-            "most triangles are wound to face down; heights are taken to point up all the same",
-        )
-    return replace(cloud, attrs=cloud.attrs | {"overhang_share": against}, notes=notes)
+    cloud = _with_overhang(cloud, against, "of the mesh faces down; its top-most part is used")
+    if down <= 0.5:
+        return cloud
+    note = "most triangles are wound to face down; heights are taken to point up all the same"
+    return replace(cloud, notes=(*cloud.notes, note))
 
 
 def _measure_density(points: np.ndarray, path: Path, tree=None) -> dense.Density:

@@ -11,6 +11,8 @@ from ..specimen import STEEP_TILT
 _FENCE = 3.0
 #: Above this the points alone do not tell which side of the face is its upper one.
 UPRIGHT = 85.0  # degrees
+#: What is thicker than this share of its width is no face and has no plane to be levelled by.
+_THICKEST = 0.5
 
 
 def common_plane(clouds: list[np.ndarray], upward=None) -> tuple[np.ndarray, np.ndarray]:
@@ -26,7 +28,8 @@ def common_plane(clouds: list[np.ndarray], upward=None) -> tuple[np.ndarray, np.
     Returns
     -------
     normal : ndarray, shape (3,)
-        Of length 1; its z is not negative unless ``upward`` decides.
+        Of length 1; its z is not negative unless ``upward`` decides. Of a body, which has no
+        plane, upwards.
     centre : ndarray, shape (3,)
         Point of the plane.
 
@@ -38,7 +41,8 @@ def common_plane(clouds: list[np.ndarray], upward=None) -> tuple[np.ndarray, np.
     parts = [cloud[_within_fences(cloud)] for cloud in clouds]
     centres = [part.mean(axis=0) for part in parts]
     scatter = sum(np.cov((p - c).T) for p, c in zip(parts, centres, strict=True))
-    normal = np.linalg.eigh(scatter)[1][:, 0]
+    (thickness, width, _), axes = np.linalg.eigh(scatter)  # squares
+    normal = axes[:, 0] if thickness < _THICKEST**2 * width else np.array([0.0, 0.0, 1.0])
     if upward is not None and tilt_degrees(normal) > UPRIGHT:
         down = normal @ np.asarray(upward) < 0
     else:

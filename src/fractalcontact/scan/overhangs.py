@@ -19,12 +19,15 @@ _FEWEST = 6
 #: The points above lie on all sides if no sector wider than this is free of them. On one side of
 #: a line, at a step or at an upright wall, they leave half a circle free.
 _WIDEST_GAP = np.radians(170.0)
+#: Fewer hidden points than this share change no result: at the steps of a fracture some points look
+#: hidden by chance.
+FEW_HIDDEN = 0.005
 _BLOCK = 100_000  # points whose neighbours are held at once
 #: A mesh is wound alike if hardly an edge runs the same way in two of its triangles.
 _WOUND_ALIKE = 1e-3
 
 
-def find_hidden(points: np.ndarray, tree: cKDTree) -> np.ndarray | None:
+def find_hidden(points: np.ndarray, tree: cKDTree) -> tuple[float, np.ndarray | None]:
     """Find the points of a cloud that lie beneath others.
 
     A point is hidden if those of its nearest neighbours in the plane that are far above it (steeper
@@ -40,17 +43,21 @@ def find_hidden(points: np.ndarray, tree: cKDTree) -> np.ndarray | None:
 
     Returns
     -------
-    (n,) bool ndarray or None
-        None if none of a sample of the points is hidden: then the others are not looked at.
+    share : float
+        Share of the points that are hidden.
+    hidden : (n,) bool ndarray or None
+        None if they are so few (`FEW_HIDDEN`) in a sample that the others are not looked at.
     """
     sample = sample_points(points)
     _, nearest = tree.query(sample[:, :2], k=[2])  # the first is the point itself
     differences = np.abs(points[nearest[:, 0], 2] - sample[:, 2])
     noise = _NOISE * float(np.quantile(differences, 0.25))
-    in_sample = _hidden(sample, points, tree, noise)
-    if not in_sample.any():
-        return None
-    return in_sample if len(sample) == len(points) else _hidden(points, points, tree, noise)
+    hidden = _hidden(sample, points, tree, noise)
+    if hidden.mean() < FEW_HIDDEN:
+        return float(hidden.mean()), None
+    if len(sample) < len(points):
+        hidden = _hidden(points, points, tree, noise)
+    return float(hidden.mean()), hidden
 
 
 def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -> np.ndarray:
