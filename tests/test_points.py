@@ -145,10 +145,13 @@ def whole_triangulation(cloud, lattice, circle):
     return np.where((within >= 0) & small[within], heights, np.nan)
 
 
-@pytest.mark.parametrize("tile", [60, 400, 10**6])
+@pytest.mark.parametrize(
+    ("tile", "places"), [(60, 10**6), (400, 10**6), (10**6, 10**6), (10**6, 900)]
+)
 @pytest.mark.parametrize("clumped", [False, True])
-def test_tiles_give_the_heights_of_the_whole_triangulation(monkeypatch, tile, clumped):
+def test_tiles_give_the_heights_of_the_whole_triangulation(monkeypatch, tile, places, clumped):
     monkeypatch.setattr(tri, "TILE_POINTS", tile)
+    monkeypatch.setattr(tri, "TILE_PLACES", places)
     rough = cloud(6000, seed=3, height=lambda x, y: np.random.default_rng(4).normal(size=len(x)))
     if clumped:
         rough[:3000, :2] = SIDE * (rough[:3000, :2] / SIDE) ** 3
@@ -385,6 +388,15 @@ def test_points_on_one_line_are_refused(tmp_path):
     lattice = points.covering_lattice([line], 0.5, "rock")
     with pytest.raises(InputError, match=r"rock: the points span no area"):
         tri.interpolate_points(line, lattice, 1.0, 1, "rock")
+
+
+def test_a_spot_with_far_too_many_points_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(tri, "TILE_POINTS", 100)
+    monkeypatch.setattr(tri, "_MOST_IN_TILE", 1000)
+    spot = cloud(3000)
+    spot[:1400, :2] = 3.0 + spot[:1400, :2] / 1e4
+    with pytest.raises(InputError, match=r"rock\.npy: 1\d\d\d points lie around x"):
+        read(tmp_path, spot, grid=0.5)
 
 
 def test_triangles_without_vertices_are_refused(tmp_path):

@@ -10,6 +10,11 @@ from .points import MOST_CELLS, Lattice
 
 #: Points triangulated at once: a few tens of thousands stay in the processor's cache.
 TILE_POINTS = 25_000
+#: A tile has no more places than this either.
+TILE_PLACES = 2_000_000
+#: Qhull takes about 1 GB for so many points; more of them around one cell, or within the largest
+#: circle, are no scan of a surface.
+_MOST_IN_TILE = 1_000_000
 #: Points on one line: they stray from it by less than this share of its length (root of rounding).
 _LINE = 1e-7
 #: Grids are averaged over cells that hold this many points or more, else read at their centres.
@@ -46,7 +51,7 @@ def interpolate_points(
     Raises
     ------
     InputError
-        If the points lie on one line.
+        If the points lie on one line, or a million of them in one spot.
 
     Notes
     -----
@@ -61,11 +66,18 @@ def interpolate_points(
     if on_one_line(points[:, :2]):
         raise InputError(f"{where}: the points span no area (do they lie on one line?)")
     heights = np.full((lattice.ny, lattice.nx), np.nan)
+    most_cells = TILE_PLACES // across**2
     everything = (slice(0, lattice.ny), slice(0, lattice.nx))
-    for rows, columns, near in _tiles(points, lattice, *everything, 2 * largest_circle):
-        if len(near) < 3 or on_one_line(near[:, :2]):
+    for rows, columns, near in _tiles(points, lattice, *everything, 2 * largest_circle, most_cells):
+        if on_one_line(near[:, :2]):
             continue
         part = _part(lattice, rows, columns)
+        if len(near) > _MOST_IN_TILE:
+            raise InputError(
+                f"{where}: {len(near)} points lie around x = {part.x0:.6g}, y = {part.y0:.6g} mm, "
+                "far more densely than the others or than the grid; thin them out, or set a finer "
+                "key 'grid'"
+            )
         # Far from the origin, triangulation loses digits.
         xy = near[:, :2] - (part.x0, part.y0)
         try:
@@ -153,8 +165,8 @@ def circumradius(xy: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.divide(np.prod(edges, axis=0), 2 * twice_area, out=flat, where=twice_area > 0)
 
 
-def _tiles(points, lattice: Lattice, rows: slice, columns: slice, margin: float):
-    """Halve the grid until few points lie within ``margin`` of each part.
+def _tiles(points, lattice: Lattice, rows: slice, columns: slice, margin: float, most_cells: int):
+    """Halve the grid until few points lie within ``margin`` of each part; empty parts are left out.
 
     Yields
     ------
@@ -171,16 +183,19 @@ def _tiles(points, lattice: Lattice, rows: slice, columns: slice, margin: float)
         & (y >= part.y0 - half_y - margin)
         & (y <= part.y0 - half_y + height + margin)
     ]
+    if len(near) < 3:
+        return
     along_x = part.nx > 1 and (width >= height or part.ny == 1)
     side, cells = (width, part.nx) if along_x else (height, part.ny)
-    if len(near) <= TILE_POINTS or cells == 1 or side <= margin:
+    small = len(near) <= TILE_POINTS and part.nx * part.ny <= most_cells
+    if small or cells == 1 or (side <= margin and part.nx * part.ny <= most_cells):
         yield rows, columns, near
         return
     whole = columns if along_x else rows
     middle = (whole.start + whole.stop) // 2
     for half in (slice(whole.start, middle), slice(middle, whole.stop)):
         parts = (rows, half) if along_x else (half, columns)
-        yield from _tiles(near, lattice, *parts, margin)
+        yield from _tiles(near, lattice, *parts, margin, most_cells)
 
 
 def _part(lattice: Lattice, rows: slice, columns: slice) -> Lattice:
