@@ -17,8 +17,8 @@ PATCH_POINTS = 3_000
 #: Nothing was measured where a circle without points has a radius above this multiple of the usual
 #: circle through three neighbours. That one is 0.62 to 0.73 times the root of the area per point,
 #: for lattices and random clouds alike, and half the distance of the lines where a scanner's lines
-#: lie far apart; chance leaves a circle of the multiple once in 10^4.
-HOLE_FACTOR = 2.8
+#: lie far apart; chance leaves a circle of the multiple once in 10^5 points.
+HOLE_FACTOR = 3.0
 #: The root of the area per point is 1.0 to 1.1 nearest distances on a lattice, 2.1 in a random
 #: cloud. Above this the points lie along lines or in clumps, and the nearest distance says nothing
 #: about the distance across.
