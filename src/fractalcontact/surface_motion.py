@@ -50,9 +50,13 @@ class Motion:
             (self.slope[0] + second.slope[0], self.slope[1] + second.slope[1]),
         )
 
-    def move_points(self, points: np.ndarray) -> np.ndarray:
-        """Move points (n, 3); the tilt turns them in space, as it turns their mean plane."""
-        measured = points[np.isfinite(points[:, 2])]
+    def move_points(self, points: np.ndarray, of: np.ndarray | None = None) -> np.ndarray:
+        """Move points (n, 3); the tilt turns them in space, as it turns the mean plane.
+
+        That plane is the points' own, or that of other points ``of`` the same face.
+        """
+        of = points if of is None else of
+        measured = of[np.isfinite(of[:, 2])]
         centred = measured - measured.mean(axis=0)
         terms = np.column_stack([centred[:, :2], np.ones(len(centred))])
         (slope_x, slope_y, _), *_ = np.linalg.lstsq(terms, centred[:, 2], rcond=None)

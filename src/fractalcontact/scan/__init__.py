@@ -28,6 +28,7 @@ from .options import (
     spacing_mm,
 )
 from .plausible import check_spacing
+from .points import single_precision_note
 from .raw import RawScan, refuse_larger
 from .text import is_text, read_text
 from .x3p import read_x3p
@@ -65,7 +66,7 @@ def read_scan(path, options=None) -> xr.DataArray:
     -------
     DataArray
         ``height`` (y, x) in mm, NaN where missing; x and y in mm, ascending, cell centres. A tilt
-        is left in.
+        is left in, but scattered points and meshes steeper than 5 degrees are turned level first.
 
     Raises
     ------
@@ -78,9 +79,9 @@ def read_scan(path, options=None) -> xr.DataArray:
 def read_faces(lower_path, upper_path=None, options=None):
     """Read the faces of one joint onto one common grid, brought together.
 
-    Points are gridded at the coarser of the two spacings; matrices must have the same spacing. The
-    upper face is moved to where the gap is most even, see `pairs.register`, and both are cropped to
-    the rectangle they cover.
+    Points are gridded at the coarser of the two spacings, after one turn for both where they lie
+    steeply; matrices must have the same spacing. The upper face is moved to where the gap is most
+    even, see `pairs.register`, and both are cropped to the rectangle they cover.
 
     Parameters
     ----------
@@ -149,7 +150,7 @@ def _measure(path: Path, options) -> Measured:
     _check_size(path)
     raw = _read_raw(path, options)
     _refuse_idle_keys(raw, options, path)
-    overrides = []
+    overrides, notes = [], list(raw.notes)
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
@@ -161,6 +162,8 @@ def _measure(path: Path, options) -> Measured:
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
     else:
+        if note := single_precision_note(raw.values):
+            notes.append(note)
         values = raw.values.copy()
         values[:, 2] = _without_missing(raw.values[:, 2], missing)
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
@@ -175,10 +178,10 @@ def _measure(path: Path, options) -> Measured:
         "reader": raw.reader,
         "file_unit": unit_z if unit_xy in (None, unit_z) else f"x, y {unit_xy}; z {unit_z}",
         "layout": raw.layout,
-        "notes": "; ".join(raw.notes),
+        "notes": "; ".join(notes),
         "overrides": "; ".join(overrides),
     }
-    return Measured(path, raw.layout, values, spacing, grid, provenance)
+    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles)
 
 
 def _read_raw(path: Path, options: ScanOptions) -> RawScan:

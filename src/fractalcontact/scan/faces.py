@@ -7,9 +7,11 @@ import numpy as np
 import xarray as xr
 
 from ..errors import InputError
-from . import points as cloud
+from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
+from .density import points_per_cell
 from .pairs import MIRRORS, register
 from .plausible import check_relief, check_spacing
+from .points import Lattice, covering_lattice
 from .raw import SMALLEST_SIDE
 
 #: Two matrices are one grid when their spacings agree this well (relative).
@@ -35,6 +37,8 @@ class Measured:
         Spacing to grid points at, where the user gives it.
     provenance : dict
         Attributes for the result.
+    triangles : (m, 3) int ndarray or None
+        Of a mesh, between the points.
     """
 
     path: Path
@@ -43,19 +47,19 @@ class Measured:
     spacing: tuple[float, float] | None
     grid: float | None
     provenance: dict
+    triangles: np.ndarray | None = None
 
 
 def grid_one(scan: Measured) -> xr.DataArray:
     """Put one scan on its grid."""
     if scan.layout == "matrix":
         return _matrix_heights(scan)
-    points = _usable_points(scan)
-    lattice = _own_lattice(scan, points)
-    if lattice is not None:
-        return _placed_heights(scan, points, lattice)
-    spacing = scan.grid or cloud.neighbour_distance(points)
-    lattice = cloud.covering_lattice([points], spacing, str(scan.path))
-    return _interpolated_heights(scan, points, lattice)
+    (cloud,) = prepare_clouds([scan])
+    if _keeps_lattice(scan, cloud):
+        return _placed_heights(scan, cloud)
+    spacing = scan.grid or _spacing(cloud)
+    lattice = covering_lattice([cloud.points], spacing, str(scan.path))
+    return _interpolated_heights(scan, cloud, lattice)
 
 
 def grid_pair(
@@ -90,28 +94,23 @@ def grid_pair(
         if reason := _differing_grid(z_l, z_u):
             raise InputError(f"{where}: {reason}; resample one of them")
         return register(z_l, z_u, registration, where, mirrored=mirror_upper)
-    points = [_usable_points(scan) for scan in (lower, upper)]
-    lattices = [_own_lattice(s, p) for s, p in zip((lower, upper), points, strict=True)]
-    if None not in lattices:
-        z_l, z_u = (
-            _placed_heights(*face) for face in zip((lower, upper), points, lattices, strict=True)
-        )
+    clouds = prepare_clouds([lower, upper])
+    faces = list(zip((lower, upper), clouds, strict=True))
+    if all(_keeps_lattice(scan, cloud) for scan, cloud in faces):
+        z_l, z_u = (_placed_heights(scan, cloud) for scan, cloud in faces)
         if not _differing_grid(z_l, z_u):
             return register(z_l, z_u, registration, where, mirrored=mirror_upper)
     # One sidecar serves both faces, so `grid` is the same for both.
-    spacing = lower.grid or max(cloud.neighbour_distance(p) for p in points)
+    spacing = lower.grid or max(_spacing(cloud) for cloud in clouds)
 
-    def gridded(scan, points):
-        lattice = cloud.covering_lattice([points], spacing, str(scan.path))
-        return _interpolated_heights(scan, points, lattice)
+    def gridded(scan, cloud):
+        lattice = covering_lattice([cloud.points], spacing, str(scan.path))
+        return _interpolated_heights(scan, cloud, lattice)
 
     def regrid(motions):
-        moved = points[1]
-        for motion in motions:
-            moved = motion.move_points(moved)
-        return gridded(upper, moved)
+        return gridded(upper, moved_cloud(clouds[1], motions))
 
-    z_l, z_u = gridded(lower, points[0]), regrid([])
+    z_l, z_u = gridded(lower, clouds[0]), regrid([])
     return register(z_l, z_u, registration, where, mirrored=mirror_upper, regrid=regrid)
 
 
@@ -128,54 +127,46 @@ def _turned_over(scan: Measured, axis: str) -> Measured:
     return replace(scan, values=values, provenance=scan.provenance | {"notes": notes})
 
 
-def _usable_points(scan: Measured) -> np.ndarray:
-    points = cloud.merge_points(scan.values)
-    if not np.isfinite(points[:, 2]).any():
-        raise InputError(f"{scan.path}: all cells are missing: no point has a finite height")
-    if np.isfinite(points[:, 2]).sum() < SMALLEST_SIDE**2:
-        raise InputError(
-            f"{scan.path}: only {len(points)} points; at least {SMALLEST_SIDE} x {SMALLEST_SIDE} "
-            "are needed"
-        )
-    return points
+def _spacing(cloud: Cloud) -> float:
+    """Spacing that suits a cloud, mm."""
+    if cloud.lattice is not None:
+        return min(cloud.lattice.dx, cloud.lattice.dy)
+    return cloud.density.spacing
 
 
-def _own_lattice(scan: Measured, points: np.ndarray) -> cloud.Lattice | None:
-    """The lattice the points lie on, unless the user wants another spacing."""
-    lattice = cloud.find_lattice(points)
-    wanted = scan.grid
-    if lattice is None or wanted is None:
-        return lattice
-    same = np.allclose([lattice.dx, lattice.dy], wanted, rtol=SAME_SPACING, atol=0)
-    return lattice if same else None
+def _keeps_lattice(scan: Measured, cloud: Cloud) -> bool:
+    """Whether the points stay on the lattice they lie on: the user wants no other spacing."""
+    lattice = cloud.lattice
+    if lattice is None or scan.grid is None:
+        return lattice is not None
+    return np.allclose([lattice.dx, lattice.dy], scan.grid, rtol=SAME_SPACING, atol=0)
 
 
 def _matrix_heights(scan: Measured) -> xr.DataArray:
     rows, columns = scan.values.shape
     dx, dy = scan.spacing
-    lattice = cloud.Lattice(dx / 2, dy / 2, dx, dy, columns, rows)
+    lattice = Lattice(dx / 2, dy / 2, dx, dy, columns, rows)
     return _label(scan.values, lattice, scan, "")
 
 
-def _placed_heights(scan, points, lattice) -> xr.DataArray:
-    gridding = "the points lie on a regular grid; each is its node, nodes without one are missing"
-    return _label(cloud.place_on_lattice(points, lattice), lattice, scan, gridding)
+def _placed_heights(scan: Measured, cloud: Cloud) -> xr.DataArray:
+    heights, gridding = place_cloud(cloud)
+    return _label(heights, cloud.lattice, scan, gridding, cloud)
 
 
-def _interpolated_heights(scan, points, lattice) -> xr.DataArray:
-    points = points[np.isfinite(points[:, 2])]
-    circle = cloud.largest_circle(points)
-    gridding = (
-        f"{len(points)} points interpolated linearly on their Delaunay triangles at a spacing of "
-        f"{lattice.dx:.6g} mm; where a circle of {circle:.4g} mm holds no point, cells are missing"
-    )
-    heights = cloud.interpolate_points(points, lattice, circle, str(scan.path))
-    return _label(heights, lattice, scan, gridding)
+def _interpolated_heights(scan: Measured, cloud: Cloud, lattice: Lattice) -> xr.DataArray:
+    heights, gridding = grid_cloud(cloud, lattice)
+    return _label(heights, lattice, scan, gridding, cloud)
 
 
-def _label(heights, lattice, scan: Measured, gridding: str) -> xr.DataArray:
+def _label(heights, lattice, scan: Measured, gridding: str, cloud=None) -> xr.DataArray:
     """Check the heights and give them coordinates, units and provenance."""
     _check_surface(heights, lattice, scan.path)
+    provenance = dict(scan.provenance)
+    if cloud is not None:
+        provenance |= cloud.attrs
+        provenance["points_per_cell"] = points_per_cell(cloud.points, heights, lattice)
+        provenance["notes"] = "; ".join(filter(None, (provenance["notes"], *cloud.notes)))
     x = lattice.x0 + lattice.dx * np.arange(lattice.nx)
     y = lattice.y0 + lattice.dy * np.arange(lattice.ny)
     return xr.DataArray(
@@ -191,13 +182,14 @@ def _label(heights, lattice, scan: Measured, gridding: str) -> xr.DataArray:
             "long_name": "height",
             "spacing_x": lattice.dx,
             "spacing_y": lattice.dy,
-            **scan.provenance,
+            **provenance,
             "gridding": gridding,
+            "missing_share": float(np.isnan(heights).mean()),
         },
     )
 
 
-def _check_surface(heights: np.ndarray, lattice: cloud.Lattice, path: Path) -> None:
+def _check_surface(heights: np.ndarray, lattice: Lattice, path: Path) -> None:
     """Refuse what cannot be the scan of a rough surface."""
     if min(heights.shape) < SMALLEST_SIDE:
         raise InputError(

@@ -1,4 +1,4 @@
-"""Vertices of STL, PLY and OBJ files."""
+"""Vertices and triangles of STL, PLY and OBJ files."""
 
 from pathlib import Path
 
@@ -9,10 +9,9 @@ from .raw import RawScan
 
 
 def read_mesh(path: Path) -> RawScan:
-    """Read the vertices of a mesh or of a PLY cloud; the triangles are not used.
+    """Read a mesh, or the points of a PLY cloud.
 
-    The faces of a fracture are scanned from above, so the vertices are samples of a height. STL
-    repeats each vertex in every triangle that meets there; gridding merges them.
+    STL repeats each vertex in every triangle that meets there; the repeats are joined.
 
     Raises
     ------
@@ -21,16 +20,45 @@ def read_mesh(path: Path) -> RawScan:
     """
     import trimesh
 
+    file_type = path.suffix.lstrip(".").lower()
     try:
         with open(path, "rb") as stream:
             # From a stream, without a resolver: no other file it may name is opened.
-            loaded = trimesh.load(
-                stream, file_type=path.suffix.lstrip(".").lower(), process=False, resolver=None
-            )
+            loaded = trimesh.load(stream, file_type=file_type, process=False, resolver=None)
     except Exception as error:  # a damaged file makes trimesh raise anything
         raise InputError(f"{path}: not a readable mesh ({error})") from error
-    parts = loaded.geometry.values() if hasattr(loaded, "geometry") else [loaded]
-    vertices = [np.asarray(part.vertices, dtype=np.float64) for part in parts]
-    if not sum(len(v) for v in vertices):
+    parts = list(loaded.geometry.values()) if hasattr(loaded, "geometry") else [loaded]
+    vertices, triangles = _concatenate(parts)
+    if not len(vertices):
         raise InputError(f"{path}: the mesh is empty: it holds no vertices")
-    return RawScan(np.concatenate(vertices), "mesh", reader=f"trimesh {trimesh.__version__}")
+    if len(triangles) and not (triangles.min() >= 0 and triangles.max() < len(vertices)):
+        raise InputError(f"{path}: a damaged mesh: its triangles name vertices that it has not")
+    if file_type == "stl":
+        vertices, triangles = _join_repeats(vertices, triangles)
+    return RawScan(
+        vertices,
+        "mesh",
+        reader=f"trimesh {trimesh.__version__}",
+        triangles=triangles if len(triangles) else None,
+    )
+
+
+def _concatenate(parts) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles of all parts, the triangles counted on."""
+    vertices, triangles, before = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
+    for part in parts:
+        vertices.append(np.asarray(part.vertices, dtype=np.float64))
+        if len(getattr(part, "faces", ())):
+            triangles.append(np.asarray(part.faces, dtype=np.int64) + before)
+        before += len(vertices[-1])
+    return np.concatenate(vertices), np.concatenate(triangles)
+
+
+def _join_repeats(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Give vertices at the same place one number; in order of x, y, z."""
+    order = np.lexsort(vertices.T[::-1])
+    ordered = vertices[order]
+    first = np.r_[True, (ordered[1:] != ordered[:-1]).any(axis=1)]
+    number = np.empty(len(vertices), dtype=np.int64)
+    number[order] = np.cumsum(first) - 1
+    return ordered[first], number[triangles]

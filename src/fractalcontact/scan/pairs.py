@@ -262,5 +262,8 @@ def _record(mode, motion, match, before, after, note) -> dict:
 
 
 def _finished(lower, upper, record, where):
-    lower, upper = crop_to_common(lower, upper, where)
+    lower, upper = (
+        face.assign_attrs(missing_share=float(face.isnull().mean()))
+        for face in crop_to_common(lower, upper, where)
+    )
     return lower, upper.assign_attrs(registration=json.dumps(record))

@@ -1,10 +1,8 @@
-"""Points x, y, z onto a regular grid: exactly where they lie on one, else by interpolation."""
+"""Points x, y, z: repeats, regular grids they lie on, the grid that covers them."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator
-from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from ..errors import InputError
 
@@ -12,13 +10,11 @@ from ..errors import InputError
 LATTICE_TOLERANCE = 0.1
 #: Points rounded coarsely lie on a lattice too, but leave most of its nodes empty.
 LATTICE_MIN_FILL = 0.2
-#: Nothing was measured where a circle without points has a radius above this multiple of the usual
-#: distance from a point to its sixth neighbour. That distance is 1.1 to 1.4 times the root of the
-#: area per point, for lattices and random clouds alike; chance leaves such a circle once in 10^4.
-HOLE_FACTOR = 1.5
-_SIXTH = 6
 #: Far above any profilometer; a stray point would otherwise ask for all memory.
 MOST_CELLS = 200_000_000
+#: Coordinates in single precision are worth a note when rounded by this share of the distance of
+#: the points.
+COARSE_ROUNDING = 0.01
 
 
 @dataclass(frozen=True)
@@ -33,8 +29,18 @@ class Lattice:
     ny: int
 
 
-def merge_points(points: np.ndarray) -> np.ndarray:
+@dataclass(frozen=True)
+class Repeats:
+    """Points at an x, y that another one has: with the same height, or with another."""
+
+    duplicated: int
+    stacked: int
+
+
+def merge_points(points: np.ndarray) -> tuple[np.ndarray, Repeats]:
     """Drop points without finite coordinates; average the heights at the same x, y.
+
+    A point that is there twice counts once in the average.
 
     Parameters
     ----------
@@ -43,43 +49,70 @@ def merge_points(points: np.ndarray) -> np.ndarray:
 
     Returns
     -------
-    ndarray, shape (m, 3)
+    merged : ndarray, shape (m, 3)
         m <= n; a height is NaN where none was measured at its x, y.
+    repeats : Repeats
+        Points beyond the first.
     """
     points = points[np.isfinite(points[:, :2]).all(axis=1)]
     if len(points) == 0:
-        return points
-    points = points[np.lexsort(points[:, :2].T)]
-    starts = np.flatnonzero(np.r_[True, (np.diff(points[:, :2], axis=0) != 0).any(axis=1)])
+        return points, Repeats(0, 0)
+    points = points[np.lexsort(points.T[[2, 0, 1]])]  # NaN heights come last at their x, y
+    same_place = (points[1:, 0] == points[:-1, 0]) & (points[1:, 1] == points[:-1, 1])
+    same_height = same_place & (points[1:, 2] == points[:-1, 2])
+    other_height = same_place & ~same_height & np.isfinite(points[1:, 2])
+    repeats = Repeats(int(same_height.sum()), int(other_height.sum()))
+    if not same_place.any():
+        return points, repeats
+    first_of_height, first_of_place = (np.r_[True, ~same] for same in (same_height, same_place))
+    points, first_of_place = points[first_of_height], first_of_place[first_of_height]
+    starts = np.flatnonzero(first_of_place)
     z = points[:, 2]
     measured = np.isfinite(z)
     counts = np.add.reduceat(measured.astype(float), starts)
     sums = np.add.reduceat(np.where(measured, z, 0.0), starts)
     heights = np.divide(sums, counts, out=np.full(len(starts), np.nan), where=counts > 0)
-    return np.column_stack([points[starts, :2], heights])
+    return np.column_stack([points[starts, :2], heights]), repeats
 
 
-def neighbour_distance(points: np.ndarray) -> float:
-    """Median distance in the plane from a point to its nearest neighbour, in mm."""
-    distances, _ = cKDTree(points[:, :2]).query(points[:, :2], k=2)
-    return float(np.median(distances[:, 1]))
+def single_precision_note(points: np.ndarray) -> str:
+    """Say how coarsely single precision rounds x and y, "" if they are finer or it is harmless.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        As the file has them: any factor of units would hide the rounding.
+    """
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) < 2:
+        return ""
+    with np.errstate(over="ignore"):
+        if np.any(points[:, :2].astype(np.float32) != points[:, :2]):
+            return ""
+    rounding = float(np.spacing(np.float32(np.abs(points[:, :2]).max())))
+    # Two largest of three sides: a cloud may stand upright.
+    area = np.prod(np.sort(np.ptp(points, axis=0))[1:])
+    distance = float(np.sqrt(area / len(points)))
+    whole = np.all(points[:, :2] == np.round(points[:, :2]))
+    if whole or rounding <= COARSE_ROUNDING * distance:
+        return ""
+    return (
+        f"x and y are in single precision, rounded to {rounding:.2g} of the file's unit, "
+        f"{rounding / distance:.0%} of the distance of the points; export coordinates nearer to 0"
+    )
 
 
-def largest_circle(points: np.ndarray) -> float:
-    """Radius in mm of the largest circle without points that is no hole."""
-    distances, _ = cKDTree(points[:, :2]).query(points[:, :2], k=[_SIXTH + 1])
-    return HOLE_FACTOR * float(np.median(distances))
-
-
-def find_lattice(points: np.ndarray) -> Lattice | None:
+def find_lattice(points: np.ndarray, distance: float) -> Lattice | None:
     """Find the regular grid that all points lie on, or None if they do not.
 
     Parameters
     ----------
     points : ndarray, shape (n, 3)
         No two at the same x, y.
+    distance : float
+        Median distance of nearest neighbours, in mm.
     """
-    tolerance = LATTICE_TOLERANCE * neighbour_distance(points)
+    tolerance = LATTICE_TOLERANCE * distance
     axes = [_find_levels(points[:, axis], tolerance) for axis in (0, 1)]
     if None in axes:
         return None
@@ -149,44 +182,3 @@ def covering_lattice(clouds: list[np.ndarray], spacing: float, where: str) -> La
             "key 'grid'"
         )
     return Lattice(*map(float, first * spacing), spacing, spacing, int(count[0]), int(count[1]))
-
-
-def interpolate_points(
-    points: np.ndarray, lattice: Lattice, largest_circle: float, where: str
-) -> np.ndarray:
-    """Interpolate heights linearly on the Delaunay triangles of the points.
-
-    Triangles whose circumcircle, which holds no other point, has a radius above ``largest_circle``
-    (mm) span holes or the outside (alpha shape: Edelsbrunner, Kirkpatrick & Seidel 1983); cells in
-    them are missing.
-
-    Returns
-    -------
-    ndarray, shape (ny, nx)
-
-    Raises
-    ------
-    InputError
-        If the points lie on one line.
-    """
-    centre = points[:, :2].mean(axis=0)  # far from the origin, triangulation loses digits
-    try:
-        triangles = Delaunay(points[:, :2] - centre)
-    except QhullError as error:
-        raise InputError(f"{where}: the points span no area (do they lie on one line?)") from error
-    x = lattice.x0 + lattice.dx * np.arange(lattice.nx) - centre[0]
-    y = lattice.y0 + lattice.dy * np.arange(lattice.ny) - centre[1]
-    nodes = np.stack(np.meshgrid(x, y), axis=-1)
-    triangle = triangles.find_simplex(nodes)
-    measured = (_circumradius(triangles) <= largest_circle)[triangle] & (triangle >= 0)
-    heights = LinearNDInterpolator(triangles, points[:, 2])(nodes)
-    return np.where(measured, heights, np.nan)
-
-
-def _circumradius(triangles: Delaunay) -> np.ndarray:
-    """R = abc/(4 area) of each triangle; infinite where the corners lie on one line."""
-    a, b, c = np.moveaxis(triangles.points[triangles.simplices], 1, 0)
-    edges = [np.hypot(*(end - start).T) for start, end in ((a, b), (b, c), (c, a))]
-    twice_area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    flat = np.full(len(a), np.inf)
-    return np.divide(np.prod(edges, axis=0), 2 * twice_area, out=flat, where=twice_area > 0)

@@ -36,6 +36,8 @@ class RawScan:
         Number the file states for a missing cell.
     notes : tuple of str
         What a user should know about the reading.
+    triangles : (m, 3) int ndarray or None
+        Of a mesh: rows of ``values``; None for a cloud.
     """
 
     values: np.ndarray
@@ -47,6 +49,7 @@ class RawScan:
     first_row: str | None = None
     missing: float | None = None
     notes: tuple[str, ...] = ()
+    triangles: np.ndarray | None = None
 
 
 def refuse_larger(n_bytes: int, path) -> None:

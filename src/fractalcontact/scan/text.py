@@ -1,8 +1,10 @@
 """Matrices and point clouds as people export them to text."""
 
+import codecs
 import io
 import re
 from collections import Counter
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +21,12 @@ _EXTRA_MISSING = ["BAD", "bad", "none", "NONE", "---", "--", "-", "*", "?"]
 _NUMBER = r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?"  # for headers: no missing cells there
 _DECIMAL_COMMA = re.compile(r"^[-+]?\d+,\d+([eE][-+]?\d+)?$")
 _SAMPLE = 200  # lines that decide about delimiter and decimal mark
+_BLOCK = 2**24  # characters read at once
+_PLAIN = b"0123456789+-.,;eE \t\n"
 
 
 def read_text(path: Path, options: ScanOptions) -> RawScan:
-    """Read a text file of heights or of points.
+    """Read a text file of heights or of points, block by block: only the numbers are kept.
 
     Delimiter and decimal mark are found from the content. Lines of words in front are the header;
     comments and repeats of a header line are passed over wherever they stand; a line cut short at
@@ -34,15 +38,14 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     InputError
         If a line in between cannot be read, or there are no numbers at all.
     """
-    lines = _decode(path).splitlines()
-    header, data = _split_header(lines, path)
-    if not data:
-        raise InputError(f"{path}: the file holds no line of numbers")
-    delimiter, decimal = _sniff([line for _, line in data[:_SAMPLE]])
-    data, width, notes = _uniform(data, delimiter, path)
-    table = _parse([line for _, line in data], delimiter, decimal, width, path)
+    reading = _Reading(path)
+    with open(path, encoding=_encoding(path), errors="replace") as stream:
+        while block := stream.read(_BLOCK) + stream.readline():
+            reading.add(block)
+    table, notes = reading.finish()
+    header, style = reading.header, reading.style
     stated = _gwyddion_header(header, table.shape, str(path)) or _esri_header(header)
-    names = _column_names(header, delimiter, width)
+    names = _column_names(header, style.delimiter, style.width)
     if stated:
         return RawScan(table, "matrix", reader=_reader(), notes=notes, **stated)
     return table_to_raw(table, names, options, str(path), reader=_reader(), notes=notes)
@@ -55,30 +58,146 @@ def is_text(path: Path) -> bool:
     return head.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" not in head
 
 
-def _decode(path: Path) -> str:
-    content = path.read_bytes()
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return content.decode("utf-16", errors="replace")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:  # instruments in Europe still write this one
-        return content.decode("latin-1")
+def _encoding(path: Path) -> str:
+    """UTF-16 by its mark; else UTF-8 if all of the file is, else Latin-1."""
+    with open(path, "rb") as stream:
+        if stream.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+            return "utf-16"
+        stream.seek(0)
+        decoder = codecs.getincrementaldecoder("utf-8")()
+        try:
+            while content := stream.read(_BLOCK):
+                decoder.decode(content)
+            decoder.decode(b"", final=True)
+        except UnicodeDecodeError:  # instruments in Europe still write this one
+            return "latin-1"
+    return "utf-8-sig"
 
 
-def _split_header(lines: list[str], path: Path):
-    """Part the lines into header (text) and data (line number, text)."""
-    header, data = [], []
-    for number, line in enumerate(lines, 1):
-        line = line.strip(" \r\n\x1a\f")
-        if not line.strip():
-            continue
-        if not (line.startswith(_COMMENT_MARKS) or _has_words(line)):
-            data.append((number, line))
-        elif not data:
-            header.append(line)
-        elif not (line.startswith(_COMMENT_MARKS) or line in header):
-            raise InputError(f"{path}: line {number} is not numbers: {line[:60]!r}")
-    return header, data
+@dataclass(frozen=True)
+class _Style:
+    """How the lines of numbers are written."""
+
+    delimiter: str  # " " is white space of any length
+    decimal: str
+    width: int  # numbers in a line
+    trailing: bool  # lines end with a delimiter that parts nothing
+
+
+class _Reading:
+    """The numbers of a text file, taken up block by block; a block holds whole lines."""
+
+    def __init__(self, path: Path):
+        self.path = path
+        self.header: list[str] = []
+        self.style: _Style | None = None  # that of the first block with numbers
+        self._parts: list[np.ndarray] = []
+        self._lines = 0  # before the next block
+        self._short: tuple[int, int] | None = None  # number and width of a line that ends too soon
+
+    def add(self, block: str) -> None:
+        """Take up the next block."""
+        # The quick way passes no line it has not understood; what it refuses is read line by line.
+        plain = None if self.style is None or self._short else _parse_plain(block, self.style)
+        if plain is None:
+            self._add_lines(block.split("\n"))
+        else:
+            self._parts.append(_parse(plain, self.style, self.path))
+        self._lines += block.count("\n")
+
+    def finish(self) -> tuple[np.ndarray, tuple[str, ...]]:
+        """The table (rows, columns) and the notes."""
+        if self.style is None:
+            raise InputError(f"{self.path}: the file holds no line of numbers")
+        notes = ()
+        if self._short:
+            notes = (f"the last line ({self._short[0]}) was cut short and is left out",)
+        return np.concatenate(self._parts), notes
+
+    def _add_lines(self, lines: list[str]) -> None:
+        data = self._data_lines(lines)
+        if not data:
+            return
+        if self.style is None:
+            self.style = _find_style([line for _, line in data])
+        if rows := self._whole_rows(data):
+            # Without the delimiter at the end, which is cut off here.
+            style = replace(self.style, trailing=False)
+            self._parts.append(_parse("\n".join(rows), style, self.path))
+
+    def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
+        """Number and text of the lines of numbers; the header is kept, comments are passed over."""
+        data, header = [], set(self.header)
+        for number, line in enumerate(lines, self._lines + 1):
+            line = line.strip(" \r\n\x1a\f")
+            if not line.strip():
+                continue
+            if not (line.startswith(_COMMENT_MARKS) or _has_words(line)):
+                data.append((number, line))
+            elif not data and self.style is None:
+                self.header.append(line)
+                header.add(line)
+            elif not (line.startswith(_COMMENT_MARKS) or line in header):
+                raise InputError(f"{self.path}: line {number} is not numbers: {line[:60]!r}")
+        return data
+
+    def _whole_rows(self, data: list[tuple[int, str]]) -> list[str]:
+        """The lines, checked to have the same number of cells; one cut short may be the last."""
+        delimiter, width = self.style.delimiter, self.style.width
+        rows = []
+        for number, line in data:
+            if self._short:
+                raise self._wrong_width(*self._short)
+            if self.style.trailing:
+                line = line.removesuffix(delimiter)
+            found = len(_split(line, delimiter))
+            if found == width + 1 and line.endswith(delimiter):
+                line, found = line.removesuffix(delimiter), width
+            if found > width:
+                raise self._wrong_width(number, found)
+            if found < width:
+                self._short = (number, found)
+            else:
+                rows.append(line)
+        return rows
+
+    def _wrong_width(self, number: int, found: int) -> InputError:
+        width = self.style.width
+        return InputError(f"{self.path}: line {number} has {found} values, the others have {width}")
+
+
+def _find_style(lines: list[str]) -> _Style:
+    """Find delimiter, decimal mark and width from the first lines of numbers."""
+    delimiter, decimal = _sniff(lines[:_SAMPLE])
+    ending = sum(line.endswith(delimiter) for line in lines)
+    trailing = delimiter != " " and ending >= max(1, len(lines) - 1)
+    if trailing:
+        lines = [line.removesuffix(delimiter) for line in lines]
+    widths = Counter(len(_split(line, delimiter)) for line in lines)
+    return _Style(delimiter, decimal, widths.most_common(1)[0][0], trailing)
+
+
+def _parse_plain(block: str, style: _Style) -> bytes | None:
+    """The block as it is if it holds nothing but numbers, as many in each line; else None."""
+    if not (block.isascii() and block.endswith("\n")):
+        return None
+    content = block.encode("ascii")
+    if content.translate(None, _PLAIN):
+        return None
+    characters = np.frombuffer(content, dtype=np.uint8)
+    ends = np.flatnonzero(characters == ord("\n"))
+    starts = np.r_[0, ends[:-1] + 1]
+    if style.delimiter == " ":
+        solid = characters > ord(" ")
+        solid[1:] &= ~solid[:-1]  # each number's first character
+        counts, wanted = np.add.reduceat(solid, starts, dtype=np.int64), style.width
+    else:
+        delimiters = characters == ord(style.delimiter)
+        counts = np.add.reduceat(delimiters, starts, dtype=np.int64)
+        wanted = style.width - 1 + style.trailing
+        if style.trailing and not delimiters[ends - 1].all():
+            return None
+    return content if (counts == wanted).all() else None
 
 
 def _has_words(line: str) -> bool:
@@ -108,35 +227,17 @@ def _split(line: str, delimiter: str) -> list[str]:
     return line.split() if delimiter == " " else line.split(delimiter)
 
 
-def _uniform(data, delimiter: str, path: Path):
-    """Check that all lines have the same number of cells; drop one cut short at the end."""
-    if delimiter != " " and sum(line.endswith(delimiter) for _, line in data) >= len(data) - 1:
-        data = [(number, line.removesuffix(delimiter)) for number, line in data]
-    widths = [len(_split(line, delimiter)) for _, line in data]
-    width = Counter(widths).most_common(1)[0][0]
-    for i, (number, line) in enumerate(data):
-        if widths[i] == width + 1 and line.endswith(delimiter):
-            data[i], widths[i] = (number, line.removesuffix(delimiter)), width
-    notes = ()
-    if len(data) > 1 and widths[-1] < width:
-        notes = (f"the last line ({data[-1][0]}) was cut short and is left out",)
-        data, widths = data[:-1], widths[:-1]
-    for (number, _), found in zip(data, widths, strict=True):
-        if found != width:
-            raise InputError(f"{path}: line {number} has {found} values, the others have {width}")
-    return data, width, notes
-
-
-def _parse(lines: list[str], delimiter: str, decimal: str, width: int, path: Path) -> np.ndarray:
+def _parse(content: str | bytes, style: _Style, path: Path) -> np.ndarray:
     import pandas as pd
 
+    source = io.StringIO(content) if isinstance(content, str) else io.BytesIO(content)
     try:
         frame = pd.read_csv(
-            io.StringIO("\n".join(lines)),
-            sep=r"\s+" if delimiter == " " else delimiter,
-            decimal=decimal,
+            source,
+            sep=r"\s+" if style.delimiter == " " else style.delimiter,
+            decimal=style.decimal,
             header=None,
-            names=range(width),
+            names=range(style.width + style.trailing),
             index_col=False,
             skipinitialspace=True,
             na_values=_EXTRA_MISSING,
@@ -144,7 +245,7 @@ def _parse(lines: list[str], delimiter: str, decimal: str, width: int, path: Pat
         )
     except (ValueError, pd.errors.ParserError) as error:
         raise InputError(f"{path}: cannot be read as numbers ({error})") from error
-    return frame.to_numpy()
+    return frame.to_numpy()[:, : style.width]
 
 
 def _column_names(header: list[str], delimiter: str, width: int) -> list[str] | None:

@@ -1,0 +1,258 @@
+"""Clouds and meshes made ready for a grid: turned level, repeats and overhangs counted."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from . import density as dense
+from . import levelling, overhangs
+from . import points as pts
+from .raw import SMALLEST_SIDE
+from .triangles import interpolate_mesh, interpolate_points, places_across
+
+_OVERHANG_OF_POINTS = (
+    "of the points lies beneath others and is kept, being so small",
+    "of the points lies beneath others and is left out, as an instrument above would not see it",
+)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Vertices (n, 3) in mm and the triangles (m, 3) between them."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """The points of one scan.
+
+    Attributes
+    ----------
+    path : Path
+    points : ndarray, shape (n, 3)
+        In mm, no two at the same x, y; heights may be missing where they lie on a lattice.
+    lattice : Lattice or None
+        The regular grid that all points lie on.
+    density : Density or None
+        None on a lattice.
+    mesh : Mesh or None
+    attrs : dict
+        What is known about the points, for the result.
+    notes : tuple of str
+        What was done to them, and what a user should know.
+    """
+
+    path: Path
+    points: np.ndarray
+    lattice: pts.Lattice | None
+    density: dense.Density | None
+    mesh: Mesh | None
+    attrs: dict
+    notes: tuple[str, ...]
+
+
+def prepare_clouds(scans) -> list[Cloud]:
+    """Make the clouds of one or two faces ready for one grid.
+
+    Points on a regular grid of x and y are one height to a node and stay as they are. Others are
+    turned level if they lie steeply, faces together; then the points hidden under others are left
+    out.
+
+    Parameters
+    ----------
+    scans : list of Measured
+
+    Raises
+    ------
+    InputError
+        If a scan has too few points, or all on one line.
+    """
+    clouds = [_merge(scan) for scan in scans]
+    if any(cloud.lattice is None for cloud in clouds):
+        clouds = _turn_level(clouds, scans)
+    return [_look_beneath(cloud) for cloud in clouds]
+
+
+def moved_cloud(cloud: Cloud, motions) -> Cloud:
+    """A cloud after rigid motions, one after the other.
+
+    Parameters
+    ----------
+    cloud : Cloud
+    motions : list of Motion
+    """
+    points, mesh = cloud.points, cloud.mesh
+    for motion in motions:
+        if mesh is not None:
+            mesh = replace(mesh, vertices=motion.move_points(mesh.vertices, of=points))
+        points = motion.move_points(points)
+    return replace(cloud, points=points, mesh=mesh)
+
+
+def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
+    """Heights of a cloud on a grid, and how they came there.
+
+    Returns
+    -------
+    heights : ndarray, shape (ny, nx)
+    gridding : str
+    """
+    where = str(cloud.path)
+    area = cloud.density.area if cloud.density else cloud.lattice.dx * cloud.lattice.dy
+    across = places_across(lattice, area)
+    if cloud.mesh is not None:
+        of = f"the mesh's own {len(cloud.mesh.triangles)} triangles, the top-most where several are"
+        heights = interpolate_mesh(
+            cloud.mesh.vertices, cloud.mesh.triangles, lattice, across, where
+        )
+        holes = "where no triangle is, cells are missing"
+    else:
+        points = cloud.points[np.isfinite(cloud.points[:, 2])]
+        density = cloud.density or _measure_density(points, cloud.path)
+        of = f"{len(points)} points on their Delaunay triangles"
+        heights = interpolate_points(points, lattice, density.circle, across, where)
+        holes = f"where a circle of {density.circle:.4g} mm holds no point, cells are missing"
+    means = ""
+    if across > 1:
+        means = f", averaged over {across} x {across} places in each cell"
+    return heights, (
+        f"linear interpolation of {of}{means}, at a spacing of {lattice.dx:.6g} mm; {holes}"
+    )
+
+
+def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
+    """Heights of a cloud on the lattice its points lie on, and how they came there."""
+    heights = pts.place_on_lattice(cloud.points, cloud.lattice)
+    gridding = "the points lie on a regular grid; each is its node, "
+    if cloud.mesh is None:
+        return heights, gridding + "nodes without one are missing"
+    mesh, lattice = cloud.mesh, cloud.lattice
+    between = interpolate_mesh(mesh.vertices, mesh.triangles, lattice, 1, str(cloud.path))
+    heights = np.where(np.isfinite(heights), heights, between)
+    return heights, gridding + "nodes without one lie on the mesh's triangles or are missing"
+
+
+def _merge(scan) -> Cloud:
+    """Count and join repeats, and look for a lattice."""
+    points, repeats = pts.merge_points(scan.values)
+    n_finite = int(np.isfinite(points[:, 2]).sum())
+    if n_finite == 0:
+        raise InputError(f"{scan.path}: all cells are missing: no point has a finite height")
+    if n_finite < SMALLEST_SIDE**2:
+        raise InputError(
+            f"{scan.path}: only {n_finite} points; at least {SMALLEST_SIDE} x {SMALLEST_SIDE} are "
+            "needed"
+        )
+    mesh = None
+    if scan.triangles is not None:
+        whole = np.isfinite(scan.values).all(axis=1)[scan.triangles].all(axis=1)
+        mesh = Mesh(scan.values, scan.triangles[whole])
+    lattice = None
+    if mesh is None or repeats.stacked == 0:
+        distance = dense.neighbour_distance(points, dense.plane_tree(points))
+        lattice = pts.find_lattice(points, distance)
+    attrs = {"points": len(scan.values), "duplicated_points": repeats.duplicated}
+    attrs |= {"stacked_points": repeats.stacked, "overhang_share": 0.0, "levelled_degrees": 0.0}
+    notes = []
+    if repeats.duplicated:
+        notes.append(f"{repeats.duplicated} points are there twice; each counts once")
+    if repeats.stacked:
+        what = "averaged" if mesh is None else "upright parts of the mesh"
+        notes.append(f"{repeats.stacked} points share x and y with one of another height: {what}")
+    return Cloud(scan.path, points, lattice, None, mesh, attrs, tuple(notes))
+
+
+def _turn_level(clouds: list[Cloud], scans) -> list[Cloud]:
+    """Turn clouds by one rotation if their common plane is steep."""
+    present = [cloud.points[np.isfinite(cloud.points[:, 2])] for cloud in clouds]
+    whole = [
+        points if cloud.mesh is None else cloud.mesh.vertices[_finite(cloud.mesh.vertices)]
+        for points, cloud in zip(present, clouds, strict=True)
+    ]
+    meshes = [cloud.mesh for cloud in clouds if cloud.mesh is not None]
+    upward = sum(_mean_normal(mesh) for mesh in meshes) if meshes else None
+    normal, centre = levelling.common_plane(whole, upward)
+    if not levelling.is_steep(normal):
+        return clouds
+    return [_turned(cloud, scan, normal, centre) for cloud, scan in zip(clouds, scans, strict=True)]
+
+
+def _turned(cloud: Cloud, scan, normal: np.ndarray, centre: np.ndarray) -> Cloud:
+    """One cloud after the rotation; repeats are looked for in the new x and y."""
+    values = levelling.turn_level(scan.values, normal, centre)
+    degrees = levelling.tilt_degrees(normal)
+    notes = [
+        f"turned by {degrees:.3g} degrees about the horizontal line of its mean plane, which is "
+        "level now; x, y and heights are those of the turned points"
+    ]
+    if degrees > levelling.UPRIGHT and cloud.mesh is None:
+        notes.append("NOTE: it stood upright, so which side is up cannot be told from its points")
+    if (missing := np.count_nonzero(~_finite(scan.values))) and cloud.mesh is None:
+        notes.append(f"{missing} points without a height have no place after the turn")
+    turned = _merge(replace(scan, values=values))
+    attrs = turned.attrs | {"levelled_degrees": float(degrees)}
+    # Not on a lattice, whatever chance says: the heights have moved the points.
+    return replace(turned, lattice=None, attrs=attrs, notes=(*notes, *turned.notes))
+
+
+def _look_beneath(cloud: Cloud) -> Cloud:
+    """Measure overhangs and density."""
+    if cloud.mesh is not None:
+        cloud = _with_overhang_of_mesh(cloud)
+    if cloud.lattice is not None:
+        return cloud
+    points = cloud.points[np.isfinite(cloud.points[:, 2])]
+    tree = dense.plane_tree(points)
+    if cloud.mesh is None:
+        share, hidden = overhangs.find_hidden(points, tree)
+        cloud = _with_overhang(cloud, share, _OVERHANG_OF_POINTS[hidden is not None])
+        if hidden is not None:
+            points = points[~hidden]
+            tree = dense.plane_tree(points)
+    density = _measure_density(points, cloud.path, tree)
+    notes = cloud.notes
+    if density.uneven:
+        notes += (
+            f"the points lie unevenly: the nearest is {density.distance:.4g} mm away, but each has "
+            f"{density.area:.4g} mm2 to itself (lines or clumps); the root of it is the spacing, "
+            "and much between them is interpolated",
+        )
+    return replace(cloud, points=points, density=density, notes=notes)
+
+
+def _with_overhang(cloud: Cloud, share: float, what: str) -> Cloud:
+    """The cloud with its share of overhangs, noted if there are any."""
+    notes = cloud.notes
+    if np.isnan(share):
+        notes += ("its triangles are not wound alike, so that overhangs cannot be told",)
+    elif share > 0:
+        notes += (f"overhangs: a share of {share:.2g} {what}",)
+    return replace(cloud, attrs=cloud.attrs | {"overhang_share": share}, notes=notes)
+
+
+def _with_overhang_of_mesh(cloud: Cloud) -> Cloud:
+    down, against = overhangs.downward_share(cloud.mesh.vertices, cloud.mesh.triangles)
+    cloud = _with_overhang(cloud, against, "of the mesh faces down; its top-most part is used")
+    if down <= 0.5:
+        return cloud
+    note = "most triangles are wound to face down; heights are taken to point up all the same"
+    return replace(cloud, notes=(*cloud.notes, note))
+
+
+def _measure_density(points: np.ndarray, path: Path, tree=None) -> dense.Density:
+    density = dense.measure_density(points, tree or dense.plane_tree(points))
+    if density is None:
+        raise InputError(f"{path}: the points span no area (do they lie on one line?)")
+    return density
+
+
+def _mean_normal(mesh: Mesh) -> np.ndarray:
+    return overhangs.triangle_normals(mesh.vertices, mesh.triangles).sum(axis=0)
+
+
+def _finite(points: np.ndarray) -> np.ndarray:
+    return np.isfinite(points).all(axis=1)

@@ -1,0 +1,122 @@
+"""Parts of a surface that lie beneath other parts and cannot be heights over x and y."""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .density import sample_points
+
+#: Neighbours in the plane that are looked at. Where two layers overlap there are 18 of each, and
+#: by chance those above leave half a circle free once in a thousand points.
+_NEIGHBOURS = 36
+#: A point lies above another if it is steeper towards it than this ...
+_STEEPEST = np.tan(np.radians(80.0))
+#: ... and higher by so many lower quartiles of the height differences between nearest neighbours:
+#: white noise alone reaches 16 of them once in a million pairs. The quartile is that of one layer,
+#: even where two of them lie over each other everywhere.
+_NOISE = 20.0
+#: So many neighbours make a layer, above a point or at its level; fewer are spikes.
+_FEWEST = 6
+#: The points above lie on all sides if no sector wider than this is free of them. On one side of
+#: a line, at a step or at an upright wall, they leave half a circle free.
+_WIDEST_GAP = np.radians(170.0)
+#: Fewer hidden points than this share change no result: at the steps of a fracture some points look
+#: hidden by chance.
+FEW_HIDDEN = 0.005
+_BLOCK = 100_000  # points whose neighbours are held at once
+#: A mesh is wound alike if hardly an edge runs the same way in two of its triangles.
+_WOUND_ALIKE = 1e-3
+
+
+def find_hidden(points: np.ndarray, tree: cKDTree) -> tuple[float, np.ndarray | None]:
+    """Find the points of a cloud that lie beneath others.
+
+    A point is hidden if those of its nearest neighbours in the plane that are far above it (steeper
+    than 80 degrees, and well beyond the noise) surround it, while others share its level: it is
+    part of a layer under a roof. Steps, upright walls and single spikes hide nothing.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Finite, no two at the same x, y.
+    tree : cKDTree
+        Of their x, y.
+
+    Returns
+    -------
+    share : float
+        Share of the points that are hidden.
+    hidden : (n,) bool ndarray or None
+        None if they are so few (`FEW_HIDDEN`) in a sample that the others are not looked at.
+    """
+    sample = sample_points(points)
+    _, nearest = tree.query(sample[:, :2], k=[2])  # the first is the point itself
+    differences = np.abs(points[nearest[:, 0], 2] - sample[:, 2])
+    noise = _NOISE * float(np.quantile(differences, 0.25))
+    hidden = _hidden(sample, points, tree, noise)
+    if hidden.mean() < FEW_HIDDEN:
+        return float(hidden.mean()), None
+    if len(sample) < len(points):
+        hidden = _hidden(points, points, tree, noise)
+    return float(hidden.mean()), hidden
+
+
+def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -> np.ndarray:
+    """Which of some points are hidden by others of the cloud."""
+    hidden = np.zeros(len(some), dtype=bool)
+    k = min(_NEIGHBOURS + 1, len(points))
+    for start in range(0, len(some), _BLOCK):
+        block = some[start : start + _BLOCK]
+        distances, neighbours = tree.query(block[:, :2], k=k)
+        rise = points[neighbours, 2] - block[:, 2:]
+        beyond = noise + _STEEPEST * distances
+        above = rise > beyond
+        fellows = (np.abs(rise) <= beyond).sum(axis=1) - 1  # itself is the nearest
+        may_be = np.flatnonzero((above.sum(axis=1) >= _FEWEST) & (fellows >= _FEWEST))
+        around = points[neighbours[may_be], :2] - block[may_be, None, :2]
+        angles = np.where(above[may_be], np.arctan2(around[..., 1], around[..., 0]), np.nan)
+        angles = np.sort(angles, axis=1)  # NaN last
+        across_the_back = angles[:, 0] + 2 * np.pi - np.nanmax(angles, axis=1, initial=-np.pi)
+        gap = np.fmax(np.nanmax(np.diff(angles), axis=1, initial=0), across_the_back)
+        hidden[start + may_be] = gap < _WIDEST_GAP
+    return hidden
+
+
+def downward_share(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:
+    """Share of a mesh's area that faces down, and that faces the other way than most of it.
+
+    Parameters
+    ----------
+    vertices : ndarray, shape (n, 3)
+        In mm, level.
+    triangles : (m, 3) int ndarray
+
+    Returns
+    -------
+    down : float
+        By the sense in which the triangles are wound.
+    against_majority : float
+        The smaller of up and down: overhangs. NaN if the triangles are not wound alike.
+    """
+    normal = triangle_normals(vertices, triangles)
+    area = np.sqrt((normal**2).sum(axis=1))
+    # What is upright to within rounding faces neither way.
+    down, up = (area[s * normal[:, 2] > 1e-6 * area].sum() for s in (-1, 1))
+    if down + up == 0:
+        return np.nan, np.nan
+    against = min(down, up) / area.sum()
+    if against > 0 and not _wound_alike(triangles):
+        against = np.nan
+    return float(down / (down + up)), float(against)
+
+
+def triangle_normals(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Normal (m, 3) of each triangle, as long as twice its area."""
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    return np.cross(b - a, c - a)
+
+
+def _wound_alike(triangles: np.ndarray) -> bool:
+    """Whether neighbouring triangles pass their common edge in opposite directions."""
+    start, end = triangles.T.astype(np.int64), np.roll(triangles.T, -1, axis=0).astype(np.int64)
+    edges = np.sort((start * (int(triangles.max()) + 1) + end).ravel())
+    return np.count_nonzero(edges[1:] == edges[:-1]) <= _WOUND_ALIKE * len(edges)
