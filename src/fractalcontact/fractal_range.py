@@ -23,7 +23,7 @@ import numpy as np
 from scipy import special
 from scipy.optimize import least_squares
 
-from .curves import Curve
+from .curves import Curve, ratio
 from .fitting import CONFIDENCE
 
 #: Of a filter: Gaussian, and such as fall with powers of the wave number (2 f of straight facets).
@@ -51,6 +51,9 @@ SHORTEST_RANGE = 4.0
 VAGUE = 2.5
 #: Features that lie at a wavelength.
 LENGTHS = ("noise", "filter", "roll_off")
+#: A strip of profiles with so many times the median strip's power holds a spike or a step, which is
+#: no noise of the instrument: it is left out.
+SPIKY = 3.0
 #: Spectra of fewer bins are not fitted.
 FEWEST_BINS = 7
 
@@ -101,6 +104,10 @@ class FractalRange(NamedTuple):
     """Shortest wavelength of the fractal range: the longer of noise and filter, mm."""
     misfit: float
     """Root mean square of the logarithm of measured over fitted spectrum."""
+    left_out: float
+    """Strips of profiles left out for spikes or steps, mean over the bins."""
+    level: np.ndarray
+    """The spectrum (k,) without them, mm3."""
     fitted: np.ndarray
     """The model (k,), mm3."""
 
@@ -124,21 +131,32 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
 
     Notes
     -----
-    Least squares of the logarithms, each bin weighted by its jackknife error over the strips and
+    Strips of profiles that stand out from the others (`SPIKY`) are left out first. Least squares of
+    the logarithms, each bin weighted by its jackknife error over the strips and
     `BIN_ERROR`. The form is the one with the lowest chi-square + (parameters) ln(bins) +
     `EVIDENCE` (features), the chi-square in units of what the best form leaves, among those whose
     features lie within the spectrum and at a wavelength told within `VAGUE`: a floor that meets the
-    line at `SHORTEST_NOISE` spacings or more (or stands out at the shortest wave behind a filter), a
-    filter at `SHORTEST_FILTER` spacings or more, a roll-off below the longest wave. Intervals are
+    line at `SHORTEST_NOISE` spacings or more (or stands out at the shortest wave behind a filter),
+    a filter at `SHORTEST_FILTER` spacings or more, a roll-off below the longest wave. Intervals are
     the wider of the fit's and the jackknife's.
     """
+    curve, left_out = _without_spiky_strips(curve)
     level = curve.measure()
     known = _above_leakage(curve.length, level)
     limit = float(np.sqrt(level[known].min() / spacing)) if known.any() else np.nan
     if known.sum() < FEWEST_BINS:
         nothing = np.full(len(level), np.nan)
         return FractalRange(
-            None, _UNSEEN, (np.nan,) * 2, _UNSEEN, limit, *[_UNSEEN] * 4, np.nan, nothing
+            None,
+            _UNSEEN,
+            (np.nan,) * 2,
+            _UNSEEN,
+            limit,
+            *[_UNSEEN] * 4,
+            np.nan,
+            left_out,
+            level,
+            nothing,
         )
     x = 2 * spacing / curve.length[known]
     parts = np.log(curve.without_each_part()[:, known])
@@ -168,8 +186,20 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
         roll_off_wavelength=lengths.get("roll_off", _UNSEEN),
         end=max(ends, default=_UNSEEN),
         misfit=float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2))),
+        left_out=left_out,
+        level=level,
         fitted=fitted,
     )
+
+
+def _without_spiky_strips(curve: Curve) -> tuple[Curve, float]:
+    """The curve without strips far above the median of all, and how many those are in a bin."""
+    strips = ratio(curve.total, curve.weight)
+    if not np.isfinite(strips).any():
+        return curve, np.nan
+    spiky = strips > SPIKY * np.nanmedian(strips, axis=1, keepdims=True)
+    kept = Curve(curve.length, np.where(spiky, 0, curve.total), np.where(spiky, 0, curve.weight))
+    return kept, float(spiky.sum(axis=1).mean())
 
 
 def _above_leakage(length, level) -> np.ndarray:
@@ -332,7 +362,8 @@ def _with_intervals(form: Form, fit, x, parts, error) -> dict[str, tuple[float, 
     """Features with their 95 % intervals: the wider of jackknife and fit."""
     without = [_features(form, _fit(form, x, logs, error, start=fit.x).x, x) for logs in parts]
     quantile = special.stdtrit(len(parts) - 1, (1 + CONFIDENCE) / 2)
-    covariance = np.linalg.pinv(fit.jac.T @ fit.jac)
+    scatter = max(1.0, 2 * fit.cost / max(len(x) - len(fit.x), 1))
+    covariance = scatter * np.linalg.pinv(fit.jac.T @ fit.jac)
     intervals = {}
     for name, value in _features(form, fit.x, x).items():
         values = np.array([[found.get(name, 0.0)] for found in without])

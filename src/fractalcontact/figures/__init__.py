@@ -13,6 +13,7 @@ from .common import print_style, save
 FIGURES = (
     "fig01_strength",
     "fig02_relief",
+    "quality",
     "fig03_composite",
     "fig04_05_closure",
     "area_theories",
