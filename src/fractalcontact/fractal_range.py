@@ -49,6 +49,9 @@ LEAKAGE = 0.1
 SHORTEST_RANGE = 4.0
 #: A wavelength known less well than by this factor either way is not told.
 VAGUE = 2.5
+#: A spectrum farther than by this factor (rms) from every model follows no power law: nothing is
+#: said of its noise or filter.
+NO_POWER_LAW = 2.0
 #: Features that lie at a wavelength.
 LENGTHS = ("noise", "filter", "roll_off")
 #: A strip of profiles with so many times the median strip's power holds a spike or a step, which is
@@ -164,28 +167,31 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     error = np.hypot(_jackknife(parts), BIN_ERROR)
 
     form, fit, values = _most_likely(x, logs, error, parts)
+    fitted = np.full(len(level), np.nan)
+    fitted[known] = np.exp(_log_model(form, fit.x, x))
+    misfit = float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2)))
+    if misfit > np.log(NO_POWER_LAW):
+        values = {"hurst": values["hurst"]}
     lengths = {  # logarithms of x become wavelengths
         name: tuple(2 * spacing * np.exp(-np.array([value, high, low])))
         for name, (value, low, high) in values.items()
         if name in LENGTHS
     }
-    ends = [lengths[name] for name in ("noise", "filter") if name in lengths]
+    rms = np.exp(np.array(values.get("level", _UNSEEN)) / 2) / np.sqrt(spacing)
     slope = fit.x[1]
-    fitted = np.full(len(level), np.nan)
-    fitted[known] = np.exp(_log_model(form, fit.x, x))
     return FractalRange(
         form=form,
         hurst=tuple(values["hurst"]),
         line=(float(np.exp(fit.x[0]) * (2 * spacing) ** -slope), float(slope)),
-        noise_rms=tuple(np.exp(np.array(values["level"]) / 2) / np.sqrt(spacing))
-        if form.noisy
-        else _UNSEEN,
+        noise_rms=tuple(rms),
         noise_limit=limit,
         noise_wavelength=lengths.get("noise", _UNSEEN),
         filter_wavelength=lengths.get("filter", _UNSEEN),
         roll_off_wavelength=lengths.get("roll_off", _UNSEEN),
-        end=max(ends, default=_UNSEEN),
-        misfit=float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2))),
+        end=max(
+            [lengths[name] for name in ("noise", "filter") if name in lengths], default=_UNSEEN
+        ),
+        misfit=misfit,
         left_out=left_out,
         level=level,
         fitted=fitted,
@@ -293,12 +299,15 @@ def _most_likely(x, logs, error, parts):
     }
     for form in sorted(score, key=score.get):  # the line alone, without features, is always told
         values = _with_intervals(form, fits[form], x, parts, error)
-        if all(
-            high - low < 2 * np.log(VAGUE)
-            for name, (_, low, high) in values.items()
-            if name in LENGTHS
-        ):
+        if _is_told(values):
             return form, fits[form], values
+
+
+def _is_told(values) -> bool:
+    """Whether all wavelengths, and the noise's standard deviation, are known within `VAGUE`."""
+    widths = {name: high - low for name, (_, low, high) in values.items()}
+    widths["level"] = widths.get("level", 0.0) / 2  # of a variance
+    return all(widths.get(name, 0.0) < 2 * np.log(VAGUE) for name in (*LENGTHS, "level"))
 
 
 def _is_sensible(form: Form, parameters: np.ndarray, x: np.ndarray) -> bool:

@@ -9,7 +9,7 @@ import xarray as xr
 
 from .curves import FIRST_ORDER, LENGTHS_PER_OCTAVE, SHORTEST_SEGMENT, STRIPS, profile_spectra
 from .fitting import without_mean_plane
-from .fractal_range import FractalRange, find_fractal_range
+from .fractal_range import NO_POWER_LAW, FractalRange, find_fractal_range
 from .labels import INTERVAL, about
 from .specimen import cell_side, hole_free_square
 from .store import padded
@@ -30,8 +30,6 @@ ROUNDING = 1e-13
 UNEQUAL = 2.0
 #: Below this exponent 1 + 2H no rock is known, and spikes and noise look alike.
 FLATTEST = 1.5
-#: A spectrum farther than this from its model (rms of the natural logarithm) is no power law.
-NO_POWER_LAW = 0.4
 
 
 def scan_quality(specimen: xr.Dataset, resolutions) -> xr.Dataset:
@@ -365,12 +363,7 @@ def noise_words(quality: xr.Dataset, face: str) -> str:
     found = quality.sel(face=face)
     if not any(found["form"].values):
         return "too small for a spectrum: nothing is known of its noise"
-    along = [
-        f"{interval_words(of_axis, 'noise_rms')} rms along {axis}"
-        if of_axis["noise_rms"].notnull()
-        else f"none seen along {axis} (at most {length_words(of_axis['noise_limit'].item())})"
-        for axis, of_axis in ((axis, found.sel(axis=axis)) for axis in AXES)
-    ]
+    along = [_noise_along(axis, found.sel(axis=axis)) for axis in AXES]
     words = f"noise floor {', '.join(along)}"
     rms, limit = found["noise_rms"].values, found["noise_limit"].values
     for axis, own, other in zip(AXES, rms, np.fmin(rms, limit)[::-1], strict=True):
@@ -378,6 +371,20 @@ def noise_words(quality: xr.Dataset, face: str) -> str:
             across = AXES[1 - AXES.index(axis)]
             words += f"; more along {axis}: scan lines along {across} are shifted in height"
     return words
+
+
+def _noise_along(axis, of_axis) -> str:
+    """What is known of the noise along one axis."""
+    if of_axis["noise_rms"].notnull():
+        return f"{interval_words(of_axis, 'noise_rms')} rms along {axis}"
+    limit = f"(at most {length_words(of_axis['noise_limit'].item())})"
+    if of_axis["misfit"] > math.log(NO_POWER_LAW):
+        factor = math.exp(of_axis["misfit"].item())
+        return (
+            f"not to be told along {axis} {limit}, where the spectrum is no power law: off the "
+            f"model by a factor {factor:.2g}"
+        )
+    return f"none seen along {axis} {limit}"
 
 
 def range_words(quality: xr.Dataset, face: str) -> str:
@@ -399,12 +406,9 @@ def range_words(quality: xr.Dataset, face: str) -> str:
             words.append(f"so flat a spectrum along {axis} that noise cannot be told from relief")
         if of_axis["strips_left_out"] >= 0.5:
             words.append(
-                f"{of_axis['strips_left_out']:.0f} of {STRIPS} strips of profiles along {axis} left "
-                "out of the spectrum: spikes or steps"
+                f"{of_axis['strips_left_out']:.0f} of {STRIPS} strips of profiles along {axis} "
+                "left out of the spectrum for spikes or steps"
             )
-        if of_axis["misfit"] > NO_POWER_LAW:
-            factor = math.exp(of_axis["misfit"].item())
-            words.append(f"no power law along {axis}: off the model by a factor {factor:.2g}")
     step = found["height_step"].item()
     if math.isfinite(step):
         words.append(

@@ -48,7 +48,7 @@ rule specimen:
         runtime=15,
     params:
         settings=settings_of,
-        code=code("scan", "specimen", "study", "store"),
+        code=code("preparation", "store"),
     script:
         "../scripts/specimen.py"
 

@@ -2,6 +2,7 @@
 
 import json
 
+from ..labels import printable
 from ..specimen import STEEP_TILT, window_sides
 
 #: Longest file name and note that stand in a figure whole; of longer ones both ends are shown.
@@ -24,21 +25,12 @@ def history(specimen, faces):
     return [*paragraphs, _faces_words(specimen)]
 
 
-def printable(text, longest=LONGEST_NAME):
-    """Text of strangers for a figure: no control characters, its middle left out if it is long."""
-    text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in str(text))
-    if len(text) <= longest:
-        return text
-    half = (longest - 1) // 2
-    return f"{text[:half]}…{text[-half:]}"
-
-
 def _file_words(specimen, face):
     """Name, reader, units, grid and every note of one face's file."""
     attrs = json.loads(specimen.attrs[f"{face}_scan"])
     spacing = " × ".join(f"{specimen.attrs[f'spacing_{axis}']:.5g}" for axis in "xy")
     words = [
-        f"{face.capitalize()} face: {printable(attrs['source'])} "
+        f"{face.capitalize()} face: {printable(attrs['source'], LONGEST_NAME)} "
         f"(SHA-256 {attrs['sha256'][:12]}…), "
         f"read by {attrs.get('reader', 'nothing stated')}, {attrs.get('layout', 'matrix')}, "
         f"unit {attrs.get('file_unit', 'mm')}; "

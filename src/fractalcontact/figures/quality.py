@@ -9,9 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ..labels import printable
 from ..quality import AXES, length_words, noise_words, range_words
 from ..specimen import window_slices
-from ._history import history, printable
+from ._history import history
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ._words import length_unit
 from .common import COLOURS, WIDTH, Drawing, group, label_short_span, letter, settings_of
@@ -328,13 +329,14 @@ def _caption(label, specimen, quality):
     end = (
         quality.attrs["warning"] or "all resolutions of the study lie within the fractal range seen"
     )
+    found = " ".join(_found_words(specimen, quality, faces))
     return (
         f"Quality of the scan: {label}. Shaded relief and mask with the window; histogram of the "
         "heights with a Gaussian of the lower face's rms (dashed grey); profiles through the "
         "middle of the window; power spectra of profiles and radially averaged, with the "
         "self-affine line, noise floor and end of the fractal range where they are seen, and the "
-        f"shortest wave 2 s of each resolution s. {' '.join(_found_words(specimen, quality, faces))} "
-        f"{end[0].upper()}{end[1:]}. {' '.join(history(specimen, faces))}"
+        f"shortest wave 2 s of each resolution s. {found} {end[0].upper()}{end[1:]}. "
+        + " ".join(history(specimen, faces))
     )
 
 
