@@ -40,9 +40,9 @@ COLUMNS = {
 WIDTH = 120
 LEGEND = (
     "cells, field, window: x, y. relief: highest less lowest. missing: of the face with more. "
-    "outl.: cells flagged as outliers. noise: standard deviation of independent errors of the cells "
-    "(< where none is seen). shortest: wavelength below which the relief is the instrument's; a "
-    "spacing s shows waves from 2 s on."
+    "outl.: cells flagged as outliers. noise: standard deviation of independent errors of the "
+    "cells (< where none is seen). shortest: wavelength below which the relief is the "
+    "instrument's; a spacing s shows waves from 2 s on."
 )
 INDENT = "    "
 
@@ -206,7 +206,7 @@ def _grid_cells(sizes, attrs):
 
 def _pair(lengths):
     """Two lengths (x, y) in mm."""
-    return " x ".join(f"{length:.3g}" for length in lengths)
+    return " x ".join(f"{float(f'{length:.3g}'):g}" for length in lengths)
 
 
 def _file_names(scan):

@@ -37,14 +37,15 @@ EVIDENCE = 6.0
 BIN_ERROR = 0.05
 #: Neighbouring strips of one surface share its long waves (`estimators.ESTIMATORS`).
 SPREAD = 1.2
-#: Slope 1 + 2H of a spectrum, between H = 0.03 and H = 1.
-SLOPES = (1.06, 3.0)
+#: Slope 1 + 2H of a spectrum, between H = 0.2 and H = 1: flatter no rock is known, and what is
+#: flatter can hardly be told from noise.
+SLOPES = (1.4, 3.0)
 #: A filter must halve the spectrum at least at this many spacings, or it is the grid's own limit.
 SHORTEST_FILTER = 2.2
 #: A floor must meet the line at least at this many spacings, or it may be aliasing.
 SHORTEST_NOISE = 2.5
 #: Power that a taper leaks from the longest wave fitted, at w times its wave number: this w^-6.
-LEAKAGE = 0.1
+LEAKAGE = 3.0
 #: Between roll-off and the end of the range must lie this ratio, or there is no range.
 SHORTEST_RANGE = 4.0
 #: A wavelength known less well than by this factor either way is not told.
@@ -141,7 +142,8 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     features lie within the spectrum and at a wavelength told within `VAGUE`: a floor that meets the
     line at `SHORTEST_NOISE` spacings or more (or stands out at the shortest wave behind a filter),
     a filter at `SHORTEST_FILTER` spacings or more, a roll-off below the longest wave. Intervals are
-    the wider of the fit's and the jackknife's.
+    the wider of the fit's and the jackknife's, and hold those of another sampling with a score as
+    good within `EVIDENCE`.
     """
     curve, left_out = _without_spiky_strips(curve)
     level = curve.measure()
@@ -173,7 +175,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     if misfit > np.log(NO_POWER_LAW):
         values = {"hurst": values["hurst"]}
     lengths = {  # logarithms of x become wavelengths
-        name: tuple(2 * spacing * np.exp(-np.array([value, high, low])))
+        name: tuple(2 * spacing * np.exp(-np.array([value, high, low])))  # infinite if a bound
         for name, (value, low, high) in values.items()
         if name in LENGTHS
     }
@@ -298,14 +300,32 @@ def _most_likely(x, logs, error, parts):
         if _is_sensible(form, fit.x, x)
     }
     for form in sorted(score, key=score.get):  # the line alone, without features, is always told
-        values = _with_intervals(form, fits[form], x, parts, error)
+        values = _with_intervals(form, fits[form], x, logs, parts, error)
+        for other in _rivals(form, score):
+            values = _joined(values, _with_intervals(other, fits[other], x, logs, parts, error))
         if _is_told(values):
             return form, fits[form], values
 
 
+def _rivals(form: Form, score) -> list[Form]:
+    """Forms with the same features that the grid may as well have made: nearly the same score."""
+    same = [form._replace(sampling=sampling) for sampling in SAMPLINGS if sampling != form.sampling]
+    return [other for other in same if score.get(other, np.inf) < score[form] + EVIDENCE]
+
+
+def _joined(values, others):
+    """Values with intervals that hold those of a rival too."""
+    return {
+        name: (value, min(low, others[name][1]), max(high, others[name][2]))
+        if name in others
+        else (value, low, high)
+        for name, (value, low, high) in values.items()
+    }
+
+
 def _is_told(values) -> bool:
     """Whether all wavelengths, and the noise's standard deviation, are known within `VAGUE`."""
-    widths = {name: high - low for name, (_, low, high) in values.items()}
+    widths = {name: high - low for name, (_, low, high) in values.items() if np.isfinite(low)}
     widths["level"] = widths.get("level", 0.0) / 2  # of a variance
     return all(widths.get(name, 0.0) < 2 * np.log(VAGUE) for name in (*LENGTHS, "level"))
 
@@ -329,17 +349,18 @@ def _is_sensible(form: Form, parameters: np.ndarray, x: np.ndarray) -> bool:
     return True
 
 
-def _fit(form: Form, x, logs, error, start=None):
+def _fit(form: Form, x, logs, error):
     """Weighted least squares of the logarithms from some starts, the best of them."""
     low, high = _bounds(form, x, logs)
-    starts = _starts(form, x, logs) if start is None else [start]
 
     def residuals(parameters):
         return (_log_model(form, parameters, x) - logs) / error
 
     fits = [
-        least_squares(residuals, np.clip(p, low + 1e-6, high - 1e-6), bounds=(low, high))
-        for p in starts
+        least_squares(
+            residuals, np.clip(p, low + 1e-6, high - 1e-6), bounds=(low, high), ftol=1e-6, xtol=1e-6
+        )
+        for p in _starts(form, x, logs)
     ]
     return min(fits, key=lambda fit: fit.cost)
 
@@ -367,17 +388,25 @@ def _starts(form: Form, x, logs):
     return [np.array([(begin | {"filter": place})[name] for name in names]) for place in places]
 
 
-def _with_intervals(form: Form, fit, x, parts, error) -> dict[str, tuple[float, float, float]]:
-    """Features with their 95 % intervals: the wider of jackknife and fit."""
-    without = [_features(form, _fit(form, x, logs, error, start=fit.x).x, x) for logs in parts]
+def _with_intervals(form: Form, fit, x, logs, parts, error) -> dict[str, tuple]:
+    """Features with their 95 % intervals: the wider of jackknife and fit.
+
+    Parameters without one strip follow from those of all by one step of Gauss and Newton.
+    """
+    inverse = np.linalg.pinv(fit.jac)
+    without = [_features(form, fit.x + inverse @ ((part - logs) / error), x) for part in parts]
     quantile = special.stdtrit(len(parts) - 1, (1 + CONFIDENCE) / 2)
     scatter = max(1.0, 2 * fit.cost / max(len(x) - len(fit.x), 1))
-    covariance = scatter * np.linalg.pinv(fit.jac.T @ fit.jac)
+    covariance = scatter * inverse @ inverse.T
     intervals = {}
     for name, value in _features(form, fit.x, x).items():
         values = np.array([[found.get(name, 0.0)] for found in without])
         gradient = _gradient(form, fit.x, x, name, value)
         of_fit = np.sqrt(gradient @ covariance @ gradient)
+        if name == "noise" and value <= np.log(x.min()):
+            # The floor lies above the surface at all wavelengths seen: a bound, not an estimate.
+            intervals[name] = (value, -np.inf, value)
+            continue
         half = quantile * max(SPREAD * float(_jackknife(values)[0]), of_fit)
         intervals[name] = (value, value - half, value + half)
     return intervals
