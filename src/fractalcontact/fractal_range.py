@@ -44,7 +44,8 @@ SLOPES = (1.4, 3.0)
 SHORTEST_FILTER = 2.2
 #: A floor must meet the line at least at this many spacings, or it may be aliasing.
 SHORTEST_NOISE = 2.5
-#: Power that a taper leaks from the longest wave fitted, at w times its wave number: this w^-6.
+#: Power that a taper leaks from the longest wave fitted, at w times its wave number (from 2 on) and
+#: in units of its own: at most this w^-6.
 LEAKAGE = 3.0
 #: Between roll-off and the end of the range must lie this ratio, or there is no range.
 SHORTEST_RANGE = 4.0
@@ -215,7 +216,8 @@ def _above_leakage(length, level) -> np.ndarray:
     known = np.isfinite(level) & (level > 0)
     if known.any():
         longest = np.flatnonzero(known)[-1]
-        known &= level > LEAKAGE * level[longest] * (length / length[longest]) ** 6
+        part = length / length[longest]
+        known &= (level > LEAKAGE * level[longest] * part**6) | (part > 0.5)
     return known
 
 
