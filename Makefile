@@ -1,4 +1,5 @@
 # make        environment, then the default study (config/paper.yaml)
+# make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make scenes SCENES=5000   so many random contact problems, each state verified
@@ -25,7 +26,7 @@ GUARD :=
 UNLOCK :=
 endif
 
-.PHONY: all study smoke test bench scenes lint format lock clean
+.PHONY: all study smoke check-scans test bench scenes lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -34,6 +35,10 @@ study: $(VENV)/installed
 
 smoke:
 	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
+
+# SCANS=folder for another one than the study's.
+check-scans: $(VENV)/installed
+	@$(BIN)/python -m fractalcontact.check_scans $(SCANS) --study $(STUDY)
 
 test: $(VENV)/tests-installed
 	$(BIN)/python -m pytest

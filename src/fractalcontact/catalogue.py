@@ -80,23 +80,53 @@ def find_scans(folder) -> dict[str, ScanFiles]:
         If two files claim one name, a face lacks its counterpart, a sidecar has no scan, a name has
         no usable character, or a link leads out of the folder.
     """
+    scans, refused = list_scans(folder)
+    for error in refused.values():
+        raise error
+    return scans
+
+
+def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
+    """List the specimens of a folder, and what is wrong with those that have none.
+
+    Parameters
+    ----------
+    folder : path-like
+
+    Returns
+    -------
+    scans : dict of str to ScanFiles
+        As `find_scans` gives them.
+    refused : dict of str to InputError
+        By specimen name, or by file name where it gives none: the first thing wrong with each.
+    """
     folder = Path(folder)
     if not folder.is_dir():
-        return {}
+        return {}, {}
     roles: dict[str, dict[str, Path]] = {}
+    refused: dict[str, InputError] = {}
     for path in sorted(folder.iterdir()):
         if path.name.startswith(".") or path.name.upper().startswith(_IGNORED) or path.is_dir():
             continue
-        _refuse_outside_link(path, folder)
         original_name, role = split_file_name(path.name)
         name = specimen_name(original_name)
-        if not name:
-            raise InputError(f"{path}: give the file a name with letters or digits in it")
-        of_specimen = roles.setdefault(name, {})
-        if role in of_specimen:
-            raise _two_claims(name, of_specimen[role], path)
-        of_specimen[role] = path
-    return {name: _scan_files(name, roles[name]) for name in sorted(roles)}
+        try:
+            _refuse_outside_link(path, folder)
+            if not name:
+                raise InputError(f"{path}: give the file a name with letters or digits in it")
+            of_specimen = roles.setdefault(name, {})
+            if role in of_specimen:
+                raise _two_claims(name, of_specimen[role], path)
+            of_specimen[role] = path
+        except InputError as error:
+            refused.setdefault(name or path.name, error)
+    scans = {}
+    for name in sorted(roles.keys() - refused.keys()):
+        try:
+            scans[name] = _scan_files(name, roles[name])
+        except InputError as error:
+            refused[name] = error
+    return scans, refused
 
 
 def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:

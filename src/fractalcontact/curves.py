@@ -252,17 +252,35 @@ def _square_about_line(piece):
 
 
 def power_spectrum_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
-    """Mean profile spectrum C(q) (mm3) against wavelength (mm): grows as l^(1 + 2H).
+    """Mean profile spectrum C(q) (mm3) against wavelength (mm): grows as l^(1 + 2H)."""
+    return _summed(profile_spectra(heights, (spacing, spacing)))
+
+
+def profile_spectra(heights: np.ndarray, spacing: tuple[float, float]) -> dict[str, Curve]:
+    """Mean two-sided spectra (mm3) of profiles along x and along y, against wavelength (mm).
 
     Welch's method: unbroken segments of one length, as long as a quarter of the complete ones
     allows, each detrended and tapered (Hann); the mean is averaged in bins of equal ratio. Its
-    parts are strips of profiles.
+    parts are strips of profiles. Heights that are independent at every node, of variance v, have
+    the spectrum v times the spacing at every wavelength.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        mm, NaN where missing.
+    spacing : (float, float)
+        (dy, dx), mm.
+
+    Returns
+    -------
+    dict of str to Curve
+        "x" and "y"; empty curves where no unbroken segment is long enough.
     """
     segments = _unbroken_segments(heights)
     n = segments["x"][0].shape[1]
     if n == 0:
         nothing = Curve(np.empty(0), *np.empty((2, 0, STRIPS)))
-        return {"both": nothing, "x": nothing, "y": nothing}
+        return {"x": nothing, "y": nothing}
     order = np.arange(FIRST_ORDER, n // 2)
     ratio = np.round(np.log2(order) * LENGTHS_PER_OCTAVE).astype(int)
     _, which = np.unique(ratio, return_inverse=True)
@@ -272,16 +290,16 @@ def power_spectrum_curves(heights: np.ndarray, spacing: float) -> dict[str, Curv
     # Hann's side lobes fall as q^-6: no leakage from the long waves into q^-(1 + 2H).
     taper = np.hanning(n + 1)[:-1]
     curves = {}
-    for axis, (profiles, strip) in segments.items():
+    for (axis, (profiles, strip)), pitch in zip(segments.items(), spacing[::-1], strict=True):
         power = np.abs(scipy.fft.rfft(_without_trend(profiles) * taper, axis=1)[:, order]) ** 2
-        power *= spacing / np.sum(taper**2)
+        power *= pitch / np.sum(taper**2)
         total, weight = np.zeros((2, len(members), STRIPS))
         for part in range(STRIPS):
             of_part = strip == part
             total[:, part] = np.bincount(which, power[of_part].sum(axis=0)) / members
             weight[:, part] = np.count_nonzero(of_part)
-        curves[axis] = Curve((n * spacing / mean_order)[::-1], total[::-1], weight[::-1])
-    return _summed(curves)
+        curves[axis] = Curve((n * pitch / mean_order)[::-1], total[::-1], weight[::-1])
+    return curves
 
 
 def _unbroken_segments(heights: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:

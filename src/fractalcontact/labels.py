@@ -1,4 +1,4 @@
-"""What every variable of the atlas says about itself."""
+"""What every variable of the atlas says about itself, and how the texts of strangers are shown."""
 
 #: What follows the long name of an estimate at the ends of its interval, by ending of the name.
 INTERVAL = {
@@ -20,3 +20,23 @@ def about(units, long_name):
     dict
     """
     return {"units": units, "long_name": long_name}
+
+
+def printable(text, longest=None):
+    """Text of strangers on one line: control characters escaped, the middle left out if it is long.
+
+    Parameters
+    ----------
+    text : str
+    longest : int, optional
+        Characters.
+
+    Returns
+    -------
+    str
+    """
+    text = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
+    if longest is None or len(text) <= longest:
+        return text
+    half = (longest - 1) // 2
+    return f"{text[:half]}…{text[-half:]}"

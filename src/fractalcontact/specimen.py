@@ -356,6 +356,20 @@ def _largest_square(valid: np.ndarray, spacing) -> tuple[int, int]:
     return cells(fits)
 
 
+def hole_free_square(valid: np.ndarray, spacing) -> tuple[slice, slice]:
+    """Rows and columns of the largest square without holes, the one nearest to the middle.
+
+    Parameters
+    ----------
+    valid : (ny, nx) bool ndarray
+    spacing : (float, float)
+        (dy, dx), mm: it is square in mm.
+    """
+    shape = _largest_square(valid, spacing)
+    corner = _nearest(_free_places(valid, shape), shape, tuple((n - 1) / 2 for n in valid.shape))
+    return tuple(slice(start, start + n) for start, n in zip(corner, shape, strict=True))
+
+
 def _no_place(specimen, shape, spacing) -> InputError:
     valid = specimen["valid"].values
     rows, columns = np.nonzero(~valid)

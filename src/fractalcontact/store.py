@@ -18,6 +18,7 @@ import xarray as xr
 #: that slide, roll_off and area_slope one of made surfaces where the study asks.
 STAGES = {
     "specimens": "levelled faces, mask, window and where they came from",
+    "quality": "relief, spectra and noise floor of each face, and where its fractal range ends",
     "surface_dimension": "Delta_g of each face by several estimators",
     "joints": "offsets and composite topographies",
     "contact": "contact domains",

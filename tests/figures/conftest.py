@@ -13,6 +13,7 @@ from fractalcontact.dimension_test import dimension_test
 from fractalcontact.domain_measures import measures_of_states
 from fractalcontact.estimator_bias import estimator_bias
 from fractalcontact.joint import describe_joint
+from fractalcontact.quality import scan_quality
 from fractalcontact.roll_off import roll_off_effect
 from fractalcontact.roughness import best_dimension, surface_dimension
 from fractalcontact.size_laws import joint_by_size
@@ -165,6 +166,7 @@ def atlas_file(tmp_path_factory):
         windows = joint_by_size(*of_solved, best_dimension(dimension))
         made = {
             "specimens": specimen,
+            "quality": scan_quality(specimen, chosen["resolutions"]),
             "surface_dimension": dimension,
             "joints": joint,
             "contact": fields,

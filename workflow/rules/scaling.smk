@@ -144,6 +144,7 @@ rule statements:
 
 STAGE_FILES = {
     "specimens": rules.specimen.output[0],
+    "quality": rules.quality.output[0],
     "surface_dimension": rules.surface_dimension.output[0],
     "joints": rules.joint.output[0],
     "contact": rules.domains.output.contact,

@@ -48,7 +48,7 @@ rule specimen:
         runtime=15,
     params:
         settings=settings_of,
-        code=code("scan", "specimen", "study", "store"),
+        code=code("preparation", "store"),
     script:
         "../scripts/specimen.py"
 
@@ -72,3 +72,25 @@ rule surface_dimension:
         code=code("roughness", "store"),
     script:
         "../scripts/surface_dimension.py"
+
+
+# What the instrument adds, and which resolutions go below it.
+rule quality:
+    input:
+        rules.specimen.output,
+    output:
+        f"{RESULTS}/quality/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/quality/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/quality/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=10,
+    params:
+        resolutions=lambda wc: settings_of(wc)["resolutions"],
+        code=code("quality", "store"),
+    script:
+        "../scripts/quality.py"

@@ -5,6 +5,7 @@ A module has ``draw(atlas, name)``: the atlas as an xarray DataTree and a specim
 """
 
 import importlib
+from dataclasses import replace
 
 from ..store import read_atlas
 from .common import print_style, save
@@ -13,6 +14,7 @@ from .common import print_style, save
 FIGURES = (
     "fig01_strength",
     "fig02_relief",
+    "quality",
     "fig03_composite",
     "fig04_05_closure",
     "area_theories",
@@ -41,6 +43,9 @@ _NEEDS_SLIDING = (
     "strength",
     "clusters",
 )
+
+#: Of the scan itself, not of contact at the resolutions a warning is about.
+_OF_THE_SCAN = ("fig02_relief", "quality")
 
 #: Experiments on made surfaces that a study may ask for, with the figure of each: stage and key of
 #: the configuration to module name. Their ``draw(atlas, names)`` takes all specimens of the study.
@@ -95,7 +100,8 @@ def draw_figures(atlas_path, specimen, folder, names):
     dict
         Figure name to caption.
     """
-    return _draw(read_atlas(atlas_path), specimen, folder, names)
+    atlas = read_atlas(atlas_path)
+    return _draw(atlas, specimen, folder, names, atlas[f"quality/{specimen}"].attrs["warning"])
 
 
 def draw_study_figures(atlas_path, specimens, folder, names):
@@ -117,11 +123,13 @@ def draw_study_figures(atlas_path, specimens, folder, names):
     return _draw(read_atlas(atlas_path, without=_LARGE_STAGES), list(specimens), folder, names)
 
 
-def _draw(atlas, subject, folder, names):
+def _draw(atlas, subject, folder, names, warning=""):
     captions = {}
     with print_style():
         for name in names:
             drawing = importlib.import_module(f".{name}", __package__).draw(atlas, subject)
+            if warning and name not in _OF_THE_SCAN:
+                drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
             save(drawing, folder, name)
             captions[name] = drawing.caption
     return captions

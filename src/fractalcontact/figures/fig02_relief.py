@@ -49,7 +49,7 @@ def draw(atlas, name):
     figure = Figure(figsize=(WIDTH, height))
     ratios = [1.6 if len(faces) == 1 else 1.2] * len(faces) + [1]
     axes = figure.subplots(1, columns, width_ratios=ratios)
-    outline = _draw_faces(figure, axes[:-1], specimen, faces, sides)
+    outline = draw_faces(figure, axes[:-1], specimen, faces, sides)
     letters = "ab"[: len(faces)]
     for panel, which, face in zip(axes, letters, faces, strict=False):
         letter(panel, which, f"{face} face")
@@ -61,7 +61,7 @@ def draw(atlas, name):
     return Drawing(figure, _table(dimension), _caption(label, specimen, faces, sides, dimension))
 
 
-def _draw_faces(figure, panels, specimen, faces, sides):
+def draw_faces(figure, panels, specimen, faces, sides):
     """Reliefs side by side with one scale of heights; the outline of the window."""
     heights = np.concatenate([specimen[face].values.ravel() for face in faces])
     low, high = np.nanquantile(heights, [CLIPPED, 1 - CLIPPED])

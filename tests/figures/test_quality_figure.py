@@ -1,0 +1,155 @@
+"""The quality sheet: what it draws is in the atlas, what was done to the file stands in it."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+
+from fractalcontact.figures import draw_figures
+from fractalcontact.figures.common import print_style, save
+from fractalcontact.figures.quality import draw
+from fractalcontact.labels import printable
+
+SPECIMENS = ("sliding", "flat", "pair")
+REGISTRATION = {
+    "mode": "rigid",
+    "applied": True,
+    "shift_x_mm": 0.45,
+    "shift_y_mm": 0.01,
+    "rotation_degrees": 0.1,
+    "tilt_x_degrees": 0.0,
+    "tilt_y_degrees": 0.02,
+    "gap_sd_before_mm": 0.363,
+    "gap_sd_after_mm": 0.349,
+    "gap_mean_before_mm": 0.637,
+    "gap_mean_after_mm": 0.637,
+    "correlation_before": 0.972,
+    "correlation_after": 0.974,
+}
+
+
+def drawn(atlas, name):
+    with print_style():
+        return draw(atlas, name)
+
+
+def with_specimen(atlas, name, change):
+    """The atlas with one specimen changed by a function of its dataset."""
+    changed = atlas.copy(deep=True)
+    specimen = changed[f"specimens/{name}"].to_dataset()
+    change(specimen)
+    changed[f"specimens/{name}"] = xr.DataTree(specimen)
+    return changed
+
+
+def words_of(drawing):
+    return "\n".join(text.get_text() for text in drawing.figure.findobj(Text))
+
+
+@pytest.mark.parametrize("name", SPECIMENS)
+def test_the_points_drawn_are_those_of_the_atlas(atlas, name):
+    table = drawn(atlas, name).data
+    quality = atlas[f"quality/{name}"]
+    specimen = atlas[f"specimens/{name}"]
+    for face in quality["face"].values:
+        for axis in ("x", "y"):
+            points = table.query("panel == 'spectrum' and face == @face and axis == @axis")
+            known = quality["spectrum"].sel(face=face, axis=axis).values
+            known = known[np.isfinite(known)]
+            assert known.size > 5
+            np.testing.assert_allclose(points["spectrum_mm3"].dropna(), known)
+            profile = table.query("panel == 'profile' and face == @face and axis == @axis")
+            assert len(profile.dropna(subset=["height_mm"])) <= specimen.sizes[axis]
+            assert profile["height_mm"].max() <= float(specimen[face].max())
+
+
+@pytest.mark.parametrize("name", SPECIMENS)
+def test_it_is_written_with_units_on_every_axis(atlas, name, tmp_path):
+    drawing = drawn(atlas, name)
+    with print_style():
+        save(drawing, tmp_path, "quality")
+    assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".svg", ".csv", ".txt"}
+    panels = [axes for axes in drawing.figure.axes if axes.get_title(loc="left")]
+    assert len(panels) == 7 + 2 * (name == "pair")
+    for axes in panels:
+        assert "(" in axes.get_xlabel()
+        assert "(" in axes.get_ylabel()
+
+
+def test_a_warning_stands_in_the_sheet_and_in_the_captions_of_contact(atlas_file, atlas, tmp_path):
+    changed = atlas.copy(deep=True)
+    changed["quality/sliding"].attrs["warning"] = "resolutions s = 0.1 mm lie below the noise"
+    assert "WARNING: resolutions s = 0.1 mm" in words_of(drawn(changed, "sliding"))
+    path = tmp_path / "atlas.nc"
+    changed.to_netcdf(path)
+    names = ["fig02_relief", "fig08_prefractals"]
+    captions = draw_figures(path, "sliding", tmp_path, names)
+    assert "WARNING" not in captions["fig02_relief"]
+    assert captions["fig08_prefractals"].endswith(
+        "WARNING: resolutions s = 0.1 mm lie below the noise."
+    )
+    assert "WARNING" in (tmp_path / "fig08_prefractals.txt").read_text()
+    clean = draw_figures(atlas_file, "sliding", tmp_path, names[1:])
+    assert "WARNING" not in clean["fig08_prefractals"]
+
+
+def test_what_was_done_to_the_files_stands_in_words(atlas):
+    def change(specimen):
+        scan = json.loads(specimen.attrs["lower_scan"])
+        scan |= {"reader": "numpy", "overrides": "unit mm, the file says m", "points": 900}
+        specimen.attrs |= {
+            "lower_scan": json.dumps(scan | {"duplicated_points": 3, "levelled_degrees": 12.5}),
+            "registration": json.dumps(REGISTRATION),
+            "cleaning": "4 outliers kept",
+            "outliers": "keep",
+            "outlier_count": 4,
+            "filled_count": 6,
+        }
+        mask = np.zeros(specimen["lower"].shape, bool)
+        for variable, rows in (("outlier", slice(40, 42)), ("filled", slice(60, 63))):
+            marked = mask.copy()
+            marked[rows, 50:52] = True
+            specimen[variable] = ("y", "x"), marked
+
+    drawing = drawn(with_specimen(atlas, "pair", change), "pair")
+    text = " ".join(words_of(drawing).split())
+    for words in (
+        "the sidecar overrides: unit mm, the file says m",
+        "900 points, 3 of them repeated",
+        "turned by 12.5 degrees",
+        "moved by 0.45 mm in x",
+        "gap sd 0.363 → 0.349 mm",
+        "4 outliers kept",
+        "6 cells filled",
+        "Levelled: least-squares plane of the mean of both faces",
+    ):
+        assert words in text
+        assert words in drawing.caption
+    legend = [text.get_text() for text in drawing.figure.findobj(Text)]
+    assert {"outlier", "filled", "not measured"} <= set(legend)
+
+
+@pytest.mark.parametrize("name", ["x" * 200 + ".csv", "a$b$^_{\\.npy", "two\nlines\x1b[31m.csv"])
+def test_a_strange_file_name_breaks_nothing(atlas, name, tmp_path):
+    def change(specimen):
+        scan = json.loads(specimen.attrs["lower_scan"]) | {"source": name}
+        specimen.attrs["lower_scan"] = json.dumps(scan)
+
+    drawing = drawn(with_specimen(atlas, "flat", change), "flat")
+    with print_style():
+        save(drawing, tmp_path, "quality")
+    width = drawing.figure.get_window_extent().width
+    renderer = FigureCanvasAgg(drawing.figure).get_renderer()
+    for text in drawing.figure.findobj(Text):
+        if len(text.get_text()) > 40:  # sentences; labels of ticks may lie beyond an axis
+            assert text.get_window_extent(renderer).x1 <= width * 1.001
+    assert "\x1b" not in drawing.caption
+
+
+def test_names_are_shown_on_one_line():
+    assert printable("a\nb\x1b\u202e\udcff") == r"a\nb\x1b\u202e\udcff"
+    assert printable("Zürich 岩") == "Zürich 岩"
+    assert printable("abcdefghij", 5) == "ab…ij"
