@@ -1,6 +1,7 @@
 """Scan files as heights in mm: exact round trips, bad input, real scans."""
 
 import io
+import re
 import zipfile
 from pathlib import Path
 
@@ -427,12 +428,14 @@ def test_an_unknown_extension_lists_the_known(tmp_path):
         read_scan(tmp_path / "rock.docx")
 
 
-def test_an_archive_that_would_inflate_without_end_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("fractalcontact.scan.LARGEST_FILE", 100_000)
+def test_an_archive_that_would_inflate_without_end_is_refused(tmp_path):
     path = tmp_path / "rock.npz"
-    np.savez_compressed(path, z=np.zeros((200, 200)))
-    assert path.stat().st_size < 10_000
-    with pytest.raises(InputError, match=r"rock\.npz: .*allowed"):
+    np.savez_compressed(path, z=np.zeros((200, 200)), more=np.ones((200, 200)))
+    content = bytearray(path.read_bytes())
+    for entry in re.finditer(b"PK\x01\x02", content):  # sizes stand in the central directory
+        content[entry.start() + 24 : entry.start() + 28] = (4_000_000_000).to_bytes(4, "little")
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"rock\.npz: 7\.5 GiB to read, .*allowed"):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
 
 

@@ -1,6 +1,8 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
 import hashlib
+import os
+import stat
 import zipfile
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from ..catalogue import split_file_name
 from ..errors import InputError
 from ..units import length_factor
 from .arrays import read_npy, read_npz
+from .confined import read_confined
 from .faces import Measured, grid_one, grid_pair
 from .instruments import instrument_formats, read_instrument
 from .mesh import read_mesh
@@ -112,8 +115,14 @@ def read_matrix(path, options=None):
 def _measure(path: Path, options) -> Measured:
     """Read a file and convert it to mm, with what the sidecar says."""
     options = parse_options(options, str(path))
-    _check_size(path)
-    raw = _read_raw(path, options)
+    identity = _identify(path)
+    raw = read_confined(path, options)
+    checksum = _sha256(path)
+    if _identify(path) != identity:
+        raise InputError(
+            f"{path}: the file changed while it was read; wait until the copy or export has "
+            "finished, then run again"
+        )
     _refuse_idle_keys(raw, options, path)
     notes = list(raw.notes)
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, notes)
@@ -135,7 +144,7 @@ def _measure(path: Path, options) -> Measured:
         grid = length_mm(grid, unit_xy, f"{path}: key 'grid'")
     provenance = {
         "source": path.name,
-        "sha256": _sha256(path),
+        "sha256": checksum,
         "reader": raw.reader,
         "file_unit": unit_z if unit_xy in (None, unit_z) else f"x, y {unit_xy}; z {unit_z}",
         "layout": raw.layout,
@@ -165,24 +174,57 @@ def _read_raw(path: Path, options: ScanOptions) -> RawScan:
     raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
 
 
-def _check_size(path: Path) -> None:
-    """Refuse files that are absent, empty or far too large, before anything is unpacked."""
-    if not path.is_file():
-        raise InputError(f"{path}: no such file")
-    size = path.stat().st_size
-    if size == 0:
+def heavy_libraries(extension: str) -> tuple[str, ...]:
+    """Names of the libraries that read files of an extension and take long to import.
+
+    The reader process imports them before it forks; one that is not named here is imported by
+    every fork anew.
+    """
+    if extension in _TEXT:
+        return ("pandas",)
+    if extension in _MESH:
+        return ("trimesh", "trimesh.exchange.load")
+    return () if extension in (*_ARRAY, ".x3p") else ("SurfaceTopography.IO",)
+
+
+def _identify(path: Path) -> tuple[int, ...]:
+    """What changes when a file is replaced or written to; refuses what is no file to be read.
+
+    A pipe or a device is never opened: that could wait for ever.
+    """
+    try:
+        found = path.stat()
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: no such file, or it cannot be reached ({error})") from error
+    if not stat.S_ISREG(found.st_mode):
+        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, socket or device"
+        raise InputError(f"{path}: {kind}, not a file; put the scan file itself here")
+    if found.st_size == 0:
         raise InputError(f"{path}: the file is empty")
-    if size <= LARGEST_FILE and zipfile.is_zipfile(path):
+    if found.st_size > LARGEST_FILE:
+        raise _too_large(path, found.st_size)
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+
+
+def _inflated_size(path: Path) -> int:
+    """Bytes of a file, or of all that it inflates to; refuses far too many of them."""
+    size = path.stat().st_size
+    if zipfile.is_zipfile(path):
         try:
             with zipfile.ZipFile(path) as archive:
                 size = max(size, sum(member.file_size for member in archive.infolist()))
         except zipfile.BadZipFile as error:
             raise InputError(f"{path}: a damaged archive ({error})") from error
     if size > LARGEST_FILE:
-        raise InputError(
-            f"{path}: {size / 1024**3:.1f} GiB to read, more than the {LARGEST_FILE / 1024**3:g} "
-            "GiB allowed; export a part of it or a coarser grid"
-        )
+        raise _too_large(path, size)
+    return size
+
+
+def _too_large(path: Path, size: int) -> InputError:
+    return InputError(
+        f"{path}: {size / 1024**3:.1f} GiB to read, more than the {LARGEST_FILE / 1024**3:g} "
+        "GiB allowed; export a part of it or a coarser grid"
+    )
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
@@ -265,5 +307,10 @@ def _without_missing(raw: RawScan, options: ScanOptions) -> np.ndarray:
 
 
 def _sha256(path: Path) -> str:
-    with open(path, "rb") as stream:
+    with open(path, "rb", opener=_without_waiting) as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _without_waiting(name, flags: int) -> int:
+    """Open what may have become a pipe since it was looked at."""
+    return os.open(name, flags | os.O_NONBLOCK)
