@@ -115,10 +115,10 @@ def read_matrix(path, options=None):
 def _measure(path: Path, options) -> Measured:
     """Read a file and convert it to mm, with what the sidecar says."""
     options = parse_options(options, str(path))
-    identity = _identify(path)
+    before = _regular_file(path)
     raw = read_confined(path, options)
     checksum = _sha256(path)
-    if _identify(path) != identity:
+    if not _is_unchanged(before, _regular_file(path)):
         raise InputError(
             f"{path}: the file changed while it was read; wait until the copy or export has "
             "finished, then run again"
@@ -187,8 +187,8 @@ def heavy_libraries(extension: str) -> tuple[str, ...]:
     return () if extension in (*_ARRAY, ".x3p") else ("SurfaceTopography.IO",)
 
 
-def _identify(path: Path) -> tuple[int, ...]:
-    """What changes when a file is replaced or written to; refuses what is no file to be read.
+def _regular_file(path: Path) -> os.stat_result:
+    """Size and identity of a file; refuses what is no file that can be read.
 
     A pipe or a device is never opened: that could wait for ever.
     """
@@ -199,11 +199,19 @@ def _identify(path: Path) -> tuple[int, ...]:
     if not stat.S_ISREG(found.st_mode):
         kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, socket or device"
         raise InputError(f"{path}: {kind}, not a file; put the scan file itself here")
+    if not os.access(path, os.R_OK):
+        raise InputError(f"{path}: no permission to read it; allow it, 'chmod u+r' on the file")
     if found.st_size == 0:
         raise InputError(f"{path}: the file is empty")
     if found.st_size > LARGEST_FILE:
         raise _too_large(path, found.st_size)
-    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+    return found
+
+
+def _is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
+    """Whether a file was neither written to nor replaced."""
+    same = ("st_dev", "st_ino", "st_size", "st_mtime_ns")
+    return all(getattr(before, key) == getattr(after, key) for key in same)
 
 
 def _inflated_size(path: Path) -> int:

@@ -80,9 +80,9 @@ def _how_it_ended(outcome: str, status: int, limits: dict | None) -> str:
         return "the reader ended without a result"
     number = os.WTERMSIG(status)
     if number == signal.SIGXCPU:
-        return f"reading took longer than {limits['seconds']} s of processor time"
+        return f"reading took longer than {limits['processor_seconds']} s of processor time"
     if number == signal.SIGALRM:
-        return f"reading took longer than {reader_process.PATIENCE * limits['seconds']} s"
+        return f"reading took longer than {limits['seconds']} s"
     return f"the reader crashed (signal {number})"
 
 
@@ -100,9 +100,17 @@ def _ask(request: dict, path: Path):
         try:
             return _server.read(request, path)
         except BaseException:  # even Ctrl-C: half an answer must not be taken for the next one
-            _server.stop()
-            _server = None
+            stop_reader()
             raise
+
+
+@atexit.register
+def stop_reader() -> None:
+    """End the reader process; the next file starts another one."""
+    global _server
+    if _server is not None:
+        _server.stop()
+        _server = None
 
 
 class _Server:
@@ -165,12 +173,6 @@ def _forget_server() -> None:
         _server.control.close()
         _server.process.returncode = 0  # not our child: nothing to wait for
         _server = None
-
-
-@atexit.register
-def _stop_server() -> None:
-    if _server is not None:
-        _server.stop()
 
 
 os.register_at_fork(after_in_child=_forget_server)

@@ -40,16 +40,17 @@ STATUS = struct.Struct("!iq")
 
 @dataclass(frozen=True)
 class Limits:
-    """What reading one file may take: bytes of memory, seconds of processor time."""
+    """What reading one file may take: bytes, seconds of processor time, seconds by the clock."""
 
     memory: int
+    processor_seconds: int
     seconds: int
 
 
 def limits_for(size: int) -> Limits:
     """Limits for a file of so many bytes, inflated where it is an archive."""
     seconds = BASE_SECONDS + SECONDS_PER_MEGABYTE * size // 10**6
-    return Limits(BASE_MEMORY + MEMORY_PER_BYTE * size, seconds)
+    return Limits(BASE_MEMORY + MEMORY_PER_BYTE * size, seconds, PATIENCE * seconds)
 
 
 def serve() -> None:
@@ -107,7 +108,7 @@ def _read_and_exit(request: dict, writable: int) -> None:
 
 
 def _read(request: dict, stream) -> None:
-    from . import _inflated_size, _read_raw
+    from . import _inflated_size, _read_raw, _regular_file
 
     def allow(size: int) -> None:
         limits = limits_for(size)
@@ -119,7 +120,7 @@ def _read(request: dict, stream) -> None:
     already = _address_space()
     try:
         os.chdir(request["folder"])
-        allow(os.stat(path).st_size)
+        allow(_regular_file(path).st_size)
         allow(_inflated_size(path))
         raw = _read_raw(path, options_from(dict(request["options"])))
         send_scan(raw, stream)
@@ -131,6 +132,9 @@ def _read(request: dict, stream) -> None:
         # Readers that meet any error of a library halfway call it a damaged file.
         outcome = "memory" if _is_from_memory(error) else "refused"
         stream.write(to_text({"outcome": outcome, "message": str(error)}))
+    except OSError as error:  # the disc or the network, or what a library asked of them
+        message = f"{path}: cannot be read ({error}); copy the file anew"
+        stream.write(to_text({"outcome": "refused", "message": message}))
     except Exception as error:
         name, trace = type(error).__name__, traceback.format_exc()
         message = {"outcome": "bug", "message": f"{name}: {error}", "traceback": trace}
@@ -146,13 +150,13 @@ def _is_from_memory(error: BaseException | None) -> bool:
 def _confine(limits: Limits, already: int) -> None:
     """Bound memory, time and files of this process; the system ends it where it goes beyond."""
     _lower(resource.RLIMIT_AS, already + limits.memory)
-    _lower(resource.RLIMIT_CPU, limits.seconds)
+    _lower(resource.RLIMIT_CPU, limits.processor_seconds)
     _lower(resource.RLIMIT_FSIZE, 0)
     _lower(resource.RLIMIT_CORE, 0)
     _lower(resource.RLIMIT_NOFILE, _MOST_FILES)
     for number in (signal.SIGXCPU, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)
-    signal.alarm(PATIENCE * limits.seconds)
+    signal.alarm(limits.seconds)
 
 
 def _lower(limit: int, value: int) -> None:
