@@ -1,6 +1,7 @@
 """Which files of a folder make which specimen: by their names alone, nothing is opened."""
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,6 +10,12 @@ from .errors import InputError
 SIDECAR_SUFFIXES = (".yaml", ".yml")
 _IGNORED = ("README", "LICENSE")
 _UNSAFE = re.compile(r"[^A-Za-z0-9_.-]")
+#: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
+LONGEST_NAME = 200
+#: Windows opens devices by these names, whatever the ending: no folder of results could be copied.
+_DEVICES = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\.|$)")
+#: Control characters, invisible and direction marks, undecodable bytes, line separators.
+_INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
 
 
 @dataclass(frozen=True)
@@ -37,8 +44,13 @@ class ScanFiles:
 
 
 def specimen_name(original_name: str) -> str:
-    """Make a name safe: letters, digits, ``_ . -``; neither dash nor dot in front."""
-    return _UNSAFE.sub("_", original_name).lstrip("-.")
+    """Make a name safe: letters, digits, ``_ . -``; neither dash nor dot in front.
+
+    Composed and decomposed accents, which look the same, give the same name. A name that Windows
+    keeps for a device gets ``_`` in front.
+    """
+    name = _UNSAFE.sub("_", unicodedata.normalize("NFC", original_name)).lstrip("-.")
+    return f"_{name}" if _DEVICES.match(name) else name
 
 
 def split_file_name(file_name: str) -> tuple[str, str]:
@@ -77,8 +89,9 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     Raises
     ------
     InputError
-        If two files claim one name, a face lacks its counterpart, a sidecar has no scan, a name has
-        no usable character, or a link leads out of the folder.
+        If two files claim one name, or names that differ in case alone; a face lacks its
+        counterpart, a sidecar has no scan; a name is too long, has no usable character or has
+        invisible ones; a link leads out of the folder, or a file is none (a pipe, a device).
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -87,16 +100,50 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     for path in sorted(folder.iterdir()):
         if path.name.startswith(".") or path.name.upper().startswith(_IGNORED) or path.is_dir():
             continue
+        _refuse_invisible(path)
         _refuse_outside_link(path, folder)
         original_name, role = split_file_name(path.name)
-        name = specimen_name(original_name)
-        if not name:
-            raise InputError(f"{path}: give the file a name with letters or digits in it")
+        name = _usable_name(original_name, path)
         of_specimen = roles.setdefault(name, {})
         if role in of_specimen:
             raise _two_claims(name, of_specimen[role], path)
         of_specimen[role] = path
+    _refuse_case_alone(roles)
     return {name: _scan_files(name, roles[name]) for name in sorted(roles)}
+
+
+def _refuse_invisible(path: Path) -> None:
+    """Names that look like others, or do things to a terminal, are not repeated anywhere."""
+    if any(unicodedata.category(character) in _INVISIBLE for character in path.name):
+        raise InputError(
+            f"{path.parent}: the file name {path.name!a} has invisible characters (line "
+            "breaks, control or direction marks); rename the file"
+        )
+
+
+def _usable_name(original_name: str, path: Path) -> str:
+    name = specimen_name(original_name)
+    if not name:
+        raise InputError(f"{path}: give the file a name with letters or digits in it")
+    if len(name) > LONGEST_NAME:
+        raise InputError(
+            f"{path}: a specimen name of {len(name)} characters, more than the {LONGEST_NAME} that "
+            "leave room for the names of its results; shorten the file's name"
+        )
+    return name
+
+
+def _refuse_case_alone(roles: dict[str, dict[str, Path]]) -> None:
+    """On many discs Rock.nc and rock.nc are one file: one result would overwrite the other."""
+    spelled: dict[str, str] = {}
+    for name in roles:
+        other = spelled.setdefault(name.lower(), name)
+        if other != name:
+            first, second = (next(iter(roles[n].values())) for n in (other, name))
+            raise InputError(
+                f"{first.name} and {second.name} in {first.parent} differ in upper and lower case "
+                "alone; rename one, or spell both the same if they belong together"
+            )
 
 
 def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
@@ -106,9 +153,12 @@ def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
     if only and (lower or upper):
         raise _two_claims(name, only, lower or upper)
     if not (only or lower or upper):
+        folders = [p.name for p in sidecar.parent.glob("*/") if p.stem == sidecar.stem]
+        hint = f"; {folders[0]} is a folder, which is not looked into" if folders else ""
         raise InputError(
             f"{sidecar}: this sidecar has no scan; put {sidecar.stem}.<ext> (or "
             f"{sidecar.stem}.lower.<ext> and {sidecar.stem}.upper.<ext>) beside it, or remove it"
+            f"{hint}"
         )
     if bool(lower) != bool(upper):
         there, missing = (lower, "upper") if lower else (upper, "lower")
@@ -123,10 +173,16 @@ def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
 
 def _refuse_outside_link(path: Path, folder: Path) -> None:
     """A folder handed over by a stranger must not make the program read other files."""
-    if path.is_symlink() and not path.resolve().is_relative_to(folder.resolve()):
+    try:
+        target = path.resolve(strict=True)
+    except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python
+        raise InputError(
+            f"{path}: not a readable file (a broken link?); remove or replace it"
+        ) from error
+    if path.is_symlink() and not target.is_relative_to(folder.resolve()):
         raise InputError(f"{path}: this link leads out of {folder}; copy the file itself here")
-    if not path.is_file():
-        raise InputError(f"{path}: not a readable file (a broken link?); remove or replace it")
+    if not target.is_file():
+        raise InputError(f"{path}: a pipe, socket or device, not a file; remove it")
 
 
 def _two_claims(name: str, first: Path, second: Path) -> InputError:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import yaml
 
+from fractalcontact.catalogue import find_scans
 from fractalcontact.figures import EXPERIMENTS, figures_of
 from fractalcontact.store import read_atlas
 
@@ -114,6 +115,29 @@ def test_an_unknown_key_stops_before_anything_runs(project):
     assert done.returncode != 0
     assert "unknown key 'grane'; did you mean 'grain'?" in done.stdout + done.stderr
     assert not (project / "results").exists()
+
+
+HOSTILE = [
+    *("a b", 'it\'s "x"', "--help", "$(touch pwned)", "`touch pwned`;|&<>", "{specimen}", "*?[a]"),
+    *("~a", "c\\d", "50%", "Stein (über)", "岩石", "x" * 200, "e..f", "%(x)s", "E", "null", "1e3"),
+]
+
+
+def test_files_of_any_permitted_name_are_scheduled_and_run(project):
+    study = small_study(project)
+    rough = np.random.default_rng(0).normal(size=(40, 40)).cumsum(0).cumsum(1) * 1e-3
+    for name in HOSTILE:
+        np.save(project / f"scans/{name}.npy", rough)
+        (project / f"scans/{name}.yaml").write_text("unit: mm\nspacing: 0.1\n")
+    made = [f"results/test/specimens/{name}.nc" for name in find_scans(project / "scans")]
+    assert len(made) == len(HOSTILE)
+    planned = run(project, study, "--dry-run")
+    assert planned.returncode == 0, planned.stderr
+    done = run(project, study, *made[:8], *made[-2:])
+    assert done.returncode == 0, done.stderr
+    assert not list(project.rglob("*pwned"))
+    again = run(project, study, "--dry-run", *made[:8], *made[-2:])
+    assert "Nothing to be done" in again.stdout + again.stderr
 
 
 @pytest.mark.scans

@@ -174,19 +174,6 @@ def _read_raw(path: Path, options: ScanOptions) -> RawScan:
     raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
 
 
-def heavy_libraries(extension: str) -> tuple[str, ...]:
-    """Names of the libraries that read files of an extension and take long to import.
-
-    The reader process imports them before it forks; one that is not named here is imported by
-    every fork anew.
-    """
-    if extension in _TEXT:
-        return ("pandas",)
-    if extension in _MESH:
-        return ("trimesh", "trimesh.exchange.load")
-    return () if extension in (*_ARRAY, ".x3p") else ("SurfaceTopography.IO",)
-
-
 def _regular_file(path: Path) -> os.stat_result:
     """Size and identity of a file; refuses what is no file that can be read.
 

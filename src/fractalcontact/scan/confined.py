@@ -27,7 +27,7 @@ _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
     f"from {reader_process.__name__} import serve; serve()"
 )
-_LIKELY = "the file is damaged or hostile; export it again"
+_LIKELY = "the file is damaged, hostile or far too large; export it again, or a part of it"
 
 _lock = threading.Lock()
 _server = None

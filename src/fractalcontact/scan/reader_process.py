@@ -22,16 +22,28 @@ from pathlib import Path
 from ..errors import InputError
 from .transfer import from_text, options_from, send_scan, to_text
 
-#: Beyond what the process has at the start. The result, its copies and the parser's share: text of
-#: points takes about three times its size, an image of one byte a cell eight times for the result.
+#: Beyond what the process has at the start. Heights deflate to a third, double in size as float64,
+#: and are copied two or three times on their way.
 BASE_MEMORY = 1024**3
-MEMORY_PER_BYTE = 8
+MEMORY_PER_BYTE = 24
 #: Seconds of processor time. Text takes 0.3 s per MB at worst, everything else far less.
 BASE_SECONDS = 8
 SECONDS_PER_MEGABYTE = 2
 #: A machine shared with others, or a slow disc, may take so many times longer by the clock.
 PATIENCE = 4
 _MOST_FILES = 64
+
+#: Libraries that take long to import, by the extensions they read. What is not named here is
+#: imported by every fork anew: that costs time, nothing else.
+_LIBRARIES = {
+    **dict.fromkeys((".npy", ".npz", ".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz"), ()),
+    **dict.fromkeys((".obj", ".ply", ".stl"), ("trimesh", "trimesh.exchange.load")),
+    **dict.fromkeys((".h5", ".hdf5"), ("h5py",)),
+    **dict.fromkeys((".tif", ".tiff"), ("tifffile",)),
+    ".mat": ("scipy.io", "h5py"),
+    ".x3p": ("x3pio",),
+}
+_FOR_INSTRUMENTS = ("netCDF4", "SurfaceTopography.IO")
 
 REQUEST_LENGTH = struct.Struct("!I")
 #: How the fork ended, as `os.wait4` gives it, and the most memory it had (kB, on macOS bytes).
@@ -84,9 +96,7 @@ def _receive(control: socket.socket) -> dict | None:
 
 def _import_libraries(extension: str) -> None:
     """Import what reading such a file takes, once here and not again in every fork."""
-    from . import heavy_libraries
-
-    for name in heavy_libraries(extension):
+    for name in _LIBRARIES.get(extension, _FOR_INSTRUMENTS):
         with contextlib.suppress(ImportError):  # the fork meets it too, and reports it
             import_module(name)
     gc.freeze()  # what the forks share is not gone through, and so not copied
