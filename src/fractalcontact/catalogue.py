@@ -1,5 +1,6 @@
 """Which files of a folder make which specimen: by their names alone, nothing is opened."""
 
+import hashlib
 import re
 import unicodedata
 from dataclasses import dataclass
@@ -11,9 +12,12 @@ SIDECAR_SUFFIXES = (".yaml", ".yml")
 _IGNORED = ("README", "LICENSE")
 _UNSAFE = re.compile(r"[^A-Za-z0-9_.-]")
 #: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
-LONGEST_NAME = 200
+LONGEST_NAME = 220
 #: Windows opens devices by these names, whatever the ending: no folder of results could be copied.
 _DEVICES = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\.|$)")
+#: Snakemake takes such an ending for a rule that feeds on its own output; long names in other
+#: alphabets end so, as a row of ``_``.
+_REPEATS = re.compile(r"(.+?)\1{19}$")
 #: Control characters, invisible and direction marks, undecodable bytes, line separators.
 _INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
 
@@ -47,9 +51,12 @@ def specimen_name(original_name: str) -> str:
     """Make a name safe: letters, digits, ``_ . -``; neither dash nor dot in front.
 
     Composed and decomposed accents, which look the same, give the same name. A name that Windows
-    keeps for a device gets ``_`` in front.
+    keeps for a device gets ``_`` in front, one that ends in many repeats six letters behind.
     """
-    name = _UNSAFE.sub("_", unicodedata.normalize("NFC", original_name)).lstrip("-.")
+    composed = unicodedata.normalize("NFC", original_name)
+    name = _UNSAFE.sub("_", composed).lstrip("-.")
+    if _REPEATS.search(name):
+        name += f"-{hashlib.sha256(composed.encode(errors='surrogateescape')).hexdigest()[:6]}"
     return f"_{name}" if _DEVICES.match(name) else name
 
 
@@ -90,8 +97,8 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     ------
     InputError
         If two files claim one name, or names that differ in case alone; a face lacks its
-        counterpart, a sidecar has no scan; a name is too long, has no usable character or has
-        invisible ones; a link leads out of the folder, or a file is none (a pipe, a device).
+        counterpart, a sidecar has no scan; a name is too long, has no usable character, invisible
+        ones or braces; a link leads out of the folder, or a file is a pipe or a device.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -100,7 +107,7 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     for path in sorted(folder.iterdir()):
         if path.name.startswith(".") or path.name.upper().startswith(_IGNORED) or path.is_dir():
             continue
-        _refuse_invisible(path)
+        _refuse_misleading(path)
         _refuse_outside_link(path, folder)
         original_name, role = split_file_name(path.name)
         name = _usable_name(original_name, path)
@@ -112,13 +119,15 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     return {name: _scan_files(name, roles[name]) for name in sorted(roles)}
 
 
-def _refuse_invisible(path: Path) -> None:
+def _refuse_misleading(path: Path) -> None:
     """Names that look like others, or do things to a terminal, are not repeated anywhere."""
     if any(unicodedata.category(character) in _INVISIBLE for character in path.name):
         raise InputError(
             f"{path.parent}: the file name {path.name!a} has invisible characters (line "
             "breaks, control or direction marks); rename the file"
         )
+    if set("{}") & set(path.name):
+        raise InputError(f"{path}: a study fills in what stands in braces; rename the file")
 
 
 def _usable_name(original_name: str, path: Path) -> str:
