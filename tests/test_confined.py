@@ -99,7 +99,7 @@ def test_one_process_serves_all_files(rock):
     ("way", "message"),
     [
         ("hang", r"took longer than 1 s of processor time"),
-        ("sleep", r"took longer than 3 s;"),
+        ("sleep", r"took longer than 8 s;"),
         ("eat", r"ran out of memory \(0\.1 GiB allowed\)"),
         ("eat within a library", r"ran out of memory"),
         ("crash", r"crashed \(signal 11\)"),

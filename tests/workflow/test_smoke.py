@@ -141,14 +141,18 @@ def test_files_of_any_permitted_name_are_scheduled_and_run(project):
     for name in HOSTILE:
         np.save(project / f"scans/{name}.npy", rough)
         (project / f"scans/{name}.yaml").write_text("unit: mm\nspacing: 0.1\n")
-    made = [f"results/test/specimens/{name}.nc" for name in find_scans(project / "scans")]
-    assert len(made) == len(HOSTILE)
+    scans = find_scans(project / "scans")
+    assert len(scans) == len(HOSTILE)
     planned = run(project, study, "--dry-run")
     assert planned.returncode == 0, planned.stdout[-3000:] + planned.stderr
-    done = run(project, study, *made[:8], *made[-2:])
+    worst = [
+        name for name, scan in scans.items() if scan.original_name in HOSTILE[1:4] + HOSTILE[11:13]
+    ]
+    made = [f"results/test/specimens/{name}.nc" for name in worst]
+    done = run(project, study, *made)
     assert done.returncode == 0, done.stderr
     assert not list(project.rglob("*pwned"))
-    again = run(project, study, "--dry-run", *made[:8], *made[-2:])
+    again = run(project, study, "--dry-run", *made)
     assert "Nothing to be done" in again.stdout + again.stderr
 
 

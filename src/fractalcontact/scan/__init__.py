@@ -1,9 +1,5 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
-import hashlib
-import os
-import stat
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +11,7 @@ from ..units import length_factor
 from .arrays import read_npy, read_npz
 from .confined import read_confined
 from .faces import Measured, grid_one, grid_pair
+from .files import is_unchanged, regular_file, sha256
 from .instruments import instrument_formats, read_instrument
 from .mesh import read_mesh
 from .options import MATRIX_KEYS, POINT_KEYS, ScanOptions, length_mm, parse_options, spacing_mm
@@ -24,7 +21,6 @@ from .x3p import read_x3p
 
 __all__ = ["read_faces", "read_matrix", "read_scan"]
 
-LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to
 _TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
 _MESH = (".obj", ".ply", ".stl")
 _ARRAY = (".npy", ".npz")
@@ -115,10 +111,10 @@ def read_matrix(path, options=None):
 def _measure(path: Path, options) -> Measured:
     """Read a file and convert it to mm, with what the sidecar says."""
     options = parse_options(options, str(path))
-    before = _regular_file(path)
+    before = regular_file(path)
     raw = read_confined(path, options)
-    checksum = _sha256(path)
-    if not _is_unchanged(before, _regular_file(path)):
+    checksum = sha256(path)
+    if not is_unchanged(before, regular_file(path)):
         raise InputError(
             f"{path}: the file changed while it was read; wait until the copy or export has "
             "finished, then run again"
@@ -172,54 +168,6 @@ def _read_raw(path: Path, options: ScanOptions) -> RawScan:
         raise InputError(f"{path}: not a text file; damaged, or the wrong extension?")
     known = sorted({*_TEXT, *_MESH, *_ARRAY, ".x3p", *(f".{e}" for e in instrument_formats())})
     raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
-
-
-def _regular_file(path: Path) -> os.stat_result:
-    """Size and identity of a file; refuses what is no file that can be read.
-
-    A pipe or a device is never opened: that could wait for ever.
-    """
-    try:
-        found = path.stat()
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: no such file, or it cannot be reached ({error})") from error
-    if not stat.S_ISREG(found.st_mode):
-        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, socket or device"
-        raise InputError(f"{path}: {kind}, not a file; put the scan file itself here")
-    if not os.access(path, os.R_OK):
-        raise InputError(f"{path}: no permission to read it; allow it, 'chmod u+r' on the file")
-    if found.st_size == 0:
-        raise InputError(f"{path}: the file is empty")
-    if found.st_size > LARGEST_FILE:
-        raise _too_large(path, found.st_size)
-    return found
-
-
-def _is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
-    """Whether a file was neither written to nor replaced."""
-    same = ("st_dev", "st_ino", "st_size", "st_mtime_ns")
-    return all(getattr(before, key) == getattr(after, key) for key in same)
-
-
-def _inflated_size(path: Path) -> int:
-    """Bytes of a file, or of all that it inflates to; refuses far too many of them."""
-    size = path.stat().st_size
-    if zipfile.is_zipfile(path):
-        try:
-            with zipfile.ZipFile(path) as archive:
-                size = max(size, sum(member.file_size for member in archive.infolist()))
-        except zipfile.BadZipFile as error:
-            raise InputError(f"{path}: a damaged archive ({error})") from error
-    if size > LARGEST_FILE:
-        raise _too_large(path, size)
-    return size
-
-
-def _too_large(path: Path, size: int) -> InputError:
-    return InputError(
-        f"{path}: {size / 1024**3:.1f} GiB to read, more than the {LARGEST_FILE / 1024**3:g} "
-        "GiB allowed; export a part of it or a coarser grid"
-    )
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
@@ -299,13 +247,3 @@ def _without_missing(raw: RawScan, options: ScanOptions) -> np.ndarray:
         # Markers such as 3.4e38 come back from text and float32 not quite the same.
         absent |= np.isclose(raw.values, missing, rtol=1e-6, atol=0)
     return np.where(absent, np.nan, raw.values)
-
-
-def _sha256(path: Path) -> str:
-    with open(path, "rb", opener=_without_waiting) as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
-def _without_waiting(name, flags: int) -> int:
-    """Open what may have become a pipe since it was looked at."""
-    return os.open(name, flags | os.O_NONBLOCK)

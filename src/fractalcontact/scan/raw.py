@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import InputError
 
+LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to or a header promises
 #: A matrix or grid needs at least this many cells along each side to hold any roughness.
 SMALLEST_SIDE = 8
 
@@ -42,6 +43,15 @@ class RawScan:
     first_row: str = "bottom"
     missing: float | None = None
     notes: tuple[str, ...] = ()
+
+
+def refuse_larger(n_bytes: int, path) -> None:
+    """Refuse what would need more than `LARGEST_FILE`, before anything is allocated."""
+    if n_bytes > LARGEST_FILE:
+        raise InputError(
+            f"{path}: {n_bytes / 1024**3:.1f} GiB to read, more than the "
+            f"{LARGEST_FILE / 1024**3:g} GiB allowed; export a part of it or a coarser grid"
+        )
 
 
 def table_to_raw(table, names, options, where, **stated) -> RawScan:

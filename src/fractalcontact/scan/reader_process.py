@@ -20,6 +20,7 @@ from importlib import import_module
 from pathlib import Path
 
 from ..errors import InputError
+from .files import inflated_size, regular_file
 from .transfer import from_text, options_from, send_scan, to_text
 
 #: Beyond what the process has at the start. Heights deflate to a third, double in size as float64,
@@ -118,7 +119,7 @@ def _read_and_exit(request: dict, writable: int) -> None:
 
 
 def _read(request: dict, stream) -> None:
-    from . import _inflated_size, _read_raw, _regular_file
+    from . import _read_raw
 
     def allow(size: int) -> None:
         limits = limits_for(size)
@@ -130,8 +131,8 @@ def _read(request: dict, stream) -> None:
     already = _address_space()
     try:
         os.chdir(request["folder"])
-        allow(_regular_file(path).st_size)
-        allow(_inflated_size(path))
+        allow(regular_file(path).st_size)
+        allow(inflated_size(path))
         raw = _read_raw(path, options_from(dict(request["options"])))
         send_scan(raw, stream)
     except BrokenPipeError:
