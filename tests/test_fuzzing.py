@@ -33,7 +33,7 @@ def test_the_judge_sees_what_must_not_happen(monkeypatch):
                 np.ones(fuzzing.MOST_MEMORY // 8)
 
     with fuzzing.own_folder() as folder:
-        for seed in fuzzing.make_seeds(folder / "temporary"):
+        for seed in fuzzing.make_seeds(folder / "temporary", real=False):
             if seed.ending in fuzzing.WRITERS:
                 assert fuzzing.judge(seed, seed.content, folder).was_read
         monkeypatch.setattr(fuzzing, "_read", misbehave)
@@ -50,6 +50,6 @@ def test_the_judge_sees_what_must_not_happen(monkeypatch):
 
 
 def test_spoilt_files_are_read_or_refused():
-    verdicts = fuzzing.run(range(300), seed=1)
+    verdicts = fuzzing.run(range(300), seed=1, real=False)
     assert [verdict for verdict in verdicts if verdict.fault] == []
     assert 30 < sum(verdict.was_read for verdict in verdicts) < 270
