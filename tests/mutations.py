@@ -142,6 +142,8 @@ def _spoil_archive(content, rng):
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = [(member.filename, archive.read(member)) for member in archive.infolist()]
     except Exception:  # an archive that is spoilt already
+        members = []
+    if not members:
         return flip_bits(content, rng)
     chosen = rng.integers(len(members))
     name, data = members[chosen]

@@ -21,6 +21,7 @@ from pathlib import Path
 
 from ..errors import InputError
 from .files import inflated_size, regular_file
+from .raw import RawScan
 from .transfer import from_text, options_from, send_scan, to_text
 
 #: Beyond what the process has at the start. Heights deflate to a third, double in size as float64,
@@ -134,6 +135,7 @@ def _read(request: dict, stream) -> None:
         allow(regular_file(path).st_size)
         allow(inflated_size(path))
         raw = _read_raw(path, options_from(dict(request["options"])))
+        _require_table(raw, path)
         send_scan(raw, stream)
     except BrokenPipeError:
         raise
@@ -150,6 +152,16 @@ def _read(request: dict, stream) -> None:
         name, trace = type(error).__name__, traceback.format_exc()
         message = {"outcome": "bug", "message": f"{name}: {error}", "traceback": trace}
         stream.write(to_text(message))
+
+
+def _require_table(raw: RawScan, path: Path) -> None:
+    """A damaged header can make a library return any shape."""
+    shape = raw.values.shape
+    if len(shape) != 2 or 0 in shape or (raw.layout != "matrix" and shape[1] != 3):
+        raise InputError(
+            f"{path}: expected rows and columns of heights or points x, y, z, found an array of "
+            f"shape {shape}; damaged? Export it again"
+        )
 
 
 def _is_from_memory(error: BaseException | None) -> bool:
