@@ -52,7 +52,12 @@ def open_many():
     return held
 
 
+def quote():
+    raise InputError("rock: " + "\x1b[31m" + "x" * 10**6 + " export it again")
+
+
 WAYS = {
+    "quote": quote,
     "hang": hang,
     "sleep": lambda: time.sleep(60),
     "eat": eat,
@@ -70,6 +75,8 @@ def read(path, options):
     if path.suffix == ".npz":
         return read_npz(path, options)
     way = path.read_text()
+    if way == "stack":
+        return RawScan(np.zeros((2, 8, 10)), "matrix", "the test's own")
     if way in WAYS:
         WAYS[way]()
     return RawScan(np.arange(80.0).reshape(8, 10), "matrix", "the test's own", notes=(way,))

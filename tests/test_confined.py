@@ -126,6 +126,18 @@ def test_a_reader_can_write_no_file_and_open_few(hostile, tmp_path, monkeypatch)
         read_confined(hostile("open"), OPTIONS)
 
 
+def test_an_error_is_short_and_harmless_on_a_terminal(hostile):
+    with pytest.raises(InputError, match=r"export it again$") as error:
+        read_confined(hostile("quote"), OPTIONS)
+    assert len(str(error.value)) < 1000
+    assert "\\x1b[31m" in str(error.value)
+
+
+def test_a_result_of_any_other_shape_is_refused(hostile):
+    with pytest.raises(InputError, match=r"rock\.npy: .* an array of shape \(2, 8, 10\)"):
+        read_confined(hostile("stack"), OPTIONS)
+
+
 def test_a_fault_of_the_program_is_not_blamed_on_the_file(hostile):
     with pytest.raises(ReaderBug, match=r"rock\.npy: KeyError: 'no such key'") as bug:
         read_confined(hostile("bug"), OPTIONS)

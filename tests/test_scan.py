@@ -404,6 +404,20 @@ def test_empty_and_damaged_files_are_named(tmp_path, extension, content):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
 
 
+def test_numbers_no_instrument_measures_are_refused_with_the_key_that_may_be_missing(tmp_path):
+    z = surface()
+    z[5, 5] = 1.70141e38  # a mark of missing cells, and no other program's secret
+    path = save_npy(tmp_path / "rock.npy", z)
+    with pytest.raises(InputError, match=r"rock\.npy: it holds 1\.70141e\+38 mm.*'missing: "):
+        read_scan(path, {"unit": "mm", "spacing": 0.1})
+    heights = read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": 1.70141e38})
+    assert np.isnan(heights.values[5, 5])
+    points = plane_cloud()
+    points[7, 0] = -1e300
+    with pytest.raises(InputError, match=r"it holds -1e\+300 mm"):
+        read_scan(save_npy(path, points), {"unit": "mm"})
+
+
 def test_a_truncated_npy_is_named(tmp_path):
     path = save_npy(tmp_path / "rock.npy", surface())
     path.write_bytes(path.read_bytes()[:-100])

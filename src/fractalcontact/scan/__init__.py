@@ -21,6 +21,7 @@ from .x3p import read_x3p
 
 __all__ = ["read_faces", "read_matrix", "read_scan"]
 
+LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 _TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
 _MESH = (".obj", ".ply", ".stl")
 _ARRAY = (".npy", ".npz")
@@ -135,6 +136,7 @@ def _measure(path: Path, options) -> Measured:
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
+    _refuse_enormous(values, path)
     grid = options.grid
     if grid is not None:
         grid = length_mm(grid, unit_xy, f"{path}: key 'grid'")
@@ -168,6 +170,18 @@ def _read_raw(path: Path, options: ScanOptions) -> RawScan:
         raise InputError(f"{path}: not a text file; damaged, or the wrong extension?")
     known = sorted({*_TEXT, *_MESH, *_ARRAY, ".x3p", *(f".{e}" for e in instrument_formats())})
     raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
+
+
+def _refuse_enormous(values: np.ndarray, path: Path) -> None:
+    """Numbers such as 1e300 are damage or an undeclared mark, and make arithmetic overflow."""
+    finite = values[np.isfinite(values)]
+    largest = max(finite.min(), finite.max(), key=abs) if finite.size else 0.0
+    if abs(largest) > LARGEST_NUMBER:
+        raise InputError(
+            f"{path}: it holds {largest:g} mm, which no instrument measures; if that marks missing "
+            "cells, say so in the sidecar ('missing: -9999', in the file's own unit), else export "
+            "the file again"
+        )
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:

@@ -34,6 +34,7 @@ SECONDS_PER_MEGABYTE = 2
 #: A machine shared with others, or a slow disc, may take so many times longer by the clock.
 PATIENCE = 4
 _MOST_FILES = 64
+_LONGEST_MESSAGE = 800  # characters
 
 #: Libraries that take long to import, by the extensions they read. What is not named here is
 #: imported by every fork anew: that costs time, nothing else.
@@ -144,14 +145,22 @@ def _read(request: dict, stream) -> None:
     except InputError as error:
         # Readers that meet any error of a library halfway call it a damaged file.
         outcome = "memory" if _is_from_memory(error) else "refused"
-        stream.write(to_text({"outcome": outcome, "message": str(error)}))
+        stream.write(to_text({"outcome": outcome, "message": _readable(str(error))}))
     except OSError as error:  # the disc or the network, or what a library asked of them
         message = f"{path}: cannot be read ({error}); copy the file anew"
-        stream.write(to_text({"outcome": "refused", "message": message}))
+        stream.write(to_text({"outcome": "refused", "message": _readable(message)}))
     except Exception as error:
         name, trace = type(error).__name__, traceback.format_exc()
         message = {"outcome": "bug", "message": f"{name}: {error}", "traceback": trace}
         stream.write(to_text(message))
+
+
+def _readable(message: str) -> str:
+    """A message without the pages, or the terminal's commands, that a library quotes of a file."""
+    if len(message) > _LONGEST_MESSAGE:
+        half = _LONGEST_MESSAGE // 2
+        message = f"{message[:half]} ... {message[-half:]}"
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in message)
 
 
 def _require_table(raw: RawScan, path: Path) -> None:
