@@ -61,9 +61,18 @@ def inflated_size(path: Path) -> int:
 
 
 def sha256(path: Path) -> str:
-    """Checksum of a file's content, in hexadecimal digits."""
-    with open(path, "rb", opener=_without_waiting) as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    """Checksum of a file's content, in hexadecimal digits.
+
+    Raises
+    ------
+    InputError
+        If the file has gone since it was looked at.
+    """
+    try:
+        with open(path, "rb", opener=_without_waiting) as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(f"{path}: no such file any more, it changed ({error})") from error
 
 
 def _without_waiting(name, flags: int) -> int:
