@@ -142,8 +142,10 @@ class _Server:
         with open(descriptors[0], "rb") as stream:
             lines, raw = _read_answer(stream)
         size = reader_process.STATUS.size
-        status, peak = reader_process.STATUS.unpack(self.control.recv(size, socket.MSG_WAITALL))
-        logging.getLogger(__name__).debug("%s: status %d, peak memory %d", path, status, peak)
+        answer = self.control.recv(size, socket.MSG_WAITALL)
+        status, peak, seconds = reader_process.STATUS.unpack(answer)
+        used = "%s: status %d, peak memory %d, %.2f s"
+        logging.getLogger(__name__).debug(used, path, status, peak, seconds)
         return lines, raw, status
 
     def stop(self) -> None:

@@ -49,8 +49,9 @@ _LIBRARIES = {
 _FOR_INSTRUMENTS = ("netCDF4", "SurfaceTopography.IO")
 
 REQUEST_LENGTH = struct.Struct("!I")
-#: How the fork ended, as `os.wait4` gives it, and the most memory it had (kB, on macOS bytes).
-STATUS = struct.Struct("!iq")
+#: How the fork ended, as `os.wait4` gives it; the most memory it had (kB, on macOS bytes); its
+#: seconds of processor time.
+STATUS = struct.Struct("!iqd")
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,8 @@ def serve() -> None:
         socket.send_fds(control, [b"."], [readable])
         os.close(readable)
         _, status, usage = os.wait4(pid, 0)
-        control.sendall(STATUS.pack(status, usage.ru_maxrss))
+        seconds = usage.ru_utime + usage.ru_stime
+        control.sendall(STATUS.pack(status, usage.ru_maxrss, seconds))
 
 
 def _receive(control: socket.socket) -> dict | None:
