@@ -21,14 +21,15 @@ from pathlib import Path
 
 from ..errors import InputError
 from .files import inflated_size, regular_file
+from .options import ScanOptions
 from .raw import RawScan
-from .transfer import from_text, options_from, send_scan, to_text
+from .transfer import from_text, send_scan, to_text
 
 #: Beyond what the process has at the start. Heights deflate to a third, double in size as float64,
 #: and are copied two or three times on their way.
 BASE_MEMORY = 1024**3
 MEMORY_PER_BYTE = 24
-#: Seconds of processor time. Text takes 0.3 s per MB at worst, everything else far less.
+#: Seconds of processor time, many times what the slowest sound file takes.
 BASE_SECONDS = 8
 SECONDS_PER_MEGABYTE = 2
 #: A machine shared with others, or a slow disc, may take so many times longer by the clock.
@@ -137,7 +138,7 @@ def _read(request: dict, stream) -> None:
         os.chdir(request["folder"])
         allow(regular_file(path).st_size)
         allow(inflated_size(path))
-        raw = _read_raw(path, options_from(dict(request["options"])))
+        raw = _read_raw(path, ScanOptions(**request["options"]))
         _require_table(raw, path)
         send_scan(raw, stream)
     except BrokenPipeError:

@@ -8,7 +8,6 @@ from dataclasses import fields
 
 import numpy as np
 
-from .options import ScanOptions
 from .raw import RawScan
 
 _DTYPES = "fiub"  # kinds of arrays: floats, integers, truth values
@@ -21,12 +20,7 @@ def to_text(message: dict) -> bytes:
 
 def from_text(line: bytes) -> dict:
     """What `to_text` made, lists as tuples: no dataclass here holds a list."""
-    return {key: _as_tuple(value) for key, value in json.loads(line).items()}
-
-
-def options_from(message: dict) -> ScanOptions:
-    """Scan options sent as a mapping."""
-    return ScanOptions(**message)
+    return _with_tuples(json.loads(line))
 
 
 def send_scan(raw: RawScan, stream) -> None:
@@ -54,7 +48,7 @@ def receive_scan(message: dict, stream, most_bytes: int) -> RawScan | None:
     content = {key: value for key, value in message.items() if key not in ("outcome", "arrays")}
     for name, head in message["arrays"].items():
         dtype = np.dtype(head["dtype"])
-        shape = tuple(head["shape"])
+        shape = head["shape"]
         if dtype.kind not in _DTYPES or np.prod(shape, dtype=float) * dtype.itemsize > most_bytes:
             return None
         content[name] = np.empty(shape, dtype)
@@ -66,7 +60,7 @@ def receive_scan(message: dict, stream, most_bytes: int) -> RawScan | None:
     return RawScan(**content)
 
 
-def _as_tuple(value):
-    if isinstance(value, list):
-        return tuple(_as_tuple(item) for item in value)
-    return value
+def _with_tuples(value):
+    if isinstance(value, dict):
+        return {key: _with_tuples(item) for key, item in value.items()}
+    return tuple(_with_tuples(item) for item in value) if isinstance(value, list) else value
