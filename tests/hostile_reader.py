@@ -15,7 +15,7 @@ from fractalcontact.scan.arrays import read_npz
 from fractalcontact.scan.raw import RawScan
 
 reader_process.BASE_SECONDS = 1
-reader_process.PATIENCE = 8
+reader_process.PATIENCE = 60  # the machine may be busy
 reader_process.BASE_MEMORY = 10**8
 
 

@@ -23,7 +23,7 @@ OPTIONS = ScanOptions()
 @pytest.fixture
 def hostile(monkeypatch, tmp_path):
     """Write a file that makes its reader go wrong in a given way."""
-    start = confined._START.replace("serve()", "import hostile_reader; serve()")
+    start = confined._START.replace("serve()", "import fractalcontact, hostile_reader; serve()")
     monkeypatch.setattr(confined, "_START", start)
     confined.stop_reader()
 
@@ -103,7 +103,6 @@ def test_one_process_serves_all_files(rock):
     ("way", "message"),
     [
         ("hang", r"took longer than 1 s of processor time"),
-        ("sleep", r"took longer than 8 s;"),
         ("eat", r"ran out of memory \(0\.1 GiB allowed\)"),
         ("eat within a library", r"ran out of memory"),
         ("crash", r"crashed \(signal 11\)"),
@@ -119,6 +118,13 @@ def test_a_reader_that_goes_wrong_is_one_error(hostile, way, message):
         read_confined(path, OPTIONS)
     assert "export it again" in str(error.value)
     assert read_confined(hostile("fine"), OPTIONS).notes == ("fine",)
+
+
+def test_a_reader_that_waits_for_ever_is_ended(hostile, monkeypatch):
+    impatient = "fractalcontact.scan.reader_process.PATIENCE = 2; serve()"
+    monkeypatch.setattr(confined, "_START", confined._START.replace("serve()", impatient))
+    with pytest.raises(InputError, match=r"rock\.npy: reading took longer than 2 s;"):
+        read_confined(hostile("sleep"), OPTIONS)
 
 
 def test_a_reader_can_write_no_file_and_open_few(hostile, tmp_path, monkeypatch):
