@@ -166,12 +166,22 @@ def _write_tiff(path, heights, dx, dy):
     return _matrix_sidecar(dx, dy, first_row="top")
 
 
-def _write_instrument_netcdf(path, heights, dx, dy):
+def _topography(heights, dx, dy):
     from SurfaceTopography import Topography
 
     ny, nx = heights.shape
     masked = np.ma.masked_invalid(heights.T)  # SurfaceTopography's arrays are [x, y]
-    Topography(masked, (nx * dx, ny * dy), unit="mm").to_netcdf(path)
+    return Topography(masked, (nx * dx, ny * dy), unit="mm")
+
+
+def _write_instrument_netcdf(path, heights, dx, dy):
+    _topography(heights, dx, dy).to_netcdf(path)
+    return {}
+
+
+def _write_gwyddion(path, heights, dx, dy):
+    """Gwyddion's own file: from the top, the holes under its mask."""
+    _topography(heights[::-1], dx, dy).to_gwy(str(path))
     return {}
 
 
@@ -182,6 +192,7 @@ WRITERS = {
     ".csv": _write_csv,
     ".xyz": _write_xyz,
     ".gwyddion.txt": _write_gwyddion_text,
+    ".gwy": _write_gwyddion,
     ".x3p": _write_x3p,
     ".xml.x3p": _write_xml_x3p,
     ".cloud.x3p": _write_cloud_x3p,

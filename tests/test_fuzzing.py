@@ -30,7 +30,7 @@ def test_the_judge_sees_what_must_not_happen(monkeypatch):
             case ".writes":
                 (path.parent / "other").write_text("more")
             case ".eats":
-                np.ones(fuzzing.MOST_MEMORY // 8)
+                np.ones(fuzzing.MOST_MEMORY // 4)
 
     with fuzzing.own_folder() as folder:
         for seed in fuzzing.make_seeds(folder / "temporary", real=False):
