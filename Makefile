@@ -3,6 +3,7 @@
 # make test   what the tests need, then the tests
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make scenes SCENES=5000   so many random contact problems, each state verified
+# make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
 # make lint   ruff and snakefmt, changing nothing
 # make lock   new pins for every package (needs uv)
 
@@ -26,7 +27,7 @@ GUARD :=
 UNLOCK :=
 endif
 
-.PHONY: all study smoke check-scans test bench scenes lint format lock clean
+.PHONY: all study smoke check-scans test bench scenes fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -50,6 +51,11 @@ bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 SCENES ?= 3000
 scenes: $(VENV)/tests-installed
 	SCENES=$(SCENES) $(BIN)/python -m pytest -q tests/test_scenes.py -k every_state
+
+# What failed is kept in results/fuzzing; FUZZ='--only 1234' judges one file again.
+FILES ?= 5000
+fuzz: $(VENV)/tests-installed
+	$(BIN)/python tests/fuzzing.py --files $(FILES) $(FUZZ)
 
 lint: $(VENV)/tests-installed
 	$(BIN)/ruff check .

@@ -1,6 +1,8 @@
 """Files become specimens by their names alone."""
 
+import os
 import re
+import unicodedata
 
 import pytest
 
@@ -61,6 +63,9 @@ def test_a_made_safe_name_keeps_its_original(tmp_path):
         (["rock.upper.xyz"], r"lower face is missing; add rock\.lower\.xyz"),
         (["rock.yaml"], "this sidecar has no scan"),
         (["--.npy"], "letters or digits"),
+        (["{specimen}.npy"], "braces"),
+        (["Rock.npy", "rock.x3p"], "differ in upper and lower case alone"),
+        (["Rock.yaml", "rock.x3p"], "spell both the same if they belong together"),
     ],
 )
 def test_names_that_do_not_go_together_are_refused(tmp_path, names, message):
@@ -84,4 +89,93 @@ def test_links_stay_inside_the_folder(tmp_path):
 def test_a_broken_link_is_named(tmp_path):
     (tmp_path / "rock.npy").symlink_to(tmp_path / "gone.npy")
     with pytest.raises(InputError, match=r"rock\.npy: not a readable file"):
+        find_scans(tmp_path)
+
+
+def test_links_in_a_circle_are_named(tmp_path):
+    (tmp_path / "a.npy").symlink_to(tmp_path / "b.npy")
+    (tmp_path / "b.npy").symlink_to(tmp_path / "a.npy")
+    with pytest.raises(InputError, match=r"a\.npy: not a readable file"):
+        find_scans(tmp_path)
+
+
+def test_the_folder_itself_may_be_a_link(tmp_path):
+    (tmp_path / "data").mkdir()
+    touch(tmp_path / "data", "rock.npy")
+    (tmp_path / "data" / "twin.npy").symlink_to("rock.npy")
+    (tmp_path / "scans").symlink_to("data")
+    assert list(find_scans(tmp_path / "scans")) == ["rock", "twin"]
+
+
+def test_a_pipe_is_refused_unopened_and_a_folder_passed_over(tmp_path):
+    (tmp_path / "granite.x3p").mkdir()
+    assert find_scans(tmp_path) == {}
+    touch(tmp_path, "granite.yaml")
+    with pytest.raises(InputError, match=r"granite\.yaml: .*granite\.x3p is a folder"):
+        find_scans(tmp_path)
+    (tmp_path / "granite.yaml").unlink()
+    os.mkfifo(tmp_path / "rock.x3p")
+    with pytest.raises(InputError, match=r"rock\.x3p: a pipe"):
+        find_scans(tmp_path)
+
+
+HOSTILE = [
+    *("a b", 'it\'s "x"', "--help", "$(touch x)", "`ls`;|&<>", "*?[a]", "~a", "c\\d"),
+    *("50%", "Stein (über)", "岩石", "x" * 200, "a..b", "%(x)s", "- - -e", "E", "null", "1e3"),
+]
+
+
+def test_hostile_names_become_safe_and_keep_their_files(tmp_path):
+    touch(tmp_path, *(f"{name}.npy" for name in HOSTILE))
+    scans = find_scans(tmp_path)
+    assert len(scans) == len(HOSTILE)
+    for name, scan in scans.items():
+        assert re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,219}", name)
+        assert scan.lower.name == f"{scan.original_name}.npy"
+
+
+def test_accents_written_in_two_ways_are_one_name(tmp_path):
+    composed, decomposed = (unicodedata.normalize(form, "Öl") for form in ("NFC", "NFD"))
+    assert composed != decomposed
+    touch(tmp_path, f"{composed}.npy", f"{decomposed}.yaml")
+    assert find_scans(tmp_path)["_l"].sidecar.name == f"{decomposed}.yaml"
+    touch(tmp_path, f"{decomposed}.npy")
+    with pytest.raises(InputError, match="both claim the specimen name '_l'"):
+        find_scans(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["con", "NUL", "aux.old", "com1", "Lpt9.x"])
+def test_names_of_windows_devices_are_set_apart(name):
+    assert specimen_name(name) == f"_{name}"
+    assert specimen_name(f"{name}crete"[:3] + "crete") == f"{name}crete"[:3] + "crete"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["two\nlines", "\x1b[31mred", "right\u202eleft", "zero\u200bwidth", "bell\a", b"\xff\xfe"],
+)
+def test_invisible_characters_are_refused_and_not_repeated(tmp_path, name):
+    if isinstance(name, bytes):
+        try:
+            (tmp_path / os.fsdecode(name + b".npy")).write_text("")
+        except OSError:
+            pytest.skip("this disc takes no such name")
+    else:
+        touch(tmp_path, f"{name}.npy")
+    with pytest.raises(InputError, match="invisible characters") as error:
+        find_scans(tmp_path)
+    assert str(error.value).isprintable()
+
+
+@pytest.mark.parametrize("original", ["x" * 200, "поверхность-" + "я" * 20, "ab" * 20])
+def test_endings_that_repeat_are_broken_off(original):
+    name = specimen_name(original)
+    assert not re.search(r"(.+?)\1{19}$", name)
+    assert name != specimen_name(f"{original}é" if original.isascii() else original.upper())
+    assert specimen_name("x" * 19) == "x" * 19
+
+
+def test_a_name_too_long_for_its_results_is_refused(tmp_path):
+    touch(tmp_path, "xy" * 120 + ".npy")
+    with pytest.raises(InputError, match="247 characters, more than the 220"):
         find_scans(tmp_path)

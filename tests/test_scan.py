@@ -1,6 +1,9 @@
 """Scan files as heights in mm: exact round trips, bad input, real scans."""
 
 import io
+import os
+import re
+import socket
 import zipfile
 from pathlib import Path
 
@@ -10,6 +13,7 @@ from scipy.interpolate import griddata
 
 from fractalcontact.errors import InputError
 from fractalcontact.scan import read_faces, read_scan
+from fractalcontact.scan.confined import read_confined
 
 SCANS = Path(__file__).parents[2] / "shared" / "scans"
 scans = pytest.mark.scans
@@ -409,6 +413,58 @@ def test_empty_and_damaged_files_are_named(tmp_path, extension, content):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
 
 
+def test_numbers_no_instrument_measures_are_refused_with_the_key_that_may_be_missing(tmp_path):
+    z = surface()
+    z[5, 5] = 1.70141e38  # a mark of missing cells, and no other program's secret
+    path = save_npy(tmp_path / "rock.npy", z)
+    with pytest.raises(InputError, match=r"rock\.npy: it holds 1\.70141e\+38 mm.*'missing: "):
+        read_scan(path, {"unit": "mm", "spacing": 0.1})
+    heights = read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": 1.70141e38})
+    assert np.isnan(heights.values[5, 5])
+    points = plane_cloud()
+    points[7, 0] = -1e300
+    with pytest.raises(InputError, match=r"it holds -1e\+300 mm"):
+        read_scan(save_npy(path, points), {"unit": "mm"})
+
+
+@pytest.mark.parametrize("change", ["append", "replace", "touch", "remove"])
+def test_a_file_that_changes_while_it_is_read_is_refused(tmp_path, monkeypatch, change):
+    path = save_npy(tmp_path / "rock.npy", surface())
+
+    def read_while_it_changes(path, options):
+        raw = read_confined(path, options)
+        if change == "append":
+            with open(path, "ab") as stream:
+                stream.write(b"more")
+        elif change == "replace":
+            save_npy(tmp_path / "other.npy", surface(seed=2)).replace(path)
+        elif change == "touch":
+            os.utime(path, (1, 1))
+        else:
+            path.unlink()
+        return raw
+
+    monkeypatch.setattr("fractalcontact.scan.read_confined", read_while_it_changes)
+    message = "no such file" if change == "remove" else "changed while it was read; wait"
+    with pytest.raises(InputError, match=rf"rock\.npy: .*{message}"):
+        read_scan(path, {"unit": "mm", "spacing": 0.1})
+
+
+def test_what_only_has_the_name_of_a_scan_is_refused_unopened(tmp_path):
+    (tmp_path / "folder.x3p").mkdir()
+    os.mkfifo(tmp_path / "pipe.x3p")
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind(str(tmp_path / "s.x3p"))
+    for name, what in {"folder": "a folder", "pipe": "a pipe", "s": "a pipe, socket"}.items():
+        with pytest.raises(InputError, match=rf"{name}\.x3p: {what}"):
+            read_scan(tmp_path / f"{name}.x3p")
+    with pytest.raises(InputError, match="device"):
+        read_scan("/dev/zero")
+    for name in ("gone.x3p", "x" * 300 + ".x3p", "nul\0.x3p"):
+        with pytest.raises(InputError, match="no such file"):
+            read_scan(tmp_path / name)
+
+
 def test_a_truncated_npy_is_named(tmp_path):
     path = save_npy(tmp_path / "rock.npy", surface())
     path.write_bytes(path.read_bytes()[:-100])
@@ -433,12 +489,14 @@ def test_an_unknown_extension_lists_the_known(tmp_path):
         read_scan(tmp_path / "rock.docx")
 
 
-def test_an_archive_that_would_inflate_without_end_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("fractalcontact.scan.raw.LARGEST_FILE", 100_000)
+def test_an_archive_that_would_inflate_without_end_is_refused(tmp_path):
     path = tmp_path / "rock.npz"
-    np.savez_compressed(path, z=np.zeros((200, 200)))
-    assert path.stat().st_size < 10_000
-    with pytest.raises(InputError, match=r"rock\.npz: .*allowed"):
+    np.savez_compressed(path, z=np.zeros((200, 200)), more=np.ones((200, 200)))
+    content = bytearray(path.read_bytes())
+    for entry in re.finditer(b"PK\x01\x02", content):  # sizes stand in the central directory
+        content[entry.start() + 24 : entry.start() + 28] = (4_000_000_000).to_bytes(4, "little")
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"rock\.npz: 7\.5 GiB to read, .*allowed"):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
 
 

@@ -1,6 +1,7 @@
 """Quantities as people write them."""
 
 import math
+import time
 
 import pytest
 
@@ -17,6 +18,9 @@ from fractalcontact.units import length_factor, load, quantity
         ("0.02 m", "length", 20),
         ("20 GPa", "pressure", 20e3),
         ("10 kN", "force", 10e3),
+        ("-1.5e-3mm", "length", -1.5e-3),
+        ("2 N/mm^2", "pressure", 2),
+        ("2 kgf / cm**2", "pressure", 0.196133),
     ],
 )
 def test_known_quantities(text, kind, value):
@@ -27,6 +31,17 @@ def test_known_quantities(text, kind, value):
 def test_what_is_no_length_is_refused_by_its_key(text):
     with pytest.raises(InputError, match=r"study\.yaml: window: .*'20 mm'"):
         quantity(text, "length", "study.yaml: window")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["9**9**9**9 mm", "1 mm*9**9**9", "1 mm + 1 mm", "1e999 mm", "nan mm", "1 " + "a" * 57 + "!"],
+)
+def test_a_quantity_is_one_finite_number_and_no_sum(text):
+    start = time.monotonic()
+    with pytest.raises(InputError, match=r"key: .*'20 mm'"):
+        quantity(text, "length", "key")
+    assert time.monotonic() - start < 2
 
 
 def test_loads_are_forces_or_pressures():

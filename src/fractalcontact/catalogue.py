@@ -1,6 +1,8 @@
 """Which files of a folder make which specimen: by their names alone, nothing is opened."""
 
+import hashlib
 import re
+import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,6 +11,15 @@ from .errors import InputError
 SIDECAR_SUFFIXES = (".yaml", ".yml")
 _IGNORED = ("README", "LICENSE")
 _UNSAFE = re.compile(r"[^A-Za-z0-9_.-]")
+#: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
+LONGEST_NAME = 220
+#: Windows opens devices by these names, whatever the ending: no folder of results could be copied.
+_DEVICES = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\.|$)")
+#: Snakemake takes such an ending for a rule that feeds on its own output; long names in other
+#: alphabets end so, as a row of ``_``.
+_REPEATS = re.compile(r"(.+?)\1{19}$")
+#: Control characters, invisible and direction marks, undecodable bytes, line separators.
+_INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
 
 
 @dataclass(frozen=True)
@@ -37,8 +48,16 @@ class ScanFiles:
 
 
 def specimen_name(original_name: str) -> str:
-    """Make a name safe: letters, digits, ``_ . -``; neither dash nor dot in front."""
-    return _UNSAFE.sub("_", original_name).lstrip("-.")
+    """Make a name safe: letters, digits, ``_ . -``; neither dash nor dot in front.
+
+    Composed and decomposed accents, which look the same, give the same name. A name that Windows
+    keeps for a device gets ``_`` in front, one that ends in many repeats six letters behind.
+    """
+    composed = unicodedata.normalize("NFC", original_name)
+    name = _UNSAFE.sub("_", composed).lstrip("-.")
+    if _REPEATS.search(name):
+        name += f"-{hashlib.sha256(composed.encode(errors='surrogateescape')).hexdigest()[:6]}"
+    return f"_{name}" if _DEVICES.match(name) else name
 
 
 def split_file_name(file_name: str) -> tuple[str, str]:
@@ -77,8 +96,9 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     Raises
     ------
     InputError
-        If two files claim one name, a face lacks its counterpart, a sidecar has no scan, a name has
-        no usable character, or a link leads out of the folder.
+        If two files claim one name, or names that differ in case alone; a face lacks its
+        counterpart, a sidecar has no scan; a name is too long, has no usable character, invisible
+        ones or braces; a link leads out of the folder, or a file is a pipe or a device.
     """
     scans, refused = list_scans(folder)
     for error in refused.values():
@@ -111,15 +131,16 @@ def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
         original_name, role = split_file_name(path.name)
         name = specimen_name(original_name)
         try:
+            _refuse_misleading(path)
             _refuse_outside_link(path, folder)
-            if not name:
-                raise InputError(f"{path}: give the file a name with letters or digits in it")
+            _refuse_unusable(name, path)
             of_specimen = roles.setdefault(name, {})
             if role in of_specimen:
                 raise _two_claims(name, of_specimen[role], path)
             of_specimen[role] = path
         except InputError as error:
             refused.setdefault(name or path.name, error)
+    refused |= _case_alone(roles)
     scans = {}
     for name in sorted(roles.keys() - refused.keys()):
         try:
@@ -129,6 +150,42 @@ def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
     return scans, refused
 
 
+def _refuse_misleading(path: Path) -> None:
+    """Names that look like others, or do things to a terminal, are not repeated anywhere."""
+    if any(unicodedata.category(character) in _INVISIBLE for character in path.name):
+        raise InputError(
+            f"{path.parent}: the file name {path.name!a} has invisible characters (line "
+            "breaks, control or direction marks); rename the file"
+        )
+    if set("{}") & set(path.name):
+        raise InputError(f"{path}: a study fills in what stands in braces; rename the file")
+
+
+def _refuse_unusable(name: str, path: Path) -> None:
+    if not name:
+        raise InputError(f"{path}: give the file a name with letters or digits in it")
+    if len(name) > LONGEST_NAME:
+        raise InputError(
+            f"{path}: a specimen name of {len(name)} characters, more than the {LONGEST_NAME} that "
+            "leave room for the names of its results; shorten the file's name"
+        )
+
+
+def _case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
+    """On many discs Rock.nc and rock.nc are one file: one result would overwrite the other."""
+    spelled: dict[str, str] = {}
+    refused = {}
+    for name in roles:
+        other = spelled.setdefault(name.lower(), name)
+        if other != name:
+            first, second = (next(iter(roles[n].values())) for n in (other, name))
+            refused[name] = InputError(
+                f"{first.name} and {second.name} in {first.parent} differ in upper and lower case "
+                "alone; rename one, or spell both the same if they belong together"
+            )
+    return refused
+
+
 def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
     """Check that the files of one specimen go together."""
     only, lower, upper = roles.get("only"), roles.get("lower"), roles.get("upper")
@@ -136,9 +193,12 @@ def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
     if only and (lower or upper):
         raise _two_claims(name, only, lower or upper)
     if not (only or lower or upper):
+        folders = [p.name for p in sidecar.parent.glob("*/") if p.stem == sidecar.stem]
+        hint = f"; {folders[0]} is a folder, which is not looked into" if folders else ""
         raise InputError(
             f"{sidecar}: this sidecar has no scan; put {sidecar.stem}.<ext> (or "
             f"{sidecar.stem}.lower.<ext> and {sidecar.stem}.upper.<ext>) beside it, or remove it"
+            f"{hint}"
         )
     if bool(lower) != bool(upper):
         there, missing = (lower, "upper") if lower else (upper, "lower")
@@ -153,10 +213,16 @@ def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
 
 def _refuse_outside_link(path: Path, folder: Path) -> None:
     """A folder handed over by a stranger must not make the program read other files."""
-    if path.is_symlink() and not path.resolve().is_relative_to(folder.resolve()):
+    try:
+        target = path.resolve(strict=True)
+    except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python
+        raise InputError(
+            f"{path}: not a readable file (a broken link?); remove or replace it"
+        ) from error
+    if path.is_symlink() and not target.is_relative_to(folder.resolve()):
         raise InputError(f"{path}: this link leads out of {folder}; copy the file itself here")
-    if not path.is_file():
-        raise InputError(f"{path}: not a readable file (a broken link?); remove or replace it")
+    if not target.is_file():
+        raise InputError(f"{path}: a pipe, socket or device, not a file; remove it")
 
 
 def _two_claims(name: str, first: Path, second: Path) -> InputError:

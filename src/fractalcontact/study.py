@@ -3,38 +3,19 @@
 import difflib
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 import jsonschema
-import yaml
 
 from .errors import InputError
+from .sidecar import read_yaml
 from .units import load, quantity
 
 #: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
 _SCAN_DEFINITION, _SETTINGS_DEFINITION = "scan", "settings"
 
+_LONGEST_QUOTE = 80  # characters of what the user wrote, in a message
 #: What a study that does not mention it gets; everything else must be stated.
 SOLVER = {"rtol": 1e-6, "kernel": "love"}
-
-
-def read_yaml(path):
-    """Mapping in a YAML file.
-
-    Raises
-    ------
-    InputError
-        If the file is no YAML, or not a mapping.
-    """
-    try:
-        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not readable as YAML: {error}") from None
-    if document is None:
-        return {}
-    if not isinstance(document, dict):
-        raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
-    return document
 
 
 def check_study(config, schema, source):
@@ -315,15 +296,21 @@ def _explain(error):
     key = ".".join(str(part) for part in error.absolute_path)
     if error.validator == "additionalProperties":
         known = error.schema["properties"]
-        unknown = sorted(set(error.instance) - set(known))[0]
+        unknown = sorted(set(error.instance) - set(known), key=str)[0]
         full = f"{key}.{unknown}" if key else unknown
-        return f"unknown key '{full}'{_near(unknown, known)}"
+        return f"unknown key '{_shortened(full)}'{_near(unknown, known)}"
     if error.validator == "required":
         missing = next(name for name in error.validator_value if name not in error.instance)
         full = f"{key}.{missing}" if key else missing
         expected = error.schema["properties"].get(missing, {})
         return f"missing key '{full}'{_expected(expected)}"
-    return f"{key}: {error.instance!r} is not right{_expected(error.schema)}"
+    return f"{key}: {_shortened(repr(error.instance))} is not right{_expected(error.schema)}"
+
+
+def _shortened(text):
+    """A text of any length and content as one that fits into a message."""
+    text = str(text) if str(text).isprintable() else ascii(text)
+    return text if len(text) <= _LONGEST_QUOTE else f"{text[:_LONGEST_QUOTE]}..."
 
 
 def _expected(schema):

@@ -1,5 +1,7 @@
 """Quantities as people write them ("20 GPa", "80 um") to the program's own mm, N and MPa."""
 
+import math
+import re
 from functools import cache
 
 import pint
@@ -12,6 +14,12 @@ PROGRAM_UNITS = {"length": "mm", "force": "N", "pressure": "MPa", "angle": "degr
 _EXAMPLES = {"length": "20 mm", "force": "10 kN", "pressure": "25 MPa", "angle": "30 deg"}
 #: What an angle is to pint, which knows no such dimension.
 _DIMENSIONS = {"angle": "[]"}
+#: A number and a unit. The library would take any sum, and spend for ever on 9**9**9 mm.
+_WORD = r"[^\W\d_]+(?:(?:\^|\*\*)?-?\d)?"
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_UNITS = rf"{_WORD}(?:(?:\s*[*/·]\s*|\s+){_WORD})*"
+_QUANTITY = re.compile(rf"\s*{_NUMBER}\s*(?:°|{_UNITS})?\s*")
+_LONGEST = 60  # characters
 
 
 @cache
@@ -45,6 +53,8 @@ def quantity(text, kind: str, where: str) -> float:
     wanted = f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
     if not isinstance(text, str):
         raise InputError(f"{where}: {text!r} has no unit; {wanted}")
+    if len(text) > _LONGEST or not _QUANTITY.fullmatch(text):
+        raise InputError(f"{where}: {text[:_LONGEST]!r} is not a number with a unit; {wanted}")
     try:
         value = _registry()(text)
     except Exception as error:  # pint raises half a dozen unrelated types for malformed text
@@ -53,7 +63,10 @@ def quantity(text, kind: str, where: str) -> float:
         raise InputError(f"{where}: {text!r} has no unit; {wanted}")
     if not value.check(_DIMENSIONS.get(kind, f"[{kind}]")):
         raise InputError(f"{where}: {text!r} is not {_article(kind)} {kind}; {wanted}")
-    return float(value.to(unit).magnitude)
+    magnitude = float(value.to(unit).magnitude)
+    if not math.isfinite(magnitude):
+        raise InputError(f"{where}: {text!r} is not finite; {wanted}")
+    return magnitude
 
 
 def _article(noun):

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import yaml
 
+from fractalcontact.catalogue import find_scans
 from fractalcontact.figures import EXPERIMENTS, figures_of
 from fractalcontact.store import read_atlas
 
@@ -123,6 +124,45 @@ def test_a_study_without_a_name_is_not_taken_for_the_default_one(project):
     done = run(project, study)
     assert done.returncode != 0
     assert f"{study}: missing key 'study'" in done.stdout + done.stderr
+
+
+HOSTILE = [
+    *("a b", 'it\'s "x"', "--help", "$(touch pwned)", "`touch pwned`;|&<>", "*?[a]"),
+    *(
+        "~a",
+        "c\\d",
+        "50%",
+        "Stein (über)",
+        "岩石" * 20,
+        "x" * 200,
+        "e..f",
+        "%(x)s",
+        "E",
+        "null",
+        "1e3",
+    ),
+]
+
+
+def test_files_of_any_permitted_name_are_scheduled_and_run(project):
+    study = small_study(project)
+    rough = np.random.default_rng(0).normal(size=(40, 40)).cumsum(0).cumsum(1) * 1e-3
+    for name in HOSTILE:
+        np.save(project / f"scans/{name}.npy", rough)
+        (project / f"scans/{name}.yaml").write_text("unit: mm\nspacing: 0.1\n")
+    scans = find_scans(project / "scans")
+    assert len(scans) == len(HOSTILE)
+    planned = run(project, study, "--dry-run")
+    assert planned.returncode == 0, planned.stdout[-3000:] + planned.stderr
+    worst = [
+        name for name, scan in scans.items() if scan.original_name in HOSTILE[1:4] + HOSTILE[11:13]
+    ]
+    made = [f"results/test/specimens/{name}.nc" for name in worst]
+    done = run(project, study, *made)
+    assert done.returncode == 0, done.stderr
+    assert not list(project.rglob("*pwned"))
+    again = run(project, study, "--dry-run", *made)
+    assert "Nothing to be done" in again.stdout + again.stderr
 
 
 @pytest.mark.scans

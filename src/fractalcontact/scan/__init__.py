@@ -1,6 +1,5 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
-import hashlib
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,9 @@ from ..units import length_factor
 from . import tiff
 from .archives import check_archive
 from .arrays import read_npy, read_npz
+from .confined import read_confined
 from .faces import Measured, grid_one, grid_pair
+from .files import is_unchanged, regular_file, sha256
 from .gwyddion import read_gwyddion
 from .instruments import instrument_formats, read_instrument
 from .labelled import read_labelled
@@ -29,12 +30,13 @@ from .options import (
 )
 from .plausible import check_spacing
 from .points import single_precision_note
-from .raw import RawScan, refuse_larger
+from .raw import RawScan
 from .text import is_text, read_text
 from .x3p import read_x3p
 
 __all__ = ["read_faces", "read_matrix", "read_scan"]
 
+LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 _TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
 _MESH = (".obj", ".ply", ".stl")
 _TIFF = (".tif", ".tiff")
@@ -147,8 +149,14 @@ def read_matrix(path, options=None):
 def _measure(path: Path, options) -> Measured:
     """Read a file and convert it to mm, with what the sidecar says."""
     options = parse_options(options, str(path))
-    _check_size(path)
-    raw = _read_raw(path, options)
+    before = regular_file(path)
+    raw = read_confined(path, options)
+    checksum = sha256(path)
+    if not is_unchanged(before, regular_file(path)):
+        raise InputError(
+            f"{path}: the file changed while it was read; wait until the copy or export has "
+            "finished, then run again"
+        )
     _refuse_idle_keys(raw, options, path)
     overrides, notes = [], list(raw.notes)
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
@@ -169,12 +177,13 @@ def _measure(path: Path, options) -> Measured:
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
+    _refuse_enormous(values, path)
     grid = options.grid
     if grid is not None:
         grid = length_mm(grid, unit_xy, f"{path}: key 'grid'")
     provenance = {
         "source": path.name,
-        "sha256": _sha256(path),
+        "sha256": checksum,
         "reader": raw.reader,
         "file_unit": unit_z if unit_xy in (None, unit_z) else f"x, y {unit_xy}; z {unit_z}",
         "layout": raw.layout,
@@ -204,14 +213,16 @@ def _read_raw(path: Path, options: ScanOptions) -> RawScan:
     raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
 
 
-def _check_size(path: Path) -> None:
-    """Refuse files that are absent, empty or far too large, before anything is unpacked."""
-    if not path.is_file():
-        raise InputError(f"{path}: no such file")
-    size = path.stat().st_size
-    if size == 0:
-        raise InputError(f"{path}: the file is empty")
-    refuse_larger(size, path)
+def _refuse_enormous(values: np.ndarray, path: Path) -> None:
+    """Numbers such as 1e300 are damage or an undeclared mark, and make arithmetic overflow."""
+    finite = values[np.isfinite(values)]
+    largest = max(finite.min(), finite.max(), key=abs) if finite.size else 0.0
+    if abs(largest) > LARGEST_NUMBER:
+        raise InputError(
+            f"{path}: it holds {largest:g} mm, which no instrument measures; if that marks missing "
+            "cells, say so in the sidecar ('missing: -9999', in the file's own unit), else export "
+            "the file again"
+        )
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
@@ -297,8 +308,3 @@ def _without_missing(values: np.ndarray, missing: float | None) -> np.ndarray:
         # Markers such as 3.4e38 come back from text and float32 not quite the same.
         absent |= np.isclose(values, missing, rtol=1e-6, atol=0)
     return np.where(absent, np.nan, values)
-
-
-def _sha256(path: Path) -> str:
-    with open(path, "rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()

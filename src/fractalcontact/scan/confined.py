@@ -1,0 +1,180 @@
+"""Scan files come from strangers: each is read in a process of its own, within limits.
+
+A library that meets a damaged or hostile file may hang, take all memory or crash. It then does so
+in a fork of the reader process (`reader_process`), and the user gets one clear error.
+"""
+
+import atexit
+import json
+import logging
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from dataclasses import asdict
+from pathlib import Path
+
+from ..errors import InputError
+from . import reader_process
+from .options import ScanOptions
+from .raw import RawScan
+from .transfer import from_text, receive_scan, to_text
+
+#: The reader process finds the same packages as this one, wherever they come from.
+_START = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
+    f"from {reader_process.__name__} import serve; serve()"
+)
+_LIKELY = "the file is damaged, hostile or far too large; export it again, or a part of it"
+
+_lock = threading.Lock()
+_server = None
+
+
+class ReaderBug(RuntimeError):
+    """The reader raised what no file should make it raise; its traceback is in the notes."""
+
+
+def read_confined(path: Path, options: ScanOptions) -> RawScan:
+    """Read a scan file in a process with bounded memory, time and files.
+
+    Parameters
+    ----------
+    path : Path
+        A regular file.
+    options : ScanOptions
+
+    Returns
+    -------
+    RawScan
+
+    Raises
+    ------
+    InputError
+        What the reader found wrong with the file; also if it crashed or went beyond its limits.
+    ReaderBug
+        For any other exception of the reader.
+    """
+    request = {"path": str(path), "folder": _folder_for(path), "options": asdict(options)}
+    lines, raw, status = _ask(request, path)
+    limits = next((line for line in reversed(lines) if line["outcome"] == "limits"), None)
+    last = lines[-1] if lines else {"outcome": "limits"}
+    if raw is not None and status == 0:
+        return raw
+    if last["outcome"] == "refused":
+        raise InputError(last["message"])
+    if last["outcome"] == "bug":
+        bug = ReaderBug(f"{path}: {last['message']}")
+        bug.add_note(last["traceback"])
+        raise bug
+    raise InputError(f"{path}: {_how_it_ended(last['outcome'], status, limits)}; {_LIKELY}")
+
+
+def _how_it_ended(outcome: str, status: int, limits: dict | None) -> str:
+    """What became of a reader that sent no result."""
+    if outcome == "memory":
+        return f"the reader ran out of memory ({limits['memory'] / 1024**3:.1f} GiB allowed)"
+    if not os.WIFSIGNALED(status):
+        return "the reader ended without a result"
+    number = os.WTERMSIG(status)
+    if number == signal.SIGXCPU:
+        return f"reading took longer than {limits['processor_seconds']} s of processor time"
+    if number == signal.SIGALRM:
+        return f"reading took longer than {limits['seconds']} s"
+    return f"the reader crashed (signal {number})"
+
+
+def _folder_for(path: Path) -> str:
+    """Where a relative path starts; the reader process may have been started elsewhere."""
+    return "/" if path.is_absolute() else os.getcwd()
+
+
+def _ask(request: dict, path: Path):
+    """Let the reader process read; start it if there is none."""
+    global _server
+    with _lock:
+        if _server is None or not _server.is_alive():
+            _server = _Server()
+        try:
+            return _server.read(request, path)
+        except BaseException:  # even Ctrl-C: half an answer must not be taken for the next one
+            stop_reader()
+            raise
+
+
+@atexit.register
+def stop_reader() -> None:
+    """End the reader process; the next file starts another one."""
+    global _server
+    if _server is not None:
+        _server.stop()
+        _server = None
+
+
+class _Server:
+    """The reader process and the socket to it."""
+
+    def __init__(self):
+        self.control, other = socket.socketpair()
+        search_path = json.dumps([folder for folder in sys.path if folder])
+        one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        with other:
+            self.process = subprocess.Popen(
+                # -P: a module lying in the current folder is not taken for a library.
+                [sys.executable, "-P", "-c", _START, search_path],
+                stdin=other,
+                stdout=subprocess.DEVNULL,
+                env=os.environ | one_thread,  # forks of a process with threads can hang
+            )
+
+    def is_alive(self) -> bool:
+        return self.process.poll() is None
+
+    def read(self, request: dict, path: Path):
+        """Lines of the answer, the scan if there is one, and the status of the fork."""
+        message = to_text(request)
+        self.control.sendall(reader_process.REQUEST_LENGTH.pack(len(message)) + message)
+        _, descriptors, _, _ = socket.recv_fds(self.control, 1, 1)
+        if not descriptors:
+            raise RuntimeError(f"{path}: the reader process ended; its error is above")
+        with open(descriptors[0], "rb") as stream:
+            lines, raw = _read_answer(stream)
+        size = reader_process.STATUS.size
+        answer = self.control.recv(size, socket.MSG_WAITALL)
+        status, peak, seconds = reader_process.STATUS.unpack(answer)
+        used = "%s: status %d, peak memory %d, %.2f s"
+        logging.getLogger(__name__).debug(used, path, status, peak, seconds)
+        return lines, raw, status
+
+    def stop(self) -> None:
+        self.control.close()
+        self.process.kill()
+        self.process.wait()
+
+
+def _read_answer(stream):
+    """Lines up to the scan or the end; the scan, or None."""
+    lines, raw = [], None
+    while line := stream.readline():
+        if not line.endswith(b"\n"):  # the reader broke off
+            break
+        lines.append(from_text(line))
+        if lines[-1]["outcome"] == "scan":
+            raw = receive_scan(lines[-1], stream, lines[-2]["memory"])
+            break
+    return lines, raw
+
+
+def _forget_server() -> None:
+    """A forked process must not talk on its parent's socket, nor wait for its parent's lock."""
+    global _lock, _server
+    _lock = threading.Lock()
+    if _server is not None:
+        _server.control.close()
+        _server.process.returncode = 0  # not our child: nothing to wait for
+        _server = None
+
+
+os.register_at_fork(after_in_child=_forget_server)

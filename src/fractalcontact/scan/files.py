@@ -1,0 +1,80 @@
+"""The file itself: is it one, does it stay the same, how much is in it."""
+
+import hashlib
+import os
+import stat
+import zipfile
+from pathlib import Path
+
+from ..errors import InputError
+from .raw import refuse_larger
+
+
+def regular_file(path: Path) -> os.stat_result:
+    """Size and identity of a file that can be read.
+
+    A pipe or a device is never opened: that could wait for ever.
+
+    Raises
+    ------
+    InputError
+        If it is absent, empty, far too large, or no regular file.
+    """
+    try:
+        found = path.stat()
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: no such file, or it cannot be reached ({error})") from error
+    if not stat.S_ISREG(found.st_mode):
+        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, socket or device"
+        raise InputError(f"{path}: {kind}, not a file; put the scan file itself here")
+    if not os.access(path, os.R_OK):
+        raise InputError(f"{path}: no permission to read it; allow it, 'chmod u+r' on the file")
+    if found.st_size == 0:
+        raise InputError(f"{path}: the file is empty")
+    refuse_larger(found.st_size, path)
+    return found
+
+
+def is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
+    """Whether a file was neither written to nor replaced between two looks at it."""
+    same = ("st_dev", "st_ino", "st_size", "st_mtime_ns")
+    return all(getattr(before, key) == getattr(after, key) for key in same)
+
+
+def inflated_size(path: Path) -> int:
+    """Bytes of a file, or of all that it says it inflates to.
+
+    Raises
+    ------
+    InputError
+        If those are far too many, or the archive is damaged.
+    """
+    size = path.stat().st_size
+    if zipfile.is_zipfile(path):
+        try:
+            with zipfile.ZipFile(path) as archive:
+                size = max(size, sum(member.file_size for member in archive.infolist()))
+        except zipfile.BadZipFile as error:
+            raise InputError(f"{path}: a damaged archive ({error})") from error
+    refuse_larger(size, path)
+    return size
+
+
+def sha256(path: Path) -> str:
+    """Checksum of a file's content, in hexadecimal digits.
+
+    Raises
+    ------
+    InputError
+        If the file has gone since it was looked at.
+    """
+    try:
+        with open(path, "rb", opener=_without_waiting) as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(f"{path}: no such file any more, it changed ({error})") from error
+
+
+def _without_waiting(name, flags: int) -> int:
+    """Open what may have become a pipe since it was looked at."""
+    return os.open(name, flags | os.O_NONBLOCK)

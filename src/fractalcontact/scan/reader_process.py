@@ -1,0 +1,221 @@
+"""The process that reads scan files, apart from the one that uses them.
+
+It waits for requests on a socket and forks once for each file. The fork limits itself, reads and
+ends; whatever a file does to it, this process and the one that asked stay as they were.
+
+Linux enforces all limits. macOS does not enforce the one on memory.
+"""
+
+import contextlib
+import gc
+import os
+import resource
+import signal
+import socket
+import struct
+import sys
+import traceback
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from ..errors import InputError
+from .files import inflated_size, regular_file
+from .options import ScanOptions
+from .raw import RawScan
+from .transfer import from_text, send_scan, to_text
+
+#: Beyond what the process has at the start. Heights deflate to a third, double in size as float64,
+#: and are copied two or three times on their way.
+BASE_MEMORY = 1024**3
+MEMORY_PER_BYTE = 24
+#: Seconds of processor time, many times what the slowest sound file takes.
+BASE_SECONDS = 8
+SECONDS_PER_MEGABYTE = 2
+#: A machine shared with others, or a slow disc, may take so many times longer by the clock.
+PATIENCE = 4
+_MOST_FILES = 64
+_LONGEST_MESSAGE = 800  # characters
+
+#: Libraries that take long to import, by the extensions they read. What is not named here is
+#: imported by every fork anew: that costs time, nothing else.
+_LIBRARIES = {
+    **dict.fromkeys((".npy", ".npz", ".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz"), ()),
+    **dict.fromkeys((".obj", ".ply", ".stl"), ("trimesh", "trimesh.exchange.load")),
+    **dict.fromkeys((".h5", ".hdf5"), ("h5py",)),
+    ".nc": ("h5py", "scipy.io"),
+    **dict.fromkeys((".tif", ".tiff"), ("tifffile",)),
+    ".mat": ("scipy.io", "h5py"),
+    ".x3p": ("x3pio", "defusedxml.ElementTree"),
+}
+_FOR_INSTRUMENTS = ("netCDF4", "SurfaceTopography.IO")
+
+REQUEST_LENGTH = struct.Struct("!I")
+#: How the fork ended, as `os.wait4` gives it; the most memory it had (kB, on macOS bytes); its
+#: seconds of processor time.
+STATUS = struct.Struct("!iqd")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What reading one file may take: bytes, seconds of processor time, seconds by the clock."""
+
+    memory: int
+    processor_seconds: int
+    seconds: int
+
+
+def limits_for(size: int) -> Limits:
+    """Limits for a file of so many bytes, inflated where it is an archive."""
+    seconds = BASE_SECONDS + SECONDS_PER_MEGABYTE * size // 10**6
+    return Limits(BASE_MEMORY + MEMORY_PER_BYTE * size, seconds, PATIENCE * seconds)
+
+
+def serve() -> None:
+    """Read files for the process at the other end of standard input until it closes."""
+    control = socket.socket(fileno=os.dup(0))
+    _close_standard_streams(0)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then hangs up
+    while (request := _receive(control)) is not None:
+        _import_libraries(Path(request["path"]).suffix.lower())
+        readable, writable = os.pipe()
+        pid = os.fork()
+        if pid == 0:
+            control.close()
+            os.close(readable)
+            _read_and_exit(request, writable)
+        os.close(writable)
+        socket.send_fds(control, [b"."], [readable])
+        os.close(readable)
+        _, status, usage = os.wait4(pid, 0)
+        seconds = usage.ru_utime + usage.ru_stime
+        control.sendall(STATUS.pack(status, usage.ru_maxrss, seconds))
+
+
+def _receive(control: socket.socket) -> dict | None:
+    """One request, or None if the other side has hung up."""
+    head = control.recv(REQUEST_LENGTH.size, socket.MSG_WAITALL)
+    if len(head) < REQUEST_LENGTH.size:
+        return None
+    (length,) = REQUEST_LENGTH.unpack(head)
+    return from_text(control.recv(length, socket.MSG_WAITALL))
+
+
+def _import_libraries(extension: str) -> None:
+    """Import what reading such a file takes, once here and not again in every fork."""
+    for name in _LIBRARIES.get(extension, _FOR_INSTRUMENTS):
+        with contextlib.suppress(ImportError):  # the fork meets it too, and reports it
+            import_module(name)
+    gc.freeze()  # what the forks share is not gone through, and so not copied
+
+
+def _read_and_exit(request: dict, writable: int) -> None:
+    """Read one file in this fork, send the outcome and end without any clean-up of the parent's."""
+    code = 1
+    try:
+        _close_standard_streams(0, 1, 2)  # what a library prints is not meant for the user
+        sys.dont_write_bytecode = True
+        with open(writable, "wb") as stream:
+            _read(request, stream)
+        code = 0
+    except BrokenPipeError:  # nobody waits any more
+        code = 0
+    finally:
+        os._exit(code)
+
+
+def _read(request: dict, stream) -> None:
+    from . import _read_raw
+
+    def allow(size: int) -> None:
+        limits = limits_for(size)
+        stream.write(to_text({"outcome": "limits", **vars(limits)}))
+        stream.flush()
+        _confine(limits, already)
+
+    path = Path(request["path"])
+    already = _address_space()
+    try:
+        os.chdir(request["folder"])
+        allow(regular_file(path).st_size)
+        allow(inflated_size(path))
+        raw = _read_raw(path, ScanOptions(**request["options"]))
+        _require_table(raw, path)
+        send_scan(raw, stream)
+    except BrokenPipeError:
+        raise
+    except MemoryError:
+        stream.write(to_text({"outcome": "memory"}))
+    except InputError as error:
+        # Readers that meet any error of a library halfway call it a damaged file.
+        outcome = "memory" if _is_from_memory(error) else "refused"
+        stream.write(to_text({"outcome": outcome, "message": _readable(str(error))}))
+    except OSError as error:  # the disc or the network, or what a library asked of them
+        message = f"{path}: cannot be read ({error}); copy the file anew"
+        stream.write(to_text({"outcome": "refused", "message": _readable(message)}))
+    except Exception as error:
+        name, trace = type(error).__name__, traceback.format_exc()
+        message = {"outcome": "bug", "message": f"{name}: {error}", "traceback": trace}
+        stream.write(to_text(message))
+
+
+def _readable(message: str) -> str:
+    """A message without the pages, or the terminal's commands, that a library quotes of a file."""
+    if len(message) > _LONGEST_MESSAGE:
+        half = _LONGEST_MESSAGE // 2
+        message = f"{message[:half]} ... {message[-half:]}"
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in message)
+
+
+def _require_table(raw: RawScan, path: Path) -> None:
+    """A damaged header can make a library return any shape."""
+    shape = raw.values.shape
+    if len(shape) != 2 or 0 in shape or (raw.layout != "matrix" and shape[1] != 3):
+        raise InputError(
+            f"{path}: expected rows and columns of heights or points x, y, z, found an array of "
+            f"shape {shape}; damaged? Export it again"
+        )
+
+
+def _is_from_memory(error: BaseException | None) -> bool:
+    while error is not None and not isinstance(error, MemoryError):
+        error = error.__cause__ or error.__context__
+    return error is not None
+
+
+def _confine(limits: Limits, already: int) -> None:
+    """Bound memory, time and files of this process; the system ends it where it goes beyond."""
+    _lower(resource.RLIMIT_AS, already + limits.memory)
+    _lower(resource.RLIMIT_CPU, limits.processor_seconds)
+    _lower(resource.RLIMIT_FSIZE, 0)
+    _lower(resource.RLIMIT_CORE, 0)
+    _lower(resource.RLIMIT_NOFILE, _MOST_FILES)
+    for number in (signal.SIGXCPU, signal.SIGALRM):
+        signal.signal(number, signal.SIG_DFL)
+    signal.alarm(limits.seconds)
+
+
+def _lower(limit: int, value: int) -> None:
+    """Set a soft limit, never above the hard one that the user or the cluster has set."""
+    _, hard = resource.getrlimit(limit)
+    if hard != resource.RLIM_INFINITY:
+        value = min(value, hard)
+    resource.setrlimit(limit, (value, hard))
+
+
+def _address_space() -> int:
+    """Bytes of address space this process has; 0 where the system does not tell."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except FileNotFoundError:  # macOS, which does not enforce RLIMIT_AS either
+        return 0
+    return pages * resource.getpagesize()
+
+
+def _close_standard_streams(*numbers: int) -> None:
+    """Put nothing in the place of standard input, output or error."""
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for number in numbers:
+        os.dup2(nothing, number)
+    if nothing > 2:
+        os.close(nothing)
