@@ -99,11 +99,12 @@ def load(text, where: str) -> tuple[float, str]:
 
 
 def length_factor(unit: str, where: str) -> float:
-    """Millimetres in one ``unit`` of length ("um", "m", ...).
+    """Millimetres in one ``unit`` of length: "um", "m", or "0.1 um" where numbers are counts.
 
     Raises
     ------
     InputError
         If ``unit`` is no unit of length.
     """
-    return quantity(f"1 {unit}", "length", where)
+    counts = re.match(_NUMBER, unit)
+    return quantity(unit if counts else f"1 {unit}", "length", where)
