@@ -20,7 +20,7 @@ from .labels import printable
 from .preparation import prepare_specimen
 from .quality import length_words, scan_quality
 from .specimen import STEEP_TILT, window_sides
-from .study import check_study, read_sidecar, read_yaml, resolve_settings
+from .study import check_study, read_sidecar, read_study, resolve_settings
 
 #: Columns of the table: heading and width.
 COLUMNS = {
@@ -279,9 +279,9 @@ def main(arguments=None):
     # Names may hold what a terminal's encoding does not.
     sys.stdout.reconfigure(errors="backslashreplace")
     try:
-        study, schema = read_yaml(asked.study), read_yaml(asked.schema)
+        study, schema = read_study(asked.study), read_study(asked.schema)
         check_study(study, schema, asked.study)
-    except (InputError, OSError) as error:
+    except InputError as error:
         sys.stderr.write(f"error: {error}\n")
         return 1
     folder = Path(asked.folder or study.get("scans") or "scans")

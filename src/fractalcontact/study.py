@@ -3,8 +3,10 @@
 import difflib
 import math
 from collections.abc import Mapping
+from pathlib import Path
 
 import jsonschema
+import yaml
 
 from .errors import InputError
 from .sidecar import read_yaml
@@ -16,6 +18,31 @@ _SCAN_DEFINITION, _SETTINGS_DEFINITION = "scan", "settings"
 _LONGEST_QUOTE = 80  # characters of what the user wrote, in a message
 #: What a study that does not mention it gets; everything else must be stated.
 SOLVER = {"rtol": 1e-6, "kernel": "love"}
+
+
+def read_study(path):
+    """A study's own file, or its schema: all of YAML, since its user wrote it.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is no mapping.
+    """
+    try:
+        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise InputError(f"{path}: not readable as YAML: {error}") from error
+    if not isinstance(document, dict):
+        raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
+    return document
 
 
 def check_study(config, schema, source):

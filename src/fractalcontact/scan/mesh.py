@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
-from .raw import RawScan
+from .raw import RawScan, reading
 
 
 def read_mesh(path: Path) -> RawScan:
@@ -21,14 +21,11 @@ def read_mesh(path: Path) -> RawScan:
     import trimesh
 
     file_type = path.suffix.lstrip(".").lower()
-    try:
-        with open(path, "rb") as stream:
-            # From a stream, without a resolver: no other file it may name is opened.
-            loaded = trimesh.load(stream, file_type=file_type, process=False, resolver=None)
-    except Exception as error:  # a damaged file makes trimesh raise anything
-        raise InputError(f"{path}: not a readable mesh ({error})") from error
-    parts = list(loaded.geometry.values()) if hasattr(loaded, "geometry") else [loaded]
-    vertices, triangles = _concatenate(parts)
+    with reading(path, "mesh"), open(path, "rb") as stream:
+        # From a stream, without a resolver: no other file it may name is opened.
+        loaded = trimesh.load(stream, file_type=file_type, process=False, resolver=None)
+        parts = list(loaded.geometry.values()) if hasattr(loaded, "geometry") else [loaded]
+        vertices, triangles = _concatenate(parts)
     if not len(vertices):
         raise InputError(f"{path}: the mesh is empty: it holds no vertices")
     if len(triangles) and not (triangles.min() >= 0 and triangles.max() < len(vertices)):
