@@ -1,6 +1,7 @@
 """Time and memory of reading and gridding millions of points, by `python gridding.py`."""
 
 import argparse
+import logging
 import resource
 import subprocess
 import sys
@@ -53,10 +54,23 @@ def write_cloud(path, points):
         np.savetxt(path, points, fmt="%.6f")
 
 
+class ReaderPeak(logging.Handler):
+    """Most memory of the process that reads the file, as the package logs it."""
+
+    def emit(self, record):
+        """Keep the peak, in GB."""
+        _, _, kilobytes, _ = record.args
+        self.gigabytes = kilobytes * 1024 / 1e9
+
+
 def read_cloud(path, grid):
     """Read the file as a study would and print what it took; meant for a process of its own."""
     from fractalcontact.scan import read_scan
 
+    reader = ReaderPeak()
+    log = logging.getLogger("fractalcontact.scan.confined")
+    log.setLevel(logging.DEBUG)
+    log.addHandler(reader)
     options = {"unit": "mm"} | ({"grid": f"{grid} mm"} if grid else {})
     start = time.perf_counter()
     heights = read_scan(path, options)
@@ -65,7 +79,10 @@ def read_cloud(path, grid):
     busy, peak = usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024 / 1e9
     cells = " x ".join(map(str, heights.shape))
     missing = heights.attrs["missing_share"]
-    sys.stdout.write(f"{seconds:8.1f} {busy:6.1f} {peak:8.2f} {cells:>15} {missing:9.2%}\n")
+    sys.stdout.write(
+        f"{seconds:8.1f} {busy:6.1f} {reader.gigabytes:9.2f} {peak:8.2f} {cells:>15} "
+        f"{missing:9.2%}\n"
+    )
 
 
 def main(arguments):
@@ -80,7 +97,10 @@ def main(arguments):
     if options.read:
         read_cloud(options.read, options.grid)
         return
-    sys.stdout.write("cloud    file   points  seconds  CPU s  peak GB           cells   missing\n")
+    # The process that reads has ended before the one that grids reaches its peak.
+    sys.stdout.write(
+        "cloud    file   points  seconds  CPU s reader GB  peak GB           cells   missing\n"
+    )
     grid = ["--grid", str(options.grid)] if options.grid else []
     with tempfile.TemporaryDirectory() as folder:
         for name in options.clouds:
