@@ -66,8 +66,19 @@ def _shape(generator):
     return tuple(int(n) for n in generator.integers(*SIDES, size=2))
 
 
-def _rough(generator, shape, hurst=0.8):
-    """Self-affine heights of unit standard deviation."""
+def rough_heights(generator, shape, hurst=0.8):
+    """Self-affine heights of about unit standard deviation.
+
+    Parameters
+    ----------
+    generator : numpy.random.Generator
+    shape : (int, int)
+    hurst : float
+
+    Returns
+    -------
+    (ny, nx) ndarray
+    """
     n = max(*shape, 8)
     seed = int(generator.integers(2**31))
     return self_affine((n, n), 1.0, hurst, rms=1.0, seed=seed)[: shape[0], : shape[1]]
@@ -77,8 +88,21 @@ def _space(shape, *, cell=0.1, stretch=1.0, modulus=1e4):
     return HalfSpace(tuple(shape), (cell * stretch, cell), modulus)
 
 
-def _closure(height, share):
-    """Closure at which a share of the nodes lies above the rigid plane, before they give way."""
+def pressed_closure(height, share):
+    """Closure at which a share of the nodes lies above the rigid plane, before they give way.
+
+    Parameters
+    ----------
+    height : (ny, nx) ndarray
+        mm.
+    share : float
+        From 0 to 1.
+
+    Returns
+    -------
+    float
+        mm, above zero unless all heights are equal.
+    """
     depth = np.sort(height.max() - height, axis=None)
     reached = depth[min(int(share * depth.size), depth.size - 1)]
     return float(max(reached, depth[min(1, depth.size - 1)], 1e-3 * depth[-1]))
@@ -90,7 +114,7 @@ def _pressed(kind, generator, height, *, share=(0.05, 0.6), space=None, by_force
     The force is that of a punch under the same nodes, roughly: any force has its state.
     """
     space = _space(height.shape) if space is None else space
-    closure = _closure(height, generator.uniform(*share))
+    closure = pressed_closure(height, generator.uniform(*share))
     by_force = generator.random() < 0.5 if by_force is None else by_force
     load = {"closure": closure}
     if by_force:
@@ -103,7 +127,9 @@ def _pressed(kind, generator, height, *, share=(0.05, 0.6), space=None, by_force
 
 def _rough_of(hurst):
     def scene(kind, generator):
-        return _pressed(kind, generator, _scaled(_rough(generator, _shape(generator), hurst)))
+        return _pressed(
+            kind, generator, _scaled(rough_heights(generator, _shape(generator), hurst))
+        )
 
     return scene
 
@@ -117,14 +143,16 @@ def _scaled(height, slope=0.1, cell=0.1):
 def _sloped(low, high):
     def scene(kind, generator):
         slope = 10 ** generator.uniform(low, high)
-        return _pressed(kind, generator, _scaled(_rough(generator, _shape(generator)), slope))
+        return _pressed(
+            kind, generator, _scaled(rough_heights(generator, _shape(generator)), slope)
+        )
 
     return scene
 
 
 def _first_touch(by_force):
     def scene(kind, generator):
-        height = _scaled(_rough(generator, _shape(generator)))
+        height = _scaled(rough_heights(generator, _shape(generator)))
         second = np.sort(height, axis=None)[-2]
         space = _space(height.shape)
         closure = (height.max() - second) * generator.uniform(1e-3, 0.9)
@@ -138,7 +166,7 @@ def _first_touch(by_force):
 
 def _load_of(low, high):
     def scene(kind, generator):
-        height = _scaled(_rough(generator, _shape(generator)))
+        height = _scaled(rough_heights(generator, _shape(generator)))
         space = _space(height.shape)
         closure = np.ptp(height) * 10 ** generator.uniform(low, high)
         load = {"closure": closure}
@@ -153,7 +181,7 @@ def _peaks(places):
     """Single nodes above a rough surface; ``places`` chooses them from the shape."""
 
     def scene(kind, generator):
-        height = _scaled(_rough(generator, _shape(generator)))
+        height = _scaled(rough_heights(generator, _shape(generator)))
         for place in places(generator, height.shape):
             height[place] = height.max() + np.ptp(height) * generator.uniform(0.5, 20)
         return _pressed(kind, generator, height, share=(0.01, 0.3))
@@ -179,26 +207,26 @@ def _several(generator, shape):
 
 def _twins(kind, generator):
     """Two equal peaks, which touch at the same moment."""
-    height = _scaled(_rough(generator, _shape(generator)))
+    height = _scaled(rough_heights(generator, _shape(generator)))
     top = height.max() + np.ptp(height)
     height[0, 0] = height[-1, -1] = top
     return _pressed(kind, generator, height, share=(0.01, 0.3))
 
 
 def _pits(kind, generator):
-    height = _scaled(_rough(generator, _shape(generator)))
+    height = _scaled(rough_heights(generator, _shape(generator)))
     height.flat[generator.integers(height.size, size=6)] -= 20 * np.ptp(height)
     return _pressed(kind, generator, height, share=(0.3, 0.9))
 
 
 def _plateau(kind, generator):
-    height = _scaled(_rough(generator, _shape(generator)))
+    height = _scaled(rough_heights(generator, _shape(generator)))
     height = np.minimum(height, np.quantile(height, generator.uniform(0.2, 0.95)))
     return _pressed(kind, generator, height)
 
 
 def _ties(kind, generator):
-    height = np.round(3 * _rough(generator, _shape(generator))) / 300
+    height = np.round(3 * rough_heights(generator, _shape(generator))) / 300
     return _pressed(kind, generator, height)
 
 
@@ -275,7 +303,7 @@ def _noise(generator, y, x):
 def _window(shape_of, stretch_of=lambda generator: 1.0):
     def scene(kind, generator):
         shape, stretch = shape_of(generator), stretch_of(generator)
-        height = _scaled(_rough(generator, shape))
+        height = _scaled(rough_heights(generator, shape))
         return _pressed(kind, generator, height, space=_space(shape, stretch=stretch))
 
     return scene
@@ -303,7 +331,7 @@ def _length_unit(cell):
     """The same problem with lengths counted in another unit, and an odd unit of stress."""
 
     def scene(kind, generator):
-        height = _scaled(_rough(generator, _shape(generator))) * (cell / 0.1)
+        height = _scaled(rough_heights(generator, _shape(generator))) * (cell / 0.1)
         space = _space(height.shape, cell=cell, modulus=10 ** generator.uniform(-6, 12))
         return _pressed(kind, generator, height, space=space)
 
@@ -312,14 +340,14 @@ def _length_unit(cell):
 
 def _offset(sign):
     def scene(kind, generator):
-        height = _scaled(_rough(generator, _shape(generator)))
+        height = _scaled(rough_heights(generator, _shape(generator)))
         return _pressed(kind, generator, height + sign * 1e6 * np.ptp(height))
 
     return scene
 
 
 def _single_precision(kind, generator):
-    height = _scaled(_rough(generator, _shape(generator))).astype(np.float32)
+    height = _scaled(rough_heights(generator, _shape(generator))).astype(np.float32)
     return _pressed(kind, generator, height)
 
 
@@ -328,7 +356,7 @@ def _start(make):
 
     def scene(kind, generator):
         shape = _shape(generator)
-        height = _scaled(_rough(generator, shape))
+        height = _scaled(rough_heights(generator, shape))
         space = _space(shape)
         plain = _pressed(kind, generator, height, space=space, by_force=False)
         start = make(generator, height, space, plain.load["closure"])
@@ -338,8 +366,8 @@ def _start(make):
 
 
 def _of_other_surface(generator, height, space, closure):
-    other = _scaled(_rough(generator, height.shape, hurst=0.4))
-    return solve_contact(other, space, closure=_closure(other, 0.4))
+    other = _scaled(rough_heights(generator, height.shape, hurst=0.4))
+    return solve_contact(other, space, closure=pressed_closure(other, 0.4))
 
 
 def _of_higher_load(generator, height, space, closure):
@@ -361,9 +389,9 @@ def _garbage(generator, height, space, closure):
 
 
 def _capped(kind, generator):
-    height = _scaled(_rough(generator, _shape(generator)))
+    height = _scaled(rough_heights(generator, _shape(generator)))
     space = _space(height.shape)
-    closure = _closure(height, generator.uniform(0.1, 0.6))
+    closure = pressed_closure(height, generator.uniform(0.1, 0.6))
     elastic = solve_contact(height, space, closure=closure).pressure.max()
     return HardScene(
         kind,
@@ -375,7 +403,7 @@ def _capped(kind, generator):
 
 def _all_but_capped(kind, generator):
     """A force just below what the whole window carries at the hardness."""
-    height = _scaled(_rough(generator, _shape(generator)))
+    height = _scaled(rough_heights(generator, _shape(generator)))
     space = _space(height.shape)
     hardness = 10 ** generator.uniform(0, 3)
     most = hardness * height.size * space.cell_area
@@ -385,7 +413,7 @@ def _all_but_capped(kind, generator):
 
 def _above_the_cap(kind, generator):
     """More than the window can carry: there is no such state."""
-    height = _scaled(_rough(generator, _shape(generator)))
+    height = _scaled(rough_heights(generator, _shape(generator)))
     space = _space(height.shape)
     hardness = 10 ** generator.uniform(0, 3)
     force = hardness * height.size * space.cell_area * generator.uniform(1, 10)
@@ -394,14 +422,14 @@ def _above_the_cap(kind, generator):
 
 
 def _missing_cell(kind, generator):
-    height = _scaled(_rough(generator, _shape(generator)))
-    closure = _closure(height, 0.3)
+    height = _scaled(rough_heights(generator, _shape(generator)))
+    closure = pressed_closure(height, 0.3)
     height.flat[generator.integers(height.size)] = generator.choice([np.nan, np.inf, -np.inf])
     return HardScene(kind, height, _space(height.shape), {"closure": closure}, solvable=False)
 
 
 def _no_load(kind, generator):
-    height = _scaled(_rough(generator, _shape(generator)))
+    height = _scaled(rough_heights(generator, _shape(generator)))
     control = str(generator.choice(["closure", "force"]))
     return HardScene(kind, height, _space(height.shape), {control: 0.0})
 

@@ -44,9 +44,9 @@ def stability(name, kinds=None, draws=25):
     -------
     xr.Dataset
         On (solver, kind, draw): ``verdict``, an index into `VERDICTS`; ``violation`` of the contact
-        conditions as a share of the closure, and ``disagreement`` with direct elimination, NaN where
-        no state was returned; ``said``, what the solver said of a failure. ``hard_scene(kind,
-        draw)`` makes the scene again.
+        conditions as a share of the closure, and ``disagreement`` with direct elimination, NaN
+        where no state was returned; ``said``, what the solver said of a failure.
+        ``hard_scene(kind, draw)`` makes the scene again.
     """
     kinds = list(KINDS) if kinds is None else kinds
     found = [[_judge(name, hard_scene(kind, draw)) for draw in range(draws)] for kind in kinds]
