@@ -28,13 +28,11 @@ def solvers():
     return {"fractalcontact": solve_contact, **methods.METHODS}
 
 
-def stability(name, kinds=None, draws=25):
-    """Verdicts on one solver.
+def stability(kinds=None, draws=25):
+    """Verdicts on every solver.
 
     Parameters
     ----------
-    name : str
-        A key of `solvers`.
     kinds : list of str, optional
         Keys of `hard_scenes.KINDS`; all by default.
     draws : int
@@ -43,42 +41,58 @@ def stability(name, kinds=None, draws=25):
     Returns
     -------
     xr.Dataset
-        On (solver, kind, draw): ``verdict``, an index into `VERDICTS`; ``violation`` of the contact
+        On (kind, draw, solver): ``verdict``, an index into `VERDICTS`; ``violation`` of the contact
         conditions as a share of the closure, and ``disagreement`` with direct elimination, NaN
         where no state was returned; ``said``, what the solver said of a failure.
         ``hard_scene(kind, draw)`` makes the scene again.
     """
-    kinds = list(KINDS) if kinds is None else kinds
-    found = [[_judge(name, hard_scene(kind, draw)) for draw in range(draws)] for kind in kinds]
+    kinds = list(KINDS) if kinds is None else list(kinds)
+    judged = solvers()
+    found = [
+        [_judge_all(judged, hard_scene(kind, draw)) for draw in range(draws)] for kind in kinds
+    ]
     codes = ", ".join(f"{code} {verdict}" for code, verdict in enumerate(VERDICTS))
     fields = {
         "verdict": ("int8", about("1", codes)),
-        "violation": (
-            float,
-            about("1", "largest violation of the conditions, share of the closure"),
-        ),
-        "disagreement": (
-            float,
-            about("1", "force, or closure, less that of elimination, relative"),
-        ),
+        "violation": (float, about("1", "largest violation of the conditions, share of closure")),
+        "disagreement": (float, about("1", "relative difference from direct elimination")),
         "said": (object, about("1", "what the solver said")),
     }
-    dims = ("solver", "kind", "draw")
     result = xr.Dataset(
-        coords={"solver": [name], "kind": kinds, "draw": np.arange(draws)},
+        coords={"kind": kinds, "draw": np.arange(draws), "solver": list(judged)},
         attrs={"rtol": RTOL, "margin": MARGIN, "agreement": AGREEMENT},
     )
-    for place, (key, (dtype, attributes)) in enumerate(fields.items()):
-        values = [[[scene[place] for scene in row] for row in found]]
-        result[key] = dims, np.array(values, dtype=dtype), attributes
+    for place, (name, (dtype, attributes)) in enumerate(fields.items()):
+        values = [[[verdict[place] for verdict in scene] for scene in row] for row in found]
+        result[name] = ("kind", "draw", "solver"), np.array(values, dtype=dtype), attributes
     return result
 
 
-def _judge(name, scene):
+def _judge_all(judged, scene):
+    """Every solver on one scene."""
+    exact = _exact(scene)
+    return [_judge(solve, scene, exact) for solve in judged.values()]
+
+
+def _exact(scene):
+    """Force, or closure where the force is given, by direct elimination; NaN where that fails."""
+    load = {key: value for key, value in scene.load.items() if key != "start"}
+    try:
+        state = methods.METHODS["dense"](scene.height, scene.space, **load)
+    except (NotConverged, ValueError):
+        return np.nan
+    return _answer(state, scene)
+
+
+def _answer(state, scene):
+    return state.closure if "force" in scene.load else state.force
+
+
+def _judge(solve, scene, exact):
     """Verdict, violation, disagreement and what the solver said."""
     nothing = (np.nan, np.nan)
     try:
-        state = solvers()[name](scene.height, scene.space, rtol=RTOL, **scene.load)
+        state = solve(scene.height, scene.space, rtol=RTOL, **scene.load)
     except (NotConverged, ValueError) as error:
         said = str(error)
         if any(words in said for words in _NOT_MADE_FOR):
@@ -90,18 +104,6 @@ def _judge(name, scene):
         unloaded = not any(scene.load.get(control) for control in ("closure", "force"))
         return (RIGHT if unloaded and not state.pressure.any() else SILENT), 0.0, 0.0, ""
     wrong, rounding = violation(state, np.asarray(scene.height, float))
-    apart = _disagreement(state, scene)
+    apart = abs(_answer(state, scene) / exact - 1)
     right = wrong <= MARGIN * RTOL + rounding and not apart > AGREEMENT
     return (RIGHT if right else SILENT), wrong, apart, ""
-
-
-def _disagreement(state, scene):
-    """How far force, or closure, is from that of direct elimination; NaN where that fails."""
-    load = {key: value for key, value in scene.load.items() if key != "start"}
-    try:
-        exact = methods.METHODS["dense"](scene.height, scene.space, **load)
-    except NotConverged:
-        return np.nan
-    by_force = "force" in load
-    ours, theirs = (state.closure, exact.closure) if by_force else (state.force, exact.force)
-    return abs(ours / theirs - 1)

@@ -67,7 +67,7 @@ def _wrapped(name):
 
 def _counts(stability):
     """Scenes by (solver, kind, verdict)."""
-    verdict = stability["verdict"].values
+    verdict = stability["verdict"].transpose("solver", "kind", "draw").values
     return np.stack([(verdict == code).sum(axis=2) for code in range(len(VERDICTS))], axis=2)
 
 
@@ -75,7 +75,8 @@ def _failures(stability):
     """One row a scene that was not solved though it has a solution, or wrongly."""
     verdict = stability["verdict"].values
     places = np.argwhere((verdict == HONEST) | (verdict == SILENT))
-    columns = {dim: stability[dim].values[places[:, n]] for n, dim in enumerate(stability.dims)}
+    dims = stability["verdict"].dims
+    columns = {dim: stability[dim].values[places[:, n]] for n, dim in enumerate(dims)}
     at = tuple(places.T)
     columns["verdict"] = np.array(VERDICTS, dtype=object)[verdict[at]]
     for name in ("violation", "disagreement", "said"):
