@@ -1,0 +1,110 @@
+"""Which solver takes which kind of scene: one row a kind, one column a solver."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ..stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
+from .common import COLOURS, WIDTH, Drawing, group
+
+#: Colour and hatching of each verdict: what must not happen is the darkest.
+_STYLE = {
+    RIGHT: {"facecolor": "#cfe3f1"},
+    HONEST: {"facecolor": COLOURS[5], "hatch": "////"},
+    SILENT: {"facecolor": COLOURS[0]},
+    NOT_OFFERED: {"facecolor": "white"},
+}
+_ROW = 0.145  # inches
+
+
+def draw(atlas, names):
+    """Shares of the verdicts, kind by kind and solver by solver.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    names : list of str
+        Specimens of the study; the scenes here are none of them.
+
+    Returns
+    -------
+    Drawing
+        Its data are the scenes that were not solved, one a row: ``hard_scene(kind, draw)`` of
+        `fractalcontact.hard_scenes` makes each again.
+    """
+    stability = group(atlas, "stability", "scenes")
+    counts = _counts(stability)
+    kinds, solvers = stability["kind"].values, stability["solver"].values
+    figure = Figure(figsize=(WIDTH, 1.2 + _ROW * len(kinds)))
+    axes = figure.subplots()
+    for column in range(len(solvers)):
+        left = np.full(len(kinds), float(column))
+        for verdict, style in _STYLE.items():
+            width = 0.94 * counts[column, :, verdict] / stability.sizes["draw"]
+            axes.barh(np.arange(len(kinds)), width, 0.82, left=left, lw=0, **style)
+            left += width
+    axes.set_xlim(-0.03, len(solvers))
+    axes.set_ylim(len(kinds) - 0.4, -0.6)
+    axes.set_yticks(np.arange(len(kinds)), kinds, fontsize=6.5)
+    axes.set_xticks(np.arange(len(solvers)) + 0.47, [_wrapped(name) for name in solvers])
+    axes.xaxis.tick_top()
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    for column in range(1, len(solvers)):
+        axes.axvline(column - 0.03, color="0.7", lw=0.5)
+    handles = [
+        Patch(label=VERDICTS[verdict], **{"edgecolor": "0.4", "lw": 0.4, **style})
+        for verdict, style in _STYLE.items()
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    return Drawing(figure, _failures(stability), _caption(stability, counts))
+
+
+def _wrapped(name):
+    return name.replace("-", "-\n").replace(" ", "\n")
+
+
+def _counts(stability):
+    """Scenes by (solver, kind, verdict)."""
+    verdict = stability["verdict"].transpose("solver", "kind", "draw").values
+    return np.stack([(verdict == code).sum(axis=2) for code in range(len(VERDICTS))], axis=2)
+
+
+def _failures(stability):
+    """One row a scene that was not solved though it has a solution, or wrongly."""
+    verdict = stability["verdict"].values
+    places = np.argwhere((verdict == HONEST) | (verdict == SILENT))
+    dims = stability["verdict"].dims
+    columns = {dim: stability[dim].values[places[:, n]] for n, dim in enumerate(dims)}
+    at = tuple(places.T)
+    columns["verdict"] = np.array(VERDICTS, dtype=object)[verdict[at]]
+    for name in ("violation", "disagreement", "said"):
+        columns[name] = stability[name].values[at]
+    return pd.DataFrame(columns)
+
+
+def _caption(stability, counts):
+    totals = counts.sum(axis=1)
+    tried = stability.sizes["kind"] * stability.sizes["draw"]
+    by_solver = "; ".join(
+        _words(*row) for row in zip(stability["solver"].values, totals, strict=True)
+    )
+    return (
+        f"In no figure of the paper: {stability.sizes['kind']} kinds of scene, "
+        f"{stability.sizes['draw']} drawn of each, {tried} in all. A state is right if it violates "
+        f"the contact conditions, judged in double precision by a convolution of the judge's own, "
+        f"by no more than {stability.attrs['margin']:g} times the tolerance of "
+        f"{stability.attrs['rtol']:g} beyond the rounding of the heights, and if its force (its "
+        "closure, where the force was given) is that of direct elimination to "
+        f"{stability.attrs['agreement']:g}. Where no state exists, only saying so is right. "
+        f"{by_solver}. The table beside the figure names every scene that was not solved."
+    )
+
+
+def _words(solver, totals):
+    offered = totals[[RIGHT, HONEST, SILENT]].sum()
+    return (
+        f"{solver}: {totals[RIGHT]} of {offered} right, {totals[HONEST]} honest failures, "
+        f"{totals[SILENT]} silently wrong"
+    )

@@ -1,0 +1,109 @@
+"""Which method solves which kind of scene: right, an honest failure, or silently wrong."""
+
+import numpy as np
+import xarray as xr
+
+from . import methods
+from .contact import NotConverged, solve_contact
+from .hard_scenes import KINDS, hard_scene
+from .labels import about
+from .scenes import violation
+
+RTOL = 1e-6
+#: A state is right if it violates the conditions by no more than this many times the tolerance:
+#: methods judge themselves with other roundings than the judge.
+MARGIN = 2.0
+#: And if its force (its closure, where the force was given) is that of direct elimination.
+AGREEMENT = 1e-4
+
+#: Verdicts, in the order of their codes.
+VERDICTS = ("right", "honest failure", "silently wrong", "not offered")
+RIGHT, HONEST, SILENT, NOT_OFFERED = range(len(VERDICTS))
+#: What a method says of a load it was not made for.
+_NOT_MADE_FOR = ("a closure only", "knows no hardness")
+
+
+def solvers():
+    """Every solver by name: ours first, then those kept for comparison."""
+    return {"fractalcontact": solve_contact, **methods.METHODS}
+
+
+def stability(kinds=None, draws=25):
+    """Verdicts on every solver.
+
+    Parameters
+    ----------
+    kinds : list of str, optional
+        Keys of `hard_scenes.KINDS`; all by default.
+    draws : int
+        Scenes of each kind.
+
+    Returns
+    -------
+    xr.Dataset
+        On (kind, draw, solver): ``verdict``, an index into `VERDICTS`; ``violation`` of the contact
+        conditions as a share of the closure, and ``disagreement`` with direct elimination, NaN
+        where no state was returned; ``said``, what the solver said of a failure.
+        ``hard_scene(kind, draw)`` makes the scene again.
+    """
+    kinds = list(KINDS) if kinds is None else list(kinds)
+    judged = solvers()
+    found = [
+        [_judge_all(judged, hard_scene(kind, draw)) for draw in range(draws)] for kind in kinds
+    ]
+    codes = ", ".join(f"{code} {verdict}" for code, verdict in enumerate(VERDICTS))
+    fields = {
+        "verdict": ("int8", about("1", codes)),
+        "violation": (float, about("1", "largest violation of the conditions, share of closure")),
+        "disagreement": (float, about("1", "relative difference from direct elimination")),
+        "said": (object, about("1", "what the solver said")),
+    }
+    result = xr.Dataset(
+        coords={"kind": kinds, "draw": np.arange(draws), "solver": list(judged)},
+        attrs={"rtol": RTOL, "margin": MARGIN, "agreement": AGREEMENT},
+    )
+    for place, (name, (dtype, attributes)) in enumerate(fields.items()):
+        values = [[[verdict[place] for verdict in scene] for scene in row] for row in found]
+        result[name] = ("kind", "draw", "solver"), np.array(values, dtype=dtype), attributes
+    return result
+
+
+def _judge_all(judged, scene):
+    """Every solver on one scene."""
+    exact = _exact(scene)
+    return [_judge(solve, scene, exact) for solve in judged.values()]
+
+
+def _exact(scene):
+    """Force, or closure where the force is given, by direct elimination; NaN where that fails."""
+    load = {key: value for key, value in scene.load.items() if key != "start"}
+    try:
+        state = methods.METHODS["dense"](scene.height, scene.space, **load)
+    except (NotConverged, ValueError):
+        return np.nan
+    return _answer(state, scene)
+
+
+def _answer(state, scene):
+    return state.closure if "force" in scene.load else state.force
+
+
+def _judge(solve, scene, exact):
+    """Verdict, violation, disagreement and what the solver said."""
+    nothing = (np.nan, np.nan)
+    try:
+        state = solve(scene.height, scene.space, rtol=RTOL, **scene.load)
+    except (NotConverged, ValueError) as error:
+        said = str(error)
+        if any(words in said for words in _NOT_MADE_FOR):
+            return NOT_OFFERED, *nothing, said
+        return (HONEST if scene.solvable else RIGHT), *nothing, said
+    if not scene.solvable:
+        return SILENT, *nothing, "a state where there is none"
+    if state.closure == 0:
+        unloaded = not any(scene.load.get(control) for control in ("closure", "force"))
+        return (RIGHT if unloaded and not state.pressure.any() else SILENT), 0.0, 0.0, ""
+    wrong, rounding = violation(state, np.asarray(scene.height, float))
+    apart = abs(_answer(state, scene) / exact - 1)
+    right = wrong <= MARGIN * RTOL + rounding and not apart > AGREEMENT
+    return (RIGHT if right else SILENT), wrong, apart, ""
