@@ -1,0 +1,310 @@
+"""Error against time: every solver and every cheaper model on one scene, measured in turn.
+
+What is set up once for a grid (kernel, transforms, the topography handed over to another code) is
+timed for nobody; every solve starts cold. A method's tolerances are tried from loose to tight until
+one takes too long or fails.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from . import threads
+from .cheap_models import CheapState, bearing_area, coarse_grid, winkler
+from .contact import NotConverged, solve_contact
+from .domain import box_dimension
+from .labels import about
+from .methods import METHODS, peers
+from .reference_scenes import HertzScene, PunchScene, RoughScene
+from .timing import peak_memory, repeated, timed
+
+OURS = "fractalcontact"
+SOLVER, PEER, MODEL = "solver", "peer", "model"
+#: The cheaper models by name.
+MODELS = {"bearing area": bearing_area, "Winkler": winkler, "coarse grid": coarse_grid}
+#: Methods that write out the influence of every node on every other, and need many of them.
+SLOW = ("dense", "paper", "gauss-seidel", "nnls")
+#: The method without a tolerance: direct, and exact but for rounding.
+DIRECT = "dense"
+#: Our tolerance whose applications are counted and whose memory is measured: the default.
+DEFAULT_RTOL = 1e-6
+#: Below this error the production solver is meant to be the fastest.
+LEADS_BELOW = 1e-2
+
+#: Errors of every point against the reference.
+ERRORS = {
+    "force_error": "error of the force, relative",
+    "area_error": "error of the real contact area, relative",
+    "delta_error": "error of Delta_sigma from box counts",
+    "pressure_error": "error of the pressure field, root mean square over that of the reference",
+}
+
+
+def scenes_of(recipe):
+    """The scenes a study asks for, by name; none is computed before it is used.
+
+    Parameters
+    ----------
+    recipe : mapping
+        ``sizes`` (nodes a side), ``hurst``, ``contact`` (shares of the nodes) and ``seed``.
+
+    Returns
+    -------
+    dict
+    """
+    scenes = {}
+    for size in sorted(recipe["sizes"]):
+        scenes[f"n{size}_hertz"] = HertzScene(size)
+        scenes[f"n{size}_punch"] = PunchScene(size)
+        for hurst in recipe["hurst"]:
+            for share in recipe["contact"]:
+                scene = RoughScene(size, hurst, share, recipe["seed"])
+                scenes[f"n{size}_h{hurst:g}_c{100 * share:g}"] = scene
+    return scenes
+
+
+@dataclass(frozen=True)
+class _Way:
+    """One way to solve a scene: ``solve`` is timed, ``finish`` makes a state of what it returns."""
+
+    method: str
+    kind: str
+    tolerance: float
+    solve: Callable
+    finish: Callable
+
+
+def error_against_time(scene, recipe):
+    """Errors, seconds and memory of every way to solve a scene.
+
+    Parameters
+    ----------
+    scene : RoughScene, HertzScene or PunchScene
+    recipe : mapping
+        ``tolerances``; ``runs`` of each way, of which the median counts; ``longest``, seconds from
+        which on a way is run once and no tighter tolerance tried; ``slow_nodes``, interpenetrating
+        nodes up to which the methods of `SLOW` are tried.
+
+    Returns
+    -------
+    xr.Dataset
+        On ``point``, with ``method``, ``kind`` and ``tolerance`` (NaN where there is none):
+        `ERRORS`, ``seconds`` (median; ``seconds_low`` and ``seconds_high`` are the fastest and the
+        slowest run), ``runs``, ``memory`` (once a method), ``said`` (of a failure), and
+        ``on_front`` and ``on_pressure_front``: whether nothing else is both faster and closer.
+        Attributes describe the scene, the reference and its error.
+    """
+    reference = scene.single
+    floor = reference.own_error(scene.height)
+    _warm_up(recipe)
+    table, ways = _first_runs(scene, recipe)
+    again = repeated(
+        [way.solve for way in ways],
+        [row["seconds"] for row in table if not row["said"]],
+        runs=recipe["runs"],
+        longest=recipe["longest"],
+    )
+    for row, runs in zip((row for row in table if not row["said"]), again, strict=True):
+        row |= {"seconds": np.median(runs), "seconds_low": min(runs), "seconds_high": max(runs)}
+        row["runs"] = len(runs)
+    memory = {way.method: way for way in ways if not way.tolerance < DEFAULT_RTOL}
+    memory = {method: peak_memory(way.solve) for method, way in memory.items()}
+    for row in table:
+        row["memory"] = memory.get(row["method"], np.nan)
+    result = _labelled(table)
+    for name, error in (("on_front", "force_error"), ("on_pressure_front", "pressure_error")):
+        front = pareto_front(result["seconds"].values, np.maximum(result[error].values, floor))
+        result[name] = ("point", front, about("1", f"nothing is faster and has less {error}"))
+    return result.assign_attrs(_about_scene(scene, floor))
+
+
+def _first_runs(scene, recipe):
+    """A row for every way tried, and the ways that gave a state, each run once."""
+    dimension = box_dimension(scene.single.state.in_contact, 1.0).dimension
+    table, ways = [], []
+    for ladder in _ladders(scene, recipe):
+        for way in ladder:
+            row = {"method": way.method, "kind": way.kind, "tolerance": way.tolerance, "said": ""}
+            table.append(row)
+            try:
+                raw, row["seconds"] = timed(way.solve)
+            except (NotConverged, peers.Failed) as failure:
+                row["said"] = str(failure)
+                break
+            row |= errors_of(way.finish(raw), scene.single, dimension)
+            ways.append(way)
+            if row["seconds"] > recipe["longest"]:
+                break
+    return table, ways
+
+
+def _ladders(scene, recipe):
+    """For every method its ways from loose to tight."""
+    height, space, closure = scene.height, scene.space, scene.closure
+    tolerances = sorted(recipe["tolerances"], reverse=True)
+    for name, press in {OURS: solve_contact, **METHODS}.items():
+        if name in SLOW and scene.overlapping > recipe["slow_nodes"]:
+            continue
+        steps = [np.nan] if name == DIRECT else tolerances
+        yield [
+            _Way(name, SOLVER, rtol, partial(_cold, press, height, space, closure, rtol), _as_it_is)
+            for rtol in steps
+        ]
+    for name in peers.installed():
+        peer = peers.set_up(name, height, space)
+        finish = partial(_peer_state, peer, scene)
+        yield [
+            _Way(name, PEER, rtol, partial(_press_peer, peer, scene.single, rtol), finish)
+            for rtol in tolerances
+        ]
+    for name, model in MODELS.items():
+        solve = partial(model, height, space, closure=closure)
+        yield [_Way(name, MODEL, np.nan, solve, _as_it_is)]
+
+
+def _cold(press, height, space, closure, rtol):
+    """A state from nothing: what the half-space keeps of the last contact set is dropped."""
+    space.forget()
+    options = {} if np.isnan(rtol) else {"rtol": rtol}
+    return press(height, space, closure=closure, **options)
+
+
+def _as_it_is(state):
+    return state
+
+
+def _press_peer(peer, reference, rtol):
+    """Pressure of a peer at the reference's closure, or under its force."""
+    if peer.control == "force":
+        return peer.solve(reference.force, rtol)
+    nodes = np.count_nonzero(reference.state.in_contact)
+    return peer.solve(reference.closure, rtol, pixel_force=reference.force / nodes)
+
+
+def _peer_state(peer, scene, pressure):
+    clearance = scene.height.max() - scene.height
+    closure = scene.single.closure if peer.control == "closure" else None
+    return peers.state_of(peer, pressure, clearance, closure)
+
+
+def _warm_up(recipe):
+    """Every method once on a few nodes: compiled code is loaded before the clock starts."""
+    _first_runs(HertzScene(16), {**recipe, "tolerances": recipe["tolerances"][:1]})
+
+
+def errors_of(state, reference, dimension):
+    """`ERRORS` of a state.
+
+    Parameters
+    ----------
+    state : ContactState or CheapState
+    reference : Reference
+    dimension : float
+        Delta_sigma of the reference's contact domain.
+
+    Returns
+    -------
+    dict
+    """
+    exact = reference.state
+    same = np.array_equal(state.in_contact, exact.in_contact)
+    found = dimension if same else box_dimension(state.in_contact, 1.0).dimension
+    norm = np.sqrt(np.mean(exact.pressure**2))
+    return {
+        "force_error": float(reference.error(state)),
+        "area_error": abs(state.area / exact.area - 1),
+        "delta_error": abs(found - dimension),
+        "pressure_error": float(np.sqrt(np.mean((state.pressure - exact.pressure) ** 2)) / norm),
+    }
+
+
+def pareto_front(seconds, error):
+    """Which points no other is both faster than and closer than.
+
+    Parameters
+    ----------
+    seconds, error : (n,) array_like
+        A point with a NaN is on no front.
+
+    Returns
+    -------
+    (n,) bool ndarray
+        Of points alike in both all are on the front.
+    """
+    seconds, error = np.asarray(seconds, float), np.asarray(error, float)
+    known = np.isfinite(seconds) & np.isfinite(error)
+    no_worse = (seconds <= seconds[:, np.newaxis]) & (error <= error[:, np.newaxis])
+    better = (seconds < seconds[:, np.newaxis]) | (error < error[:, np.newaxis])
+    return known & ~(no_worse & better & known).any(axis=1)
+
+
+def ahead_of_ours(points, *, quantity="force_error", below=LEADS_BELOW):
+    """Points of others on the front below an error: where ours is not the fastest way there.
+
+    Parameters
+    ----------
+    points : xr.Dataset
+        From `error_against_time`.
+    quantity : str
+        ``force_error`` or ``pressure_error``.
+    below : float
+
+    Returns
+    -------
+    xr.Dataset
+        The points of the front that are not ours.
+    """
+    front = points["on_front" if quantity == "force_error" else "on_pressure_front"]
+    others = front & (points[quantity] < below) & (points["method"] != OURS)
+    return points.isel(point=np.flatnonzero(others))
+
+
+def _labelled(table):
+    """The dataset from the rows."""
+    words = {
+        **{name: about("1", text) for name, text in ERRORS.items()},
+        "seconds": about("s", "wall time of a cold solve, median of the runs"),
+        "seconds_low": about("s", "wall time, fastest run"),
+        "seconds_high": about("s", "wall time, slowest run"),
+        "runs": about("1", "runs"),
+        "memory": about("B", "peak memory above that before the solve, on one thread"),
+    }
+    texts = {
+        "method": about("1", "solver or model"),
+        "kind": about("1", "solver of the package, peer or cheaper model"),
+        "said": about("1", "what the solver said of its failure"),
+    }
+    result = xr.Dataset()
+    for name, attributes in texts.items():
+        result[name] = ("point", np.array([row[name] for row in table], dtype=object), attributes)
+    tolerance = [row["tolerance"] for row in table]
+    result["tolerance"] = ("point", tolerance, about("1", "tolerance asked for"))
+    for name, attributes in words.items():
+        values = [row.get(name, np.nan) if not row["said"] else np.nan for row in table]
+        result[name] = ("point", np.array(values, float), attributes)
+    return result
+
+
+def _about_scene(scene, floor):
+    """Attributes: the scene, its reference, and what one application of the operator costs."""
+    reference, space = scene.single, scene.space
+    field = reference.state.pressure
+    applied = [timed(partial(space.convolve, field))[1] for _ in range(5)]
+    ours = _cold(solve_contact, scene.height, space, scene.closure, DEFAULT_RTOL)
+    return {
+        "scene": scene.name,
+        "size": scene.size,
+        "hurst": getattr(scene, "hurst", np.nan),
+        "contact": getattr(scene, "fraction", np.nan),
+        "contact_reached": float(reference.fraction),
+        "reference_tolerance": reference.tolerance,
+        "reference_error": floor,
+        "elimination_error": float(scene.eliminated()),
+        "application_seconds": float(np.median(applied)),
+        "applications": ours.iterations,
+        "threads": threads.count(),
+        "leads_below": LEADS_BELOW,
+    }
