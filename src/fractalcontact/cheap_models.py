@@ -72,7 +72,11 @@ def bearing_area(composite, space, *, closure=None, force=None, hardness=None):
             raise ValueError("the bearing area needs a hardness to carry a force: give hardness=")
         nodes = min(round(load / (hardness * space.cell_area)), clearance.size)
         depth = np.sort(clearance, axis=None)
-        load = float(depth[nodes]) if nodes < clearance.size else float(np.nextafter(depth[-1], np.inf))
+        load = (
+            float(depth[nodes])
+            if nodes < clearance.size
+            else float(np.nextafter(depth[-1], np.inf))
+        )
     in_contact = clearance < load
     area = np.count_nonzero(in_contact) * space.cell_area
     limit = np.nan if hardness is None else hardness
