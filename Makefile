@@ -1,5 +1,6 @@
 # make        environment, then the default study (config/paper.yaml)
 # make test   what the tests need, then the tests
+# make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make scenes SCENES=5000   so many random contact problems, each state verified
 # make lint   ruff and snakefmt, changing nothing
@@ -25,15 +26,20 @@ GUARD :=
 UNLOCK :=
 endif
 
-.PHONY: all study smoke test bench scenes lint format lock clean
+.PHONY: all study smoke accuracy test bench scenes lint format lock clean
 all: study
 
 study: $(VENV)/installed
-	@$(GUARD) sh -c '$(UNLOCK) $(SNAKEMAKE) --configfile $(STUDY)' \
+	@$(GUARD) sh -c '$(UNLOCK) $(SNAKEMAKE) $(TARGET) --configfile $(STUDY)' \
 	  || { s=$$?; echo "make: the study did not finish; what is done is kept, and 'make' goes on from there." >&2; exit $$s; }
 
 smoke:
 	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
+
+# Times are compared: let nothing else run meanwhile.
+accuracy: $(if $(PEERS),$(VENV)/peers-installed)
+	@$(MAKE) --no-print-directory study TARGET=accuracy \
+	  STUDY=$(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
 
 test: $(VENV)/tests-installed
 	$(BIN)/python -m pytest

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .contact import checked_problem, solve_contact
+from .contact import checked_hardness, checked_problem, solve_contact
 from .halfspace import rectangle_mean_displacement
 
 #: Tolerance of the coarse solves: far below what the coarse grid itself is off by.
@@ -64,27 +64,24 @@ def bearing_area(composite, space, *, closure=None, force=None, hardness=None):
     Raises
     ------
     ValueError
-        If the load makes no sense, or a force is given without a hardness.
+        If the load makes no sense, a force is given without a hardness, or is more than the
+        hardness lets the window carry.
     """
     load, clearance = checked_problem(composite, space, closure, force, None, 0.5)
+    limit = checked_hardness(hardness, space, force)
     if force is not None:
         if hardness is None:
             raise ValueError("the bearing area needs a hardness to carry a force: give hardness=")
-        nodes = min(round(load / (hardness * space.cell_area)), clearance.size)
-        depth = np.sort(clearance, axis=None)
-        load = (
-            float(depth[nodes])
-            if nodes < clearance.size
-            else float(np.nextafter(depth[-1], np.inf))
-        )
+        nodes = min(round(load / (limit * space.cell_area)), clearance.size - 1)
+        load = float(np.sort(clearance, axis=None)[nodes])
     in_contact = clearance < load
     area = np.count_nonzero(in_contact) * space.cell_area
-    limit = np.nan if hardness is None else hardness
+    carried = np.nan if hardness is None else limit
     return CheapState(
-        pressure=np.where(in_contact, limit, 0.0),
+        pressure=np.where(in_contact, carried, 0.0),
         in_contact=in_contact,
         closure=load,
-        force=limit * area,
+        force=carried * area,
         area=area,
     )
 

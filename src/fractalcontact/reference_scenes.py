@@ -209,6 +209,29 @@ class PunchScene(_Scene):
         return PUNCH_CLOSURE * REACH * SIDE / 2
 
 
+def scenes_of(recipe):
+    """The scenes a study asks for, by name; none is computed before it is used.
+
+    Parameters
+    ----------
+    recipe : mapping
+        ``sizes`` (nodes a side), ``hurst``, ``contact`` (shares of the nodes) and ``seed``.
+
+    Returns
+    -------
+    dict
+    """
+    scenes = {}
+    for size in sorted(recipe["sizes"]):
+        scenes[f"n{size}_hertz"] = HertzScene(size)
+        scenes[f"n{size}_punch"] = PunchScene(size)
+        for hurst in recipe["hurst"]:
+            for share in recipe["contact"]:
+                scene = RoughScene(size, hurst, share, recipe["seed"])
+                scenes[f"n{size}_h{hurst:g}_c{100 * share:g}"] = scene
+    return scenes
+
+
 def _tightest(height, space, closure, start):
     for tolerance in REFERENCE_TOLERANCES:
         try:
