@@ -24,33 +24,33 @@ def growth(scenes, error):
     Returns
     -------
     xr.Dataset
-        On (surface, method, size): ``seconds``, ``memory`` (B) and ``reached``, the error of the
-        force. On (surface, method): ``seconds_exponent`` and ``memory_exponent`` in the number of
+        On (surface, solver, size): ``seconds``, ``memory`` (B) and ``reached``, the error of the
+        force. On (surface, solver): ``seconds_exponent`` and ``memory_exponent`` in the number of
         nodes, with ``_low`` and ``_high`` (95 %; NaN with fewer than three sizes). On (surface,
         size), of ours: ``bound``, seconds of its applications of the operator alone.
     """
     surfaces = list(dict.fromkeys(_surface(scene) for scene in scenes))
     sizes = sorted({scene.attrs["size"] for scene in scenes})
-    methods = list(
+    solvers = list(
         dict.fromkeys(
             str(name)
             for scene in scenes
             for name in scene["method"].values[scene["kind"].values != MODEL]
         )
     )
-    shape = (len(surfaces), len(methods), len(sizes))
+    shape = (len(surfaces), len(solvers), len(sizes))
     table = {name: np.full(shape, np.nan) for name in (*FITTED, "reached")}
     bound = np.full((len(surfaces), len(sizes)), np.nan)
     for scene in scenes:
         i, k = surfaces.index(_surface(scene)), sizes.index(scene.attrs["size"])
         bound[i, k] = scene.attrs["applications"] * scene.attrs["application_seconds"]
-        for j, method in enumerate(methods):
-            fastest = _fastest(scene, method, error)
+        for j, solver in enumerate(solvers):
+            fastest = _fastest(scene, solver, error)
             if fastest is not None:
                 table["seconds"][i, j, k] = fastest["seconds"]
                 table["memory"][i, j, k] = fastest["memory"]
                 table["reached"][i, j, k] = fastest["force_error"]
-    dims = ("surface", "method", "size")
+    dims = ("surface", "solver", "size")
     result = xr.Dataset(
         {
             "seconds": (dims, table["seconds"], about("s", "wall time at the error asked for")),
@@ -64,7 +64,7 @@ def growth(scenes, error):
         },
         coords={
             "surface": ("surface", surfaces, about("1", "scene without its size")),
-            "method": ("method", methods, about("1", "solver")),
+            "solver": ("solver", solvers, about("1", "solver of the package, or peer")),
             "size": ("size", sizes, about("1", "nodes a side")),
         },
         attrs={"error": error},
@@ -84,10 +84,10 @@ def _surface(scene):
     return scene.attrs["scene"].split(", ", 1)[1]
 
 
-def _fastest(scene, method, error):
-    """The fastest point of a method with no more than an error; None if it has none."""
-    good = (scene["method"] == method) & (scene["force_error"] <= error)
+def _fastest(scene, solver, error):
+    """The fastest point of a solver with no more than an error; None if it has none."""
+    good = (scene["method"] == solver) & (scene["force_error"] <= error)
     if not good.any():
         return None
     chosen = scene.isel(point=np.flatnonzero(good))
-    return chosen.isel(point=int(chosen["seconds"].argmin()))
+    return chosen.isel(point=int(chosen["seconds"].values.argmin()))

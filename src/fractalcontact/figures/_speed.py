@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..speed import ERRORS, MODEL, OURS
-from .common import COLOURS, LINES, MARKERS, colour_of
+from .common import COLOURS, LINES, MARKERS, colour_of, entries
 
 #: Errors of zero are drawn here, and nothing below.
 SMALLEST = 1e-14
@@ -15,6 +15,7 @@ AXES = {
     "delta_error": r"error of $\Delta_\sigma$ (1)",
     "pressure_error": "error of $p$, rms (1)",
 }
+_COLOURS = tuple(colour_of(i) for i in range(1, len(COLOURS) - 1))
 OURS_STYLE = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "zorder": 3}
 
 
@@ -49,7 +50,8 @@ def styles(scenes):
         kinds |= dict(zip(scene["method"].values, scene["kind"].values, strict=True))
     found = {OURS: OURS_STYLE}
     for i, (method, kind) in enumerate((m, k) for m, k in kinds.items() if m != OURS):
-        style = {"color": colour_of(i + 1), "marker": MARKERS[(i + 1) % len(MARKERS)]}
+        # Black is ours alone.
+        style = {"color": _COLOURS[i % len(_COLOURS)], "marker": MARKERS[(i + 1) % len(MARKERS)]}
         hollow = {"mfc": "none", "ls": "none"} if kind == MODEL else {"ls": LINES[1], "lw": 0.8}
         found[method] = style | hollow
     return found
@@ -57,30 +59,30 @@ def styles(scenes):
 
 def draw_points(axes, scene, quantity, looks):
     """Every method's error against its seconds, the front, and the reference's own error."""
-    floor = max(scene.attrs["reference_error"], SMALLEST)
     for method, look in looks.items():
         own = scene.isel(point=np.flatnonzero(scene["method"] == method))
         known = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
         error = np.maximum(own[quantity].values[known], SMALLEST)
-        axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
+        if known.any():
+            axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
     if quantity in ("force_error", "pressure_error"):
         name = "on_front" if quantity == "force_error" else "on_pressure_front"
         front = scene.isel(point=np.flatnonzero(scene[name])).sortby("seconds")
-        error = np.maximum(front[quantity].values, floor)
-        axes.step(
-            front["seconds"],
-            error,
-            where="post",
-            color="0.75",
-            lw=4,
-            zorder=0,
-            label="Pareto front",
-        )
-    if quantity != "delta_error":
-        axes.axhspan(SMALLEST / 10, floor, color="0.92", lw=0, label="error of the reference")
+        error = np.maximum(front[quantity].values, SMALLEST)
+        look = {"color": "0.75", "lw": 4, "zorder": 0}
+        axes.step(front["seconds"], error, where="post", label="Pareto front", **look)
+    if quantity == "force_error":
+        known_to = max(scene.attrs["reference_error"], SMALLEST)
+        axes.axhspan(SMALLEST / 10, known_to, color="0.92", lw=0, label="error of the reference")
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_ylim(SMALLEST / 3, 30)
+
+
+def legend_of(figure, panels, ncols=4):
+    """One legend below a figure with what stands in any of its panels."""
+    handles = {handle.get_label(): handle for axes in panels for handle in entries(axes)}
+    figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=ncols)
 
 
 def table_of(scenes):

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ..accuracy import QUANTITIES
 from ._words import estimate
-from .common import MARKERS, WIDTH, Drawing, colour_of, group, letter
+from .common import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
 
 _TITLES = {"hertz": "paraboloid (Hertz)", "punch": "flat circular punch"}
 
@@ -36,6 +36,7 @@ def draw(atlas, names):
     _draw_trials(panels[2], trials)
     letter(panels[2], "c", "Richardson's extrapolation")
     for axes in panels:
+        label_short_span(axes.xaxis)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
     return Drawing(figure, _table(found, trials), _caption(found, trials))
 

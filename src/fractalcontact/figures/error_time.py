@@ -1,11 +1,21 @@
-"""Error of the force against time on the rough scenes, with the Pareto front: one figure a study."""
+"""Error of the force against time on the rough scenes, with the Pareto front."""
 
 from matplotlib.figure import Figure
 
 from ..speed import LEADS_BELOW, OURS, ahead_of_ours
-from ._speed import AXES, draw_points, pick, rough, scenes_of, styles, table_of, values_of
+from ._speed import (
+    AXES,
+    draw_points,
+    legend_of,
+    pick,
+    rough,
+    scenes_of,
+    styles,
+    table_of,
+    values_of,
+)
 from ._words import short
-from .common import WIDTH, Drawing, entries, letter
+from .common import WIDTH, Drawing, letter
 
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
@@ -41,8 +51,7 @@ def draw(atlas, names):
         panels[i, 0].set_ylabel(AXES["force_error"])
     for axes in panels[-1]:
         axes.set_xlabel("wall time (s)")
-    handles = {handle.get_label(): handle for axes in panels.flat for handle in entries(axes)}
-    figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=4)
+    legend_of(figure, panels.flat)
     return Drawing(figure, table_of(scenes), caption(scenes, "force_error", "force"))
 
 
@@ -70,9 +79,9 @@ def caption(scenes, quantity, words):
     lead = [name for name in lead if name not in behind]
     runs = int(max(scene["runs"].max() for scene in scenes.values()))
     opening = (
-        f"In no figure of the paper: error of the {words} against wall time on self-affine surfaces "
-        f"pressed by a closure from a cold start, medians of up to {runs} runs taken in turn, "
-        f"{next(iter(scenes.values())).attrs['threads']} thread(s) of ours. "
+        f"In no figure of the paper: error of the {words} against wall time on self-affine "
+        f"surfaces pressed by a closure from a cold start, medians of up to {runs} runs taken in "
+        f"turn, {next(iter(scenes.values())).attrs['threads']} thread(s) of ours. "
         f"{OURS} is on the Pareto front at every error below {LEADS_BELOW:g} on "
         f"{len(lead)} of {len(scenes)} scenes (nodes a side, H, share in contact)"
     )

@@ -2,8 +2,18 @@
 
 from matplotlib.figure import Figure
 
-from ._speed import AXES, draw_points, pick, rough, scenes_of, styles, table_of, values_of
-from .common import WIDTH, Drawing, entries, letter
+from ._speed import (
+    AXES,
+    draw_points,
+    legend_of,
+    pick,
+    rough,
+    scenes_of,
+    styles,
+    table_of,
+    values_of,
+)
+from .common import WIDTH, Drawing, letter
 from .error_time import caption
 
 QUANTITIES = ("area_error", "delta_error", "pressure_error")
@@ -38,8 +48,7 @@ def draw(atlas, names):
             letter(panels[i, j], "abcdefghijkl"[i * len(columns) + j], title)
             panels[i, 0].set_ylabel(AXES[quantity])
         panels[-1, j].set_xlabel("wall time (s)")
-    handles = {handle.get_label(): handle for axes in panels.flat for handle in entries(axes)}
-    figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=4)
+    legend_of(figure, panels.flat)
     words = (
         f"Errors of the real contact area, of Delta_sigma from box counts and of the pressure, at "
         f"{size} x {size} nodes and {100 * contact:g} % in contact; an error of zero, the domain "

@@ -5,9 +5,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..speed import OURS
-from ._speed import rough, scenes_of, styles
+from ._speed import legend_of, rough, scenes_of, styles
 from ._words import estimate, short
-from .common import WIDTH, Drawing, colour_of, entries, group, letter
+from .common import WIDTH, Drawing, colour_of, group, label_short_span, letter
 
 _ROWS = {"seconds": ("wall time (s)", 1.0), "memory": ("peak memory (MB)", 1e6)}
 
@@ -40,8 +40,8 @@ def draw(atlas, names):
         panels[-1, j].set_xlabel("nodes a side (1)")
     for i, (label, _) in enumerate(_ROWS.values()):
         panels[i, 0].set_ylabel(label)
-    handles = {handle.get_label(): handle for axes in panels.flat for handle in entries(axes)}
-    figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=3)
+        label_short_span(panels[i, 0].yaxis)
+    legend_of(figure, panels.flat, ncols=3)
     return Drawing(figure, _table(growth), _caption(growth, columns))
 
 
@@ -55,10 +55,10 @@ def _middle(scenes):
 
 def _draw_growth(axes, one, name, looks):
     sizes, scale = one["size"].values, _ROWS[name][1]
-    for method in one["method"].values:
-        values = one[name].sel(method=method).values / scale
+    for solver in one["solver"].values:
+        values = one[name].sel(solver=solver).values / scale
         if np.isfinite(values).any():
-            axes.plot(sizes, values, **looks[method], label=method)
+            axes.plot(sizes, values, **looks[solver], label=solver)
     axes.set_xscale("log", base=2)
     axes.set_yscale("log")
     axes.set_xticks(sizes, [str(size) for size in sizes])
@@ -82,7 +82,7 @@ def _draw_bounds(axes, one):
 
 
 def _table(growth):
-    """One row a surface, method and size."""
+    """One row a surface, solver and size."""
     columns = ["seconds", "memory", "reached", "bound"]
     columns += [name for name in growth.data_vars if "exponent" in name]
     table = growth[columns].to_dataframe().reset_index()
@@ -95,11 +95,11 @@ def _caption(growth, columns):
     told = []
     for surface in columns:
         one = growth.sel(surface=surface)
-        ours = one.sel(method=OURS)
+        ours = one.sel(solver=OURS)
         exponents = [
-            f"{method} {_exponent(one.sel(method=method), 'seconds')}"
-            for method in one["method"].values
-            if np.isfinite(one["seconds_exponent"].sel(method=method))
+            f"{solver} {_exponent(one.sel(solver=solver), 'seconds')}"
+            for solver in one["solver"].values
+            if np.isfinite(one["seconds_exponent"].sel(solver=solver))
         ]
         share = ours["bound"] / ours["seconds"]
         told.append(
