@@ -70,12 +70,16 @@ def test_every_point_off_the_front_is_beaten_by_one_on_it():
 def test_others_are_ahead_only_below_the_error_and_on_the_front():
     points = xr.Dataset(
         {
-            "method": ("point", np.array([OURS, "a", "b", "c"], dtype=object)),
-            "force_error": ("point", [1e-5, 1e-3, 1e-1, 1e-4]),
-            "on_front": ("point", [True, True, True, False]),
-        }
+            "method": ("point", np.array([OURS, "a", "b", "c", "d"], dtype=object)),
+            "kind": ("point", np.array(["solver"] * 4 + ["model"], dtype=object)),
+            "force_error": ("point", [1e-5, 1e-3, 1e-1, 1e-4, 1e-3]),
+            "seconds": ("point", [4.0, 3.0, 1.0, 5.0, 2.0]),
+        },
+        attrs={"reference_error": 1e-9},
     )
-    assert ahead_of_ours(points)["method"].values.tolist() == ["a"]
+    assert ahead_of_ours(points)["method"].values.tolist() == ["d"]
+    assert ahead_of_ours(points, models=False)["method"].values.tolist() == ["a"]
+    assert ahead_of_ours(points, below=1e-5).sizes["point"] == 0
 
 
 # -- the scenes ------------------------------------------------------------------------------------
@@ -144,9 +148,12 @@ def test_a_slow_method_is_left_out_and_a_slow_way_run_once(scene):
     recipe = {**RECIPE, "slow_nodes": 0, "longest": 1e-9}
     found = error_against_time(scene, recipe)
     assert "dense" not in found["method"].values
-    ours = found.isel(point=np.flatnonzero(found["method"] == OURS))
-    assert ours["tolerance"].values.tolist() == [1e-1]
-    assert ours["runs"].values.tolist() == [1]
+    tried = {
+        name: found["tolerance"].values[(found["method"] == name).values].tolist()
+        for name in (OURS, "polonsky-keer")
+    }
+    assert tried == {OURS: [1e-1, 1e-6], "polonsky-keer": [1e-1]}
+    assert (found["runs"] == 1).all()
 
 
 def test_runs_are_taken_in_turn():

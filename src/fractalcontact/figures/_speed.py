@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..speed import ERRORS, MODEL, OURS
+from ..speed import ERRORS, FRONTS, MODEL, OURS
 from .common import COLOURS, LINES, MARKERS, colour_of, entries
 
 #: Errors of zero are drawn here, and nothing below.
@@ -65,8 +65,7 @@ def draw_points(axes, scene, quantity, looks):
         error = np.maximum(own[quantity].values[known], SMALLEST)
         if known.any():
             axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
-    if quantity in ("force_error", "pressure_error"):
-        name = "on_front" if quantity == "force_error" else "on_pressure_front"
+    for name in (name for name, error in FRONTS.items() if error == quantity):
         front = scene.isel(point=np.flatnonzero(scene[name])).sortby("seconds")
         error = np.maximum(front[quantity].values, SMALLEST)
         look = {"color": "0.75", "lw": 4, "zorder": 0}

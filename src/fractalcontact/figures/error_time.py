@@ -70,36 +70,42 @@ def caption(scenes, quantity, words):
     -------
     str
     """
-    behind = {
-        scene.attrs["scene"]: points
-        for scene in scenes.values()
-        if (points := ahead_of_ours(scene, quantity=quantity)).sizes["point"]
-    }
-    lead = [scene.attrs["scene"] for scene in scenes.values()]
-    lead = [name for name in lead if name not in behind]
     runs = int(max(scene["runs"].max() for scene in scenes.values()))
-    opening = (
+    worst = max(scene.attrs["reference_error"] for scene in scenes.values())
+    return (
         f"In no figure of the paper: error of the {words} against wall time on self-affine "
         f"surfaces pressed by a closure from a cold start, medians of up to {runs} runs taken in "
         f"turn, {next(iter(scenes.values())).attrs['threads']} thread(s) of ours. "
-        f"{OURS} is on the Pareto front at every error below {LEADS_BELOW:g} on "
-        f"{len(lead)} of {len(scenes)} scenes (nodes a side, H, share in contact)"
+        f"{_verdict(scenes, quantity, models=False)} {_verdict(scenes, quantity, models=True)} "
+        f"The references' own error of the force is at most {short(worst)}."
     )
-    told = [f"{name} ({_others(points, quantity)})" for name, points in behind.items()]
-    parts = [opening + (f": {'; '.join(lead)}." if lead else ".")]
-    if told:
-        parts.append(f"Not on: {'; '.join(told)}, where others are faster to the errors named.")
-    worst = max(scene.attrs["reference_error"] for scene in scenes.values())
-    parts.append(f"The references' own error of the force is at most {short(worst)}.")
-    return " ".join(parts)
+
+
+def _verdict(scenes, quantity, *, models):
+    """On how many scenes ours is on the front at every error below the limit, and which not."""
+    ahead = [ahead_of_ours(scene, quantity=quantity, models=models) for scene in scenes.values()]
+    behind = [points for points in ahead if points.sizes["point"]]
+    leads = [points.attrs["scene"] for points in ahead if not points.sizes["point"]]
+    among = "With the cheaper models it is" if models else f"Among the solvers {OURS} is"
+    text = (
+        f"{among} on the Pareto front at every error below {LEADS_BELOW:g} on {len(leads)} of "
+        f"{len(scenes)} scenes (nodes a side, H, share in contact)"
+    )
+    if models or not leads:
+        text += "."
+    else:
+        text += f": {'; '.join(leads)}."
+    if behind:
+        text += f" Not on: {'; '.join(_others(points, quantity) for points in behind)}."
+    return text
 
 
 def _others(points, quantity):
-    """Methods ahead of ours, with the error and the seconds of each point."""
-    told = []
-    for i in range(points.sizes["point"]):
-        one = points.isel(point=i)
-        told.append(
-            f"{one['method'].item()} {short(one[quantity])} in {short(1e3 * one['seconds'])} ms"
+    """The methods ahead of ours on a scene, with the error and the seconds of each point."""
+    told = ", ".join(
+        f"{method} {short(error)} in {short(1e3 * seconds)} ms"
+        for method, error, seconds in zip(
+            points["method"].values, points[quantity].values, points["seconds"].values, strict=True
         )
-    return ", ".join(told)
+    )
+    return f"{points.attrs['scene']}, {points.attrs['overlapping']} nodes overlapping ({told})"
