@@ -71,13 +71,14 @@ def caption(scenes, quantity, words):
     str
     """
     runs = int(max(scene["runs"].max() for scene in scenes.values()))
+    alike = max(scene.attrs["told_apart_to"] for scene in scenes.values())
     worst = max(scene.attrs["reference_error"] for scene in scenes.values())
     return (
         f"In no figure of the paper: error of the {words} against wall time on self-affine "
         f"surfaces pressed by a closure from a cold start, medians of up to {runs} runs taken in "
         f"turn, {next(iter(scenes.values())).attrs['threads']} thread(s) of ours. "
         f"{_verdict(scenes, quantity, models=False)} {_verdict(scenes, quantity, models=True)} "
-        f"The references' own error of the force is at most {short(worst)}."
+        f"Errors below {short(alike)} count as alike. The references' own error of the force is at most {short(worst)}."
     )
 
 
