@@ -20,9 +20,14 @@ OURS_STYLE = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "
 
 
 def scenes_of(atlas):
-    """Datasets of the scenes measured, by name, the smallest first."""
+    """Datasets of the scenes measured, by name, in order of size, H and contact."""
     found = {name: node.to_dataset().load() for name, node in atlas["speed"].children.items()}
-    return dict(sorted(found.items(), key=lambda item: (item[1].attrs["size"], item[0])))
+    return dict(sorted(found.items(), key=lambda item: _place(item[1].attrs)))
+
+
+def _place(attrs):
+    size, *smooth = (attrs[key] for key in ("size", "hurst", "contact"))
+    return size, *np.nan_to_num(smooth, nan=np.inf), attrs["scene"]
 
 
 def rough(scenes):

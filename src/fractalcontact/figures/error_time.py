@@ -78,7 +78,8 @@ def caption(scenes, quantity, words):
         f"surfaces pressed by a closure from a cold start, medians of up to {runs} runs taken in "
         f"turn, {next(iter(scenes.values())).attrs['threads']} thread(s) of ours. "
         f"{_verdict(scenes, quantity, models=False)} {_verdict(scenes, quantity, models=True)} "
-        f"Errors below {short(alike)} count as alike. The references' own error of the force is at most {short(worst)}."
+        f"Errors below {short(alike)} count as alike. The references' own error of the force is at "
+        f"most {short(worst)}."
     )
 
 
