@@ -1,8 +1,9 @@
 """Error of the force against time on the rough scenes, with the Pareto front."""
 
+import numpy as np
 from matplotlib.figure import Figure
 
-from ..speed import LEADS_BELOW, OURS, ahead_of_ours
+from ..speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
 from ._speed import (
     AXES,
     draw_points,
@@ -77,29 +78,37 @@ def caption(scenes, quantity, words):
         f"In no figure of the paper: error of the {words} against wall time on self-affine "
         f"surfaces pressed by a closure from a cold start, medians of up to {runs} runs taken in "
         f"turn, {next(iter(scenes.values())).attrs['threads']} thread(s) of ours. "
-        f"{_verdict(scenes, quantity, models=False)} {_verdict(scenes, quantity, models=True)} "
+        f"{_solvers(scenes, quantity)}. {_models(scenes, quantity)}. "
         f"Errors below {short(alike)} count as alike. The references' own error of the force is at "
         f"most {short(worst)}."
     )
 
 
-def _verdict(scenes, quantity, *, models):
-    """On how many scenes ours is on the front at every error below the limit, and which not."""
-    ahead = [ahead_of_ours(scene, quantity=quantity, models=models) for scene in scenes.values()]
+def _solvers(scenes, quantity):
+    """On how many scenes ours is on the front of the solvers at every error below the limit."""
+    ahead = [ahead_of_ours(scene, quantity=quantity, models=False) for scene in scenes.values()]
     behind = [points for points in ahead if points.sizes["point"]]
     leads = [points.attrs["scene"] for points in ahead if not points.sizes["point"]]
-    among = "With the cheaper models it is" if models else f"Among the solvers {OURS} is"
-    text = (
-        f"{among} on the Pareto front at every error below {LEADS_BELOW:g} on {len(leads)} of "
-        f"{len(scenes)} scenes (nodes a side, H, share in contact)"
+    return (
+        f"Among the solvers {OURS} is on the Pareto front at every error below {LEADS_BELOW:g} on "
+        f"{len(leads)} of {len(scenes)} scenes (nodes a side, H, share in contact)"
+        + (f": {'; '.join(leads)}" if leads else "")
+        + (f". Not on: {_listed(behind, quantity)}" if behind else "")
     )
-    if models or not leads:
-        text += "."
-    else:
-        text += f": {'; '.join(leads)}."
-    if behind:
-        text += f" Not on: {'; '.join(_others(points, quantity) for points in behind)}."
-    return text
+
+
+def _models(scenes, quantity):
+    """Where a cheaper model is on the front below the limit."""
+    ahead = [ahead_of_ours(scene, quantity=quantity) for scene in scenes.values()]
+    models = [points.isel(point=np.flatnonzero(points["kind"] == MODEL)) for points in ahead]
+    models = [points for points in models if points.sizes["point"]]
+    return f"A cheaper model is the fastest way to some such error on {len(models)} scenes" + (
+        f": {_listed(models, quantity)}" if models else ""
+    )
+
+
+def _listed(scenes, quantity):
+    return "; ".join(_others(points, quantity) for points in scenes)
 
 
 def _others(points, quantity):
