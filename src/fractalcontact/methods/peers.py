@@ -35,7 +35,8 @@ class ContactMechanics:
     ``ccg``: ``NonSmoothContactSystem.minimize_proxy``, its Polonsky-Keer iteration at a given
     offset (with ``external_force`` it took twice the time). ``dual`` and ``dual-lbfgs``:
     ``dual_minimize_proxy``, constrained conjugate gradients without restart, or L-BFGS-B, for pixel
-    forces at a given offset; L-BFGS-B knows no limit of iterations. The package transforms with one thread; its parallelism is MPI's.
+    forces at a given offset; L-BFGS-B knows no limit of iterations. The package transforms with one
+    thread; its parallelism is MPI's.
 
     Parameters
     ----------
