@@ -1,6 +1,7 @@
 # make        environment, then the default study (config/paper.yaml)
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests
+# make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make scenes SCENES=5000   so many random contact problems, each state verified
 # make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
@@ -27,11 +28,11 @@ GUARD :=
 UNLOCK :=
 endif
 
-.PHONY: all study smoke check-scans test bench scenes fuzz lint format lock clean
+.PHONY: all study smoke check-scans accuracy test bench scenes fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed
-	@$(GUARD) sh -c '$(UNLOCK) $(SNAKEMAKE) --configfile $(STUDY)' \
+	@$(GUARD) sh -c '$(UNLOCK) $(SNAKEMAKE) $(TARGET) --configfile $(STUDY)' \
 	  || { s=$$?; echo "make: the study did not finish; what is done is kept, and 'make' goes on from there." >&2; exit $$s; }
 
 smoke:
@@ -40,6 +41,11 @@ smoke:
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.check_scans $(SCANS) --study $(STUDY)
+
+# Times are compared: let nothing else run meanwhile.
+accuracy: $(if $(PEERS),$(VENV)/peers-installed)
+	@$(MAKE) --no-print-directory study TARGET=accuracy \
+	  STUDY=$(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
 
 test: $(VENV)/tests-installed
 	$(BIN)/python -m pytest

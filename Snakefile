@@ -16,6 +16,7 @@ include: "workflow/rules/contact.smk"
 include: "workflow/rules/mechanics.smk"
 include: "workflow/rules/scaling.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/accuracy.smk"
 
 
 rule all:

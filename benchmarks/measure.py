@@ -10,25 +10,16 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from scenes import LOADS, Scene, closure_at_fraction
 from solvers import Failed, counted_convolutions, forget
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.methods import METHODS
+from fractalcontact.reference_scenes import LOADS, RoughScene, closure_at_fraction
 
 # Force error every solver has to reach.
 ERROR = 1e-6
 # Tolerances are tried in these steps, as far as this.
 STEP = 10**0.5
 TIGHTEST = 1e-10
-# Largest scene that direct elimination checks the reference on.
-CROSS_CHECK = 96
-
-
-def cross_check(scene):
-    """Difference of the reference from direct elimination, as a share of the force."""
-    exact = METHODS["dense"](scene.height, scene.space, closure=scene.closure)
-    return abs(scene.single.force / exact.force - 1)
 
 
 def measure_cold(scene, solvers, *, runs):
@@ -135,7 +126,7 @@ def measure_scaling(sizes, *, hurst, fraction, seed, runs):
     """Ours alone over sizes: cold and warm, and the cost beyond the transforms'."""
     rows = []
     for size in sizes:
-        scene = Scene(size, hurst, fraction, seed)
+        scene = RoughScene(size, hurst, fraction, seed)
         space, closure = scene.space, scene.closure
         state, applications, coarse = _counted(scene, closure)
         seconds = _median_seconds(partial(_cold, scene, closure), runs)
@@ -208,7 +199,7 @@ def measure_huge(size, *, hurst, fraction, seed):
 
 
 def _make(folder, size, hurst, fraction, seed):
-    scene = Scene(size, hurst, fraction, seed)
+    scene = RoughScene(size, hurst, fraction, seed)
     closure = closure_at_fraction(scene.height, scene.space, fraction)
     np.save(folder / "height.npy", scene.height, allow_pickle=False)
     (folder / "closure.json").write_text(json.dumps(closure))

@@ -24,6 +24,7 @@ import platform
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from itertools import product
+from math import isfinite
 from pathlib import Path
 
 
@@ -33,15 +34,16 @@ def main():
     # Read by BLAS when numpy is imported, hence the imports below: two of its threads waiting make
     # a peer's L-BFGS-B four times slower.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
-    from measure import CROSS_CHECK, cross_check, measure_huge, measure_scaling
-    from scenes import Scene
+    from measure import measure_huge, measure_scaling
+
+    from fractalcontact.reference_scenes import RoughScene
 
     rows, remarks, scaling, huge = [], [], [], []
     for size in options.sizes:
         for number, (hurst, fraction) in enumerate(product(options.hurst, options.fractions)):
-            scene = Scene(size, hurst, fraction, options.seed)
-            if size <= CROSS_CHECK:
-                difference = cross_check(scene)
+            scene = RoughScene(size, hurst, fraction, options.seed)
+            difference = scene.eliminated()
+            if isfinite(difference):
                 remarks.append(f"{scene.name}: reference and elimination {difference:.1e}")
             rows += _scene_rows(scene, options, first=number == 0)
             _write(options.output, rows, remarks, scaling, huge)
@@ -62,7 +64,7 @@ def _scene_rows(scene, options, *, first):
     from measure import measure_cold, measure_sweep
     from solvers import solvers_for
 
-    wanted = {"methods": options.methods, "peers": options.peers}
+    wanted = {"methods": options.methods, "with_peers": options.peers}
     _say(f"{scene.name}, cold ...")
     solvers = solvers_for(scene, every=first or options.every_solver, **wanted)
     rows = measure_cold(scene, solvers, runs=options.runs)

@@ -10,12 +10,11 @@ for the best begins there, and ends at ``loosest``.
 
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.util import find_spec
 
 import numpy as np
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.methods import METHODS
+from fractalcontact.methods import METHODS, peers
 
 
 class Failed(RuntimeError):
@@ -136,8 +135,7 @@ class Method(Ours):
 
     def carries(self, scene):
         """Whether no more nodes interpenetrate than the method can take."""
-        nodes = np.count_nonzero(scene.height.max() - scene.height < scene.closure)
-        return nodes <= LARGEST.get(self.method, np.inf)
+        return scene.overlapping <= LARGEST.get(self.method, np.inf)
 
     def applications(self):
         """Zero-padded convolutions of the last call."""
@@ -145,33 +143,20 @@ class Method(Ours):
 
 
 class ContactMechanics(Solver):
-    """ContactMechanics, ``FreeFFTElasticHalfSpace`` with one of the optimisers it offers.
+    """ContactMechanics with one of the optimisers it offers.
 
-    ``ccg``: ``NonSmoothContactSystem.minimize_proxy``, its Polonsky-Keer iteration at a given
-    offset (with ``external_force`` it took twice the time). ``dual`` and ``dual-lbfgs``:
-    ``dual_minimize_proxy``, constrained conjugate gradients without restart, or L-BFGS-B, for pixel
-    forces at a given offset. Tolerances are shares of the closure and of the mean pixel force in
-    contact. The package transforms with one thread; its parallelism is MPI's. Convolutions are
+    Tolerances are shares of the closure and of the mean pixel force in contact. Convolutions are
     counted by wrapping ``evaluate_disp`` and ``evaluate_force`` of the substrate, which all of its
     optimisers call.
     """
 
     control = "closure"
-    max_iterations = 500
 
     def __init__(self, scene, optimiser):
-        from ContactMechanics import FreeFFTElasticHalfSpace
-        from ContactMechanics.Systems import NonSmoothContactSystem
-        from SurfaceTopography import Topography
-
         self.name = f"ContactMechanics {optimiser} (closure)"
         self.likely = 10**-4.5 if optimiser == "ccg" else 10**-5.5
-        self.optimiser, self.work = optimiser, None
-        shape = scene.height.shape
-        self.substrate = FreeFFTElasticHalfSpace(shape, 1.0, (1.0, 1.0))
-        # First touch at offset 0, so that its offset is our closure.
-        topography = Topography(scene.height - scene.height.max(), (1.0, 1.0))
-        self.system = NonSmoothContactSystem(self.substrate, topography)
+        self.peer, self.work = peers.ContactMechanics(scene.height, scene.space, optimiser), None
+        self.substrate = self.peer.substrate
         self.evaluate = {
             name: getattr(self.substrate, name) for name in ("evaluate_disp", "evaluate_force")
         }
@@ -180,37 +165,15 @@ class ContactMechanics(Solver):
         """Press to the reference's closure or force."""
         self._count()
         start = None if previous is None else previous.state
-        minimise = self._ccg if self.optimiser == "ccg" else self._dual
-        result = minimise(reference, tolerance, start)
-        if not result.success:
-            raise Failed(str(result.message))
-        forces = result.jac if self.optimiser == "ccg" else result.x
-        forces = np.reshape(forces, self.substrate.nb_grid_pts)
-        return Answer(float(forces.sum()), reference.closure, forces)
-
-    def _ccg(self, reference, tolerance, start):
-        padded = None
-        if start is not None:
-            padded = np.zeros(self.substrate.nb_domain_grid_pts)
-            padded[: start.shape[0], : start.shape[1]] = -start
-        nodes = reference.fraction * np.prod(self.substrate.nb_grid_pts)
-        return self.system.minimize_proxy(
-            offset=reference.closure,
-            initial_forces=padded,
-            pentol=tolerance * reference.closure,
-            forcetol=tolerance * reference.force / nodes,
-            thermotol=tolerance,
-            maxiter=self.max_iterations,
-        )
-
-    def _dual(self, reference, tolerance, start):
-        return self.system.dual_minimize_proxy(
-            offset=reference.closure,
-            init_force=np.zeros(self.substrate.nb_grid_pts) if start is None else start.copy(),
-            solver={"dual": "ccg-without-restart", "dual-lbfgs": "l-bfgs-b"}[self.optimiser],
-            gtol=tolerance * reference.closure,
-            maxiter=self.max_iterations,
-        )
+        nodes = reference.fraction * reference.state.pressure.size
+        try:
+            pressure = self.peer.solve(
+                reference.closure, tolerance, pixel_force=reference.force / nodes, start=start
+            )
+        except peers.Failed as error:
+            raise Failed(str(error)) from error
+        force = float(pressure.sum()) * self.peer.space.cell_area
+        return Answer(force, reference.closure, pressure)
 
     def _count(self):
         self.work = 0 if self.counting else None
@@ -228,56 +191,35 @@ class ContactMechanics(Solver):
 
 
 class Tamaas(Solver):
-    """Tamaas, ``PolonskyKeerRey`` on its non-periodic operator ``dcfft``; force control only.
+    """Tamaas; force control only.
 
-    Its solver starts from ``model.traction``: zero for a cold start (it then spreads the load
-    evenly), what the load before left for a warm one. Its displacement is known up to a constant,
-    so the closure is evaluated from its pressure with its operator, outside the clock. The wheels
-    on PyPI have one thread. An iteration convolves twice, for gradient and step; iterations are
-    counted by a functional that adds nothing.
+    Its closure is evaluated outside the clock. An iteration convolves twice, for gradient and step;
+    iterations are counted by a functional that adds nothing.
     """
 
     control = "force"
     name = "Tamaas (force)"
     likely = 10**-3.5
-    max_iterations = 500
 
     def __init__(self, scene):
-        import tamaas
-
-        tamaas.set_log_level(tamaas.LogLevel.warning)
-        self.tamaas = tamaas
-        shape = scene.height.shape
-        self.model = tamaas.ModelFactory.createModel(
-            tamaas.model_type.basic_2d, [1.0, 1.0], list(shape)
-        )
-        # The operator takes over the modulus it finds when it is registered.
-        self.model.E, self.model.nu = 1.0, 0.0
-        tamaas.ModelFactory.registerNonPeriodic(self.model, "dcfft")
-        self.height = np.ascontiguousarray(scene.height)
-        self.counter = None
+        self.peer, self.counter = peers.Tamaas(scene.height, scene.space), None
 
     def solve(self, reference, tolerance, previous):
         """Press to the reference's closure or force."""
-        self.model.traction[:] = 0.0 if previous is None else previous.state
-        solver = self.tamaas.PolonskyKeerRey(self.model, self.height, tolerance)
-        solver.setIntegralOperator("dcfft")
-        solver.max_iter = self.max_iterations
-        self.counter = _tamaas_counter(self.tamaas) if self.counting else None
-        if self.counting:
-            solver.addFunctionalTerm(self.counter)
-        # A mean pressure; the window's area is one.
-        reached = solver.solve(reference.force)
-        if not reached <= tolerance:
-            raise Failed(f"error {reached:.2g} after {self.max_iterations} iterations")
-        return Answer(float(self.model.traction.mean()), np.nan, np.array(self.model.traction))
+        self.counter = _tamaas_counter(self.peer.tamaas) if self.counting else None
+        start = None if previous is None else previous.state
+        try:
+            pressure = self.peer.solve(
+                reference.force, tolerance, start=start, functional=self.counter
+            )
+        except peers.Failed as error:
+            raise Failed(str(error)) from error
+        force = float(pressure.sum()) * self.peer.space.cell_area
+        return Answer(force, np.nan, pressure)
 
     def complete(self, answer):
         """The closure of an answer, from the mean gap over the contact."""
-        displacement = np.zeros_like(answer.state)
-        self.model.operators["dcfft"](answer.state, displacement)
-        gap = displacement + self.height.max() - self.height
-        answer.closure = float(gap[answer.state > 0].mean())
+        answer.closure = self.peer.closure(answer.state)
 
     def applications(self):
         """Zero-padded convolutions of the last call."""
@@ -299,7 +241,11 @@ def _tamaas_counter(tamaas):
     return Counter()
 
 
-def solvers_for(scene, *, methods, peers, every):
+#: The fastest of the peers.
+FASTEST_PEER = "ContactMechanics dual"
+
+
+def solvers_for(scene, *, methods, with_peers, every):
     """The solvers that can carry a scene, ours first; peers only where they are installed.
 
     Unless ``every`` one is wanted: ours, and the fastest of the peers.
@@ -317,9 +263,10 @@ def solvers_for(scene, *, methods, peers, every):
                 ("nnls", "closure"),
             ]
         ]
-    if peers and find_spec("ContactMechanics"):
-        optimisers = ("ccg", "dual", "dual-lbfgs") if every else ("dual",)
-        chosen += [ContactMechanics(scene, optimiser) for optimiser in optimisers]
-    if peers and every and find_spec("tamaas"):
-        chosen.append(Tamaas(scene))
+    if with_peers:
+        chosen += [
+            Tamaas(scene) if name == "Tamaas" else ContactMechanics(scene, name.split()[1])
+            for name in peers.installed()
+            if every or name == FASTEST_PEER
+        ]
     return [solver for solver in chosen if solver.carries(scene)]

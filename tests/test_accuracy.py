@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.accuracy import hertz_convergence, kernel_effect
+from fractalcontact.accuracy import hertz_convergence, kernel_effect, punch_convergence
 from fractalcontact.halfspace import RIGID_PLATE_SELF_TERMS
 from fractalcontact.synthesis import self_affine
 
@@ -29,6 +29,14 @@ def test_hertz_error_falls_at_its_order(hertz, name, order):
     assert (np.diff(hertz[f"{name}_error"]) < 0).all()
     assert hertz[f"{name}_order"] == pytest.approx(order, abs=0.2)
     assert hertz[f"{name}_order_low"] < hertz[f"{name}_order"] < hertz[f"{name}_order_high"]
+
+
+def test_punch_error_falls_at_its_order():
+    punch = punch_convergence()
+    assert (np.diff(punch["force_error"]) < 0).all()
+    assert punch["force_order"] == pytest.approx(1, abs=0.25)
+    assert punch["force_order_low"] < punch["force_order"] < punch["force_order_high"]
+    assert labelled(punch)
 
 
 def test_hertz_order_needs_three_resolutions():

@@ -27,9 +27,17 @@ def study():
     return copy.deepcopy(PAPER)
 
 
-@pytest.mark.parametrize("name", ["paper", "smoke"])
+@pytest.mark.parametrize("name", ["paper", "smoke", "accuracy", "accuracy_small"])
 def test_the_studies_that_ship_are_valid(name):
     check_study(yaml.safe_load((ROOT / f"config/{name}.yaml").read_text()), SCHEMA, name)
+
+
+@pytest.mark.parametrize("change", [{"scans": "scans"}, {"embedded": {}}, {"specimens": {}}])
+def test_only_a_study_without_specimens_needs_no_materials(change):
+    bare = {"study": "bare", "scans": None}
+    check_study(bare, SCHEMA, "bare")
+    with pytest.raises(InputError, match=r"missing key 'materials'; expected materials by name"):
+        check_study(bare | change, SCHEMA, "bare")
 
 
 def broken(study, path, value):
@@ -67,6 +75,7 @@ def broken(study, path, value):
         (("roll_off", "embedded"), "joint_2.1", r"roll_off.embedded: joint_2.1 has no roll_off"),
         (("roll_off", "seeds"), [1], r"roll_off.seeds: \[1\]"),
         (("area_slope", "loads"), [0.5], r"area_slope.loads.0: 0.5 is not right"),
+        (("speed",), {"sizes": [8]}, r"missing key 'speed.hurst'"),
         (("solver", "rtol"), "1e-6", r"solver.rtol: '1e-6' is not right; expected a number"),
         (("embedded", "concrete_twin", "size"), "4 N", r"embedded.concrete_twin.size: '4 N'"),
         (("embedded", "concrete_twin", "dimension"), 3.2, r"embedded.concrete_twin.dimension: 3.2"),

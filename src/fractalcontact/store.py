@@ -37,6 +37,9 @@ STAGES = {
     "dimension_test": "both estimates of Delta_sigma on made surfaces",
     "estimator_bias": "estimators of Delta_g on surfaces of known dimension",
     "area_slope": "real contact area at light load, on surfaces with and without a roll-off",
+    "speed": "error against time of solvers and cheaper models, one group a scene",
+    "speed_growth": "time and memory of the solvers over sizes",
+    "convergence": "error against spacing where the solution is known, and Richardson's",
 }
 
 #: Libraries whose version can change a number.
@@ -125,7 +128,7 @@ def write_atlas(parts, path, *, study, configuration):
             "study": study,
             "configuration": json.dumps(configuration, sort_keys=True),
             "versions": json.dumps({name: metadata.version(name) for name in _NUMBER_MAKERS}),
-            "scan_checksums": json.dumps(_checksums(parts["specimens"]), sort_keys=True),
+            "scan_checksums": json.dumps(_checksums(parts.get("specimens", {})), sort_keys=True),
         }
     )
     groups = {"/": root}

@@ -65,7 +65,8 @@ def check_study(config, schema, source):
     _validate(config, schema, source)
     for name in config.get("specimens", {}):
         resolve_settings(config, name, {}, source)
-    resolve_settings(config, None, {}, source)
+    if "defaults" in config:
+        resolve_settings(config, None, {}, source)
     for name, recipe in config.get("embedded", {}).items():
         resolve_embedded(recipe, f"{source}: embedded.{name}")
     resolve_roll_off(config, source)

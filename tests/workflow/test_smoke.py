@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from fractalcontact.catalogue import find_scans
-from fractalcontact.figures import EXPERIMENTS, figures_of
+from fractalcontact.figures import EXPERIMENTS, accuracy_figures_of, figures_of
 from fractalcontact.store import read_atlas
 
 ROOT = Path(__file__).parents[2]
@@ -107,6 +107,32 @@ def test_one_bad_scan_is_one_clear_error_and_the_good_one_finishes(project):
         assert any(name in line for line in errors), (name, errors)
     drawn = {path.stem for path in (project / "results/test/figures/good").glob("*.png")}
     assert drawn == set(figures_of("match"))
+
+
+def test_accuracy_is_a_study_of_its_own(project):
+    study = yaml.safe_load((project / "config/accuracy_small.yaml").read_text())
+    study |= {"study": "speed"}
+    study["speed"] |= {"sizes": [24], "runs": 1}
+    study["convergence"] |= {"cells": [5, 8, 12], "trials": 2}
+    (project / "config/speed.yaml").write_text(yaml.safe_dump(study))
+    done = run(project, "config/speed.yaml", "accuracy")
+    assert done.returncode == 0, done.stderr
+    results = project / "results/speed"
+    for ending in ("png", "svg", "csv", "txt"):
+        drawn = {path.stem for path in (results / "figures").glob(f"*.{ending}")}
+        assert drawn == set(accuracy_figures_of(study))
+    atlas = read_atlas(results / "accuracy.nc")
+    assert set(atlas["speed"].children) == {
+        f"n24_{kind}" for kind in ("hertz", "punch", "h0.8_c10")
+    }
+    assert atlas["convergence/hertz/force_order"] > 1
+
+
+def test_accuracy_says_which_study_has_something_to_measure(project):
+    done = run(project, "config/smoke.yaml", "accuracy")
+    assert done.returncode != 0
+    assert "give --configfile config/accuracy.yaml" in done.stdout + done.stderr
+    assert not (project / "results").exists()
 
 
 def test_an_unknown_key_stops_before_anything_runs(project):

@@ -15,4 +15,4 @@ with reported(snakemake.log) as log:
     configuration = snakemake.params.configuration
     study = configuration["study"]["study"]
     store.write_atlas(parts, snakemake.output[0], study=study, configuration=configuration)
-    log.info("%d stages, specimens %s", len(parts), ", ".join(parts["specimens"]))
+    log.info("%d stages, specimens %s", len(parts), ", ".join(parts.get("specimens", {})))

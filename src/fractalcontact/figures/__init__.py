@@ -55,6 +55,12 @@ EXPERIMENTS = {
     "dimension_test": "dimension_test",
     "estimator_bias": "estimator_bias",
 }
+#: Measurements of accuracy and speed that a study may ask for, with the figures of each: key of the
+#: configuration to module names. They are drawn from an atlas of their own, as EXPERIMENTS are.
+ACCURACY = {
+    "speed": ("error_time", "error_time_fields", "time_size", "cheaper_models"),
+    "convergence": ("convergence",),
+}
 #: What no figure of a whole study draws, and takes most of an atlas.
 _LARGE_STAGES = ("contact",)
 
@@ -82,6 +88,18 @@ def study_figures_of(experiments):
         Those of :data:`EXPERIMENTS` it asks for, other names do not matter: its configuration.
     """
     return [figure for experiment, figure in EXPERIMENTS.items() if experiment in experiments]
+
+
+def accuracy_figures_of(measurements):
+    """Names of the figures of accuracy and speed.
+
+    Parameters
+    ----------
+    measurements : container of str
+        Those of :data:`ACCURACY` it asks for, other names do not matter: its configuration.
+    """
+    asked = [figures for key, figures in ACCURACY.items() if key in measurements]
+    return [name for figures in asked for name in figures]
 
 
 def draw_figures(atlas_path, specimen, folder, names):

@@ -1,0 +1,85 @@
+"""Seconds and memory of calls, measured so that they can be compared."""
+
+import ctypes
+import multiprocessing
+import os
+import resource
+import sys
+import time
+
+
+def timed(call):
+    """What a call returns, and the seconds it takes."""
+    begin = time.perf_counter()
+    value = call()
+    return value, time.perf_counter() - begin
+
+
+def repeated(calls, first, *, runs, longest):
+    """Seconds of calls that were each made once, made again in turn.
+
+    All once, then all again: what disturbs the machine for a while disturbs all alike.
+
+    Parameters
+    ----------
+    calls : list of callable
+    first : list of float
+        Seconds of the first call of each.
+    runs : int
+        Of each, the first included.
+    longest : float
+        What took more seconds than this is not called again.
+
+    Returns
+    -------
+    list of list of float
+    """
+    seconds = [[took] for took in first]
+    for _ in range(runs - 1):
+        for call, so_far in zip(calls, seconds, strict=True):
+            if so_far[0] <= longest:
+                so_far.append(timed(call)[1])
+    return seconds
+
+
+def peak_memory(call):
+    """Largest memory that a call adds to that of the process, in bytes.
+
+    Parameters
+    ----------
+    call : callable
+        Made in a child process, on one thread: the threads of the parent do not exist there.
+
+    Returns
+    -------
+    float
+        NaN if the call ends in an error.
+    """
+    _hand_back()
+    context = multiprocessing.get_context("fork")
+    found = context.Value("d", float("nan"))
+    child = context.Process(target=_report_memory, args=(call, found))
+    child.start()
+    child.join()
+    return found.value
+
+
+def _hand_back():
+    """Give freed memory back, where the C library can: a child would use it unseen."""
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
+
+
+def _report_memory(call, found):
+    os.environ["OMP_NUM_THREADS"] = "1"
+    before = _largest_so_far()
+    call()
+    found.value = _largest_so_far() - before
+
+
+def _largest_so_far():
+    """Largest resident memory of this process, bytes. A child starts at what it was forked with."""
+    # Linux counts in KiB, the BSDs in bytes.
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit

@@ -1,0 +1,106 @@
+"""Figures of accuracy and speed: labels, numbers beside them, and captions that say who leads."""
+
+import importlib
+import re
+
+import numpy as np
+import pytest
+
+from fractalcontact import store
+from fractalcontact.accuracy import hertz_convergence, punch_convergence, richardson_trials
+from fractalcontact.figures import ACCURACY, accuracy_figures_of, draw_study_figures
+from fractalcontact.figures.common import print_style
+from fractalcontact.reference_scenes import scenes_of
+from fractalcontact.speed import OURS, error_against_time
+from fractalcontact.speed_growth import growth
+
+RECIPE = {
+    "sizes": [16, 24, 32],
+    "hurst": [0.5, 0.8],
+    "contact": [0.1],
+    "seed": 1,
+    "tolerances": [1e-1, 1e-4],
+    "runs": 1,
+    "longest": 1.0,
+    "slow_nodes": 200,
+}
+FIGURES = accuracy_figures_of(ACCURACY)
+
+
+@pytest.fixture(scope="module")
+def atlas_file(tmp_path_factory):
+    scenes = {n: error_against_time(s, RECIPE) for n, s in scenes_of(RECIPE).items()}
+    parts = {
+        "speed": scenes,
+        "speed_growth": {"surfaces": growth(list(scenes.values()), 1e-2)},
+        "convergence": {
+            "hertz": hertz_convergence((5, 8, 12), placements=2),
+            "punch": punch_convergence((5, 8, 12), placements=2),
+            "richardson": richardson_trials(3, (16, 20)),
+        },
+    }
+    path = tmp_path_factory.mktemp("atlas") / "accuracy.nc"
+    store.write_atlas(parts, path, study="tiny", configuration={"study": {}, "settings": {}})
+    return path
+
+
+@pytest.fixture(scope="module")
+def atlas(atlas_file):
+    return store.read_atlas(atlas_file)
+
+
+def drawn(atlas, name):
+    module = importlib.import_module(f"fractalcontact.figures.{name}")
+    with print_style():
+        return module.draw(atlas, [])
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_axes_have_units_and_captions_no_gaps(atlas, name):
+    drawing = drawn(atlas, name)
+    drawing.figure.draw_without_rendering()
+    labels = [t for a in drawing.figure.axes for t in (a.get_xlabel(), a.get_ylabel()) if t]
+    assert labels
+    assert all(re.search(r"\(.+\)$", label) for label in labels)
+    assert not re.search(r"\bnan\b", drawing.caption)
+    assert len(drawing.data)
+
+
+def test_the_same_atlas_gives_the_same_files(atlas_file, tmp_path):
+    chosen = ("time_size", "convergence")
+    for run in ("first", "second"):
+        draw_study_figures(atlas_file, [], tmp_path / run, chosen)
+    for name in chosen:
+        for ending in ("png", "svg", "csv", "txt"):
+            first, second = (
+                (tmp_path / run / f"{name}.{ending}").read_bytes() for run in ("first", "second")
+            )
+            assert first == second
+
+
+def test_every_rough_point_stands_in_the_table(atlas):
+    table = drawn(atlas, "error_time").data
+    assert set(table["scene"]) == {n for n in scenes_of(RECIPE) if "_h0" in n}
+    for name, rows in table.groupby("scene"):
+        scene = atlas[f"speed/{name}"]
+        assert rows["seconds_s"].to_numpy() == pytest.approx(scene["seconds"].values, nan_ok=True)
+
+
+@pytest.mark.parametrize(("factor", "leads"), [(1e-6, 6), (1e6, 0)])
+def test_caption_says_on_how_many_scenes_ours_leads(atlas, factor, leads):
+    """With seconds of ours a million times smaller, or larger, there is no doubt."""
+    other = atlas.copy(deep=True)
+    for node in other["speed"].children.values():
+        ours = node["method"].values == OURS
+        seconds = np.where(ours, factor * node["seconds"].values, node["seconds"].values)
+        node["seconds"] = node["seconds"].copy(data=seconds)
+    caption = drawn(other, "error_time").caption
+    assert f"every error below 0.01 on {leads} of 6 scenes" in caption
+
+
+def test_table_of_the_orders_is_what_was_measured(atlas):
+    table = drawn(atlas, "convergence").data
+    hertz = table[(table["problem"] == "hertz") & (table["quantity"] == "force")]
+    exact = atlas["convergence/hertz"]
+    assert hertz["error"].to_numpy() == pytest.approx(exact["force_error"].values)
+    assert (hertz["order"] == float(exact["force_order"])).all()

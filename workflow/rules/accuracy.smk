@@ -1,0 +1,159 @@
+# How fast and how exact the solver, other solvers and cheaper models are: `snakemake accuracy`, a
+# study of its own (config/accuracy.yaml), no part of `all`.
+from importlib.util import find_spec
+
+from fractalcontact.figures import accuracy_figures_of
+
+SCENES = []
+if "speed" in config:
+    # Imported here, because no other study needs the solver to know its jobs.
+    from fractalcontact.reference_scenes import scenes_of
+
+    SCENES = list(scenes_of(config["speed"]))
+
+# Imported by name when they are called, and so not seen by `code` on its own.
+METHOD_MODULES = [
+    f"methods/{path.stem}"
+    for path in sorted(Path(workflow.basedir).glob("src/fractalcontact/methods/*.py"))
+]
+PROBLEMS = ["hertz", "punch", "richardson"] if "convergence" in config else []
+ACCURACY_FIGURES = accuracy_figures_of(config)
+ACCURACY_FILES = {}
+
+
+# A clock is running: the job takes all cores, so that no other runs beside it.
+rule speed:
+    output:
+        f"{RESULTS}/speed/{{scene}}.nc",
+    log:
+        f"{RESULTS}/logs/speed/{{scene}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/speed/{{scene}}.tsv"
+    wildcard_constraints:
+        scene=one_of(SCENES),
+    conda:
+        "../../environment.yml"
+    threads: lambda wildcards: workflow.cores
+    resources:
+        mem_mb=4000,
+        runtime=30,
+    params:
+        recipe=config.get("speed"),
+        # Installed later, they are measured later.
+        peers=[name for name in ("ContactMechanics", "tamaas") if find_spec(name)],
+        code=code("speed", "store", *METHOD_MODULES),
+    script:
+        "../scripts/speed.py"
+
+
+rule speed_growth:
+    input:
+        expand(rules.speed.output[0], scene=SCENES),
+    output:
+        f"{RESULTS}/speed_growth/surfaces.nc",
+    log:
+        f"{RESULTS}/logs/speed_growth.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/speed_growth.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        error=config.get("speed", {}).get("error"),
+        code=code("speed_growth", "store"),
+    script:
+        "../scripts/speed_growth.py"
+
+
+rule convergence:
+    output:
+        f"{RESULTS}/convergence/{{problem}}.nc",
+    log:
+        f"{RESULTS}/logs/convergence/{{problem}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/convergence/{{problem}}.tsv"
+    wildcard_constraints:
+        problem=one_of(PROBLEMS),
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        recipe=config.get("convergence"),
+        code=code("accuracy", "store"),
+    script:
+        "../scripts/convergence.py"
+
+
+if SCENES:
+    ACCURACY_FILES["speed"] = expand(rules.speed.output[0], scene=SCENES)
+    ACCURACY_FILES["speed_growth"] = rules.speed_growth.output[0]
+if PROBLEMS:
+    ACCURACY_FILES["convergence"] = expand(rules.convergence.output[0], problem=PROBLEMS)
+
+
+rule accuracy_atlas:
+    input:
+        **ACCURACY_FILES,
+    output:
+        f"{RESULTS}/accuracy.nc",
+    log:
+        f"{RESULTS}/logs/accuracy_atlas.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/accuracy_atlas.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        configuration={"study": config, "settings": {}},
+        code=code("store"),
+    script:
+        "../scripts/atlas.py"
+
+
+# Drawn as the figures of any study are, from an atlas of its own.
+use rule study_figures as accuracy_figures with:
+    input:
+        rules.accuracy_atlas.output[0],
+    output:
+        *[
+            report(
+                f"{RESULTS}/figures/{name}.png",
+                category="accuracy",
+                labels={"figure": name},
+                caption=f"../report/{name}.rst",
+            )
+            for name in ACCURACY_FIGURES
+        ],
+        *expand(
+            f"{RESULTS}/figures/{{name}}.{{ending}}",
+            name=ACCURACY_FIGURES,
+            ending=("svg", "csv", "txt"),
+        ),
+    log:
+        f"{RESULTS}/logs/accuracy_figures.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/accuracy_figures.tsv"
+    params:
+        specimens=[],
+        names=ACCURACY_FIGURES,
+        code=code("figures", *(f"figures/{name}" for name in ACCURACY_FIGURES)),
+
+
+def accuracy_pictures(wildcards):
+    if not ACCURACY_FIGURES:
+        raise WorkflowError(
+            f"{SOURCE}: no key 'speed' or 'convergence', so nothing to measure; "
+            "give --configfile config/accuracy.yaml"
+        )
+    return expand(f"{RESULTS}/figures/{{name}}.png", name=ACCURACY_FIGURES)
+
+
+rule accuracy:
+    input:
+        accuracy_pictures,

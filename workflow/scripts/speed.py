@@ -1,0 +1,20 @@
+"""Error against time of every solver and cheaper model on one scene."""
+
+import os
+
+# Read when numpy is imported. Two BLAS threads that wait for each other make a peer's L-BFGS-B four
+# times slower; our own threads are another matter.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+from _job import reported
+
+from fractalcontact import store
+from fractalcontact.reference_scenes import scenes_of
+from fractalcontact.speed import error_against_time
+
+with reported(snakemake.log) as log:
+    recipe = snakemake.params.recipe
+    scene = scenes_of(recipe)[snakemake.wildcards.scene]
+    points = error_against_time(scene, recipe)
+    store.write(points, snakemake.output[0])
+    log.info("%s", points)
