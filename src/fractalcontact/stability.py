@@ -7,6 +7,7 @@ from . import methods
 from .contact import NotConverged, solve_contact
 from .hard_scenes import KINDS, hard_scene
 from .labels import about
+from .methods.peers import peer_methods
 from .scenes import violation
 
 RTOL = 1e-6
@@ -20,12 +21,14 @@ AGREEMENT = 1e-4
 VERDICTS = ("right", "honest failure", "silently wrong", "not offered")
 RIGHT, HONEST, SILENT, NOT_OFFERED = range(len(VERDICTS))
 #: What a method says of a load it was not made for.
-_NOT_MADE_FOR = ("a closure only", "knows no hardness")
+_NOT_MADE_FOR = ("a closure only", "a force only", "knows no hardness")
+#: How the package's solvers say that they failed; public codes raise whatever they raise.
+_OWN_WORDS = (NotConverged, ValueError)
 
 
 def solvers():
-    """Every solver by name: ours first, then those kept for comparison."""
-    return {"fractalcontact": solve_contact, **methods.METHODS}
+    """Every solver by name: ours first, those kept for comparison, public codes if installed."""
+    return {"fractalcontact": solve_contact, **methods.METHODS, **peer_methods()}
 
 
 def stability(kinds=None, draws=25):
@@ -68,10 +71,30 @@ def stability(kinds=None, draws=25):
     return result
 
 
+def join(parts):
+    """Verdicts on all kinds of scene, in the order of `hard_scenes.KINDS`.
+
+    Parameters
+    ----------
+    parts : sequence of xr.Dataset
+        From `stability`, of different kinds.
+
+    Returns
+    -------
+    xr.Dataset
+    """
+    whole = xr.concat(parts, "kind", data_vars="minimal")
+    return whole.sel(kind=[kind for kind in KINDS if kind in whole["kind"]])
+
+
 def _judge_all(judged, scene):
     """Every solver on one scene."""
     exact = _exact(scene)
-    return [_judge(solve, scene, exact) for solve in judged.values()]
+    foreign = peer_methods()
+    return [
+        _judge(solve, scene, exact, Exception if name in foreign else _OWN_WORDS)
+        for name, solve in judged.items()
+    ]
 
 
 def _exact(scene):
@@ -88,13 +111,13 @@ def _answer(state, scene):
     return state.closure if "force" in scene.load else state.force
 
 
-def _judge(solve, scene, exact):
+def _judge(solve, scene, exact, failures):
     """Verdict, violation, disagreement and what the solver said."""
     nothing = (np.nan, np.nan)
     try:
         state = solve(scene.height, scene.space, rtol=RTOL, **scene.load)
-    except (NotConverged, ValueError) as error:
-        said = str(error)
+    except failures as error:
+        said = str(error) or type(error).__name__
         if any(words in said for words in _NOT_MADE_FOR):
             return NOT_OFFERED, *nothing, said
         return (HONEST if scene.solvable else RIGHT), *nothing, said

@@ -40,6 +40,8 @@ STAGES = {
     "speed": "error against time of solvers and cheaper models, one group a scene",
     "speed_growth": "time and memory of the solvers over sizes",
     "convergence": "error against spacing where the solution is known, and Richardson's",
+    "stability": "verdicts on the solvers by kind of scene",
+    "elimination": "whether dropping points alone reaches the right contact set",
 }
 
 #: Libraries whose version can change a number.

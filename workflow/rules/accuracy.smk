@@ -17,6 +17,14 @@ METHOD_MODULES = [
     for path in sorted(Path(workflow.basedir).glob("src/fractalcontact/methods/*.py"))
 ]
 PROBLEMS = ["hertz", "punch", "richardson"] if "convergence" in config else []
+# Installed later, they are measured later.
+PEERS = [name for name in ("ContactMechanics", "tamaas") if find_spec(name)]
+# Kinds of scene that one job judges.
+KINDS_A_JOB = 14
+KINDS = []
+if "stability" in config:
+    from fractalcontact.hard_scenes import KINDS
+PARTS = list(range(0, len(KINDS), KINDS_A_JOB))
 ACCURACY_FIGURES = accuracy_figures_of(config)
 ACCURACY_FILES = {}
 
@@ -39,8 +47,7 @@ rule speed:
         runtime=30,
     params:
         recipe=config.get("speed"),
-        # Installed later, they are measured later.
-        peers=[name for name in ("ContactMechanics", "tamaas") if find_spec(name)],
+        peers=PEERS,
         code=code("speed", "store", *METHOD_MODULES),
     script:
         "../scripts/speed.py"
@@ -88,11 +95,74 @@ rule convergence:
         "../scripts/convergence.py"
 
 
+rule stability_part:
+    output:
+        f"{RESULTS}/stability/{{part}}.nc",
+    log:
+        f"{RESULTS}/logs/stability/{{part}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/stability/{{part}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1500,
+        runtime=60,
+    params:
+        kinds=lambda wc: list(KINDS)[int(wc.part) : int(wc.part) + KINDS_A_JOB],
+        draws=config.get("stability", {}).get("draws"),
+        peers=PEERS,
+        code=code("stability", "store", *METHOD_MODULES),
+    script:
+        "../scripts/stability_part.py"
+
+
+rule stability:
+    input:
+        expand(rules.stability_part.output[0], part=PARTS),
+    output:
+        f"{RESULTS}/stability/scenes.nc",
+    log:
+        f"{RESULTS}/logs/stability.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/stability.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        code=code("stability", "store"),
+    script:
+        "../scripts/stability.py"
+
+
+rule elimination:
+    output:
+        f"{RESULTS}/elimination/scenes.nc",
+    log:
+        f"{RESULTS}/logs/elimination.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/elimination.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        draws=config.get("stability", {}).get("elimination"),
+        code=code("elimination", "store", *METHOD_MODULES),
+    script:
+        "../scripts/elimination.py"
+
+
 if SCENES:
     ACCURACY_FILES["speed"] = expand(rules.speed.output[0], scene=SCENES)
     ACCURACY_FILES["speed_growth"] = rules.speed_growth.output[0]
 if PROBLEMS:
     ACCURACY_FILES["convergence"] = expand(rules.convergence.output[0], problem=PROBLEMS)
+if PARTS:
+    ACCURACY_FILES["stability"] = rules.stability.output[0]
+    ACCURACY_FILES["elimination"] = rules.elimination.output[0]
 
 
 rule accuracy_atlas:
@@ -148,7 +218,7 @@ use rule study_figures as accuracy_figures with:
 def accuracy_pictures(wildcards):
     if not ACCURACY_FIGURES:
         raise WorkflowError(
-            f"{SOURCE}: no key 'speed' or 'convergence', so nothing to measure; "
+            f"{SOURCE}: no key 'speed', 'convergence' or 'stability', so nothing to measure; "
             "give --configfile config/accuracy.yaml"
         )
     return expand(f"{RESULTS}/figures/{{name}}.png", name=ACCURACY_FIGURES)

@@ -60,6 +60,7 @@ EXPERIMENTS = {
 ACCURACY = {
     "speed": ("error_time", "error_time_fields", "time_size", "cheaper_models"),
     "convergence": ("convergence",),
+    "stability": ("stability", "elimination"),
 }
 #: What no figure of a whole study draws, and takes most of an atlas.
 _LARGE_STAGES = ("contact",)
