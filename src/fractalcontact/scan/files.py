@@ -7,7 +7,7 @@ import zipfile
 from pathlib import Path
 
 from ..errors import InputError
-from .raw import refuse_larger
+from .raw import reading, refuse_larger
 
 
 def regular_file(path: Path) -> os.stat_result:
@@ -51,11 +51,8 @@ def inflated_size(path: Path) -> int:
     """
     size = path.stat().st_size
     if zipfile.is_zipfile(path):
-        try:
-            with zipfile.ZipFile(path) as archive:
-                size = max(size, sum(member.file_size for member in archive.infolist()))
-        except zipfile.BadZipFile as error:
-            raise InputError(f"{path}: a damaged archive ({error})") from error
+        with reading(path, "archive"), zipfile.ZipFile(path) as archive:
+            size = max(size, sum(member.file_size for member in archive.infolist()))
     refuse_larger(size, path)
     return size
 

@@ -12,6 +12,9 @@ LATTICE_TOLERANCE = 0.1
 LATTICE_MIN_FILL = 0.2
 #: Far above any profilometer; a stray point would otherwise ask for all memory.
 MOST_CELLS = 200_000_000
+#: Nor does anybody interpolate so finely; a small file would still ask for gigabytes.
+CELLS_PER_POINT = 1000
+_FEW_CELLS = 10_000_000
 #: Coordinates in single precision are worth a note when rounded by this share of the distance of
 #: the points.
 COARSE_ROUNDING = 0.01
@@ -175,7 +178,8 @@ def covering_lattice(clouds: list[np.ndarray], spacing: float, where: str) -> La
             f"{where}: the points share no area of at least one grid spacing ({spacing:.4g} mm); "
             "two faces must be given in one coordinate frame, and key 'grid' must suit them"
         )
-    if count.prod() > MOST_CELLS:
+    n_points = sum(len(cloud) for cloud in clouds)
+    if count.prod() > min(MOST_CELLS, max(_FEW_CELLS, CELLS_PER_POINT * n_points)):
         raise InputError(
             f"{where}: a grid of {spacing:.4g} mm over {high[0] - low[0]:.4g} x "
             f"{high[1] - low[1]:.4g} mm has too many cells; remove stray points or set a coarser "
