@@ -8,11 +8,13 @@ import pytest
 
 from fractalcontact import store
 from fractalcontact.accuracy import hertz_convergence, punch_convergence, richardson_trials
+from fractalcontact.elimination import elimination
 from fractalcontact.figures import ACCURACY, accuracy_figures_of, draw_study_figures
 from fractalcontact.figures.common import print_style
 from fractalcontact.reference_scenes import scenes_of
 from fractalcontact.speed import OURS, error_against_time
 from fractalcontact.speed_growth import growth
+from fractalcontact.stability import HONEST, SILENT, stability
 
 RECIPE = {
     "sizes": [16, 24, 32],
@@ -38,6 +40,8 @@ def atlas_file(tmp_path_factory):
             "punch": punch_convergence((5, 8, 12), placements=2),
             "richardson": richardson_trials(3, (16, 20)),
         },
+        "stability": {"scenes": stability(["H = 0.8", "one node, by force", "missing cell"], 3)},
+        "elimination": {"scenes": elimination(4)},
     }
     path = tmp_path_factory.mktemp("atlas") / "accuracy.nc"
     store.write_atlas(parts, path, study="tiny", configuration={"study": {}, "settings": {}})
@@ -104,3 +108,22 @@ def test_table_of_the_orders_is_what_was_measured(atlas):
     exact = atlas["convergence/hertz"]
     assert hertz["error"].to_numpy() == pytest.approx(exact["force_error"].values)
     assert (hertz["order"] == float(exact["force_order"])).all()
+
+
+def test_scenes_not_solved_are_named(atlas):
+    other = atlas.copy(deep=True)
+    verdict = other["stability/scenes"]["verdict"]
+    verdict.loc[{"kind": "H = 0.8", "solver": "dense", "draw": [0, 2]}] = SILENT
+    verdict.loc[{"kind": "H = 0.8", "solver": "nnls", "draw": 1}] = HONEST
+    drawing = drawn(other, "stability")
+    table = drawing.data.set_index(["kind", "solver"])
+    assert table.loc[("H = 0.8", "dense"), "draws_not_solved"] == "0 2"
+    assert table.loc[("H = 0.8", "dense"), "silently wrong (scenes)"] == 2
+    assert (table["draws_not_solved"] != "").sum() == 2
+    assert "dense: 7 of 9 right, 0 honest failures, 2 silently wrong" in drawing.caption
+
+
+def test_the_signs_of_the_inverse_are_told_by_kernel(atlas):
+    caption = drawn(atlas, "elimination").caption
+    assert "With rigid square and equal-area disc, readings of the paper's rigid plate" in caption
+    assert "none of 4 a case" in caption

@@ -30,7 +30,7 @@ def draw(atlas, names):
     Returns
     -------
     Drawing
-        Its data are the scenes that were not solved, one a row: ``hard_scene(kind, draw)`` of
+        Its data name the draws that were not solved: ``hard_scene(kind, draw)`` of
         `fractalcontact.hard_scenes` makes each again.
     """
     stability = group(atlas, "stability", "scenes")
@@ -49,6 +49,7 @@ def draw(atlas, names):
     axes.set_yticks(np.arange(len(kinds)), kinds, fontsize=6.5)
     axes.set_xticks(np.arange(len(solvers)) + 0.47, [_wrapped(name) for name in solvers])
     axes.xaxis.tick_top()
+    axes.set_xlabel("share of the scenes of a kind, each bar one solver's (1)")
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
     for column in range(1, len(solvers)):
@@ -58,7 +59,7 @@ def draw(atlas, names):
         for verdict, style in _STYLE.items()
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
-    return Drawing(figure, _failures(stability), _caption(stability, counts))
+    return Drawing(figure, _table(stability, counts), _caption(stability, counts))
 
 
 def _wrapped(name):
@@ -71,17 +72,21 @@ def _counts(stability):
     return np.stack([(verdict == code).sum(axis=2) for code in range(len(VERDICTS))], axis=2)
 
 
-def _failures(stability):
-    """One row a scene that was not solved though it has a solution, or wrongly."""
-    verdict = stability["verdict"].values
-    places = np.argwhere((verdict == HONEST) | (verdict == SILENT))
-    dims = stability["verdict"].dims
-    columns = {dim: stability[dim].values[places[:, n]] for n, dim in enumerate(dims)}
-    at = tuple(places.T)
-    columns["verdict"] = np.array(VERDICTS, dtype=object)[verdict[at]]
-    for name in ("violation", "disagreement", "said"):
-        columns[name] = stability[name].values[at]
-    return pd.DataFrame(columns)
+def _table(stability, counts):
+    """One row a kind and solver; the draws not solved make each such scene again."""
+    rows = []
+    for k, kind in enumerate(stability["kind"].values):
+        for n, solver in enumerate(stability["solver"].values):
+            one = stability.isel(kind=k, solver=n)
+            failed = np.isin(one["verdict"].values, (HONEST, SILENT))
+            rows.append(
+                {"kind": kind, "solver": solver}
+                | {f"{name} (scenes)": counts[n, k, code] for code, name in enumerate(VERDICTS)}
+                | {"draws_not_solved": " ".join(map(str, one["draw"].values[failed]))}
+                | {"violation_of_closure": one["violation"].where(failed).max().item()}
+                | {"said": "; ".join(sorted(set(one["said"].values[failed]) - {""}))}
+            )
+    return pd.DataFrame(rows)
 
 
 def _caption(stability, counts):
@@ -98,7 +103,7 @@ def _caption(stability, counts):
         f"{stability.attrs['rtol']:g} beyond the rounding of the heights, and if its force (its "
         "closure, where the force was given) is that of direct elimination to "
         f"{stability.attrs['agreement']:g}. Where no state exists, only saying so is right. "
-        f"{by_solver}. The table beside the figure names every scene that was not solved."
+        f"{by_solver}. The table beside the figure names every scene not solved."
     )
 
 
