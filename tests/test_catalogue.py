@@ -107,13 +107,7 @@ def test_the_folder_itself_may_be_a_link(tmp_path):
     assert list(find_scans(tmp_path / "scans")) == ["rock", "twin"]
 
 
-def test_a_pipe_is_refused_unopened_and_a_folder_passed_over(tmp_path):
-    (tmp_path / "granite.x3p").mkdir()
-    assert find_scans(tmp_path) == {}
-    touch(tmp_path, "granite.yaml")
-    with pytest.raises(InputError, match=r"granite\.yaml: .*granite\.x3p is a folder"):
-        find_scans(tmp_path)
-    (tmp_path / "granite.yaml").unlink()
+def test_a_pipe_is_refused_unopened(tmp_path):
     os.mkfifo(tmp_path / "rock.x3p")
     with pytest.raises(InputError, match=r"rock\.x3p: a pipe"):
         find_scans(tmp_path)
@@ -178,4 +172,17 @@ def test_endings_that_repeat_are_broken_off(original):
 def test_a_name_too_long_for_its_results_is_refused(tmp_path):
     touch(tmp_path, "xy" * 120 + ".npy")
     with pytest.raises(InputError, match="247 characters, more than the 220"):
+        find_scans(tmp_path)
+
+
+def test_a_folder_with_the_name_of_a_scan_file_is_refused_others_are_passed_over(tmp_path):
+    for name in ("old", "2021.old", "notes.yaml.d"):
+        (tmp_path / name).mkdir()
+    assert find_scans(tmp_path) == {}
+    touch(tmp_path, "old.yaml")
+    with pytest.raises(InputError, match=r"old\.yaml: .*old is a folder"):
+        find_scans(tmp_path)
+    (tmp_path / "old.yaml").unlink()
+    (tmp_path / "granite.x3p").mkdir()
+    with pytest.raises(InputError, match=r"granite\.x3p: a folder, not a file"):
         find_scans(tmp_path)

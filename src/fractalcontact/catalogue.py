@@ -98,7 +98,8 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     InputError
         If two files claim one name, or names that differ in case alone; a face lacks its
         counterpart, a sidecar has no scan; a name is too long, has no usable character, invisible
-        ones or braces; a link leads out of the folder, or a file is a pipe or a device.
+        ones or braces; a link leads out of the folder; a file is a pipe or a device, or a folder
+        has the name of a scan file.
     """
     scans, refused = list_scans(folder)
     for error in refused.values():
@@ -126,7 +127,13 @@ def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
     roles: dict[str, dict[str, Path]] = {}
     refused: dict[str, InputError] = {}
     for path in sorted(folder.iterdir()):
-        if path.name.startswith(".") or path.name.upper().startswith(_IGNORED) or path.is_dir():
+        if path.name.startswith(".") or path.name.upper().startswith(_IGNORED):
+            continue
+        if path.is_dir():
+            if _is_named_like_a_scan(path):
+                refused[path.name] = InputError(
+                    f"{path}: a folder, not a file; put the scan file itself here, or rename it"
+                )
             continue
         original_name, role = split_file_name(path.name)
         name = specimen_name(original_name)
@@ -148,6 +155,15 @@ def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
         except InputError as error:
             refused[name] = error
     return scans, refused
+
+
+def _is_named_like_a_scan(folder: Path) -> bool:
+    """Whether a folder is likely to be an archive that somebody unpacked."""
+    if not folder.suffix:
+        return False
+    from .scan import known_extensions  # takes a second, and is hardly ever needed
+
+    return folder.suffix.lower() in known_extensions()
 
 
 def _refuse_misleading(path: Path) -> None:

@@ -34,7 +34,7 @@ from .raw import RawScan
 from .text import is_text, read_text
 from .x3p import read_x3p
 
-__all__ = ["read_faces", "read_matrix", "read_scan"]
+__all__ = ["known_extensions", "read_faces", "read_matrix", "read_scan"]
 
 LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 _TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
@@ -146,6 +146,12 @@ def read_matrix(path, options=None):
     return measured.values, measured.spacing, measured.provenance
 
 
+def known_extensions() -> list[str]:
+    """Endings of the files that can be read, with their dot, in lower case."""
+    instruments = (f".{extension}" for extension in instrument_formats())
+    return sorted({*_TEXT, *_MESH, *_TIFF, *_READERS, *instruments})
+
+
 def _measure(path: Path, options) -> Measured:
     """Read a file and convert it to mm, with what the sidecar says."""
     options = parse_options(options, str(path))
@@ -209,8 +215,8 @@ def _read_raw(path: Path, options: ScanOptions) -> RawScan:
         return read_instrument(path, options)
     if extension in _TEXT:
         raise InputError(f"{path}: not a text file; damaged, or the wrong extension?")
-    known = sorted({*_TEXT, *_MESH, *_READERS, *(f".{e}" for e in instrument_formats())})
-    raise InputError(f"{path}: unknown extension {extension!r}; known: {' '.join(known)}")
+    known = " ".join(known_extensions())
+    raise InputError(f"{path}: unknown extension {extension!r}; known: {known}")
 
 
 def _refuse_enormous(values: np.ndarray, path: Path) -> None:

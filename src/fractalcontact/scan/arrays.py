@@ -25,6 +25,7 @@ def read_npy(path: Path, options: ScanOptions) -> RawScan:
         If it is damaged, pickled, or no 2-D array of numbers.
     """
     with reading(path, ".npy array"):
+        _refuse_pickled(path)
         # Mapped, so that a header promising more than the file holds fails at once.
         values = np.load(path, mmap_mode="r", allow_pickle=False)
     if not is_table(values.shape, values.dtype):
@@ -54,6 +55,17 @@ def read_npz(path: Path, options: ScanOptions) -> RawScan:
     return table_to_raw(
         _as_float(values), None, options, str(path), reader=_reader("npz"), notes=notes
     )
+
+
+def _refuse_pickled(path: Path) -> None:
+    """Say in our own words what numpy would advise to open unsafely."""
+    with open(path, "rb") as stream:
+        read_header = _HEADER_READERS.get(np.lib.format.read_magic(stream))
+        if read_header and read_header(stream)[2].hasobject:
+            raise InputError(
+                f"{path}: it holds pickled Python objects, which are never opened; save the "
+                "heights as an array of numbers"
+            )
 
 
 def _tables_of(archive: zipfile.ZipFile) -> dict[str, tuple]:
