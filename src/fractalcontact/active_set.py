@@ -30,12 +30,17 @@ NEARLY = 2.0
 # force, sets are solved to PATIENT_REDUCTION without clipping, and while nodes leave none enters.
 PATIENCE = 30
 PATIENT_REDUCTION = 1e-3
+# Under a given force it swings for sure where a violation is still of the order of the closure
+# after so many corrections: a spike carries what its neighbours, all or none of them, would.
+HOPELESS, HOPELESS_VIOLATION = 15, 0.5
 # Closures tried in search of one force; Newton's method needs about five.
 MAX_CLOSURES = 50
 # Aim this far below the tolerance, so that one correction too many is rarer than one too few.
 SAFETY = 0.3
 # Single precision carries a correction no further down than this share of its right side.
 SINGLE_REACHES = 1e-5
+# No closure is known better than this, as a share of it.
+CLOSURE_ROUNDING = 1e-12
 # A total this close to F is F.
 FORCE_ROUNDING = 1e-12
 # Stiffness: its error is of second order in this residual.
@@ -158,17 +163,18 @@ class ActiveSet:
                     return solution
                 pressure, displacement = solution.pressure, solution.displacement
                 closure = solution.closure
-            if problem.by_force and correction == PATIENCE:
+            hopeless = examined.worst > HOPELESS_VIOLATION * abs(closure)
+            if problem.by_force and correction == (HOPELESS if hopeless else PATIENCE):
                 return self._by_closures(self._verified(pressure, closure))
         return self._verified(pressure, closure)
 
     def _by_closures(self, solution):
         """The state of the given force as that of a closure, found by Newton's method on F(w)."""
         problem, low, high = self.problem, 0.0, np.inf
-        closure = solution.closure
+        closure, tolerance = solution.closure, SAFETY * self.rtol
         for _ in range(MAX_CLOSURES):
             given = replace(problem, load=closure, by_force=False)
-            search = ActiveSet(given, SAFETY * self.rtol)
+            search = ActiveSet(given, tolerance)
             solution = search.solve(solution.pressure, solution.displacement)
             self.operator.applications += search.operator.applications
             total = solution.pressure.sum()
@@ -180,8 +186,12 @@ class ActiveSet:
             low, high = (closure, high) if total < problem.load else (low, closure)
             free = between_bounds(solution.pressure, problem.cap)
             slope, _ = stiffness(self.operator, free)
-            closure += (problem.load - total) / slope if slope > 0 else np.inf
-            if not low < closure < high:
+            if slope > 0:
+                # Steep F(w): a closure within its tolerance must still tell the force within its.
+                steepness = max(1.0, slope * abs(closure) / problem.load)
+                tolerance = max(SAFETY * self.rtol / steepness, CLOSURE_ROUNDING)
+                closure += (problem.load - total) / slope
+            if not (slope > 0 and low < closure < high):
                 closure = (low + min(high, 4 * low + 1)) / 2
         return self._verified(solution.pressure, solution.closure)
 

@@ -213,6 +213,20 @@ def _twins(kind, generator):
     return _pressed(kind, generator, height, share=(0.01, 0.3))
 
 
+def _spike_on_a_mirror(kind, generator):
+    """A spike on a quantised surface far smoother, under a force with which it just sinks in.
+
+    Under a given force all of its surroundings seem to touch, or none: seen on the scan of a
+    polished surface with a grain of dust.
+    """
+    height = np.round(7 * generator.standard_t(4, size=_shape(generator))) * 1e-6
+    height.flat[generator.integers(height.size)] = 1.3e-3 + height.std()
+    space = _space(height.shape, cell=0.024)
+    closure = generator.uniform(1, 1.05) * (height.max() - np.quantile(height, 0.98))
+    force = solve_contact(height, space, closure=closure).force
+    return HardScene(kind, height, space, {"force": force})
+
+
 def _pits(kind, generator):
     height = _scaled(rough_heights(generator, _shape(generator)))
     height.flat[generator.integers(height.size, size=6)] -= 20 * np.ptp(height)
@@ -462,6 +476,7 @@ KINDS = {
     "several spikes": _peaks(_several),
     "spike in a corner": _peaks(_corner),
     "spike on an edge": _peaks(_edge),
+    "spike on a mirror, by force": _spike_on_a_mirror,
     "two equal peaks": _twins,
     "pits": _pits,
     "plateau": _plateau,
