@@ -90,6 +90,23 @@ def test_a_pair_and_a_contact_map(folder, check):
     assert "% in contact above 0.5" in out
 
 
+def test_two_faces_that_do_not_match_or_share_no_frame_are_told(folder, check):
+    z = surface()
+    folder.mkdir()
+    y, x = (0.2 * index for index in np.indices(z.shape))
+    for name, upper in (("strange", surface(seed=9)), ("mounted", z)):
+        for face, heights, shift in (("lower", z, 0.0), ("upper", upper, 70.0)):
+            points = np.column_stack([x.ravel() + shift, y.ravel(), heights.ravel() + shift])
+            np.savetxt(folder / f"{name}.{face}.xyz", points)
+        (folder / f"{name}.yaml").write_text("unit: mm\n")
+    code, out = check()
+    text = " ".join(out.split())
+    assert code == 1
+    assert "sd before unknown" in text
+    assert "strange.lower.xyz" in text
+    assert ", 1 refused" in text
+
+
 @pytest.mark.parametrize("name", ["a\x1b[31mred", "two\nlines", "-rf", "x" * 200, "Zürich 岩"])
 def test_names_that_act_on_a_terminal_are_escaped_and_lines_stay_short(folder, check, name):
     folder.mkdir()

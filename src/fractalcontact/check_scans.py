@@ -160,6 +160,9 @@ def _warnings(attrs, quality):
         )
     if attrs["tilt_degrees"] > STEEP_TILT:
         warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
+    note = json.loads(attrs.get("registration", "{}")).get("note", "")
+    if "NOTE: " in note:
+        warnings.append(note.partition("NOTE: ")[2])
     return warnings
 
 
@@ -170,11 +173,15 @@ def _gap_words(specimen):
     if "registration" not in specimen.attrs:
         return words
     found = json.loads(specimen.attrs["registration"])
-    moved = "moved" if found["applied"] else "not moved"
-    return (
-        f"{words}; registration ({found['mode']}): {moved}, shift {found['shift_x_mm']:.3g}, "
-        f"{found['shift_y_mm']:.3g} mm (x, y), sd before {length_words(found['gap_sd_before_mm'])}"
-    )
+    words += f"; registration ({found['mode']}): {found['note']}"
+    if found["applied"]:
+        before = found["gap_sd_before_mm"]
+        known = "unknown" if before is None else length_words(before)
+        words += (
+            f", shift {found['shift_x_mm']:.3g}, {found['shift_y_mm']:.3g} mm (x, y), sd before "
+            f"{known}"
+        )
+    return words
 
 
 def _map_row(scan, contact):

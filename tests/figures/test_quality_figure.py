@@ -96,6 +96,17 @@ def test_a_warning_stands_in_the_sheet_and_in_the_captions_of_contact(atlas_file
     assert "WARNING" not in clean["fig08_prefractals"]
 
 
+def test_statistics_without_a_common_frame_are_unknown_and_notes_are_told(atlas):
+    def change(specimen):
+        unknown = dict.fromkeys(("gap_sd_before_mm", "gap_mean_before_mm", "correlation_before"))
+        note = "upper face moved; NOTE: the search had not come to rest"
+        specimen.attrs["registration"] = json.dumps(REGISTRATION | unknown | {"note": note})
+
+    text = " ".join(words_of(drawn(with_specimen(atlas, "pair", change), "pair")).split())
+    assert "gap sd in mm unknown → 0.349, mean unknown → 0.637" in text
+    assert "NOTE: the search had not come to rest" in text
+
+
 def test_what_was_done_to_the_files_stands_in_words(atlas):
     def change(specimen):
         scan = json.loads(specimen.attrs["lower_scan"])
@@ -117,11 +128,11 @@ def test_what_was_done_to_the_files_stands_in_words(atlas):
     drawing = drawn(with_specimen(atlas, "pair", change), "pair")
     text = " ".join(words_of(drawing).split())
     for words in (
-        "the sidecar overrides: unit mm, the file says m",
+        "The sidecar overrides: unit mm, the file says m",
         "900 points, 3 of them repeated",
-        "turned by 12.5 degrees",
+        "Turned by 12.5 degrees",
         "moved by 0.45 mm in x",
-        "gap sd 0.363 → 0.349 mm",
+        "gap sd in mm 0.363 → 0.349",
         "4 outliers kept",
         "6 cells filled",
         "Levelled: least-squares plane of the mean of both faces",

@@ -41,14 +41,16 @@ def _file_words(specimen, face):
             f"{attrs['points']} points, {attrs.get('duplicated_points', 0)} of them repeated, "
             f"{attrs.get('points_per_cell', float('nan')):.3g} in a measured cell"
         )
-    if attrs.get("overhang_share"):
-        words.append(f"overhangs in {100 * attrs['overhang_share']:.2g} % of the cells")
     if attrs.get("levelled_degrees"):
         words.append(f"turned by {attrs['levelled_degrees']:.3g} degrees before gridding")
     overrides = attrs.get("overrides", "")
     words.append(f"the sidecar overrides: {overrides}" if overrides else "")
     words += [attrs.get("gridding", ""), attrs.get("notes", "")]
-    return ". ".join(printable(part, LONGEST_NOTE) for part in words if part) + "."
+    return ". ".join(printable(_sentence(part), LONGEST_NOTE) for part in words if part) + "."
+
+
+def _sentence(words):
+    return words[0].upper() + words[1:]
 
 
 def _faces_words(specimen):
@@ -61,7 +63,7 @@ def _faces_words(specimen):
     sides = window_sides(specimen)
     note = f" ({attrs['window_note']})" if attrs["window_note"] else ""
     words.append(f"Window {sides[1]:.4g} × {sides[0]:.4g} mm (x, y){note}")
-    return ". ".join(part.rstrip(".") for part in words if part) + "."
+    return ". ".join(_sentence(part).rstrip(".") for part in words if part) + "."
 
 
 def _registration_words(text):
@@ -69,11 +71,15 @@ def _registration_words(text):
     if not text:
         return ""
     found = json.loads(text)
-    gap = (
-        f"gap sd {found['gap_sd_before_mm']:.4g} → {found['gap_sd_after_mm']:.4g} mm, "
-        f"mean {found['gap_mean_before_mm']:.4g} → {found['gap_mean_after_mm']:.4g} mm, "
-        f"correlation {found['correlation_before']:.3f} → {found['correlation_after']:.3f}"
+    gap = ", ".join(
+        f"{name} {_known(found[f'{key}_before{unit}'])} → {_known(found[f'{key}_after{unit}'])}"
+        for name, key, unit in (
+            ("gap sd in mm", "gap_sd", "_mm"),
+            ("mean", "gap_mean", "_mm"),
+            ("correlation", "correlation", ""),
+        )
     )
+    gap += "".join(f"; {part}" for part in found.get("note", "").split("; ") if "NOTE" in part)
     if not found["applied"]:
         return f"Registration ({found['mode']}): upper face not moved; {gap}"
     return (
@@ -81,3 +87,8 @@ def _registration_words(text):
         f"{found['shift_y_mm']:.4g} mm in y, turned by {found['rotation_degrees']:.3g} degrees, "
         f"tilted by {found['tilt_x_degrees']:.3g} and {found['tilt_y_degrees']:.3g} degrees; {gap}"
     )
+
+
+def _known(value):
+    """A number before the faces had a common frame is not known."""
+    return "unknown" if value is None else f"{value:.4g}"
