@@ -158,7 +158,7 @@ def test_tiles_give_the_heights_of_the_whole_triangulation(monkeypatch, tile, pl
     hole = np.hypot(rough[:, 0] - 8, rough[:, 1] - 11) < 3
     corner = (rough[:, 0] > 14) & (rough[:, 1] < 5)
     rough = rough[~(hole | corner)]
-    lattice = points.covering_lattice([rough], 0.13, "rock")
+    lattice = points.covering_lattice(rough, 0.13, "rock")
     heights = tri.interpolate_points(rough, lattice, 0.5, 1, "rock")
     whole = whole_triangulation(rough, lattice, 0.5)
     np.testing.assert_allclose(heights, whole, rtol=1e-7, atol=1e-7)
@@ -385,7 +385,7 @@ def test_points_on_one_line_are_refused(tmp_path):
     line = np.column_stack([x, 3 * x + 1, 0.01 * np.sin(x)])
     with pytest.raises(InputError, match=r"rock\.npy.*constant surface"):  # a plane, but upright
         read(tmp_path, line)
-    lattice = points.covering_lattice([line], 0.5, "rock")
+    lattice = points.covering_lattice(line, 0.5, "rock")
     with pytest.raises(InputError, match=r"rock: the points span no area"):
         tri.interpolate_points(line, lattice, 1.0, 1, "rock")
 

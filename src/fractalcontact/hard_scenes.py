@@ -108,18 +108,22 @@ def pressed_closure(height, share):
     return float(max(reached, depth[min(1, depth.size - 1)], 1e-3 * depth[-1]))
 
 
-def _pressed(kind, generator, height, *, share=(0.05, 0.6), space=None, by_force=None, **more):
-    """A scene pressed to a random share of its nodes, by closure or by the force of that closure.
-
-    The force is that of a punch under the same nodes, roughly: any force has its state.
-    """
+def _pressed(kind, generator, height, *, share=(0.05, 0.6), space=None, by_force=None):
+    """A scene pressed to a random share of its nodes, by closure or by force."""
     space = _space(height.shape) if space is None else space
     closure = pressed_closure(height, generator.uniform(*share))
+    return HardScene(kind, height, space, _load(generator, space, closure, by_force))
+
+
+def _load(generator, space, closure, by_force=None):
+    """A closure or, in half the cases, about its force: that of a punch as large as the window.
+
+    Any force has its state.
+    """
     by_force = generator.random() < 0.5 if by_force is None else by_force
-    load = {"closure": closure}
-    if by_force:
-        load = {"force": space.modulus * np.sqrt(height.size) * space.cell * closure}
-    return HardScene(kind, height, space, {**load, **more})
+    if not by_force:
+        return {"closure": closure}
+    return {"force": space.modulus * np.sqrt(np.prod(space.shape)) * space.cell * closure}
 
 
 # One difficulty a function, or one family of them -----------------------------------------------
@@ -169,10 +173,7 @@ def _load_of(low, high):
         height = _scaled(rough_heights(generator, _shape(generator)))
         space = _space(height.shape)
         closure = np.ptp(height) * 10 ** generator.uniform(low, high)
-        load = {"closure": closure}
-        if generator.random() < 0.5:
-            load = {"force": space.modulus * np.sqrt(height.size) * space.cell * closure}
-        return HardScene(kind, height, space, load)
+        return HardScene(kind, height, space, _load(generator, space, closure))
 
     return scene
 

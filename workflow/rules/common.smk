@@ -2,6 +2,7 @@
 import ast
 import hashlib
 import re
+from functools import cache
 from pathlib import Path
 
 import yaml
@@ -118,15 +119,23 @@ def sources(package, paths):
     queue = [path if path.exists() else path.with_suffix("") / "__init__.py" for path in paths]
     while queue:
         path = queue.pop()
-        if path in seen:
-            continue
-        seen.add(path)
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and node.level:
-                folder = path.parents[node.level - 1]
-                base = folder.joinpath(*(node.module or "").split("."))
-                names = [base] if node.module else []
-                names += [base / alias.name for alias in node.names]
-                files = [f for n in names for f in (n.with_suffix(".py"), n / "__init__.py")]
-                queue += [file for file in files if file.is_file() and package in file.parents]
+        if path not in seen:
+            seen.add(path)
+            queue += imported(package, path)
     return seen
+
+
+# Three dozen rules ask for the same files, in every process that reads the workflow.
+@cache
+def imported(package, path):
+    """Files of the package that one of them imports."""
+    found = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            folder = path.parents[node.level - 1]
+            base = folder.joinpath(*(node.module or "").split("."))
+            names = [base] if node.module else []
+            names += [base / alias.name for alias in node.names]
+            files = [f for n in names for f in (n.with_suffix(".py"), n / "__init__.py")]
+            found += [file for file in files if file.is_file() and package in file.parents]
+    return found

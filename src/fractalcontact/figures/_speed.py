@@ -40,6 +40,12 @@ def values_of(scenes, key):
     return sorted({scene.attrs[key] for scene in scenes.values()})
 
 
+def middle_contact(scenes):
+    """The share in contact that stands for all where there is room for one."""
+    shares = values_of(scenes, "contact")
+    return shares[len(shares) // 2]
+
+
 def pick(scenes, **wanted):
     """The scene whose attributes are these."""
     for scene in scenes.values():

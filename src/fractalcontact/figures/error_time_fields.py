@@ -6,6 +6,7 @@ from ._speed import (
     AXES,
     draw_points,
     legend_of,
+    middle_contact,
     pick,
     rough,
     scenes_of,
@@ -34,8 +35,8 @@ def draw(atlas, names):
     """
     scenes = rough(scenes_of(atlas))
     looks = styles(scenes)
-    size, contacts = values_of(scenes, "size")[-1], values_of(scenes, "contact")
-    contact, columns = contacts[len(contacts) // 2], values_of(scenes, "hurst")
+    size, contact = values_of(scenes, "size")[-1], middle_contact(scenes)
+    columns = values_of(scenes, "hurst")
     figure = Figure(figsize=(WIDTH, 7.2))
     panels = figure.subplots(
         len(QUANTITIES), len(columns), sharex=True, sharey="row", squeeze=False

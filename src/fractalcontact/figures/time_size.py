@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..speed import OURS
-from ._speed import legend_of, rough, scenes_of, styles
+from ._speed import legend_of, middle_contact, rough, scenes_of, styles
 from ._words import estimate, short
 from .common import WIDTH, Drawing, colour_of, group, label_short_span, letter
 
@@ -47,8 +47,7 @@ def draw(atlas, names):
 
 def _middle(scenes):
     """Names of the surfaces at the middle contact, one for each H."""
-    shares = sorted({scene.attrs["contact"] for scene in scenes.values()})
-    middle = shares[len(shares) // 2]
+    middle = middle_contact(scenes)
     names = [s.attrs["scene"] for s in scenes.values() if s.attrs["contact"] == middle]
     return sorted({name.split(", ", 1)[1] for name in names})
 

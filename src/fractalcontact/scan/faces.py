@@ -58,7 +58,7 @@ def grid_one(scan: Measured) -> xr.DataArray:
     if _keeps_lattice(scan, cloud):
         return _placed_heights(scan, cloud)
     spacing = scan.grid or _spacing(cloud)
-    lattice = covering_lattice([cloud.points], spacing, str(scan.path))
+    lattice = covering_lattice(cloud.points, spacing, str(scan.path))
     return _interpolated_heights(scan, cloud, lattice)
 
 
@@ -104,7 +104,7 @@ def grid_pair(
     spacing = lower.grid or max(_spacing(cloud) for cloud in clouds)
 
     def gridded(scan, cloud):
-        lattice = covering_lattice([cloud.points], spacing, str(scan.path))
+        lattice = covering_lattice(cloud.points, spacing, str(scan.path))
         return _interpolated_heights(scan, cloud, lattice)
 
     def regrid(motions):

@@ -159,27 +159,25 @@ def place_on_lattice(points: np.ndarray, lattice: Lattice) -> np.ndarray:
     return heights
 
 
-def covering_lattice(clouds: list[np.ndarray], spacing: float, where: str) -> Lattice:
-    """Make the grid that covers the area common to all clouds.
+def covering_lattice(points: np.ndarray, spacing: float, where: str) -> Lattice:
+    """Make the grid that covers a cloud.
 
     Nodes are whole multiples of the spacing, so that grids of the same spacing coincide.
 
     Raises
     ------
     InputError
-        If the clouds do not overlap, or the grid would be absurdly large.
+        If the cloud has no node, or the grid would be absurdly large.
     """
-    low = np.max([cloud[:, :2].min(axis=0) for cloud in clouds], axis=0)
-    high = np.min([cloud[:, :2].max(axis=0) for cloud in clouds], axis=0)
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     first = np.ceil(low / spacing - 1e-9)
     count = np.floor(high / spacing + 1e-9) - first + 1
     if np.any(count < 1):
         raise InputError(
-            f"{where}: the points share no area of at least one grid spacing ({spacing:.4g} mm); "
-            "two faces must be given in one coordinate frame, and key 'grid' must suit them"
+            f"{where}: the points span no area of at least one grid spacing ({spacing:.4g} mm); "
+            "set a finer key 'grid'"
         )
-    n_points = sum(len(cloud) for cloud in clouds)
-    if count.prod() > min(MOST_CELLS, max(_FEW_CELLS, CELLS_PER_POINT * n_points)):
+    if count.prod() > min(MOST_CELLS, max(_FEW_CELLS, CELLS_PER_POINT * len(points))):
         raise InputError(
             f"{where}: a grid of {spacing:.4g} mm over {high[0] - low[0]:.4g} x "
             f"{high[1] - low[1]:.4g} mm has too many cells; remove stray points or set a coarser "

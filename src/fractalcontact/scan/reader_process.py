@@ -20,6 +20,7 @@ from importlib import import_module
 from pathlib import Path
 
 from ..errors import InputError
+from ..labels import printable
 from .files import inflated_size, regular_file
 from .options import ScanOptions
 from .raw import RawScan
@@ -164,7 +165,7 @@ def _readable(message: str) -> str:
     if len(message) > _LONGEST_MESSAGE:
         half = _LONGEST_MESSAGE // 2
         message = f"{message[:half]} ... {message[-half:]}"
-    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in message)
+    return "\n".join(map(printable, message.split("\n")))
 
 
 def _require_table(raw: RawScan, path: Path) -> None:
