@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
+from fractalcontact.active_set import ActiveSet
 from fractalcontact.scenes import KINDS, PRESSED, random_scene, violation
 
 SEEDS = range(300)
@@ -126,3 +127,18 @@ def test_a_force_that_rises_steeply_is_found_by_way_of_closures(monkeypatch, see
     state = solve_contact(height, space, force=expected.force)
     assert state.closure == pytest.approx(expected.closure, rel=1e-6)
     assert (state.in_contact == expected.in_contact).mean() > 0.999
+
+
+def test_a_set_that_is_far_off_when_patience_ends_is_sought_by_closures(monkeypatch):
+    """Far off at the end of patience, though not when hopelessness was looked for: both count."""
+    called = []
+    by_closures = ActiveSet._by_closures
+    monkeypatch.setattr("fractalcontact.active_set.PATIENCE", 0)
+    monkeypatch.setattr("fractalcontact.active_set.HOPELESS", -1)
+    monkeypatch.setattr(ActiveSet, "_by_closures", lambda *a: called.append(1) or by_closures(*a))
+    scenes = [random_scene(seed, largest=60) for seed in range(12)]
+    scenes = [scene for scene in scenes if "force" in scene.load]
+    for scene in scenes:
+        state = solve_contact(scene.height, scene.space, **scene.load)
+        assert state.residual <= RTOL
+    assert len(called) >= len(scenes) > 3

@@ -164,7 +164,7 @@ class ActiveSet:
                 pressure, displacement = solution.pressure, solution.displacement
                 closure = solution.closure
             hopeless = examined.worst > HOPELESS_VIOLATION * abs(closure)
-            if problem.by_force and correction == (HOPELESS if hopeless else PATIENCE):
+            if problem.by_force and correction >= (HOPELESS if hopeless else PATIENCE):
                 return self._by_closures(self._verified(pressure, closure))
         return self._verified(pressure, closure)
 
