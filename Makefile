@@ -2,6 +2,8 @@
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
+# make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
+# make cost   where the time of the study went
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make scenes SCENES=5000   so many random contact problems, each state verified
 # make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
@@ -28,7 +30,10 @@ GUARD :=
 UNLOCK :=
 endif
 
-.PHONY: all study smoke check-scans accuracy test bench scenes fuzz lint format lock clean
+# What the study calls itself.
+NAME = $(shell sed -n 's/^study: *//p' $(STUDY))
+
+.PHONY: all study smoke check-scans check-accuracy cost accuracy test bench scenes fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -46,6 +51,15 @@ check-scans: $(VENV)/installed
 accuracy: $(if $(PEERS),$(VENV)/peers-installed)
 	@$(MAKE) --no-print-directory study TARGET=accuracy \
 	  STUDY=$(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
+
+# The study, then all of it at full cost beside it (results/NAME_full), then the two compared.
+check-accuracy: study
+	@$(SNAKEMAKE) --configfile $(STUDY) --config study=$(NAME)_full accuracy=full \
+	  -- results/$(NAME)_full/atlas.nc
+	@$(BIN)/python benchmarks/check_accuracy.py results/$(NAME) results/$(NAME)_full
+
+cost: study
+	@$(BIN)/python benchmarks/study_cost.py results/$(NAME)
 
 test: $(VENV)/tests-installed
 	$(BIN)/python -m pytest

@@ -15,8 +15,9 @@ from fractalcontact.area import (
 from fractalcontact.closure import closure_curves
 from fractalcontact.joint import describe_joint
 from fractalcontact.specimen import make_specimen, window_sides
+from fractalcontact.states import combine
 from fractalcontact.study import resolve_settings, window_arguments
-from fractalcontact.sweep import combine, contact_states
+from fractalcontact.sweep import contact_states
 from fractalcontact.synthesis import self_affine
 
 E_STAR = 1e4  # MPa

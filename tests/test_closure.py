@@ -7,15 +7,16 @@ import xarray as xr
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.closure import (
     bulk_settlement,
-    closure_at_force,
     closure_curves,
     elastic_dilatancy,
     fit_hyperbola,
 )
 from fractalcontact.joint import describe_joint
+from fractalcontact.load_curve import closure_at_force
 from fractalcontact.specimen import make_specimen, window_sides
+from fractalcontact.states import combine
 from fractalcontact.study import resolve_settings
-from fractalcontact.sweep import combine, contact_states
+from fractalcontact.sweep import contact_states
 from fractalcontact.synthesis import self_affine
 
 

@@ -7,6 +7,7 @@ import xarray as xr
 from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.joint import describe_joint
 from fractalcontact.specimen import make_specimen, nominal_area, window_sides
+from fractalcontact.states import combine
 from fractalcontact.strength import (
     JRC_RANGE,
     dilatancy_angle,
@@ -18,7 +19,7 @@ from fractalcontact.strength import (
     shear_strength,
 )
 from fractalcontact.study import resolve_settings
-from fractalcontact.sweep import combine, contact_states
+from fractalcontact.sweep import contact_states
 from fractalcontact.synthesis import self_affine
 from fractalcontact.theory import LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
 

@@ -7,7 +7,8 @@ import xarray as xr
 from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.joint import composite_topography, describe_joint
 from fractalcontact.specimen import make_specimen, window_sides
-from fractalcontact.sweep import OFFSETS, combine, contact_states, domains_of
+from fractalcontact.states import OFFSETS, combine, domains_of
+from fractalcontact.sweep import contact_states
 from fractalcontact.synthesis import self_affine
 
 SPACING_Y, SPACING_X = 0.12, 0.1
@@ -102,5 +103,5 @@ def test_directions_with_different_numbers_of_offsets_are_refused(parts):
 
 def test_domains_alone(parts):
     fields = domains_of(combine(parts))
-    assert set(fields.data_vars) == {"in_contact_1", "in_contact_2"}
+    assert set(fields.data_vars) == {"in_contact_1", "in_contact_2", "solved", "nodes_error"}
     assert not set(OFFSETS) & set(fields.variables)

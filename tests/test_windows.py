@@ -12,9 +12,10 @@ from fractalcontact.roughness import roughness_length
 from fractalcontact.scan import read_faces
 from fractalcontact.size_laws import SHARES, size_laws
 from fractalcontact.specimen import make_specimen, window_sides
+from fractalcontact.states import combine
 from fractalcontact.strength import joint_strength
 from fractalcontact.study import resolve_settings
-from fractalcontact.sweep import combine, contact_states
+from fractalcontact.sweep import contact_states
 from fractalcontact.synthesis import self_affine
 from fractalcontact.windows import (
     FEWEST_CELLS,

@@ -14,6 +14,7 @@ DOMAIN_FIELDS = {
     "delta_sigma": ("1", "box-counting dimension Delta_sigma of the contact domain"),
     "delta_sigma_low": ("1", "Delta_sigma, lower end of the 95 % interval"),
     "delta_sigma_high": ("1", "Delta_sigma, upper end of the 95 % interval"),
+    "delta_sigma_error": ("1", "Delta_sigma, error by the solver"),
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
     "fit_n": ("1", "box sizes fitted"),
@@ -22,6 +23,7 @@ DOMAIN_FIELDS = {
 
 #: Why the contact domain of one node has no dimension.
 ONE_NODE = "one node is in contact, and what touches within its cell is not known"
+NOT_NEEDED = "not solved, since nothing shown needs it"
 
 
 def analyse_domains(fields, spacing, *, fit_range=None):
@@ -30,8 +32,9 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     Parameters
     ----------
     fields : xr.Dataset
-        ``in_contact_k`` over (direction, offset, load, y_k, x_k), as
-        :func:`fractalcontact.sweep.domains_of` gives them.
+        ``in_contact_k`` over (direction, offset, load, y_k, x_k) and, of domains that were not
+        measured, ``solved`` and ``nodes_error``, as :func:`fractalcontact.states.domains_of` gives
+        them.
     spacing : float
         Of the scan, mm; a domain at resolution k has k times this.
     fit_range : (float, float), optional
@@ -49,13 +52,23 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     A contact domain of one node has no dimension here. To box counting it is a point, of dimension
     0 without error; but the node stands for contact somewhere in a cell, and whether that is a
     point, a line or the whole cell no count at this spacing can tell.
+
+    The error of Delta_sigma is the share of the nodes whose contact is undecided: in 95 to 98 % of
+    250 states of three twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
     """
-    factors = sorted(int(name.removeprefix("in_contact_")) for name in fields.data_vars)
+    names = [name for name in fields.data_vars if name.startswith("in_contact_")]
+    factors = sorted(int(name.removeprefix("in_contact_")) for name in names)
     domains = {k: fields[f"in_contact_{k}"].values for k in factors}
     sizes = {k: box_sizes(domains[k].shape[-2:]) for k in factors}
     n_scales = max(len(s) for s in sizes.values())
     n_direction, n_offset, n_load = domains[factors[0]].shape[:3]
+    order = ("direction", "offset", "resolution", "load")
     shape = (n_direction, n_offset, len(factors), n_load)
+    if "solved" in fields:
+        solved = fields["solved"].transpose(*order).values
+        undecided = fields["nodes_error"].transpose(*order).values
+    else:
+        solved, undecided = np.ones(shape, bool), np.full(shape, np.nan)
     table = {name: np.full(shape, np.nan) for name in DOMAIN_FIELDS}
     # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
     n_octaves = int(domains[factors[0]][0, 0, 0].size).bit_length()
@@ -64,6 +77,9 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     count = np.full((*shape, n_scales), np.nan)
     used = np.zeros(count.shape, bool)
     for d, o, k, j in np.ndindex(shape):
+        if not solved[d, o, k, j]:
+            reason[d, o, k, j] = NOT_NEEDED
+            continue
         factor = factors[k]
         domain = domains[factor][d, o, j]
         box = box_dimension(domain, factor * spacing, fit_range=fit_range, sizes=sizes[factor])
@@ -74,6 +90,7 @@ def analyse_domains(fields, spacing, *, fit_range=None):
             "delta_sigma": box.dimension,
             "delta_sigma_low": box.low,
             "delta_sigma_high": box.high,
+            "delta_sigma_error": undecided[d, o, k, j] / domain.sum() + 0 * box.dimension,
             "fit_min": box.r_min,
             "fit_max": box.r_max,
             "fit_n": box.n,
@@ -86,18 +103,19 @@ def analyse_domains(fields, spacing, *, fit_range=None):
         reason[d, o, k, j] = box.reason
         count[d, o, k, j, : len(box.count)] = box.count
         used[d, o, k, j, : len(box.used)] = box.used
-    dims = ("direction", "offset", "resolution", "load")
     return xr.Dataset(
         {
-            **{name: (dims, values, about(*DOMAIN_FIELDS[name])) for name, values in table.items()},
+            **{
+                name: (order, values, about(*DOMAIN_FIELDS[name])) for name, values in table.items()
+            },
             "cluster_octaves": (
-                (*dims, "octave"),
+                (*order, "octave"),
                 octaves,
                 about("1", "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k"),
             ),
-            "reason": (dims, reason.astype(str), about("1", "why there is no dimension")),
-            "box_count": ((*dims, "scale"), count, about("1", "boxes that meet the domain, N(r)")),
-            "box_used": ((*dims, "scale"), used, about("1", "box size used in the fit")),
+            "reason": (order, reason.astype(str), about("1", "why there is no dimension")),
+            "box_count": ((*order, "scale"), count, about("1", "boxes that meet the domain, N(r)")),
+            "box_used": ((*order, "scale"), used, about("1", "box size used in the fit")),
             "box_side": (
                 ("resolution", "scale"),
                 padded([sizes[k] * k * spacing for k in factors]),

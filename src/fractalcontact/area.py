@@ -139,7 +139,7 @@ def joint_statistics(specimen, joint):
     -------
     xr.Dataset
         :data:`STATISTICS` over (direction, offset), offsets ascending and, as in
-        :func:`fractalcontact.sweep.combine`, those of the first direction.
+        :func:`fractalcontact.states.combine`, those of the first direction.
     """
     directions = [str(name) for name in joint["contact_direction"].values]
     each = [

@@ -3,14 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 from scipy import optimize, special
 
 from .area import FEWEST_NODES
 from .fitting import CONFIDENCE, fit_line
 from .halfspace import rectangle_mean_displacement
 from .labels import about
-from .sweep import OFFSETS, SCALARS
+from .load_curve import left_out_misses
+from .states import OF_STATES, OFFSETS
 
 #: Points a hyperbola of two parameters needs before its interval means anything.
 FEWEST_POINTS = 4
@@ -113,7 +113,7 @@ def closure_curves(states, window, e_star, fit_range=None):
     Parameters
     ----------
     states : xr.Dataset
-        From :func:`fractalcontact.sweep.combine`.
+        From :func:`fractalcontact.states.combine`.
     window : (float, float)
         Sides (y, x) of the window, mm.
     e_star : float
@@ -125,9 +125,10 @@ def closure_curves(states, window, e_star, fit_range=None):
     -------
     xr.Dataset
         ``bulk_settlement`` and ``nominal_pressure`` (load); ``interface_closure``,
-        ``interface_stiffness``, ``conductance``, ``area_share`` and the scalars of the states over
-        (direction, offset, resolution, load); the fits over (direction, offset, resolution); what
-        :data:`fractalcontact.sweep.OFFSETS` names over (direction, offset).
+        ``interface_stiffness``, ``conductance``, ``area_share``, each with an ``_error``,
+        ``closure_spacing_error`` and the numbers of the states over (direction, offset, resolution,
+        load); the fits over (direction, offset, resolution); what
+        :data:`fractalcontact.states.OFFSETS` names over (direction, offset).
 
     Notes
     -----
@@ -136,7 +137,7 @@ def closure_curves(states, window, e_star, fit_range=None):
     pressed as a rigid punch and w_b belongs to a uniform pressure.
     """
     force = states["load"]
-    result = states[[*SCALARS, *OFFSETS]].copy()
+    result = states[[*OF_STATES, *OFFSETS]].copy()
     settlement = bulk_settlement(force.values, e_star, *window)
     area = window[0] * window[1]
     result["bulk_settlement"] = ("load", settlement, about("mm", "bulk settlement w_b"))
@@ -155,6 +156,7 @@ def closure_curves(states, window, e_star, fit_range=None):
         "MPa/mm", "stiffness of the interface d sigma / d w_int; none where faces are flush"
     )
     _add_conductance(result, e_star)
+    _add_errors(result, area, e_star)
 
     lowest, highest = fit_range or (force.values.min(), force.values.max())
     fitted = (force.values >= lowest * (1 - 1e-9)) & (force.values <= highest * (1 + 1e-9))
@@ -170,6 +172,38 @@ def closure_curves(states, window, e_star, fit_range=None):
     result.attrs["hyperbola_force_low"] = float(force.values[fitted].min(initial=np.inf))
     result.attrs["hyperbola_force_high"] = float(force.values[fitted].max(initial=-np.inf))
     return result
+
+
+def _add_errors(curves, area, e_star):
+    """Errors by the solver of what was made of the states, and by the spacing of the closures."""
+    share = (curves["interface_stiffness"] * area / curves["stiffness"]) ** 2
+    stiffness = curves["stiffness_error"] / area * share
+    errors = {
+        "interface_closure": curves["closure_error"],
+        "area_share": curves["area_error"] / area,
+        "interface_stiffness": stiffness,
+        "conductance": stiffness / e_star,
+    }
+    for name, error in errors.items():
+        told = curves[name].attrs
+        curves[f"{name}_error"] = error.transpose(*curves["closure"].dims)
+        curves[f"{name}_error"].attrs = about(
+            told["units"], f"{told['long_name']}, error by the solver"
+        )
+    curves["closure_spacing_error"] = _spacing_error(curves["closure"])
+
+
+def _spacing_error(closure):
+    """What halving the spacing has changed in the closure, mm; NaN where it was not solved twice.
+
+    It bounds what finer spacings would still change where closures approach their limit like s or
+    faster, as that of Hertz does; elsewhere it says how far the last halving went.
+    """
+    fine = [k for k in closure["resolution"].values if 2 * k in closure["resolution"]]
+    coarser = closure.sel(resolution=[2 * k for k in fine]).assign_coords(resolution=fine)
+    error = abs(closure - coarser.reindex(resolution=closure["resolution"].values))
+    error.attrs = about("mm", "closure w, change from twice the spacing to this one")
+    return error.transpose(*closure.dims)
 
 
 def interface_stiffness(total, bulk):
@@ -267,89 +301,14 @@ def elastic_dilatancy(curves, joint):
     elastic = finest["rigid_opening"] - finest["interface_closure"]
     result["elastic_dilatancy"] = elastic.transpose("contact_direction", "offset", "load")
     result["elastic_dilatancy"].attrs = about("mm", "elastic dilatancy delta = delta_r - w_int")
-    result["left_out_error"] = _left_out_error(finest).transpose(*result["elastic_dilatancy"].dims)
+    misses = left_out_misses(finest["load"].values, finest["closure"], finest["stiffness"])
+    result["left_out_error"] = abs(misses).transpose(*result["elastic_dilatancy"].dims)
     result["left_out_error"].attrs = about(
         "mm", "error of delta when interpolated from the states at the loads beside this one"
     )
+    # Openings of rigid faces are read off the heights: they have no error of a solver.
+    error = finest["closure_error"].transpose(*result["elastic_dilatancy"].dims)
+    result["elastic_dilatancy_error"] = error
+    error.attrs = about("mm", "elastic dilatancy, error by the solver")
     result["offset_made"] = finest["offset_made"]
     return result
-
-
-def _left_out_error(curves):
-    """What the closure curve without a state misses at its force, for every state within it."""
-    forces = curves["load"].values
-
-    def of_curve(closures, stiffnesses):
-        missed = np.full(len(forces), np.nan)
-        for j in range(1, len(forces) - 1):
-            others = np.delete(np.arange(len(forces)), j)
-            read = closure_at_force(
-                forces[j], forces[others], closures[others], stiffnesses[others]
-            )
-            missed[j] = abs(read.closure - closures[j])
-        return missed
-
-    return xr.apply_ufunc(
-        of_curve,
-        curves["closure"],
-        curves["stiffness"],
-        input_core_dims=[["load"], ["load"]],
-        output_core_dims=[["load"]],
-        vectorize=True,
-    )
-
-
-class InterpolatedClosure(NamedTuple):
-    """Closure at a force between those that were solved, and how far off it can be; mm."""
-
-    closure: float
-    error: float
-
-
-def closure_at_force(force, forces, closures, stiffnesses):
-    """Closure at a force, read from a solved closure curve.
-
-    Parameters
-    ----------
-    force : float
-        F, N.
-    forces, closures, stiffnesses : (n,) array_like
-        F (ascending, > 0), w (mm) and dF/dw (N/mm) of the states of the curve.
-
-    Returns
-    -------
-    InterpolatedClosure
-        NaN outside the curve, and an error of NaN where the curve has but two states.
-
-    Notes
-    -----
-    Cubic Hermite interpolation of log w against log F, with the slope F/(w dF/dw) of each state.
-    The error is the largest that the same interpolation makes at the states next to the interval
-    when each is left out in turn. It then bridges two intervals, so that the error is overstated,
-    by 16 where the curve is smooth.
-    """
-    x, y = np.log(forces), np.log(closures)
-    slope = np.asarray(forces) / (np.asarray(closures) * np.asarray(stiffnesses))
-    at = np.log(force)
-    if not x[0] <= at <= x[-1]:
-        return InterpolatedClosure(np.nan, np.nan)
-    left = min(int(np.searchsorted(x, at, side="right")) - 1, len(x) - 2)
-    found = np.exp(_hermite(at, x, y, slope, left, left + 1))
-    misses = [
-        abs(np.exp(_hermite(x[i], x, y, slope, i - 1, i + 1)) / closures[i] - 1)
-        for i in (left, left + 1)
-        if 0 < i < len(x) - 1
-    ]
-    return InterpolatedClosure(float(found), float(found * max(misses, default=np.nan)))
-
-
-def _hermite(at, x, y, slope, left, right):
-    """Cubic through two points (x, y) with their slopes."""
-    step = x[right] - x[left]
-    t = (at - x[left]) / step
-    return (
-        (2 * t**3 - 3 * t**2 + 1) * y[left]
-        + (t**3 - 2 * t**2 + t) * step * slope[left]
-        + (3 * t**2 - 2 * t**3) * y[right]
-        + (t**3 - t**2) * step * slope[right]
-    )

@@ -13,6 +13,8 @@ import numpy as np
 
 from . import active_set
 from .active_set import ActiveSet, Problem
+from .effort import SOLVING
+from .errors import NotConverged
 from .halfspace import HalfSpace
 from .set_equations import Operator
 
@@ -73,6 +75,18 @@ class ContactState:
         """A_r = N s^2, mm2."""
         return float(np.count_nonzero(self.in_contact)) * self.space.cell_area
 
+    @property
+    def undecided(self):
+        """Nodes of which it is not certain whether they touch, as the conditions hold to residual.
+
+        Their pressure, or their gap, is no larger than what the violation of the conditions may
+        hide: a gap of ``residual`` times the closure, and the pressure that closes it on one cell.
+        """
+        hidden = self.residual * self.closure
+        weak = self.in_contact & (self.pressure <= hidden * self.space.modulus / self.space.cell)
+        near = ~self.in_contact & (self.gap <= hidden)
+        return int(np.count_nonzero(weak) + np.count_nonzero(near))
+
     @cached_property
     def stiffness(self):
         """Normal stiffness dF/dw, N/mm, from H q = 1 on the contact set; 0 without contact.
@@ -83,29 +97,11 @@ class ContactState:
             If it is not known to 1e-6.
         """
         free = active_set.between_bounds(self.pressure.ravel(), self.hardness)
-        value, error = active_set.stiffness(Operator(self.space), free)
+        with SOLVING.counted(0):
+            value, error = active_set.stiffness(Operator(self.space), free)
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         return value * self.space.modulus * self.space.cell
-
-
-class NotConverged(RuntimeError):
-    """No state satisfying the contact conditions was reached.
-
-    Attributes
-    ----------
-    reason : str
-    state : ContactState
-        The best state reached; its ``residual`` says how far it is from being one.
-    residual : float
-    """
-
-    def __init__(self, reason, state, residual):
-        super().__init__(f"contact not solved: {reason}; best residual {residual:.3g}")
-        self.reason, self.state, self.residual = reason, state, residual
-
-    def __reduce__(self):
-        return type(self), (self.reason, self.state, self.residual)
 
 
 def solve_contact(
@@ -147,11 +143,12 @@ def solve_contact(
         return unloaded_state(space, clearance)
     units = _Units(space, load, force is not None)
     problem = units.problem(clearance, checked_hardness(hardness, space, force))
-    if start is None or not start.pressure.any():
-        pressure, displacement = _coarse_start(problem), None
-    else:
-        pressure, displacement = units.extrapolated(start, load)
-    found = ActiveSet(problem, rtol).solve(pressure, displacement)
+    with SOLVING.counted(1):
+        if start is None or not start.pressure.any():
+            pressure, displacement = _coarse_start(problem), None
+        else:
+            pressure, displacement = units.extrapolated(start, load)
+        found = ActiveSet(problem, rtol).solve(pressure, displacement)
     state = units.state(found, clearance, problem, start)
     if not state.residual <= rtol:
         reason = f"the contact set still changed after {active_set.MAX_CORRECTIONS} corrections"

@@ -13,7 +13,7 @@ Complementarity Problem (1992), sect. 4.7.
 import numpy as np
 import xarray as xr
 
-from .contact import NotConverged
+from .errors import NotConverged
 from .halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
 from .hard_scenes import pressed_closure, rough_heights
 from .labels import about

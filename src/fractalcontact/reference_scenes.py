@@ -10,7 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
-from .contact import ContactState, NotConverged, solve_contact
+from .contact import ContactState, solve_contact
+from .errors import NotConverged
 from .halfspace import HalfSpace
 from .methods import METHODS
 from .scenes import violation

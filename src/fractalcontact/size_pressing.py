@@ -8,7 +8,8 @@ from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing, prefractal
 from .labels import about
 from .specimen import nominal_area
-from .sweep import forces_of, hardness_of, load_steps
+from .states import forces_of, hardness_of
+from .sweep import load_steps
 from .windows import FEWEST_CELLS, PARTS, split
 
 #: A resolution is used if the smallest sub-windows keep so many nodes a side at it.

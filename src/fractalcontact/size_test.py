@@ -24,7 +24,7 @@ from .scaling import FEWEST_NODES, renormalisation
 from .size_prediction import predict_whole, predict_whole_strength
 from .size_pressing import press_parts, whole_areas
 from .specimen import cell_side
-from .sweep import chosen_offset
+from .states import chosen_offset
 from .windows import PARTS, split
 
 #: A slope whose 95 % interval is wider than this decides nothing.

@@ -14,8 +14,9 @@ import xarray as xr
 
 from . import threads
 from .cheap_models import bearing_area, coarse_grid, winkler
-from .contact import NotConverged, solve_contact
+from .contact import solve_contact
 from .domain import box_dimension
+from .errors import NotConverged
 from .halfspace import HalfSpace
 from .labels import about
 from .methods import METHODS, peers

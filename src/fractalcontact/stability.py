@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 
 from . import methods
-from .contact import NotConverged, solve_contact
+from .contact import solve_contact
+from .errors import NotConverged
 from .hard_scenes import KINDS, hard_scene
 from .labels import about
 from .methods.peers import peer_methods

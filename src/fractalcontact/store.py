@@ -24,6 +24,7 @@ STAGES = {
     "contact": "contact domains",
     "closure": "closure curves, stiffness, real contact area",
     "dilatancy": "rigid and elastic dilatancy",
+    "choices": "what was solved and how exactly, why, and the errors that makes",
     "area": "laws of the real contact area, and the classical theories beside it",
     "strength": "dilatancy and friction angles, shear strength",
     "windows": "closure, roughness and strength of parts of the window",

@@ -9,15 +9,19 @@ import jsonschema
 import yaml
 
 from .errors import InputError
+from .needs import tolerance
 from .sidecar import read_yaml
-from .units import load, quantity
+from .units import load, quantity, share
 
 #: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
 _SCAN_DEFINITION, _SETTINGS_DEFINITION = "scan", "settings"
 
 _LONGEST_QUOTE = 80  # characters of what the user wrote, in a message
 #: What a study that does not mention it gets; everything else must be stated.
-SOLVER = {"rtol": 1e-6, "kernel": "love"}
+SOLVER = {"kernel": "love"}
+ACCURACY = {"closure": "1 %", "delta_sigma": 0.02}
+#: Tolerance of a study that asks for everything.
+FULL_RTOL = 1e-6
 
 
 def read_study(path):
@@ -246,9 +250,35 @@ def resolve_roll_off(config, source):
     return {"recipe": recipe, "window": window, "seeds": asked["seeds"]}
 
 
-def solver_settings(config):
-    """Tolerance and kernel of the contact solver."""
-    return {**SOLVER, **config.get("solver", {})}
+def solver_settings(config, source):
+    """How the contact solver is used.
+
+    Parameters
+    ----------
+    config : mapping
+        A study that passed the schema.
+    source : str
+        For errors.
+
+    Returns
+    -------
+    dict
+        ``kernel``; ``accuracy``, a dict of shares, or None where the study asks for everything; and
+        ``rtol``, which follows from it unless the study states its own.
+
+    Raises
+    ------
+    InputError
+        If an accuracy is no share.
+    """
+    stated = config.get("accuracy", {})
+    if stated == "full":
+        accuracy, rtol = None, FULL_RTOL
+    else:
+        asked = ACCURACY | stated
+        accuracy = {key: share(asked[key], f"{source}: accuracy.{key}") for key in ACCURACY}
+        rtol = tolerance(accuracy)
+    return {"rtol": rtol, **SOLVER, **config.get("solver", {}), "accuracy": accuracy}
 
 
 def _material(config, material, where, source):

@@ -98,6 +98,23 @@ def load(text, where: str) -> tuple[float, str]:
     )
 
 
+def share(value, where: str) -> float:
+    """A share between 0 and 1, as a number or in per cent: 0.01 or "1 %".
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    text = str(value).strip()
+    number = text.removesuffix("%").strip()
+    if not isinstance(value, bool) and len(text) <= _LONGEST and re.fullmatch(_NUMBER, number):
+        found = float(number) / (100 if text.endswith("%") else 1)
+        if 0 < found < 1:
+            return found
+    raise InputError(f"{where}: {text[:_LONGEST]!r} is no share; write for example '1 %' or 0.01")
+
+
 def length_factor(unit: str, where: str) -> float:
     """Millimetres in one ``unit`` of length: "um", "m", or "0.1 um" where numbers are counts.
 

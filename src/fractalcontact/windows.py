@@ -13,7 +13,8 @@ from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing
 from .labels import about
 from .specimen import cell_side, faces, nominal_area, window_slices
-from .sweep import forces_of, hardness_of, load_steps
+from .states import forces_of, hardness_of
+from .sweep import load_steps
 
 #: Sub-windows along each side of the window, by default: octaves and halves.
 PARTS = (1, 2, 3, 4, 6, 8)

@@ -20,9 +20,10 @@ from fractalcontact.size_laws import joint_by_size
 from fractalcontact.size_test import size_test
 from fractalcontact.specimen import make_specimen, window_sides
 from fractalcontact.statements import judge
+from fractalcontact.states import combine, domains_of, force_range
 from fractalcontact.strength import joint_strength
 from fractalcontact.study import resolve_settings, window_arguments
-from fractalcontact.sweep import combine, contact_states, domains_of, force_range, map_states
+from fractalcontact.sweep import contact_states, map_states
 from fractalcontact.synthesis import self_affine
 
 SPACING = 0.1  # mm

@@ -16,7 +16,7 @@ from fractalcontact.figures._domains import Loading, trend
 from fractalcontact.figures._size_effect import fractal_pressure, size_effect
 from fractalcontact.fitting import fit_line
 from fractalcontact.scaling import renormalisation
-from fractalcontact.sweep import chosen_offset
+from fractalcontact.states import chosen_offset
 
 NAMES = (
     "fig08_prefractals",

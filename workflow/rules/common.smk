@@ -28,7 +28,7 @@ SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/pape
 
 
 def read_study():
-    """Scan files, settings of every specimen, embedded ones included, and contact maps."""
+    """Scan files, settings of every specimen, embedded ones too, contact maps, and the solver's."""
     check_study(config, SCHEMA, SOURCE)
     folder = config.get("scans", "scans")
     scans = find_scans(folder) if folder else {}
@@ -53,16 +53,15 @@ def read_study():
             settings[name] = resolve_settings(config, name, own, SOURCE)
     for name in config.get("embedded", {}):
         settings[name] = resolve_settings(config, name, {}, SOURCE)
-    return scans, settings, maps
+    return scans, settings, maps, solver_settings(config, SOURCE)
 
 
 try:
-    SCANS, SETTINGS, MAPS = read_study()
+    SCANS, SETTINGS, MAPS, SOLVER = read_study()
 except InputError as error:
     raise WorkflowError(str(error))
 
 RESULTS = f"results/{config['study']}"
-SOLVER = solver_settings(config)
 SPECIMENS = sorted(SETTINGS)
 
 

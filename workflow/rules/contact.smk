@@ -56,6 +56,7 @@ rule closure:
     output:
         closure=f"{RESULTS}/closure/{{specimen}}.nc",
         dilatancy=f"{RESULTS}/dilatancy/{{specimen}}.nc",
+        choices=f"{RESULTS}/choices/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/closure/{{specimen}}.log",
     benchmark:
@@ -67,7 +68,8 @@ rule closure:
         runtime=10,
     params:
         settings=settings_of,
-        code=code("closure", "sweep", "store"),
+        solver=SOLVER,
+        code=code("closure", "needs", "states", "store"),
     script:
         "../scripts/closure.py"
 
@@ -114,6 +116,6 @@ rule domains:
         runtime=20,
     params:
         settings=settings_of,
-        code=code("analysis", "sweep", "store"),
+        code=code("analysis", "states", "store"),
     script:
         "../scripts/domains.py"

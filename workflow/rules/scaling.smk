@@ -19,7 +19,7 @@ rule scaling:
         runtime=10,
     params:
         settings=settings_of,
-        code=code("analysis", "sweep", "store"),
+        code=code("analysis", "store"),
     script:
         "../scripts/scaling.py"
 
@@ -150,6 +150,7 @@ STAGE_FILES = {
     "contact": rules.domains.output.contact,
     "closure": rules.closure.output.closure,
     "dilatancy": rules.closure.output.dilatancy,
+    "choices": rules.closure.output.choices,
     "area": rules.area.output[0],
     "windows": rules.windows.output[0],
     "domains": rules.domains.output.domains,

@@ -4,8 +4,9 @@ from _job import reported
 
 from fractalcontact import store
 from fractalcontact.closure import closure_curves, elastic_dilatancy
+from fractalcontact.needs import choices
 from fractalcontact.specimen import window_sides
-from fractalcontact.sweep import combine, force_range
+from fractalcontact.states import combine, force_range
 
 with reported(snakemake.log) as log:
     specimen = store.read(snakemake.input.specimen)
@@ -19,4 +20,5 @@ with reported(snakemake.log) as log:
     dilatancy = elastic_dilatancy(curves, store.read(snakemake.input.joint))
     store.write(curves, snakemake.output.closure)
     store.write(dilatancy, snakemake.output.dilatancy)
+    store.write(choices(curves, settings, snakemake.params.solver), snakemake.output.choices)
     log.info("%s\n%s", curves, dilatancy)

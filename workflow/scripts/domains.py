@@ -5,7 +5,7 @@ from _job import reported
 from fractalcontact import store
 from fractalcontact.analysis import analyse_domains
 from fractalcontact.specimen import cell_side
-from fractalcontact.sweep import combine, domains_of
+from fractalcontact.states import combine, domains_of
 
 with reported(snakemake.log) as log:
     specimen = store.read(snakemake.input.specimen)

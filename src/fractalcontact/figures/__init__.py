@@ -33,6 +33,7 @@ FIGURES = (
     "fig12_evolution",
     "fig13_size_effect",
     "statements",
+    "choices",
 )
 _NEEDS_SLIDING = (
     "fig11_slope_angle",

@@ -8,7 +8,7 @@ import xarray as xr
 from ..fitting import FEWEST_POINTS
 from ..scaling import RESOLUTION
 from ..specimen import window_sides
-from ..sweep import chosen_offset
+from ..states import chosen_offset
 from ._words import force_label, interval, number, opening, place, short
 from .common import COLOURS, MARKERS, group, nearest_load, settings_of, spread
 

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ..area import FEWEST_NODES, LIGHT_LOAD
-from ..sweep import chosen_offset
+from ..states import chosen_offset
 from ._words import estimate, number, opening, place, short
 from .area_slope import kappa_lines
 from .common import (

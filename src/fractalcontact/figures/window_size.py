@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ..sweep import chosen_offset
+from ..states import chosen_offset
 from ._sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
 from ._words import PAPER, estimate, place, short
 from .common import (

@@ -11,7 +11,8 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from ..contact import ContactState, NotConverged, checked_problem, unloaded_state
+from ..contact import ContactState, checked_problem, unloaded_state
+from ..errors import NotConverged
 from .common import refuse_force, refuse_hardness
 
 MAX_ITERATIONS = 500

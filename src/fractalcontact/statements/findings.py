@@ -8,7 +8,7 @@ import numpy as np
 
 from ..fitting import fit_line
 from ..specimen import nominal_area
-from ..sweep import chosen_offset, forces_of
+from ..states import chosen_offset, forces_of
 
 HOLDS, PARTLY, FAILS, UNKNOWN = "holds", "holds in part", "does not hold", "cannot be told"
 

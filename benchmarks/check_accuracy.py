@@ -1,0 +1,109 @@
+"""A study held against the same study at full cost: numbers within their errors, and seconds.
+
+    make check-accuracy
+    python benchmarks/check_accuracy.py results/paper results/paper_full
+
+Every number that the first has is compared. It is right if it differs from that of the second by no
+more than its error (``NAME_error`` in the atlas), or lies within its interval (``NAME_low``,
+``NAME_high``); where neither is stated, by no more than the closure asked for, as a share of it.
+"""
+
+import argparse
+import json
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from study_cost import stages_of
+
+from fractalcontact.store import read_atlas
+from fractalcontact.study import solver_settings
+
+#: How the solver went about it, not what it found.
+_ABOUT_THE_SOLVER = ("iterations", "residual", "solved")
+_ENDINGS = ("_error", "_low", "_high")
+#: Rounding of sums in another order.
+_ROUNDING = 1e-9
+
+
+def compared(ours, full, share):
+    """Verdicts on the numbers of one group: which kind of bound each had, and whether it held.
+
+    Parameters
+    ----------
+    ours, full : xr.Dataset
+    share : float
+        What numbers without a bound may be off.
+
+    Yields
+    ------
+    name : str
+    kind : str
+    right : (n,) bool ndarray
+    """
+    for name, found in ours.data_vars.items():
+        skip = name in _ABOUT_THE_SOLVER or name.endswith(_ENDINGS) or name not in full
+        if skip or found.dtype.kind not in "fiu":
+            continue
+        exact = full[name].values.astype(float)
+        values = found.values.astype(float)
+        known = np.isfinite(values)
+        if not known.any():
+            continue
+        off = abs(values - exact)
+        slack = _ROUNDING * abs(exact)
+        if f"{name}_error" in ours:
+            kind, within = "error", off <= ours[f"{name}_error"].values + slack
+        elif f"{name}_low" in ours and ours[f"{name}_low"].shape == found.shape:
+            low, high = (ours[f"{name}_{end}"].values for end in ("low", "high"))
+            kind, within = "interval", (low - slack <= exact) & (exact <= high + slack)
+            within |= off <= slack
+        else:
+            kind, within = "none stated", off <= share * abs(exact) + slack
+        yield name, kind, within[known]
+
+
+def print_numbers(ours, full, share):
+    """How many numbers of an atlas lie within their bounds, and which lie outside most often."""
+    numbers, right, outside = Counter(), Counter(), Counter()
+    for group in ours.subtree:
+        if group.path in full:
+            stage = group.path.strip("/").split("/")[0]
+            pair = (group.to_dataset(), full[group.path].to_dataset())
+            for name, kind, within in compared(*pair, share):
+                for bound in (kind, "all"):
+                    numbers[bound] += within.size
+                    right[bound] += np.count_nonzero(within)
+                outside[f"{stage}: {name} ({kind})"] += np.count_nonzero(~within)
+    for kind, n in sorted(numbers.items(), key=lambda item: item[1]):
+        print(f"{kind:12s}{right[kind]:9d} of {n:9d} within: {right[kind] / n:.2%}")
+    for name, n in outside.most_common(12):
+        if n:
+            print(f"  outside: {n:6d}  {name}")
+
+
+def print_seconds(*results):
+    """Seconds of solving in each stage of two studies, and their ratio."""
+    ours, full = ({stage: row[3] for stage, row in stages_of(path)[0].items()} for path in results)
+    for stage, seconds in full.items():
+        if seconds > 0:
+            print(f"solving {stage:18s}{ours.get(stage, 0.0):9.2f} s of {seconds:9.2f} s")
+    a, b = sum(ours.values()), sum(full.values())
+    print(f"solving {'all':18s}{a:9.2f} s of {b:9.2f} s: {b / a:.2f} times fewer")
+
+
+def main():
+    """Compare two results given on the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("ours", type=Path, help="results of the study")
+    parser.add_argument("full", type=Path, help="results of the same with 'accuracy: full'")
+    options = parser.parse_args()
+    ours, full = (read_atlas(path / "atlas.nc") for path in (options.ours, options.full))
+    config = json.loads(ours.attrs["configuration"])["study"]
+    share = solver_settings(config, str(options.ours))["accuracy"]["closure"]
+    print_numbers(ours, full, share)
+    print_seconds(options.ours, options.full)
+
+
+if __name__ == "__main__":
+    main()

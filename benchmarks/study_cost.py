@@ -1,0 +1,67 @@
+"""Where the time of a study went: solves, other work, and what is neither.
+
+    python benchmarks/study_cost.py results/paper --cores 2
+
+It reads what each job wrote beside its results: its log's last line (work and solves) and its
+benchmark (from start to end, imports included).
+"""
+
+import argparse
+import csv
+import re
+from collections import defaultdict
+from pathlib import Path
+
+WORKED = re.compile(r"worked ([\d.]+) s, of which ([\d.]+) s on (\d+) contact problems")
+
+
+def jobs_of(results):
+    """Every job: its stage, its seconds, those it worked and solved, its problems, and its end."""
+    for path in sorted((results / "benchmarks").rglob("*.tsv")):
+        log = (results / "logs" / path.relative_to(results / "benchmarks")).with_suffix(".log")
+        found = WORKED.findall(log.read_text(encoding="utf-8"))
+        if not found:
+            raise SystemExit(f"{log}: says nothing of its work; run the study again")
+        with open(path, encoding="utf-8") as file:
+            seconds = float(next(csv.DictReader(file, delimiter="\t"))["s"])
+        worked, solving, problems = found[-1]
+        stage = path.relative_to(results / "benchmarks").parts[0].removesuffix(".tsv")
+        yield stage, seconds, float(worked), float(solving), int(problems), log.stat().st_mtime
+
+
+def stages_of(results):
+    """Sums over the jobs of each stage: jobs, seconds, worked, solving, problems; and wall time."""
+    jobs = list(jobs_of(results))
+    sums = defaultdict(lambda: [0, 0.0, 0.0, 0.0, 0])
+    for stage, *numbers, _ in jobs:
+        total = sums[stage]
+        sums[stage] = [total[0] + 1, *(a + b for a, b in zip(total[1:], numbers, strict=True))]
+    wall = max(job[-1] for job in jobs) - min(job[-1] - job[1] for job in jobs)
+    return dict(sums), wall
+
+
+def main():
+    """Print the cost of the results given on the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("results", type=Path, help="folder of a study that was run from scratch")
+    parser.add_argument("--cores", type=int, default=2)
+    options = parser.parse_args()
+    sums, wall = stages_of(options.results)
+    print(
+        f"{'stage':20s}{'jobs':>6s}{'seconds':>10s}{'work':>10s}{'solving':>10s}{'problems':>10s}"
+    )
+    rows = sorted(sums.items(), key=lambda item: -item[1][1])
+    total = [sum(numbers[i] for _, numbers in rows) for i in range(5)]
+    for stage, (n, seconds, worked, solving, problems) in [*rows, ("all", total)]:
+        print(f"{stage:20s}{n:6d}{seconds:10.1f}{worked:10.1f}{solving:10.1f}{problems:10d}")
+    available = wall * options.cores
+    overhead = 1 - total[2] / available
+    print(
+        f"wall {wall:.0f} s x {options.cores} cores = {available:.0f} s; neither solves, fits nor "
+        f"figures: {overhead:.0%} (starting jobs {(total[1] - total[2]) / available:.0%}, "
+        f"no job running {1 - total[1] / available:.0%})"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+"""No more than needed: what the accuracy a study asks for means for its solves, and why.
+
+A study states how far off a closure and a Delta_sigma may be. From that follow the tolerance of the
+solver and which states are solved at all. What was chosen is kept with its reason and with the
+error it makes, as far as it can be estimated from the states themselves.
+"""
+
+import numpy as np
+import xarray as xr
+
+from .labels import about
+from .load_curve import left_out_misses
+
+#: The solver's share of the errors asked for. At a tolerance of 1e-3 closures of 250 states of
+#: three twins were off by at most 7e-5 and Delta_sigma by 0.0017, at 1e-2 by 5e-4 (4 % where the
+#: pressure is capped) and 0.006. So 1e-3 leaves a factor of ten and more to 1 % and 0.02.
+SHARE_OF_CLOSURE = 0.1
+SHARE_OF_DIMENSION = 0.05
+#: Looser than this even the set of nodes in contact is no longer right.
+LOOSEST = 1e-2
+
+
+def tolerance(accuracy):
+    """Tolerance of the solver that an accuracy asks for.
+
+    Parameters
+    ----------
+    accuracy : dict
+        ``closure`` as a share of it, ``delta_sigma`` as it is.
+
+    Returns
+    -------
+    float
+    """
+    return min(
+        SHARE_OF_CLOSURE * accuracy["closure"],
+        SHARE_OF_DIMENSION * accuracy["delta_sigma"],
+        LOOSEST,
+    )
+
+
+def solved_loads(settings, forces, area, *, first, mapped, factor, everything):
+    """Which load steps of a curve are solved.
+
+    Parameters
+    ----------
+    settings : dict
+        From :func:`fractalcontact.study.resolve_settings`.
+    forces : (n,) ndarray
+        N, ascending.
+    area : float
+        A_0, mm2.
+    first : bool
+        Whether the curve is in the first direction whose contact is solved.
+    mapped : bool
+        Whether it is at the offset of the contact maps.
+    factor : int
+        Its resolution k.
+    everything : bool
+        Whether the study asks for all.
+
+    Returns
+    -------
+    (m,) int ndarray
+        Indices of ``forces``, ascending.
+
+    Notes
+    -----
+    Closure curves, their fits and the contact domains over load are shown in the first direction,
+    at the finest resolution; how they change with the resolution, at the offset of the maps. In the
+    other directions only the dilatancy under its loads is.
+    """
+    if everything or (first and (mapped or factor == min(settings["resolutions"]))):
+        return np.arange(len(forces))
+    if factor != min(settings["resolutions"]):
+        return np.arange(0)
+    chosen = [*settings["dilatancy_loads"], settings["map_load"]]
+    wanted = [value * area if kind == "pressure" else value for value, kind in chosen]
+    return np.flatnonzero(np.isin(forces, wanted))
+
+
+def choices(curves, settings, solver):
+    """What was chosen for a specimen, why, and what error it makes.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        From :func:`fractalcontact.closure.closure_curves`.
+    settings, solver : dict
+        From :mod:`fractalcontact.study`.
+
+    Returns
+    -------
+    xr.Dataset
+        ``value``, ``reason``, ``error_of`` and ``error`` (a share; NaN where there is none) over
+        ``choice``; ``asked`` in the attributes.
+    """
+    solved = curves["solved"]
+    asked = solver["accuracy"]
+    rows = [
+        _of_tolerance(curves, solver, asked),
+        _of_loads(curves, asked),
+        _of_directions(curves, settings),
+        _of_resolutions(curves),
+    ]
+    columns = ("choice", "value", "reason", "error_of")
+    words = ("what was chosen", "how", "why", "what the error is of")
+    texts = {
+        column: ("choice", [row[i] for row in rows], about("1", word))
+        for i, (column, word) in enumerate(zip(columns, words, strict=True))
+    }
+    return xr.Dataset(
+        {
+            **{name: texts[name] for name in columns[1:]},
+            "error": (
+                "choice",
+                np.array([row[-1] for row in rows], float),
+                about("1", "largest error it is estimated to make, as a share"),
+            ),
+        },
+        coords={"choice": texts["choice"]},
+        attrs={
+            "asked": _asked(asked),
+            "states": int(solved.size),
+            "states_solved": int(solved.sum()),
+        },
+    )
+
+
+def _asked(accuracy):
+    if accuracy is None:
+        return "everything: all states, whatever it costs"
+    return f"closure to {accuracy['closure']:.3g}, Delta_sigma to {accuracy['delta_sigma']:.3g}"
+
+
+def _largest(values):
+    """Largest value that is known, or NaN."""
+    known = values.values[np.isfinite(values.values)]
+    return float(known.max(initial=-np.inf)) if known.size else np.nan
+
+
+def _of_tolerance(curves, solver, asked):
+    reason = (
+        "stated by the study"
+        if asked is None or solver["rtol"] != tolerance(asked)
+        else f"{SHARE_OF_CLOSURE:g} of the closure and {SHARE_OF_DIMENSION:g} of the Delta_sigma "
+        "asked for: tenfold and more below them where it was tried"
+    )
+    share = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
+    return "solver tolerance", f"{solver['rtol']:.1g}", reason, "interface closure", _largest(share)
+
+
+def _of_loads(curves, asked):
+    finest = curves.sel(resolution=curves["resolution"].min())
+    misses = left_out_misses(finest["load"].values, finest["closure"], finest["stiffness"])
+    shares = abs(misses / finest["interface_closure"].where(lambda w: w != 0))
+    known = shares.values[np.isfinite(shares.values)]
+    value = f"{finest.sizes['load']} in the first direction, none read between others"
+    if not known.size:
+        return "load steps", value, "too few to tell what lies between them", "", np.nan
+    within = np.mean(known <= asked["closure"]) if asked else np.nan
+    reason = (
+        f"left out and read from its neighbours a closure would be wrong by {np.median(known):.1%} "
+        f"(median) to {known.max():.0%} of itself"
+        + (f"; {within:.0%} would be within what is asked for" if asked else "")
+    )
+    return "load steps", value, reason, "interface closure, if every second were left out", np.nan
+
+
+def _of_directions(curves, settings):
+    first, *others = settings["contact_directions"]
+    if not others:
+        return "directions", first, "the only one whose contact is asked for", "", np.nan
+    finest = curves["solved"].sel(resolution=curves["resolution"].min())
+    loads = int(finest.sel(direction=others[0]).any("offset").sum())
+    value = f"{first}: all loads; {', '.join(others)}: {loads}"
+    reason = (
+        "the study asks for all"
+        if loads == finest.sizes["load"]
+        else "in the others only the dilatancy under its loads is shown"
+    )
+    return "directions", value, reason, "", np.nan
+
+
+def _of_resolutions(curves):
+    solved = curves["solved"].any("load")
+    n_curves = solved.sizes["direction"] * solved.sizes["offset"]
+    counts = solved.sum(["direction", "offset"])
+    value = ", ".join(
+        f"{k}: {int(n)} of {n_curves}"
+        for k, n in zip(curves["resolution"].values, counts.values, strict=True)
+    )
+    reason = (
+        "curves at the finest give closure and contact; how they change with the resolution is "
+        "asked at the offset of the maps"
+    )
+    return (
+        "resolutions (curves)",
+        value,
+        reason,
+        "interface closure, by the spacing",
+        _largest(abs(curves["closure_spacing_error"] / curves["interface_closure"])),
+    )
