@@ -13,6 +13,7 @@ from fractalcontact.dimension_test import dimension_test
 from fractalcontact.domain_measures import measures_of_states
 from fractalcontact.estimator_bias import estimator_bias
 from fractalcontact.joint import describe_joint
+from fractalcontact.needs import choices
 from fractalcontact.quality import scan_quality
 from fractalcontact.roll_off import roll_off_effect
 from fractalcontact.roughness import best_dimension, surface_dimension
@@ -22,12 +23,12 @@ from fractalcontact.specimen import make_specimen, window_sides
 from fractalcontact.statements import judge
 from fractalcontact.states import combine, domains_of, force_range
 from fractalcontact.strength import joint_strength
-from fractalcontact.study import resolve_settings, window_arguments
-from fractalcontact.sweep import contact_states, map_states
+from fractalcontact.study import resolve_settings, solver_settings, window_arguments
+from fractalcontact.sweep import contact_states, map_cells, map_states
 from fractalcontact.synthesis import self_affine
 
 SPACING = 0.1  # mm
-SOLVER = {"rtol": 1e-6, "kernel": "love"}
+SOLVER = solver_settings({}, "tiny")
 AREA_SLOPE = {
     "dimension": 2.2,
     "nodes": 64,
@@ -137,6 +138,7 @@ def atlas_file(tmp_path_factory):
                     chosen,
                     chosen["resolutions"],
                     SOLVER,
+                    mapped=map_cells(joint, chosen, direction),
                 )
                 for direction in chosen["contact_directions"]
             ]
@@ -172,6 +174,7 @@ def atlas_file(tmp_path_factory):
             "joints": joint,
             "contact": fields,
             "closure": curves,
+            "choices": choices(curves, chosen, SOLVER),
             "dilatancy": dilatancy,
             "area": area,
             "windows": windows,

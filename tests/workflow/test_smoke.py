@@ -42,7 +42,7 @@ def command(study, *options):
 
 def run(project, study="config/smoke.yaml", *options):
     return subprocess.run(
-        command(study, *options), cwd=project, capture_output=True, text=True, timeout=300
+        command(study, *options), cwd=project, capture_output=True, text=True, timeout=900
     )
 
 
