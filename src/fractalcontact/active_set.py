@@ -208,7 +208,25 @@ class ActiveSet:
         if not total > 0:
             return problem.first_touch(), None
         factor = problem.load / total
+        if pressure.max() * factor > problem.cap:
+            return self._within_cap(pressure), None
         return pressure * factor, None if displacement is None else displacement * factor
+
+    def _within_cap(self, pressure):
+        """A start of the given force that breaks no bound.
+
+        What its nodes cannot carry goes to those that are nearest to touching.
+        """
+        problem = self.problem
+        pressure = _with_total(np.clip(pressure, 0.0, problem.cap), problem.load, problem.cap)
+        lacking = problem.load - pressure.sum()
+        if lacking > FORCE_ROUNDING * problem.load:
+            displacement = self.operator(pressure.astype(np.float32))
+            empty = np.flatnonzero(pressure == 0)
+            order = np.argsort((displacement + problem.clearance)[empty], kind="stable")
+            nearest = empty[order[: int(2 * lacking / problem.cap) + 1]]
+            pressure[nearest] = lacking / nearest.size
+        return pressure
 
     def _mean_gap(self, pressure, displacement):
         """The closure that a given force leaves open: it makes the mean gap in contact vanish.

@@ -89,13 +89,20 @@ class SetEquations:
             ones = self.inverse(np.ones(self.free.size, np.float32)).astype(float)
             # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
             ones = np.maximum(ones, LEAST_SHARE * ones.mean())
-            common = 0.0
+            common, least, most = 0.0, -np.inf, np.inf
             for _ in range(CLIPPING_PASSES):
                 missing = total - end.sum()
-                give = ones[(end > low) & (end < high)].sum()
-                if abs(missing) <= 1e-7 * abs(total) or give <= 0:
+                if abs(missing) <= 1e-7 * abs(total):
                     break
-                common += missing / give
+                least, most = (common, most) if missing > 0 else (least, common)
+                give = ones[(end > low) & (end < high)].sum()
+                if give > 0:
+                    common += missing / give
+                # Between two bounds Newton's step may go to where every node is at one of them.
+                if not least < common < most:
+                    if np.isinf(most - least):
+                        break
+                    common = (least + most) / 2
                 end = np.clip(aim + common * ones, low, high)
             self.residual += np.float32(common)
             self.common += common

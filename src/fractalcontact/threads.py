@@ -29,7 +29,9 @@ def in_parts(function, n, *, smallest):
     smallest : int
         Parts are no smaller than this.
     """
-    parts = max(1, min(count(), n // smallest))
+    most = n // smallest
+    # How many threads there are is asked only where it matters: small windows call this a lot.
+    parts = min(count(), most) if most > 1 else 1
     if parts == 1:
         function(0, n)
         return
