@@ -29,7 +29,7 @@ SPACING = 1.0  # mm
 E_STAR = 1.0  # MPa
 
 
-def area_slope(recipe):
+def area_slope(recipe, rtol=1e-6):
     """Area slopes of made surfaces, raw and corrected, with and without a roll-off.
 
     Parameters
@@ -37,6 +37,8 @@ def area_slope(recipe):
     recipe : mapping
         ``dimension`` Delta_g, ``nodes`` a side, ``seeds``, ``roll_off_share`` (roll-off length as
         a part of the side) and ``loads``, values of p / (E* h'_rms).
+    rtol : float
+        Of the solves.
 
     Returns
     -------
@@ -73,7 +75,7 @@ def area_slope(recipe):
             slope[i, j] = slope_statistics(surface, SPACING)["rms_slope"]
             forces = loads * E_STAR * slope[i, j] * nominal
             where = f"made surface, seed {seed}, roll-off {roll_off}"
-            for k, state in enumerate(load_steps(surface, space, forces, {}, where)):
+            for k, state in enumerate(load_steps(surface, space, forces, {"rtol": rtol}, where)):
                 corrected = corrected_area(state.in_contact, space.spacing)
                 share[:, i, j, k] = state.area / nominal, corrected / nominal
     result = _labelled(share, slope, loads, seeds)

@@ -46,7 +46,7 @@ FIELDS = {
 }
 
 
-def dimension_test(recipe):
+def dimension_test(recipe, rtol=1e-6):
     """Delta_sigma by both estimators over surfaces, sizes, seeds and loads.
 
     Parameters
@@ -58,6 +58,8 @@ def dimension_test(recipe):
         the same surface seen more finely, get the same nominal pressure; else (the default)
         h'_rms is that of each, and about the same part of it touches. Optional are ``hardness``,
         H / (E* h'_rms), ``capped_loads``, values of F / (H A_0), and ``capped_size``.
+    rtol : float
+        Of the solves.
 
     Returns
     -------
@@ -95,7 +97,7 @@ def dimension_test(recipe):
         slope[i, j, k] = slope_statistics(surface, SIDE / size)["rms_slope"]
         finer = (sizes[0] / size) ** (dimension - 2) if recipe.get("same_pressure") else 1.0
         forces = axes["load"] * finer * E_STAR * slope[i, j, k] * SIDE**2
-        found = _estimates(surface, forces, factors)
+        found = _estimates(surface, forces, factors, rtol)
         for name in FIELDS:
             table[name][i, j, k] = found[name]
         nodes[i, j, k], met[i, j, k] = found["nodes"], found["met"]
@@ -118,7 +120,7 @@ def dimension_test(recipe):
     _add_means(result, "load")
     _add_trends(result)
     if "capped_loads" in recipe:
-        result = result.merge(_capped(recipe, axes, factors))
+        result = result.merge(_capped(recipe, axes, factors, rtol))
     result.attrs = {
         "paper_delta_sigma": PAPER_DELTA_SIGMA,
         "paper_dimension": PAPER_DIMENSION,
@@ -134,7 +136,7 @@ def made_surface(dimension, size, seed):
     return self_affine((size, size), SIDE / size, 3 - dimension, rms=rms, seed=seed)
 
 
-def _estimates(surface, forces, factors, hardness=np.inf):
+def _estimates(surface, forces, factors, rtol, hardness=np.inf):
     """Both estimates under rising forces: `FIELDS` by name, ``nodes`` and ``met`` (load, k)."""
     size = len(surface)
     spacing = SIDE / size
@@ -144,7 +146,8 @@ def _estimates(surface, forces, factors, hardness=np.inf):
         h = prefractal(surface, factor)
         space = HalfSpace(h.shape, (factor * spacing,) * 2, E_STAR)
         where = f"made surface of {size} x {size} nodes, resolution {factor}"
-        states = load_steps(h, space, forces, {"hardness": hardness}, where)
+        solving = {"hardness": hardness, "rtol": rtol}
+        states = load_steps(h, space, forces, solving, where)
         for i, state in enumerate(states):
             nodes[i, j] = np.count_nonzero(state.in_contact)
             if j == 0:
@@ -169,7 +172,7 @@ def _estimates(surface, forces, factors, hardness=np.inf):
     }
 
 
-def _capped(recipe, axes, factors):
+def _capped(recipe, axes, factors, rtol):
     """Both estimates with a hardness, up to where the whole window yields."""
     size = recipe["capped_size"]
     parts = np.unique(recipe["capped_loads"])
@@ -181,7 +184,7 @@ def _capped(recipe, axes, factors):
         surface = made_surface(dimensions[i], size, seeds[j])
         slope = float(slope_statistics(surface, SIDE / size)["rms_slope"])
         hardness = recipe["hardness"] * E_STAR * slope
-        found = _estimates(surface, parts * hardness * SIDE**2, factors, hardness)
+        found = _estimates(surface, parts * hardness * SIDE**2, factors, rtol, hardness)
         for name in FIELDS:
             table[name][i, j] = found[name]
         share[i, j] = found["nodes"][:, 0] / size**2

@@ -108,6 +108,7 @@ rule area_slope:
         runtime=60,
     params:
         recipe=config.get("area_slope"),
+        rtol=SOLVER["rtol"],
         code=code("area_slope", "store"),
     script:
         "../scripts/area_slope.py"

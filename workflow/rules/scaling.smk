@@ -89,6 +89,7 @@ rule dimension_test:
         runtime=120,
     params:
         recipe=config.get("dimension_test"),
+        rtol=SOLVER["rtol"],
         code=code("dimension_test", "store"),
     script:
         "../scripts/dimension_test.py"

@@ -6,6 +6,6 @@ from fractalcontact import store
 from fractalcontact.area_slope import area_slope
 
 with reported(snakemake.log) as log:
-    slopes = area_slope(snakemake.params.recipe)
+    slopes = area_slope(snakemake.params.recipe, snakemake.params.rtol)
     store.write(slopes, snakemake.output[0])
     log.info("%s", slopes)

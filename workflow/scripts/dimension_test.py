@@ -6,6 +6,6 @@ from fractalcontact import store
 from fractalcontact.dimension_test import dimension_test
 
 with reported(snakemake.log) as log:
-    result = dimension_test(snakemake.params.recipe)
+    result = dimension_test(snakemake.params.recipe, snakemake.params.rtol)
     store.write(result, snakemake.output[0])
     log.info("%s", result)
