@@ -91,11 +91,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     nodes = nodes_below(domain)
     if sizes.size and sizes.min() < 1:
         raise ValueError(f"a box is at least one cell wide, not {sizes.min()}")
-    shape = tuple(n - 1 for n in nodes.shape)
-    return np.array(
-        [_fewest_boxes(nodes, *(_edges(n, size, max_shifts) for n in shape)) for size in sizes],
-        dtype=np.int64,
-    )
+    return np.array([_fewest_boxes(nodes, size, max_shifts) for size in sizes], dtype=np.int64)
 
 
 def nodes_below(domain: np.ndarray) -> np.ndarray:
@@ -133,19 +129,26 @@ def _summed(domain):
     return nodes
 
 
-def _edges(n: int, size: float, max_shifts: int) -> np.ndarray:
+@numba.njit(cache=True)
+def _edges(n, size, max_shifts):
     """First cell of each box along one axis, a row for each origin of the grid."""
     shifts = max(min(int(np.ceil(size)), max_shifts), 1)
-    origins = -size * np.arange(shifts) / shifts
     boxes = int(np.ceil(n / size)) + 2
-    edges = origins[:, np.newaxis] + size * np.arange(boxes)
-    # The cell whose centre is the first beyond the edge; the small number keeps n/k * k at n.
-    return np.clip(np.ceil(edges - 0.5 - 1e-9), 0, n).astype(np.int64)
+    edges = np.empty((shifts, boxes), np.int64)
+    for shift in range(shifts):
+        for box in range(boxes):
+            edge = -size * shift / shifts + size * box
+            # The cell whose centre is the first beyond the edge; the small number keeps n/k * k
+            # at n.
+            edges[shift, box] = min(max(int(np.ceil(edge - 0.5 - 1e-9)), 0), n)
+    return edges
 
 
 @numba.njit(cache=True)
-def _fewest_boxes(nodes, edges_y, edges_x):
-    """N(r) over all pairs of origins: rows of edges along y and x."""
+def _fewest_boxes(nodes, size, max_shifts):
+    """N(r) over all pairs of origins along y and x."""
+    edges_y = _edges(nodes.shape[0] - 1, size, max_shifts)
+    edges_x = _edges(nodes.shape[1] - 1, size, max_shifts)
     fewest = nodes[-1, -1]  # no more boxes than nodes
     for ys in edges_y:
         for xs in edges_x:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .box_counts import RATIOS, box_count, box_sizes, boxes_along, mean_count, whole_sizes
-from .fitting import LineFit, fit_line
+from .fitting import FEWEST_POINTS, LineFit, fit_line
 from .power_law import SMALLEST, SMALLEST_TOLD, Law, best_law, law_dimension
 from .resampling import BLOCKS, FEWEST_SCALES, interval, jackknife_error, wave_error
 
@@ -257,15 +257,16 @@ def _cropped(domain: np.ndarray) -> np.ndarray:
     return domain[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
 
-def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> list[float]:
+def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Slopes of all runs of neighbouring points that cover half of the range of x or more."""
-    half = (x[-1] - x[0]) / 2
-    return [
-        fit_line(x[i:j], y[i:j]).slope
-        for i in range(x.size)
-        for j in range(i + 3, x.size + 1)
-        if x[j - 1] - x[i] >= half
-    ]
+    first, last = np.triu_indices(x.size, FEWEST_POINTS - 1)
+    wide = x[last] - x[first] >= (x[-1] - x[0]) / 2
+    place = np.arange(x.size)
+    inside = (place >= first[wide, np.newaxis]) & (place <= last[wide, np.newaxis])
+    dx, dy = (
+        inside * (v - (inside @ v / inside.sum(axis=1))[:, np.newaxis]) for v in (x, y)
+    )
+    return np.sum(dx * dy, axis=1) / np.sum(dx * dx, axis=1)
 
 
 def local_slopes(

@@ -23,6 +23,7 @@ median error is 0.03 and the largest 0.07, mostly upwards, where whole cells pas
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numba import njit
 
 #: Values of D that are tried first, and then about the best of them.
 _COARSE = np.linspace(0, 2, 101)
@@ -138,26 +139,65 @@ def _fit(law, sizes, count, side):
     at = 0.0
     for grid in (_COARSE, _FINE):
         tried = np.clip(at + grid, 0, 2)
-        misfit = _misfits(law, sizes, count, side, tried)
-        if not np.isfinite(misfit).any():
-            return None
+        misfit = _misfits(sizes - law.c, count * sizes**2, side, law.outline + 1, tried)
         i = int(np.argmin(misfit))
+        if np.isinf(misfit[i]):
+            return None
         at = float(tried[i])
     return replace(law, dimension=at, misfit=float(misfit[i]))
 
 
-def _misfits(law, sizes, count, side, dimensions):
+@njit(cache=True)
+def _misfits(rho, areas, side, terms, dimensions):
     """Relative misfit at each D, the factors a by least squares; infinite where they are none."""
-    rho = sizes - law.c
-    areas = count * sizes**2
-    terms = (rho / side)[:, np.newaxis] ** np.arange(law.outline + 1)
-    power = rho ** (2 - dimensions[:, np.newaxis]) / areas
-    power /= power.max(axis=1, keepdims=True)
-    columns = power[:, :, np.newaxis] * terms
-    normal = np.einsum("dki,dkj->dij", columns, columns)
-    a = np.linalg.solve(normal, columns.sum(axis=1)[:, :, np.newaxis])[:, :, 0]
-    misfit = np.sqrt(np.mean((np.einsum("dki,di->dk", columns, a) - 1) ** 2, axis=1))
-    inside, outline = a[:, :1], a[:, 1:]
-    possible = (inside[:, 0] > 0) & (outline >= -1e-9 * inside).all(axis=1)
-    possible &= (outline <= MOST_OUTLINE * inside).all(axis=1)
-    return np.where(possible, misfit, np.inf)
+    misfits = np.full(dimensions.size, np.inf)
+    columns = np.empty((rho.size, terms))
+    for d in range(dimensions.size):
+        largest = 0.0
+        for k in range(rho.size):
+            columns[k, 0] = rho[k] ** (2 - dimensions[d]) / areas[k]
+            largest = max(largest, columns[k, 0])
+        for k in range(rho.size):
+            columns[k, 0] /= largest
+            for i in range(1, terms):
+                columns[k, i] = columns[k, i - 1] * (rho[k] / side)
+        a = _factors(columns)
+        possible = a[0] > 0
+        for i in range(1, terms):
+            possible &= -1e-9 * a[0] <= a[i] <= MOST_OUTLINE * a[0]
+        if possible:
+            total = 0.0
+            for k in range(rho.size):
+                found = 0.0
+                for i in range(terms):
+                    found += columns[k, i] * a[i]
+                total += (found - 1) ** 2
+            misfits[d] = np.sqrt(total / rho.size)
+    return misfits
+
+
+@njit(cache=True)
+def _factors(columns):
+    """Least squares of columns a = 1, by the normal equations; zeros where they have none."""
+    n = columns.shape[1]
+    normal = np.zeros((n, n + 1))
+    for k in range(columns.shape[0]):
+        for i in range(n):
+            for j in range(n):
+                normal[i, j] += columns[k, i] * columns[k, j]
+            normal[i, n] += columns[k, i]
+    a = np.zeros(n)
+    for i in range(n):
+        # Positive definite: the diagonal is what is left of each column beside those before.
+        if not normal[i, i] > 0:
+            return a
+        for row in range(i + 1, n):
+            factor = normal[row, i] / normal[i, i]
+            for j in range(i, n + 1):
+                normal[row, j] -= factor * normal[i, j]
+    for i in range(n - 1, -1, -1):
+        a[i] = normal[i, n]
+        for j in range(i + 1, n):
+            a[i] -= normal[i, j] * a[j]
+        a[i] /= normal[i, i]
+    return a
