@@ -8,6 +8,8 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pandas as pd
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
@@ -37,6 +39,7 @@ _STYLE = {
     "axes.prop_cycle": matplotlib.cycler(color=COLOURS),
     "image.origin": "lower",
     "figure.constrained_layout.use": True,
+    "axes.titley": 1.0,
     # The same figure twice is the same file twice.
     "svg.hashsalt": "fractalcontact",
     "svg.fonttype": "none",
@@ -71,13 +74,17 @@ def print_style():
 def save(drawing, folder, name):
     """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
-    # The layout is found once; each file would find it anew, which takes longer than to draw it.
-    drawing.figure.set_dpi(DPI)
-    drawing.figure.draw_without_rendering()
-    drawing.figure.set_layout_engine("none")
-    for ending, options in (("png", {}), ("svg", {"metadata": {"Date": None}})):
-        with written_whole(folder / f"{name}.{ending}") as path:
-            drawing.figure.savefig(path, format=ending, dpi=DPI, **options)
+    figure = drawing.figure
+    figure.set_dpi(DPI)
+    # The layout is found once and each file drawn once. `savefig` draws everything once more for
+    # either file, to find the layout; and what the layout has measured, this canvas remembers.
+    canvas = FigureCanvasAgg(figure)
+    figure.get_layout_engine().execute(figure)
+    figure.set_layout_engine("none")
+    with written_whole(folder / f"{name}.png") as path:
+        canvas.print_png(path)
+    with written_whole(folder / f"{name}.svg") as path:
+        FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
     with written_whole(folder / f"{name}.txt") as path:
         path.write_text(drawing.caption + "\n", encoding="utf-8")
     with written_whole(folder / f"{name}.csv") as path:
