@@ -8,7 +8,7 @@ import importlib
 from dataclasses import replace
 
 from ..store import read_atlas
-from .common import print_style, save
+from .common import print_style, save, uncollected
 
 #: Figures of a joint that slides, and of a surface against a plane: module names, in order.
 FIGURES = (
@@ -146,9 +146,10 @@ def _draw(atlas, subject, folder, names, warning=""):
     captions = {}
     with print_style():
         for name in names:
-            drawing = importlib.import_module(f".{name}", __package__).draw(atlas, subject)
-            if warning and name not in _OF_THE_SCAN:
-                drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
-            save(drawing, folder, name)
+            with uncollected():
+                drawing = importlib.import_module(f".{name}", __package__).draw(atlas, subject)
+                if warning and name not in _OF_THE_SCAN:
+                    drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
+                save(drawing, folder, name)
             captions[name] = drawing.caption
     return captions
