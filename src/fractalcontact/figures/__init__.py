@@ -62,8 +62,23 @@ ACCURACY = {
     "convergence": ("convergence",),
     "stability": ("stability", "elimination"),
 }
-#: What no figure of a whole study draws, and takes most of an atlas.
-_LARGE_STAGES = ("contact",)
+#: What no figure of a whole study draws, and takes long to read.
+_NOT_OF_A_STUDY = (
+    "quality",
+    "surface_dimension",
+    "contact",
+    "closure",
+    "dilatancy",
+    "area",
+    "strength",
+    "windows",
+    "domains",
+    "scaling",
+    "domain_measures",
+    "size_test",
+    "contact_maps",
+    "statements",
+)
 
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
@@ -139,7 +154,7 @@ def draw_study_figures(atlas_path, specimens, folder, names):
     dict
         Figure name to caption.
     """
-    return _draw(read_atlas(atlas_path, without=_LARGE_STAGES), list(specimens), folder, names)
+    return _draw(read_atlas(atlas_path, without=_NOT_OF_A_STUDY), list(specimens), folder, names)
 
 
 def _draw(atlas, subject, folder, names, warning=""):
