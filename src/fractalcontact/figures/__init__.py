@@ -8,7 +8,7 @@ import importlib
 from dataclasses import replace
 
 from ..store import read_atlas
-from .common import print_style, save
+from .common import print_style, save, uncollected
 
 #: Figures of a joint that slides, and of a surface against a plane: module names, in order.
 FIGURES = (
@@ -63,8 +63,23 @@ ACCURACY = {
     "convergence": ("convergence",),
     "stability": ("stability", "elimination"),
 }
-#: What no figure of a whole study draws, and takes most of an atlas.
-_LARGE_STAGES = ("contact",)
+#: What no figure of a whole study draws, and takes long to read.
+_NOT_OF_A_STUDY = (
+    "quality",
+    "surface_dimension",
+    "contact",
+    "closure",
+    "dilatancy",
+    "area",
+    "strength",
+    "windows",
+    "domains",
+    "scaling",
+    "domain_measures",
+    "size_test",
+    "contact_maps",
+    "statements",
+)
 
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
@@ -140,16 +155,17 @@ def draw_study_figures(atlas_path, specimens, folder, names):
     dict
         Figure name to caption.
     """
-    return _draw(read_atlas(atlas_path, without=_LARGE_STAGES), list(specimens), folder, names)
+    return _draw(read_atlas(atlas_path, without=_NOT_OF_A_STUDY), list(specimens), folder, names)
 
 
 def _draw(atlas, subject, folder, names, warning=""):
     captions = {}
     with print_style():
         for name in names:
-            drawing = importlib.import_module(f".{name}", __package__).draw(atlas, subject)
-            if warning and name not in _OF_THE_SCAN:
-                drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
-            save(drawing, folder, name)
+            with uncollected():
+                drawing = importlib.import_module(f".{name}", __package__).draw(atlas, subject)
+                if warning and name not in _OF_THE_SCAN:
+                    drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
+                save(drawing, folder, name)
             captions[name] = drawing.caption
     return captions

@@ -122,8 +122,8 @@ class Loading:
 
     @property
     def title(self):
-        """Which specimen, and where its contact is."""
-        return f"{self.settings['label']}, {self.place}"
+        """Which specimen, and where its contact is: parts of a headline."""
+        return self.settings["label"], self.place
 
     def opening(self, figure):
         """First words of the caption of a figure of the paper."""

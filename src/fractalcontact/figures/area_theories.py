@@ -16,6 +16,7 @@ from .common import (
     finest_curves,
     group,
     heading,
+    headline,
     label_short_span,
     legends_below,
     letter,
@@ -64,7 +65,7 @@ def draw(atlas, name):
     letter(left, "a", "real contact area (filled: corrected, hollow: raw)")
     letter(right, "b", r"area slope $\kappa$")
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
-    figure.suptitle(f"{settings['label']}, {where}", fontsize=9)
+    headline(figure, settings["label"], where)
     return Drawing(figure, _table(curve, law), _caption(settings["label"], where, curve, law))
 
 

@@ -20,6 +20,7 @@ from .common import (
     finest_curves,
     group,
     heading,
+    headline,
     label_short_span,
     legends_below,
     letter,
@@ -87,7 +88,7 @@ def draw(atlas, name):
     by_load = [heading("(a) to (c); hollow: few nodes, not fitted"), *entries(number)]
     at = f"(d) $F$ = {force_label(loads[mapped])}; lines are fits"
     legends_below(figure, by_load, [heading(at), *entries(distribution)])
-    figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
+    headline(figure, settings["label"], place(direction))
     caption = _caption(settings["label"], direction, table, sizes)
     data = pd.concat([table.assign(kind="domain"), sizes.assign(kind="sizes")], ignore_index=True)
     return Drawing(figure, data, caption)

@@ -1,17 +1,29 @@
 """What the figures share: style, what a drawing is, how it is written, what the study asked for."""
 
 import contextlib
+import gc
 import json
+import re
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 import pandas as pd
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
+from matplotlib.ticker import (
+    LogFormatterSciNotation,
+    LogLocator,
+    NullFormatter,
+    NullLocator,
+    StrMethodFormatter,
+)
 
+from ..labels import printable
 from ..specimen import nominal_area
 from ..states import forces_of
 from ..store import written_whole
@@ -26,6 +38,11 @@ LINES = ("-", "--", "-.", ":")
 WIDTH = 7.2
 #: Pixels of an inch, in the PNG and of the maps inside the SVG.
 DPI = 200
+#: Points of the letters of a figure's title, and how many of them stand in an inch.
+TITLE_SIZE, LETTERS_AN_INCH = 9, 14
+#: Letters of a specimen's label that are shown.
+LONGEST_LABEL = 300
+_DOLLAR = "\ue000"
 
 _STYLE = {
     "font.size": 8,
@@ -37,6 +54,9 @@ _STYLE = {
     "axes.prop_cycle": matplotlib.cycler(color=COLOURS),
     "image.origin": "lower",
     "figure.constrained_layout.use": True,
+    # Titles stand on their axes. To find out what may be in their way, every tick would be measured
+    # each time; `_lay_out` knows the one thing that can be.
+    "axes.titley": 1.0,
     # The same figure twice is the same file twice.
     "svg.hashsalt": "fractalcontact",
     "svg.fonttype": "none",
@@ -68,20 +88,78 @@ def print_style():
         yield
 
 
+@contextlib.contextmanager
+def uncollected():
+    """No search for garbage meanwhile.
+
+    A figure is some 100 000 objects that live as long as it does: to go through them while it is
+    drawn finds nothing and takes a tenth of the time.
+    """
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
+
+
 def save(drawing, folder, name):
     """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
-    # The layout is found once; each file would find it anew, which takes longer than to draw it.
-    drawing.figure.set_dpi(DPI)
-    drawing.figure.draw_without_rendering()
-    drawing.figure.set_layout_engine("none")
-    for ending, options in (("png", {}), ("svg", {"metadata": {"Date": None}})):
-        with written_whole(folder / f"{name}.{ending}") as path:
-            drawing.figure.savefig(path, format=ending, dpi=DPI, **options)
+    figure = drawing.figure
+    figure.set_dpi(DPI)
+    # The layout is found once and each file drawn once. `savefig` draws everything once more for
+    # either file, to find the layout; and what the layout has measured, this canvas remembers.
+    canvas = FigureCanvasAgg(figure)
+    _write_decades(figure)
+    _lay_out(figure)
+    with written_whole(folder / f"{name}.png") as path:
+        canvas.print_png(path)
+    with written_whole(folder / f"{name}.svg") as path:
+        FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
     with written_whole(folder / f"{name}.txt") as path:
         path.write_text(drawing.caption + "\n", encoding="utf-8")
     with written_whole(folder / f"{name}.csv") as path:
         drawing.data.to_csv(path, index=False, float_format="%.8g", lineterminator="\n")
+
+
+class _Decades(LogFormatterSciNotation):
+    """Powers of ten as plain text, 10⁻³: as formulas they take long to read, axis by axis."""
+
+    _POWER = re.compile(r"\$\\mathdefault\{10\^\{(-?\d+)\}\}\$")
+    _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+    def __call__(self, x, pos=None):
+        text = super().__call__(x, pos)
+        power = self._POWER.fullmatch(text)
+        return f"10{power[1].translate(self._RAISED)}" if power else text
+
+
+def _write_decades(figure):
+    """Have the powers of ten along logarithmic axes written as plain text."""
+    for axes in figure.axes:
+        for panel in (axes, *axes.child_axes):
+            for axis in (panel.xaxis, panel.yaxis):
+                if type(axis.get_major_formatter()) is LogFormatterSciNotation:
+                    axis.set_major_formatter(_Decades())
+
+
+def _lay_out(figure):
+    """Find the layout, and keep it."""
+    layout = figure.get_layout_engine()
+    if layout is None:
+        return
+    layout.execute(figure)
+    # A common factor of the numbers along y stands where a title does, which then moves up.
+    crowded = [axes for axes in figure.axes if axes.yaxis.get_offset_text().get_text()]
+    if crowded:
+        with matplotlib.rc_context({"axes.titley": None}):
+            for axes in crowded:
+                for loc in ("left", "center"):
+                    axes.set_title(axes.get_title(loc), loc=loc)
+        layout.execute(figure)
+    figure.set_layout_engine("none")
 
 
 def settings_of(atlas, specimen):
@@ -163,6 +241,31 @@ def colour_of(i):
 def letter(axes, which, title):
     """Letter of a panel as the paper has it, at its upper left, before a title."""
     axes.set_title(f"({which}) {title}", loc="left")
+
+
+def headline(figure, label, *where, below=""):
+    """Title of a figure, in lines that fit its width.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.FigureBase
+    label : str
+        Of the specimen, as its user wrote it.
+    *where : str
+        What follows, after commas; formulas stand in dollar signs.
+    below : str
+        What stands in a line of its own.
+    """
+    text = label_in_lines(label, *where, width=figure.bbox.width / figure.dpi)
+    figure.suptitle("\n".join(filter(None, (text, below))), fontsize=TITLE_SIZE)
+
+
+def label_in_lines(label, *where, width):
+    """A label and what follows it, as :func:`headline` has it, in lines of ``width`` inches."""
+    # Dollar signs of a label make no formula. What stands in for them is in no printable text.
+    label = printable(label, LONGEST_LABEL).replace("$", _DOLLAR)
+    text = textwrap.fill(", ".join((label, *where)), int(LETTERS_AN_INCH * width))
+    return text.replace(_DOLLAR, r"\$")
 
 
 def entries(axes):

@@ -15,6 +15,7 @@ from .common import (
     entries,
     finest_curves,
     group,
+    headline,
     legends_below,
     letter,
     offset_axis,
@@ -59,7 +60,7 @@ def draw(atlas, name):
     for upper in (correlation, closed):
         upper.set_xlabel("")
     legends_below(figure, entries(correlation), entries(closed))
-    figure.suptitle(settings["label"], fontsize=9)
+    headline(figure, settings["label"])
     judged = group(atlas, "statements", name)
     caption = _caption(settings["label"], direction, joint, judged)
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)

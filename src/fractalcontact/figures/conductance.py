@@ -14,6 +14,7 @@ from .common import (
     entries,
     finest_curves,
     heading,
+    headline,
     legends_below,
     settings_of,
     spread,
@@ -63,7 +64,7 @@ def draw(atlas, name):
     if not table["fitted"].all():
         remarks.append(heading("hollow: not fitted"))
     legends_below(figure, entries(axes)[:n], remarks)
-    figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
+    headline(figure, settings["label"], place(direction))
     return Drawing(figure, table, _caption(settings["label"], direction, table))
 
 

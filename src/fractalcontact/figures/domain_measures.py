@@ -12,6 +12,7 @@ from .common import (
     Drawing,
     colour_of,
     group,
+    headline,
     label_short_span,
     letter,
     nearest_load,
@@ -51,7 +52,7 @@ def draw(atlas, name):
     handles, _ = lacunarity.get_legend_handles_labels()
     figure.legend(handles=handles, loc="outside lower center", ncols=MOST_LOADS)
     where = place(str(measures["direction"].item()), float(measures["offset"]))
-    figure.suptitle(f"{settings['label']}, {where}", fontsize=9)
+    headline(figure, settings["label"], where)
     start = opening("section 6", settings["label"], where)
     return Drawing(figure, table, f"{start} {_caption(measures.isel(load=mapped), table)}")
 

@@ -27,6 +27,7 @@ from .common import (
     colour_of,
     entries,
     group,
+    headline,
     legends_below,
     letter,
     settings_of,
@@ -61,7 +62,7 @@ def draw(atlas, name):
     _draw_slope(slope, laws, share)
     legends_below(figure, entries(strength), entries(slope))
     direction = str(laws["direction"].values)
-    figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
+    headline(figure, settings["label"], place(direction))
     return Drawing(figure, _table(laws), _caption(settings, laws, share))
 
 

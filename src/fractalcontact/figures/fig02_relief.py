@@ -13,7 +13,7 @@ from ..roughness import dimension_table
 from ..specimen import window_sides
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ._words import interval, length_unit, opening
-from .common import COLOURS, WIDTH, Drawing, group, letter, settings_of
+from .common import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 
 COLOUR_MAP = "cividis"
 #: Share of the heights beyond each end of the colours, so that a spike does not take them all.
@@ -57,7 +57,7 @@ def draw(atlas, name):
     letter(axes[-1], "abc"[len(faces)], r"$\Delta_g$ of the lower face")
     handles = [outline, *([missing_patch()] if any(missing) else []), *mean]
     figure.legend(handles=handles, loc="outside lower left", ncols=3)
-    figure.suptitle(f"{label}\n{_size_words(specimen, sides)}", fontsize=9)
+    headline(figure, label, below=_size_words(specimen, sides))
     return Drawing(figure, _table(dimension), _caption(label, specimen, faces, sides, dimension))
 
 

@@ -11,7 +11,7 @@ from ..joint import STEPS
 from ..specimen import faces, window_sides, window_slices
 from ._maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
 from ._words import length_unit, opening, place
-from .common import COLOURS, WIDTH, Drawing, group, letter, settings_of
+from .common import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 
 _TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
 
@@ -135,7 +135,7 @@ def draw(atlas, name):
     letter(plan, "a", "lower face and window")
     letter(profile, "b", "profile through the point of first touch")
     letter(composite, "c", "composite topography $h$")
-    figure.suptitle(f"{label}, {place(slid.direction, slid.offset)}", fontsize=9)
+    headline(figure, label, place(slid.direction, slid.offset))
     return Drawing(figure, profiles, _caption(label, slid))
 
 

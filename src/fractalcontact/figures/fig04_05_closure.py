@@ -17,6 +17,7 @@ from .common import (
     entries,
     finest_curves,
     group,
+    headline,
     legends_below,
     letter,
     settings_of,
@@ -59,7 +60,7 @@ def draw(atlas, name):
     legends_below(figure, entries(left), entries(right))
     letter(left, "a", "closure")
     letter(right, "b", "real contact area (hollow: not fitted)")
-    figure.suptitle(f"{label}, {place(direction)}", fontsize=9)
+    headline(figure, label, place(direction))
     caption = _caption(label, direction, curves, laws, drawn)
     return Drawing(figure, _table(curves, drawn, laws), caption)
 

@@ -18,6 +18,7 @@ from .common import (
     entries,
     finest_curves,
     group,
+    headline,
     legends_below,
     letter,
     nearest_load,
@@ -74,7 +75,7 @@ def draw(atlas, name):
     bottom.suptitle(
         f"(c) contact domains at $F$ = {force_label(loads[mapped])}", x=0.01, ha="left", fontsize=8
     )
-    figure.suptitle(settings["label"], fontsize=9)
+    headline(figure, settings["label"])
     table = _table(dilatancy, direction, shown, share)
     caption = _caption(settings["label"], direction, loads[mapped], share[:, mapped], plateaus)
     return Drawing(figure, table, caption)

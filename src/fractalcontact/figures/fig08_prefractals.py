@@ -8,7 +8,7 @@ from ..scaling import RESOLUTION
 from ._domains import Loading, disagreement
 from ._maps import draw_domain
 from ._words import force_label, short
-from .common import WIDTH, Drawing, letter
+from .common import WIDTH, Drawing, headline, letter
 
 #: Maps side by side.
 _COLUMNS = 4
@@ -48,7 +48,7 @@ def draw(atlas, name):
         axes.label_outer()
     for axes in panels[len(table) :]:
         axes.remove()
-    figure.suptitle(f"{loading.title}, $F$ = {force_label(loading.forces[i])}", fontsize=9)
+    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     return Drawing(figure, table, _caption(loading, i, table))
 
 

@@ -9,7 +9,7 @@ from ..fitting import fit_line
 from ._domains import Loading, disagreement
 from ._maps import draw_domain
 from ._words import force_label, interval, short
-from .common import COLOURS, WIDTH, Drawing, label_short_span, letter
+from .common import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
 
 
 def draw(atlas, name):
@@ -38,7 +38,7 @@ def draw(atlas, name):
     # The marks of the counts are those of their slopes too: one legend.
     handles, _ = middle.get_legend_handles_labels()
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
-    figure.suptitle(f"{loading.title}, $F$ = {force_label(loading.forces[i])}", fontsize=9)
+    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     return Drawing(figure, table, _caption(loading, i, counts, table))
 
 

@@ -9,7 +9,7 @@ from ..scaling import RESOLUTION
 from ._domains import Loading, disagreement
 from ._size_effect import draw_axes, size_effect
 from ._words import force_label, number, short
-from .common import COLOURS, MARKERS, WIDTH, Drawing, entries, legends_below, letter
+from .common import COLOURS, MARKERS, WIDTH, Drawing, entries, headline, legends_below, letter
 
 #: Loads in panel (a).
 _MOST_LOADS = 5
@@ -37,7 +37,7 @@ def draw(atlas, name):
     pressure = size_effect(loading, i)
     _draw_pressures(right, loading, i, pressure)
     legends_below(figure, entries(left), entries(right))
-    figure.suptitle(loading.title, fontsize=9)
+    headline(figure, *loading.title)
     table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
     return Drawing(figure, table, _caption(loading, i, pressure))
 

@@ -25,6 +25,7 @@ from .common import (
     colour_of,
     entries,
     group,
+    headline,
     legends_below,
     letter,
     settings_of,
@@ -56,7 +57,7 @@ def draw(atlas, name):
     drawn = bool(np.isfinite(laws["similar_strength"].values[share]).all(axis=1).any())
     _draw_angle(angle, laws, share, drawn)
     _draw_ratio(strength, laws, share, drawn)
-    figure.suptitle(f"{settings['label']}, {place(str(laws['direction'].values))}", fontsize=9)
+    headline(figure, settings["label"], place(str(laws["direction"].values)))
     if drawn:
         legends_below(figure, entries(angle), entries(strength))
     return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn))

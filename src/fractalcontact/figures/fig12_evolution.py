@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from ._domains import Loading, disagreement, trend
 from ._maps import draw_domain
 from ._words import force_label, interval, short, wrapped
-from .common import MARKERS, WIDTH, Drawing, colour_of, group, letter
+from .common import MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
 
 #: Contact domains drawn.
 _MOST_MAPS = 6
@@ -48,7 +48,7 @@ def draw(atlas, name):
     _draw_dimensions(axes, loading)
     _draw_measured(axes, measured, nominal)
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
-    figure.suptitle(loading.title, fontsize=9)
+    headline(figure, *loading.title)
     table = pd.concat([_table(loading, finest), *_measured_rows(measured, nominal)])
     caption = f"{_caption(loading, shown)}{_measured_words(measured)}"
     return Drawing(figure, table.reset_index(drop=True), caption)

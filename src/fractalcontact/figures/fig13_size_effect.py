@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 from ._domains import Loading, disagreement, trend
 from ._size_effect import draw_axes, size_effect
 from ._words import force_label, interval, short
-from .common import COLOURS, MARKERS, WIDTH, Drawing, heading, legends_below
+from .common import COLOURS, MARKERS, WIDTH, Drawing, heading, headline, legends_below
 
 #: Loads drawn.
 _MOST_LOADS = 6
@@ -39,7 +39,7 @@ def draw(atlas, name):
     legends_below(figure, *lines)
     draw_axes(axes)
     axes.set_title("eq. 6 extrapolated to other sizes; markers: the specimen")
-    figure.suptitle(loading.title, fontsize=9)
+    headline(figure, *loading.title)
     return Drawing(figure, table, _caption(loading))
 
 

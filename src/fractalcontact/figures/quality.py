@@ -9,13 +9,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..labels import printable
 from ..quality import AXES, length_words, noise_words, range_words
 from ..specimen import window_slices
 from ._history import history
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ._words import length_unit
-from .common import COLOURS, WIDTH, Drawing, group, label_short_span, letter, settings_of
+from .common import COLOURS, WIDTH, Drawing, group, headline, label_short_span, letter, settings_of
 from .fig02_relief import draw_faces
 
 #: Outliers up to this many are ringed, so that single cells can be seen.
@@ -79,8 +78,7 @@ def draw(atlas, name):
         loc="outside lower center",
         ncols=4,
     )
-    title = textwrap.fill(printable(label, 300), 100)
-    panels.suptitle(title, fontsize=9, parse_math=False)
+    headline(panels, label)
     below.text(
         0.01,
         1,

@@ -16,6 +16,7 @@ from .common import (
     entries,
     group,
     heading,
+    headline,
     label_short_span,
     legends_below,
     letter,
@@ -71,7 +72,7 @@ def draw(atlas, name):
     ]
     legends_below(figure, shown, said, [heading("(c), (d): whole predicted by"), *predictors])
     where = place(str(test["direction"].values), float(test["offset"]))
-    figure.suptitle(f"{settings['label']}, {where}", fontsize=9)
+    headline(figure, settings["label"], where)
     return Drawing(figure, _table(test), _caption(settings, test, where))
 
 

@@ -17,6 +17,7 @@ from .common import (
     dilatancy_loads,
     entries,
     group,
+    headline,
     letter,
     offset_axis,
     settings_of,
@@ -52,7 +53,7 @@ def draw(atlas, name):
     legends.add_artist(legends.legend(handles=entries(angles), loc="upper left", title="(a), (b)"))
     if entries(summary):
         legends.legend(handles=entries(summary), loc="lower left", title="(c)")
-    figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
+    headline(figure, settings["label"], place(direction))
     table = pd.concat([_table(strength, shown), _summary_table(strength)], ignore_index=True)
     return Drawing(figure, table, _caption(settings, direction, strength, shown))
 

@@ -14,6 +14,7 @@ from .common import (
     colour_of,
     entries,
     group,
+    headline,
     legends_below,
     letter,
     settings_of,
@@ -49,7 +50,7 @@ def draw(atlas, name):
     _draw_roughness(roughness, laws, shown)
     _draw_closure(closure, laws, mapped)
     legends_below(figure, entries(roughness), entries(closure))
-    figure.suptitle(settings["label"], fontsize=9)
+    headline(figure, settings["label"])
     table = pd.concat(
         [_roughness_table(laws, shown), _closure_table(laws)],
         ignore_index=True,
