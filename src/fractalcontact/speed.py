@@ -201,9 +201,9 @@ def _press_peer(peer, reference, rtol):
 
 
 def _peer_state(peer, scene, pressure):
-    clearance = scene.height.max() - scene.height
-    closure = scene.single.closure if peer.control == "closure" else None
-    return peers.state_of(peer, pressure, clearance, closure)
+    clearance = peers.clearance_of(scene.height)
+    load = {peer.control: getattr(scene.single, peer.control)}
+    return peers.state_of(scene.space, pressure, clearance, **load)
 
 
 def _warm_up(recipe):
