@@ -1,5 +1,6 @@
 """Calls of foreign code, which may crash, never end or flood the screen, in a child process."""
 
+import faulthandler
 import multiprocessing
 import os
 import signal
@@ -51,6 +52,7 @@ def in_child(call, *, seconds):
 
 def _answer(call, seconds, sender):
     os.environ["OMP_NUM_THREADS"] = "1"
+    faulthandler.disable()
     with open(os.devnull, "wb") as nothing:
         for stream in (1, 2):
             os.dup2(nothing.fileno(), stream)
