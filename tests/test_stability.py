@@ -1,12 +1,14 @@
 """Hard scenes, the judge of any solver, and when dropping points alone is right."""
 
 import dataclasses
+import os
 
 import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact import stability as module
+from fractalcontact.child_process import in_child
 from fractalcontact.elimination import (
     CASES,
     WINDOW,
@@ -16,7 +18,10 @@ from fractalcontact.elimination import (
 )
 from fractalcontact.hard_scenes import KINDS, hard_scene
 from fractalcontact.methods import METHODS
+from fractalcontact.methods.peers import PATIENCE, peer_methods
 from fractalcontact.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, solvers, stability
+
+PEERS = peer_methods()
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +82,44 @@ def test_a_state_where_there_is_none_is_silently_wrong(monkeypatch):
     assert (verdicts(monkeypatch, bold, ["cap, load above it"]) == SILENT).all()
 
 
+def peer_of(monkeypatch, solver):
+    """Let the judge take a solver for a public code."""
+    monkeypatch.setattr(module, "peer_methods", lambda: {"other": solver})
+    return solver
+
+
+def test_a_peer_is_given_tighter_tolerances_until_it_is_right(monkeypatch):
+    """Its tolerance may be on another quantity: here a thousandth of ours."""
+
+    def loose(height, space, *, rtol, **load):
+        return solve_contact(height, space, rtol=min(1e3 * rtol, 0.1), **load)
+
+    assert (verdicts(monkeypatch, loose, ["H = 0.8"]) == SILENT).any()
+    assert (verdicts(monkeypatch, peer_of(monkeypatch, loose), ["H = 0.8"]) == RIGHT).all()
+    found = stability(["H = 0.8"], 2)
+    assert (found["asked"] < module.RTOL).any()
+
+
+def test_a_peer_that_is_wrong_at_every_tolerance_is_silently_wrong(monkeypatch):
+    tried = []
+
+    def careless(height, space, *, rtol, **load):
+        tried.append(rtol)
+        return solve_contact(height, space, rtol=0.5, **load)
+
+    found = verdicts(monkeypatch, peer_of(monkeypatch, careless), ["H = 0.3"])
+    assert (found == SILENT).any()
+    assert set(tried) == set(module.PEER_RTOLS)
+
+
+def test_whatever_a_peer_raises_is_its_honest_failure(monkeypatch):
+    def crashing(height, space, **load):
+        return in_child(os.abort, seconds=PATIENCE)
+
+    found = verdicts(monkeypatch, peer_of(monkeypatch, crashing), ["H = 0.8"])
+    assert (found == HONEST).all()
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_same_draw_same_scene(kind):
     one, same, other = (hard_scene(kind, draw) for draw in (0, 0, 1))
@@ -89,7 +132,7 @@ def test_same_draw_same_scene(kind):
 
 
 def test_every_solver_of_the_package_is_judged():
-    assert set(solvers()) == {"fractalcontact", *METHODS}
+    assert set(solvers()) == {"fractalcontact", *METHODS, *PEERS}
 
 
 @pytest.mark.parametrize(("kernel", "ratio"), CASES)

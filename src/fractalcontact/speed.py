@@ -14,6 +14,7 @@ import xarray as xr
 
 from . import threads
 from .cheap_models import bearing_area, coarse_grid, winkler
+from .child_process import ChildFailed, in_child
 from .contact import solve_contact
 from .domain import box_dimension
 from .errors import NotConverged
@@ -123,8 +124,11 @@ def _first_runs(scene, recipe):
             row = {"method": way.method, "kind": way.kind, "tolerance": way.tolerance, "said": ""}
             table.append(row)
             try:
+                # Foreign code may crash or never end: it is tried where that does no harm.
+                if way.kind == PEER:
+                    in_child(way.solve, seconds=peers.PATIENCE)
                 raw, row["seconds"] = timed(way.solve)
-            except (NotConverged, peers.Failed) as failure:
+            except (NotConverged, ChildFailed) as failure:
                 row["said"] = str(failure)
                 break
             state = way.finish(raw)
@@ -202,9 +206,9 @@ def _press_peer(peer, reference, rtol):
 
 
 def _peer_state(peer, scene, pressure):
-    clearance = scene.height.max() - scene.height
-    closure = scene.single.closure if peer.control == "closure" else None
-    return peers.state_of(peer, pressure, clearance, closure)
+    clearance = peers.clearance_of(scene.height)
+    load = {peer.control: getattr(scene.single, peer.control)}
+    return peers.state_of(scene.space, pressure, clearance, **load)
 
 
 def _warm_up(recipe):

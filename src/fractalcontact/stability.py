@@ -17,12 +17,15 @@ RTOL = 1e-6
 MARGIN = 2.0
 #: And if its force (its closure, where the force was given) is that of direct elimination.
 AGREEMENT = 1e-4
+#: Tolerances that a peer is given one after the other while its state is not right: they are on
+#: quantities of its own, and to have met them is not to be silently wrong.
+PEER_RTOLS = (RTOL, 1e-8, 1e-10, 1e-12, 1e-14)
 
 #: Verdicts, in the order of their codes.
 VERDICTS = ("right", "honest failure", "silently wrong", "not offered")
 RIGHT, HONEST, SILENT, NOT_OFFERED = range(len(VERDICTS))
 #: What a method says of a load it was not made for.
-_NOT_MADE_FOR = ("a closure only", "a force only", "knows no hardness")
+_NOT_MADE_FOR = ("a closure only", "a force only", "knows no hardness", "solves another problem")
 #: How the package's solvers say that they failed; public codes raise whatever they raise.
 _OWN_WORDS = (NotConverged, ValueError)
 
@@ -47,7 +50,8 @@ def stability(kinds=None, draws=25):
     xr.Dataset
         On (kind, draw, solver): ``verdict``, an index into `VERDICTS`; ``violation`` of the contact
         conditions as a share of the closure, and ``disagreement`` with direct elimination, NaN
-        where no state was returned; ``said``, what the solver said of a failure.
+        where no state was returned; ``asked``, the tolerance at which it was judged: of peers one
+        of `PEER_RTOLS`; ``said``, what the solver said of a failure.
         ``hard_scene(kind, draw)`` makes the scene again.
     """
     kinds = list(KINDS) if kinds is None else list(kinds)
@@ -60,11 +64,17 @@ def stability(kinds=None, draws=25):
         "verdict": ("int8", about("1", codes)),
         "violation": (float, about("1", "largest violation of the conditions, share of closure")),
         "disagreement": (float, about("1", "relative difference from direct elimination")),
+        "asked": (float, about("1", "tolerance asked for")),
         "said": (object, about("1", "what the solver said")),
     }
     result = xr.Dataset(
         coords={"kind": kinds, "draw": np.arange(draws), "solver": list(judged)},
-        attrs={"rtol": RTOL, "margin": MARGIN, "agreement": AGREEMENT},
+        attrs={
+            "rtol": RTOL,
+            "margin": MARGIN,
+            "agreement": AGREEMENT,
+            "tightest": min(PEER_RTOLS),
+        },
     )
     for place, (name, (dtype, attributes)) in enumerate(fields.items()):
         values = [[[verdict[place] for verdict in scene] for scene in row] for row in found]
@@ -93,9 +103,20 @@ def _judge_all(judged, scene):
     exact = _exact(scene)
     foreign = peer_methods()
     return [
-        _judge(solve, scene, exact, Exception if name in foreign else _OWN_WORDS)
+        _judge_patiently(solve, scene, exact, PEER_RTOLS, Exception)
+        if name in foreign
+        else _judge_patiently(solve, scene, exact, (RTOL,), _OWN_WORDS)
         for name, solve in judged.items()
     ]
+
+
+def _judge_patiently(solve, scene, exact, tolerances, failures):
+    """The verdict at the first tolerance where a solver is not silently wrong, or at the last."""
+    for rtol in tolerances:
+        verdict, wrong, apart, said = _judge(solve, scene, exact, rtol, failures)
+        if verdict != SILENT or not scene.solvable:
+            break
+    return verdict, wrong, apart, rtol, said
 
 
 def _exact(scene):
@@ -112,11 +133,11 @@ def _answer(state, scene):
     return state.closure if "force" in scene.load else state.force
 
 
-def _judge(solve, scene, exact, failures):
+def _judge(solve, scene, exact, rtol, failures):
     """Verdict, violation, disagreement and what the solver said."""
     nothing = (np.nan, np.nan)
     try:
-        state = solve(scene.height, scene.space, rtol=RTOL, **scene.load)
+        state = solve(scene.height, scene.space, rtol=rtol, **scene.load)
     except failures as error:
         said = str(error) or type(error).__name__
         if any(words in said for words in _NOT_MADE_FOR):

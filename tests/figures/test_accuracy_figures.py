@@ -117,9 +117,12 @@ def test_scenes_not_solved_are_named(atlas):
     verdict.loc[{"kind": "H = 0.8", "solver": "nnls", "draw": 1}] = HONEST
     drawing = drawn(other, "stability")
     table = drawing.data.set_index(["kind", "solver"])
-    assert table.loc[("H = 0.8", "dense"), "draws_not_solved"] == "0 2"
+    assert table.loc[("H = 0.8", "dense"), "draws_silently_wrong"] == "0 2"
+    assert table.loc[("H = 0.8", "nnls"), "draws_honest_failure"] == "1"
     assert table.loc[("H = 0.8", "dense"), "silently wrong (scenes)"] == 2
-    assert (table["draws_not_solved"] != "").sum() == 2
+    named = table[["draws_honest_failure", "draws_silently_wrong"]].to_numpy()
+    assert (named != "").sum() == 2
+    assert "Silently wrong, with the draws: dense on H = 0.8 (0 2)." in drawing.caption
     assert "dense: 7 of 9 right, 0 honest failures, 2 silently wrong" in drawing.caption
 
 

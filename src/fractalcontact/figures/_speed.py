@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..speed import ERRORS, FRONTS, MODEL, OURS
+from ..speed import ERRORS, FRONTS, MODEL, OURS, PEER, SOLVER
 from .common import COLOURS, LINES, MARKERS, colour_of, entries
 
 #: Errors of zero are drawn here, and nothing below.
@@ -16,6 +16,12 @@ AXES = {
     "pressure_error": "error of $p$, rms (1)",
 }
 _COLOURS = tuple(colour_of(i) for i in range(1, len(COLOURS) - 1))
+#: Solvers have filled marks, public codes hollow ones on a line, models hollow ones alone.
+_OF_KIND = {
+    SOLVER: {"ls": LINES[1], "lw": 0.8},
+    PEER: {"mfc": "white", "ls": LINES[2], "lw": 0.8},
+    MODEL: {"mfc": "none", "ls": "none"},
+}
 OURS_STYLE = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "zorder": 3}
 
 
@@ -55,16 +61,14 @@ def pick(scenes, **wanted):
 
 
 def styles(scenes):
-    """Colour, marker and line of every method: ours black, models hollow, in every figure alike."""
+    """Colour, marker and line of every method, in every figure alike; ours alone is black."""
     kinds = {}
     for scene in scenes.values():
         kinds |= dict(zip(scene["method"].values, scene["kind"].values, strict=True))
     found = {OURS: OURS_STYLE}
     for i, (method, kind) in enumerate((m, k) for m, k in kinds.items() if m != OURS):
-        # Black is ours alone.
         style = {"color": _COLOURS[i % len(_COLOURS)], "marker": MARKERS[(i + 1) % len(MARKERS)]}
-        hollow = {"mfc": "none", "ls": "none"} if kind == MODEL else {"ls": LINES[1], "lw": 0.8}
-        found[method] = style | hollow
+        found[method] = style | _OF_KIND[kind]
     return found
 
 

@@ -1,10 +1,14 @@
 """Which solver takes which kind of scene: one row a kind, one column a solver."""
 
+import re
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from ..methods import METHODS
+from ..speed import OURS
 from ..stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
 from .common import COLOURS, WIDTH, Drawing, group
 
@@ -30,8 +34,8 @@ def draw(atlas, names):
     Returns
     -------
     Drawing
-        Its data name the draws that were not solved: ``hard_scene(kind, draw)`` of
-        `fractalcontact.hard_scenes` makes each again.
+        Its data name the draws of every honest failure and of every silent error:
+        ``hard_scene(kind, draw)`` of `fractalcontact.hard_scenes` makes each again.
     """
     stability = group(atlas, "stability", "scenes")
     counts = _counts(stability)
@@ -47,7 +51,8 @@ def draw(atlas, names):
     axes.set_xlim(-0.03, len(solvers))
     axes.set_ylim(len(kinds) - 0.4, -0.6)
     axes.set_yticks(np.arange(len(kinds)), kinds, fontsize=6.5)
-    axes.set_xticks(np.arange(len(solvers)) + 0.47, [_wrapped(name) for name in solvers])
+    names = [_wrapped(name) for name in solvers]
+    axes.set_xticks(np.arange(len(solvers)) + 0.47, names, fontsize=6.5)
     axes.xaxis.tick_top()
     axes.set_xlabel("share of the scenes of a kind, each bar one solver's (1)")
     axes.tick_params(length=0)
@@ -63,7 +68,9 @@ def draw(atlas, names):
 
 
 def _wrapped(name):
-    return name.replace("-", "-\n").replace(" ", "\n")
+    """A solver's name, broken to the width of a column."""
+    parts = re.sub("(?<=[a-z])(?=[A-Z])", "\n", name)
+    return parts.replace("-", "-\n").replace(" ", "\n")
 
 
 def _counts(stability):
@@ -73,20 +80,33 @@ def _counts(stability):
 
 
 def _table(stability, counts):
-    """One row a kind and solver; the draws not solved make each such scene again."""
+    """One row a kind and solver, with the draws that make each scene not solved again."""
     rows = []
     for k, kind in enumerate(stability["kind"].values):
         for n, solver in enumerate(stability["solver"].values):
             one = stability.isel(kind=k, solver=n)
             failed = np.isin(one["verdict"].values, (HONEST, SILENT))
+            words = {_unmeasured(said) for said in one["said"].values[failed]}
             rows.append(
                 {"kind": kind, "solver": solver}
                 | {f"{name} (scenes)": counts[n, k, code] for code, name in enumerate(VERDICTS)}
-                | {"draws_not_solved": " ".join(map(str, one["draw"].values[failed]))}
+                | {"draws_honest_failure": _draws(one, HONEST)}
+                | {"draws_silently_wrong": _draws(one, SILENT)}
                 | {"violation_of_closure": one["violation"].where(failed).max().item()}
-                | {"said": "; ".join(sorted(set(one["said"].values[failed]) - {""}))}
+                | {"tolerance_asked": one["asked"].min().item()}
+                | {"said": "; ".join(sorted(words - {""}))}
             )
     return pd.DataFrame(rows)
+
+
+def _draws(verdicts, code):
+    """The draws of one kind on which a solver had a verdict."""
+    return " ".join(map(str, verdicts["draw"].values[verdicts["verdict"].values == code]))
+
+
+def _unmeasured(said):
+    """What was said of a failure, without the residual, which is another every time."""
+    return said.partition("; best residual")[0]
 
 
 def _caption(stability, counts):
@@ -103,8 +123,33 @@ def _caption(stability, counts):
         f"{stability.attrs['rtol']:g} beyond the rounding of the heights, and if its force (its "
         "closure, where the force was given) is that of direct elimination to "
         f"{stability.attrs['agreement']:g}. Where no state exists, only saying so is right. "
-        f"{by_solver}. The table beside the figure names every scene not solved."
+        f"{_of_peers(stability)}{by_solver}. {_silent(stability)} Every scene not solved stands in "
+        "the table beside the figure, kind and draw: hard_scene(kind, draw) of "
+        "fractalcontact.hard_scenes makes it again."
     )
+
+
+def _of_peers(stability):
+    """How public codes are judged, where there are any."""
+    if set(stability["solver"].values) <= {OURS, *METHODS}:
+        return ""
+    return (
+        "A public code, whose tolerance is on a quantity of its own, is asked for a tighter one, "
+        f"down to {stability.attrs['tightest']:g}, before it counts as silently wrong; an error it "
+        "raises, a crash and too long a time are honest failures. "
+    )
+
+
+def _silent(stability):
+    """Every silent error, by kind and draw."""
+    found = []
+    for solver in stability["solver"].values:
+        wrong = stability.sel(solver=solver)
+        wrong = wrong.isel(kind=np.flatnonzero((wrong["verdict"] == SILENT).any("draw")))
+        kinds = [f"{k} ({_draws(wrong.sel(kind=k), SILENT)})" for k in wrong["kind"].values]
+        if kinds:
+            found.append(f"{solver} on {'; '.join(kinds)}")
+    return f"Silently wrong, with the draws: {'. '.join(found)}." if found else "None is silent."
 
 
 def _words(solver, totals):

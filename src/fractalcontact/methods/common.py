@@ -16,6 +16,12 @@ def refuse_force(method, force):
         raise ValueError(f"{method} takes a closure only: give closure=, not force=")
 
 
+def refuse_closure(method, closure):
+    """Say that a method takes a force only, if a closure is given."""
+    if closure is not None:
+        raise ValueError(f"{method} takes a force only: give force=, not closure=")
+
+
 def refuse_hardness(method, hardness):
     """Say that a method knows no hardness, if one is given."""
     if hardness is not None:
@@ -74,10 +80,10 @@ def in_stress(values, unit, hardness):
     return np.where(values >= hardness / unit, hardness, values * unit)
 
 
-def checked_state(
-    space, clearance, pressure, closure, *, force, iterations, rtol, reason, hardness=np.inf
+def measured_state(
+    space, clearance, pressure, closure, *, force=None, iterations=0, hardness=np.inf
 ):
-    """The state of a pressure, once its contact conditions have been verified.
+    """What a pressure is as a state, its violation of the contact conditions measured.
 
     Parameters
     ----------
@@ -87,22 +93,17 @@ def checked_state(
     pressure : (ny, nx) ndarray
         MPa, from 0 to ``hardness``.
     closure : float
-        w > 0, mm.
+        w, mm.
     force : float or None
         F asked for, N, if any.
     iterations : int
         What the method counts as its work.
-    rtol : float
-        Largest violation allowed, as in `fractalcontact.solve_contact`.
-    reason : str
-        What to say if it is exceeded.
     hardness : float
         Largest pressure, MPa: where it is reached the surfaces may overlap, but not part.
 
-    Raises
-    ------
-    NotConverged
-        If a point in contact is not closed, a point outside penetrates, or the force is another.
+    Returns
+    -------
+    ContactState
     """
     if np.count_nonzero(pressure) * pressure.size <= LARGEST_SUM:
         displacement = sum_displacement(space, pressure)
@@ -112,12 +113,13 @@ def checked_state(
     total = float(pressure.sum()) * space.cell_area
     parted = gap[pressure > 0].max(initial=0.0)
     overlap = -gap[pressure < hardness].min(initial=0.0)
-    residual = max(parted, overlap) / closure
+    worst = max(parted, overlap)
+    residual = worst / closure if worst != 0 and closure != 0 else worst
     if np.isfinite(hardness):
         residual = max(residual, pressure.max() / hardness - 1)
-    if force is not None:
+    if force:
         residual = max(residual, abs(total / force - 1))
-    state = ContactState(
+    return ContactState(
         pressure=pressure,
         displacement=displacement,
         gap=gap,
@@ -128,6 +130,26 @@ def checked_state(
         space=space,
         hardness=hardness,
     )
-    if not residual <= rtol:
+
+
+def checked_state(space, clearance, pressure, closure, *, rtol, reason, **about):
+    """The state of a pressure, once its contact conditions have been verified.
+
+    Parameters
+    ----------
+    space, clearance, pressure, closure, **about
+        As of `measured_state`.
+    rtol : float
+        Largest violation allowed, as in `fractalcontact.solve_contact`.
+    reason : str
+        What to say if it is exceeded.
+
+    Raises
+    ------
+    NotConverged
+        If a point in contact is not closed, a point outside penetrates, or the force is another.
+    """
+    state = measured_state(space, clearance, pressure, closure, **about)
+    if not state.residual <= rtol:
         raise NotConverged(reason, state, state.residual)
     return state

@@ -1,0 +1,74 @@
+"""Calls of foreign code, which may crash, never end or flood the screen, in a child process."""
+
+import faulthandler
+import multiprocessing
+import os
+import signal
+
+
+class ChildFailed(RuntimeError):
+    """A call in a child process raised an error, crashed or took too long; the text says which."""
+
+
+def in_child(call, *, seconds):
+    """What a call returns.
+
+    Parameters
+    ----------
+    call : callable
+        Made in a fork of this process, on one thread: the threads of the parent do not exist there.
+        What it prints is dropped.
+    seconds : float
+        Longest it may take.
+
+    Returns
+    -------
+    object
+        Copied from the child.
+
+    Raises
+    ------
+    ChildFailed
+    """
+    context = multiprocessing.get_context("fork")
+    receiver, sender = context.Pipe(duplex=False)
+    child = context.Process(target=_answer, args=(call, seconds, sender))
+    child.start()
+    # The child's is now the only open end: the pipe ends with it, however it ends.
+    sender.close()
+    try:
+        value, said = receiver.recv()
+    except EOFError:
+        child.join()
+        raise ChildFailed(_ending(child.exitcode, seconds)) from None
+    finally:
+        receiver.close()
+        child.kill()
+        child.join()
+    if said:
+        raise ChildFailed(said)
+    return value
+
+
+def _answer(call, seconds, sender):
+    os.environ["OMP_NUM_THREADS"] = "1"
+    faulthandler.disable()
+    with open(os.devnull, "wb") as nothing:
+        for stream in (1, 2):
+            os.dup2(nothing.fileno(), stream)
+    # An alarm that nobody handles ends the process, be it in a loop of C; and without a parent too.
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        value, said = call(), ""
+    except Exception as error:
+        value, said = None, f"{type(error).__name__}: {error}"
+    sender.send((value, said))
+
+
+def _ending(exitcode, seconds):
+    if exitcode == -signal.SIGALRM:
+        return f"took longer than {seconds:g} s"
+    if exitcode < 0:
+        return f"crashed: {signal.Signals(-exitcode).name}"
+    return f"crashed: exit code {exitcode}"
