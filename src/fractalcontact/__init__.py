@@ -2,12 +2,11 @@
 
 from importlib import import_module
 
-from .errors import InputError
+from .errors import InputError, NotConverged
 
 #: Imported when first asked for: the reader process of a scan file needs no contact solver.
 _HOMES = {
     "ContactState": ".contact",
-    "NotConverged": ".contact",
     "solve_contact": ".contact",
     "HalfSpace": ".halfspace",
 }

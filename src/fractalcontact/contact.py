@@ -13,6 +13,7 @@ import numpy as np
 
 from . import active_set
 from .active_set import ActiveSet, Problem
+from .errors import NotConverged
 from .halfspace import HalfSpace
 from .set_equations import Operator
 
@@ -87,25 +88,6 @@ class ContactState:
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         return value * self.space.modulus * self.space.cell
-
-
-class NotConverged(RuntimeError):
-    """No state satisfying the contact conditions was reached.
-
-    Attributes
-    ----------
-    reason : str
-    state : ContactState
-        The best state reached; its ``residual`` says how far it is from being one.
-    residual : float
-    """
-
-    def __init__(self, reason, state, residual):
-        super().__init__(f"contact not solved: {reason}; best residual {residual:.3g}")
-        self.reason, self.state, self.residual = reason, state, residual
-
-    def __reduce__(self):
-        return type(self), (self.reason, self.state, self.residual)
 
 
 def solve_contact(

@@ -4,8 +4,7 @@ import contextlib
 import logging
 import sys
 
-from fractalcontact.contact import NotConverged
-from fractalcontact.errors import InputError
+from fractalcontact.errors import InputError, NotConverged
 
 
 @contextlib.contextmanager
