@@ -1,8 +1,7 @@
 """Spikes and holes of a scan: found by a stated rule, altered only when the study asks for it."""
 
 import numpy as np
-from scipy import ndimage, sparse
-from scipy.sparse.linalg import spsolve
+from scipy import ndimage
 
 from .errors import InputError
 from .fitting import without_mean_plane
@@ -216,6 +215,9 @@ def _small_holes(missing: np.ndarray, largest: int) -> np.ndarray:
 
 def _harmonic(heights: np.ndarray, unknown: np.ndarray, spacing) -> np.ndarray:
     """Solve the discrete Laplace equation on the unknown cells, row by row of the array."""
+    from scipy import sparse
+    from scipy.sparse.linalg import spsolve
+
     rows, columns = np.nonzero(unknown)
     index = np.full(heights.shape, -1)
     index[unknown] = np.arange(len(rows))

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy import optimize, special
+from scipy import special
 
 from .area import FEWEST_NODES
 from .fitting import CONFIDENCE, fit_line
@@ -72,6 +72,8 @@ def fit_hyperbola(pressure, closure):
     Solved for w the law reads w = sigma w_m / (k_ni w_m + sigma). Both parameters are positive, so
     the fit and its Student-t interval are made in their logarithms.
     """
+    from scipy import optimize
+
     sigma, w = np.asarray(pressure, float), np.asarray(closure, float)
     usable = np.isfinite(sigma) & np.isfinite(w) & (sigma > 0) & (w > 0)
     sigma, w = sigma[usable], w[usable]

@@ -1,4 +1,4 @@
-"""What this package raises: where the user has to change something, and where a solve failed."""
+"""What this package raises by names of its own, without what it takes to compute anything."""
 
 
 class InputError(ValueError):

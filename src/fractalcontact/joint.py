@@ -10,7 +10,6 @@ import xarray as xr
 from .errors import InputError
 from .fitting import without_mean_plane
 from .labels import about
-from .roughness import surface_dimension
 from .specimen import faces, largest_offset, nominal_area, window_slices
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
@@ -227,6 +226,8 @@ def describe_joint(specimen, settings):
     InputError
         As :func:`choose_offsets`.
     """
+    from .roughness import surface_dimension
+
     directions = settings["directions"]
     solved = settings["contact_directions"]
     every = list(dict.fromkeys([*directions, *solved]))
