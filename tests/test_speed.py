@@ -1,10 +1,12 @@
 """Error against time: the front, the errors, what is measured of a small scene, growth."""
 
+import os
+
 import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.methods import METHODS
+from fractalcontact.methods import METHODS, peers
 from fractalcontact.reference_scenes import HertzScene, PunchScene, RoughScene, scenes_of
 from fractalcontact.speed import (
     ERRORS,
@@ -164,6 +166,22 @@ def test_runs_are_taken_in_turn():
     seconds = repeated([*calls, lambda: seen.append("slow")], [0, 0, 9.0], runs=3, longest=1.0)
     assert "".join(seen) == "abab"
     assert [len(one) for one in seconds] == [3, 3, 1]
+
+
+def test_a_peer_that_crashes_is_a_failure_in_the_table(scene, monkeypatch):
+    class Wild:
+        control = "closure"
+
+        def solve(self, *load, **options):
+            os.abort()
+
+    monkeypatch.setattr(peers, "installed", lambda: ["wild"])
+    monkeypatch.setattr(peers, "set_up", lambda name, height, space: Wild())
+    recipe = {**RECIPE, "tolerances": [1e-1], "runs": 1, "slow_nodes": 0}
+    found = error_against_time(scene, recipe)
+    wild = found.isel(point=np.flatnonzero(found["method"] == "wild"))
+    assert wild["said"].values.tolist() == ["crashed: SIGABRT"]
+    assert wild["seconds"].isnull().all()
 
 
 def test_peak_memory_is_what_a_call_takes():

@@ -1,12 +1,18 @@
 """Other codes, where they are installed, solve the same problem."""
 
+import os
+
+import numpy as np
 import pytest
 
-from fractalcontact import NotConverged, solve_contact
+from fractalcontact import HalfSpace, NotConverged, solve_contact
+from fractalcontact.child_process import ChildFailed
+from fractalcontact.hard_scenes import hard_scene
 from fractalcontact.methods import peers
 from fractalcontact.reference_scenes import RoughScene
 
 PEERS = peers.peer_methods()
+CCG = "ContactMechanics ccg"
 needs_peers = pytest.mark.skipif(not PEERS, reason="the peers extra is not installed")
 
 
@@ -30,20 +36,85 @@ def test_a_peer_finds_the_same_state(scene, name):
 
 
 @needs_peers
+@pytest.mark.parametrize(
+    ("shape", "spacing"),
+    [((20, 31), (0.1, 0.1)), ((12, 17), (5.0, 0.1)), ((1, 40), (0.1, 0.1)), ((1, 1), (0.1, 0.2))],
+)
+def test_a_peer_has_our_operator(shape, spacing):
+    """Axes, units and images: what it is judged by is its solver, not our way of calling it."""
+    space = HalfSpace(shape, spacing, 3e4)
+    pressure = np.random.default_rng(0).random(shape)
+    exact = pytest.approx(space.displacement(pressure), rel=1e-9)
+    mechanics = peers.set_up(CCG, pressure, space)
+    found = mechanics.substrate.evaluate_disp(-pressure * space.cell_area)
+    assert found[: shape[0], : shape[1]] == exact
+    tamaas = peers.set_up("Tamaas", pressure, space)
+    found = np.zeros(shape)
+    tamaas.model.operators["dcfft"](pressure, found)
+    assert found == exact
+
+
+@needs_peers
+@pytest.mark.parametrize("load", ["force", "hardness", "force and hardness"])
+def test_constrained_gradients_take_a_force_and_a_hardness(scene, load):
+    reference = scene.single
+    control = "force" if "force" in load else "closure"
+    given = {control: getattr(reference, control)}
+    if "hardness" in load:
+        given["hardness"] = 0.5 * reference.state.pressure.max()
+    exact = solve_contact(scene.height, scene.space, rtol=1e-9, **given)
+    found = PEERS[CCG](scene.height, scene.space, rtol=1e-8, **given)
+    assert (found.force, found.closure) == pytest.approx((exact.force, exact.closure), rel=1e-5)
+    assert found.residual < 1e-4
+    np.testing.assert_array_equal(found.in_contact, exact.in_contact)
+
+
+@needs_peers
 @pytest.mark.parametrize("name", PEERS)
 def test_a_peer_says_what_it_was_not_made_for(scene, name):
     other = {"closure": 0.01} if name == "Tamaas" else {"force": 1.0}
-    with pytest.raises(ValueError, match=r"takes a \w+ only"):
-        PEERS[name](scene.height, scene.space, **other)
-    with pytest.raises(ValueError, match="knows no hardness"):
-        PEERS[name](scene.height, scene.space, hardness=1.0, **load_of(name, scene.single))
+    load = load_of(name, scene.single)
+    if name != CCG:
+        with pytest.raises(ValueError, match=r"takes a \w+ only"):
+            PEERS[name](scene.height, scene.space, **other)
+        with pytest.raises(ValueError, match="knows no hardness"):
+            PEERS[name](scene.height, scene.space, hardness=1.0, **load)
+    holed = np.where(scene.height == scene.height.min(), np.nan, scene.height)
+    # Tamaas finds out by itself.
+    with pytest.raises((ValueError, ChildFailed, NotConverged)):
+        PEERS[name](holed, scene.space, **load)
+
+
+@needs_peers
+def test_a_penetrating_node_that_ccg_does_not_see():
+    """Found by the atlas: the iteration that first sees the second node ends as converged."""
+    scene = hard_scene("spike", 5)
+    found = PEERS[CCG](scene.height, scene.space, rtol=1e-14, **scene.load)
+    assert found.residual > 1e-4
+
+
+@pytest.mark.parametrize(
+    ("seconds", "end", "words"),
+    [(10, os.abort, "crashed: SIGABRT"), (0.2, None, "took longer than 0.2 s")],
+)
+def test_a_peer_that_crashes_or_hangs_does_no_harm(scene, monkeypatch, seconds, end, words):
+    class Wild:
+        def solve(self, closure, rtol, **load):
+            while True:
+                end and end()
+
+    monkeypatch.setattr(peers, "set_up", lambda name, height, space: Wild())
+    monkeypatch.setattr(peers, "PATIENCE", seconds)
+    monkeypatch.setattr(peers, "import_module", lambda name: None)
+    with pytest.raises(ChildFailed, match=words):
+        peers._solve_with(CCG, scene.height, scene.space, closure=0.1)
 
 
 @needs_peers
 # ContactMechanics hands the limit of iterations to its own conjugate gradients only.
 @pytest.mark.parametrize("name", [name for name in PEERS if "lbfgs" not in name])
 def test_a_peer_that_gives_up_is_not_believed(scene, name, monkeypatch):
-    monkeypatch.setattr(peers, "MAX_ITERATIONS", 2)
+    monkeypatch.setattr(peers, "PATIENT_ITERATIONS", 2)
     with pytest.raises(NotConverged) as caught:
         PEERS[name](scene.height, scene.space, rtol=1e-9, **load_of(name, scene.single))
     assert caught.value.state.residual > 1e-9
@@ -51,11 +122,16 @@ def test_a_peer_that_gives_up_is_not_believed(scene, name, monkeypatch):
 
 def test_a_state_of_our_own_pressure_is_our_state(scene):
     ours = solve_contact(scene.height, scene.space, closure=scene.closure)
-
-    class Peer:
-        space = scene.space
-
-    clearance = scene.height.max() - scene.height
-    state = peers.state_of(Peer, ours.pressure, clearance, ours.closure)
+    clearance = peers.clearance_of(scene.height)
+    state = peers.state_of(scene.space, ours.pressure, clearance, closure=ours.closure)
     assert state.force == pytest.approx(ours.force)
     assert state.residual == pytest.approx(ours.residual, rel=1e-3, abs=1e-12)
+    by_force = peers.state_of(scene.space, ours.pressure, clearance, force=ours.force)
+    assert by_force.closure == pytest.approx(ours.closure, rel=1e-6)
+
+
+def test_no_pressure_is_the_state_of_first_touch(scene):
+    clearance = peers.clearance_of(scene.height)
+    state = peers.state_of(scene.space, np.zeros(scene.space.shape), clearance, force=0.0)
+    assert (state.closure, state.force, state.residual) == (0, 0, 0)
+    np.testing.assert_array_equal(state.gap, clearance)

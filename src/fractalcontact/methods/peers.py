@@ -127,10 +127,12 @@ class ContactMechanics:
         if start is not None:
             padded = np.zeros(self.substrate.nb_domain_grid_pts)
             padded[: start.shape[0], : start.shape[1]] = -start
+        # Divided as in `in_stress`: what comes back at the cap must be seen to be there.
+        cap = None if hardness is None else hardness / (1 / self.space.cell_area)
         return self.system.minimize_proxy(
             offset=closure,
             external_force=force,
-            hardness=None if hardness is None else hardness / (1 / self.space.cell_area),
+            hardness=cap,
             initial_forces=padded,
             maxiter=self.max_iterations,
             **tolerances,
