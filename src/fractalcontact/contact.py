@@ -20,6 +20,9 @@ from .set_equations import Operator
 
 # A coarser grid gives the start until its shorter side has fewer nodes than this.
 COARSEST = 24
+# The approximate inverse on coarse grids of more cells is not kept: it takes memory, and there is
+# little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
+KEPT_CELLS = 10_000
 # The coarse solution is only a start.
 COARSE_RTOL = 3e-2
 # Earlier states are extrapolated by no more than this many of their own steps.
@@ -283,7 +286,8 @@ def _coarse_start(problem):
     load = problem.load / 2 if problem.by_force else problem.load
     coarse = Problem(coarse_space, pooled, load, problem.by_force, 2 * problem.cap)
     found = ActiveSet(coarse, COARSE_RTOL).solve(_coarse_start(coarse))
-    coarse_space.forget()
+    if pooled.size > KEPT_CELLS:
+        coarse_space.forget()
     pressure = found.pressure.reshape(coarse_space.shape) / 2
     return np.repeat(np.repeat(pressure, 2, axis=0), 2, axis=1)[:ny, :nx].ravel()
 
