@@ -15,6 +15,7 @@ from .common import (
     Drawing,
     entries,
     group,
+    headline,
     legends_below,
     letter,
     settings_of,
@@ -64,7 +65,7 @@ def draw(atlas, name):
     _draw_table(above, texts, lines, height / LINE_HEIGHT)
     _draw_errors(below, errors)
     legends_below(figure, entries(below)[::2], entries(below)[1::2])
-    figure.suptitle(f"{settings['label']}, {place(direction)}", fontsize=9)
+    headline(figure, settings["label"], place(direction))
     data = pd.concat(
         [pd.DataFrame(table).assign(kind="choice"), errors.assign(kind="error")], ignore_index=True
     )
