@@ -38,6 +38,8 @@ LINES = ("-", "--", "-.", ":")
 WIDTH = 7.2
 #: Pixels of an inch, in the PNG and of the maps inside the SVG.
 DPI = 200
+#: Of the PNG: a third less time than by default, for files larger by a fiftieth.
+COMPRESSION = 3
 #: Points of the letters of a figure's title, and how many of them stand in an inch.
 TITLE_SIZE, LETTERS_AN_INCH = 9, 14
 #: Letters of a specimen's label that are shown.
@@ -112,10 +114,10 @@ def save(drawing, folder, name):
     # The layout is found once and each file drawn once. `savefig` draws everything once more for
     # either file, to find the layout; and what the layout has measured, this canvas remembers.
     canvas = FigureCanvasAgg(figure)
-    _write_decades(figure)
+    _plain_ticks(figure)
     _lay_out(figure)
     with written_whole(folder / f"{name}.png") as path:
-        canvas.print_png(path)
+        canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
     with written_whole(folder / f"{name}.svg") as path:
         FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
     with written_whole(folder / f"{name}.txt") as path:
@@ -136,13 +138,18 @@ class _Decades(LogFormatterSciNotation):
         return f"10{power[1].translate(self._RAISED)}" if power else text
 
 
-def _write_decades(figure):
-    """Have the powers of ten along logarithmic axes written as plain text."""
+_UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "right")}
+
+
+def _plain_ticks(figure):
+    """Have powers of ten written as plain text, and no label measured that is empty."""
     for axes in figure.axes:
         for panel in (axes, *axes.child_axes):
             for axis in (panel.xaxis, panel.yaxis):
                 if type(axis.get_major_formatter()) is LogFormatterSciNotation:
                     axis.set_major_formatter(_Decades())
+                if not any(axis.get_minor_formatter().format_ticks(axis.get_minorticklocs())):
+                    panel.tick_params(axis.axis_name, which="minor", **_UNLABELLED)
 
 
 def _lay_out(figure):
@@ -153,11 +160,12 @@ def _lay_out(figure):
     layout.execute(figure)
     # A common factor of the numbers along y stands where a title does, which then moves up.
     crowded = [axes for axes in figure.axes if axes.yaxis.get_offset_text().get_text()]
+    for axes in crowded:
+        top = axes.yaxis.get_offset_text().get_window_extent().ymax
+        y = axes.transAxes.inverted().transform((0, top))[1]
+        for loc in ("left", "center"):
+            axes.set_title(axes.get_title(loc), loc=loc, y=y)
     if crowded:
-        with matplotlib.rc_context({"axes.titley": None}):
-            for axes in crowded:
-                for loc in ("left", "center"):
-                    axes.set_title(axes.get_title(loc), loc=loc)
         layout.execute(figure)
     figure.set_layout_engine("none")
 

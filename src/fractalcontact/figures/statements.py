@@ -7,7 +7,15 @@ from matplotlib.figure import Figure
 
 from ..statements import FAILS, HOLDS, PARTLY, UNKNOWN
 from ._words import force_label, opening, place
-from .common import COLOURS, WIDTH, Drawing, group, settings_of
+from .common import (
+    COLOURS,
+    TITLE_SIZE,
+    WIDTH,
+    Drawing,
+    group,
+    label_in_lines,
+    settings_of,
+)
 
 #: A sign for each verdict, so that the table can be read without its colours.
 SIGNS = {HOLDS: ("●", COLOURS[3]), PARTLY: ("◐", COLOURS[5])}
@@ -38,18 +46,20 @@ def draw(atlas, name):
         {key: fill(row[key], COLUMNS[key][1]) for key in COLUMNS} for _, row in table.iterrows()
     ]
     lines = [1 + max(text.count("\n") + 1 for text in row.values()) for row in texts]
-    height = LINE_HEIGHT * (sum(lines) + 4.4)
+    title = label_in_lines(label, width=WIDTH)
+    top = 1.3 * title.count("\n")
+    height = LINE_HEIGHT * (top + sum(lines) + 4.4)
     figure = Figure(figsize=(WIDTH, height))
     figure.set_layout_engine("none")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
     axes.set_xlim(0, 1)
     axes.set_ylim(height / LINE_HEIGHT, 0)
-    axes.text(0.5, 0.8, label, ha="center", va="top", fontsize=9)
+    axes.text(0.5, 0.8, title, ha="center", va="top", fontsize=TITLE_SIZE)
     heads = {"figure": "Fig.", "claim": "The paper says", "verdict": "Here", "numbers": "Because"}
     for key, (x, _) in COLUMNS.items():
-        axes.text(x, 2.6, heads[key], va="top", weight="bold", fontsize=7)
-    y = 4.2
+        axes.text(x, top + 2.6, heads[key], va="top", weight="bold", fontsize=7)
+    y = top + 4.2
     for row, verdict, rows in zip(texts, table["verdict"], lines, strict=True):
         axes.axhline(y - 0.35, color="0.8", lw=0.5)
         for key, (x, _) in COLUMNS.items():

@@ -1,0 +1,134 @@
+"""What all figures share: their titles, the ticks of their axes, and how they are laid out."""
+
+import importlib
+import json
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from PIL import Image
+
+from fractalcontact.figures import figures_of
+from fractalcontact.figures.common import WIDTH, Drawing, headline, letter, print_style, save
+
+#: 200 letters, with dollar signs that begin no formula.
+LONG = ("Sandstein aus der Grube 7, Kluft 3a, geborgen für $5 $ und \\frac vermessen, " * 3)[:200]
+
+
+def drawn_texts(folder, name):
+    """Every text of an SVG."""
+    root = ElementTree.parse(folder / f"{name}.svg").getroot()
+    return [
+        "".join(node.itertext()).strip() for node in root.iter("{http://www.w3.org/2000/svg}text")
+    ]
+
+
+def one_panel(width=4):
+    figure = Figure(figsize=(width, 3))
+    return figure, figure.subplots()
+
+
+def drawing_of(figure):
+    return Drawing(figure, pd.DataFrame({"x_mm": [1.0]}), "a caption")
+
+
+@pytest.fixture
+def labelled(atlas):
+    """The atlas, its specimens with the long label."""
+    tree = atlas.copy()
+    configuration = json.loads(tree.attrs["configuration"])
+    for settings in configuration["settings"].values():
+        settings["label"] = LONG
+    tree.attrs["configuration"] = json.dumps(configuration)
+    return tree
+
+
+@pytest.mark.parametrize("name", [n for n in figures_of("match") if n != "domain_measures"])
+def test_a_long_label_stays_within_every_figure(labelled, name):
+    with print_style():
+        figure = (
+            importlib.import_module(f"fractalcontact.figures.{name}")
+            .draw(labelled, "sliding")
+            .figure
+        )
+        titles = [text for text in figure.findobj(Text) if text.get_text().startswith("Sandstein")]
+        assert titles
+        for title in titles:
+            assert " ".join(title.get_text().replace("\\$", "$").split()).startswith(LONG.strip())
+            extent = title.get_window_extent()
+            assert 0 <= extent.x0 < extent.x1 <= figure.bbox.width
+
+
+@pytest.mark.parametrize("width", [3, WIDTH])
+def test_a_title_shows_a_label_as_it_was_written_and_reads_formulas_after_it(width, tmp_path):
+    with print_style():
+        figure, _ = one_panel(width)
+        headline(figure, LONG, "$F$ = 10 kN", below="below")
+        save(drawing_of(figure), tmp_path, "title")
+    words = " ".join(drawn_texts(tmp_path, "title"))
+    assert "$5 $ und \\frac" in words
+    assert "$F$" not in words
+    assert "below" in words
+
+
+def test_powers_of_ten_are_plain_text_on_both_scales(tmp_path):
+    with print_style():
+        figure, axes = one_panel()
+        axes.loglog([1e-3, 1e2], [1e-12, 1e3])
+        axes.secondary_yaxis("right", functions=(lambda y: 10 * y, lambda y: y / 10))
+        save(drawing_of(figure), tmp_path, "decades")
+    texts = drawn_texts(tmp_path, "decades")
+    assert {"10⁻³", "10⁰", "10²", "10⁻¹²"} <= set(texts)
+    assert texts.count("10⁻⁸") == 2
+    assert "mathdefault" not in (tmp_path / "decades.svg").read_text(encoding="utf-8")
+
+
+def test_minor_ticks_keep_labels_that_are_not_empty(tmp_path):
+    """Less than a decade: matplotlib labels between the powers of ten."""
+    with print_style():
+        figure, axes = one_panel()
+        axes.semilogx([2, 7], [0, 1])
+        save(drawing_of(figure), tmp_path, "short")
+        labels = [label for label in axes.get_xticklabels(minor=True) if label.get_visible()]
+    assert sum(bool(label.get_text()) for label in labels) > 2
+
+
+@pytest.mark.parametrize("factor", [1, 1e9])
+def test_a_title_is_clear_of_the_factor_of_the_numbers_along_y(factor, tmp_path):
+    with print_style():
+        figure, axes = one_panel()
+        axes.plot([0, 1], [0, 3 * factor])
+        letter(axes, "a", "title of a panel")
+        save(drawing_of(figure), tmp_path, "factor")
+        (title,) = (t for t in axes.findobj(Text) if t.get_text().startswith("(a)"))
+        offset = axes.yaxis.get_offset_text()
+        assert bool(offset.get_text()) == (factor > 1)
+        assert title.get_window_extent().y0 >= axes.get_window_extent().y1
+        assert title.get_window_extent().y1 <= figure.bbox.height
+        if factor > 1:
+            assert title.get_window_extent().y0 >= offset.get_window_extent().y1 - 1
+
+
+def test_the_same_figure_twice_is_the_same_files(tmp_path):
+    """Two drawings, one after the other: what the first has left behind does not matter."""
+    for name in ("first", "second"):
+        with print_style():
+            figure, axes = one_panel()
+            axes.imshow(np.arange(12.0).reshape(3, 4))
+            letter(axes, "a", r"$\sigma_0$")
+            save(drawing_of(figure), tmp_path / name, "same")
+    for ending in ("png", "svg", "csv", "txt"):
+        first, second = (tmp_path / name / f"same.{ending}" for name in ("first", "second"))
+        assert first.read_bytes() == second.read_bytes()
+
+
+def test_the_picture_has_the_pixels_of_the_figure(tmp_path):
+    with print_style():
+        figure, _ = one_panel()
+        save(drawing_of(figure), tmp_path, "size")
+    with Image.open(tmp_path / "size.png") as picture:
+        assert picture.size == (800, 600)
+        assert picture.info["dpi"] == pytest.approx((200, 200), abs=0.1)
