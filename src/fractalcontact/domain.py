@@ -263,9 +263,7 @@ def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     wide = x[last] - x[first] >= (x[-1] - x[0]) / 2
     place = np.arange(x.size)
     inside = (place >= first[wide, np.newaxis]) & (place <= last[wide, np.newaxis])
-    dx, dy = (
-        inside * (v - (inside @ v / inside.sum(axis=1))[:, np.newaxis]) for v in (x, y)
-    )
+    dx, dy = (inside * (v - (inside @ v / inside.sum(axis=1))[:, np.newaxis]) for v in (x, y))
     return np.sum(dx * dy, axis=1) / np.sum(dx * dx, axis=1)
 
 
