@@ -7,6 +7,7 @@ from .closure import bulk_settlement
 from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing, prefractal
 from .labels import about
+from .scaling import FEWEST_NODES
 from .specimen import nominal_area
 from .states import forces_of, hardness_of
 from .sweep import load_steps
@@ -17,7 +18,8 @@ FEWEST_ACROSS = 12
 #: The whole window is tested at the study's loads and at so many doublings of the largest: loads no
 #: rock would stand as an elastic body, but where small windows hold nodes enough.
 BEYOND = 3
-#: So many more doublings may be needed for small windows to have the sigma* of the whole.
+#: So many more doublings may be needed for small windows to have the sigma* of the whole; see
+#: :func:`press_parts` for when they are pressed.
 DOUBLINGS = 3
 #: Loads stay below this part of what the hardness lets a window carry.
 LARGEST_PART = 0.98
@@ -38,7 +40,8 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     pressed : xr.Dataset
         ``nodes`` (part, window, resolution, step) in contact, ``interface_closure`` (part, window,
         step) at the finest resolution, ``side`` b and ``windows`` (part), ``ladder_pressure``
-        (step) whose first steps are those of the loads.
+        (step) whose first steps are those of the loads. Steps that no window of a size needs are
+        NaN.
     domains : (load, ny, nx) bool ndarray
         Contact domain of the whole window at the finest resolution.
 
@@ -46,6 +49,11 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     -----
     Sub-windows are cut to whole cells of the coarsest resolution, so that all of them cover the
     same area at each.
+
+    Doublings beyond the loads cost most, and are pressed where they can be asked for: n x n parts
+    up to n times the largest load, as eq. 6 has it where Delta_sigma is 1 or more, and on until
+    each of them has a larger real mean pressure than the whole has under any load. One doubling is
+    always pressed, for the slope of the curve at the largest load.
     """
     composite = composite_topography(specimen, direction, cells)
     spacing = np.array([specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]])
@@ -61,31 +69,45 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     nodes, closure = np.full(shape, np.nan), np.full((*shape[:2], shape[3]), np.nan)
     sides = np.empty((len(parts), 2))
     solving = {"rtol": solver["rtol"], "hardness": hardness}
-    domains = None
+    s = np.sqrt(spacing.prod()) * np.array(factors)
+    # Tested loads and the next doubling window by window, further doublings one by one.
+    more = range(len(tested) + 1, len(pressures))
+    rounds = [range(more.start), *(range(step, step + 1) for step in more)]
+    domains, largest = [], np.inf
     for i, n in enumerate(parts):
         windows = _cut(composite, n, max(factors))
         sub = np.array(windows.shape[1:])
         sides[i] = sub * spacing
+        loads = pressures * sides[i].prod()
+        modulus = settings["material"]["e_star"]
+        settlement = bulk_settlement(loads, modulus, *sides[i])
+        states = {}
         for k, factor in enumerate(factors):
             space = HalfSpace(
-                tuple(sub // factor),
-                tuple(spacing * factor),
-                settings["material"]["e_star"],
-                kernel=solver["kernel"],
+                tuple(sub // factor), tuple(spacing * factor), modulus, kernel=solver["kernel"]
             )
-            loads = pressures * sides[i].prod()
-            settlement = bulk_settlement(loads, space.modulus, *sides[i])
             for j, window in enumerate(windows):
                 where = f"{n} x {n} parts, sub-window {j}, resolution {factor}"
                 h = prefractal(window, factor)
-                states = list(load_steps(h, space, loads, solving, where))
-                touching = np.array([state.in_contact for state in states])
-                nodes[i, j, k] = touching.sum(axis=(1, 2))
-                if factor == factors[0]:
-                    settled = np.ptp(window) > 0  # faces that match everywhere: nothing to close
-                    closure[i, j] = settled * ([s.closure for s in states] - settlement)
-                    if n == 1:
-                        domains = touching[: len(tested)]
+                states[j, k] = load_steps(h, space, loads, solving, where)
+
+        for steps in rounds:
+            if steps.start > len(tested):
+                real = real_pressure(loads, nodes[i, : n**2].swapaxes(1, 2), s)
+                if n == 1:
+                    largest = np.nanmax(real[0, : len(tested)], initial=0.0)
+                asked = pressures[steps.start - 1] < n * tested[-1] * (1 - 1e-9)
+                if not asked and (real[:, steps.start - 1] >= largest).all():
+                    break
+            for (j, k), rising in states.items():
+                for step, state in zip(steps, rising, strict=False):
+                    nodes[i, j, k, step] = np.count_nonzero(state.in_contact)
+                    if k == 0:
+                        # Faces that match everywhere have nothing to close.
+                        settled = np.ptp(windows[j]) > 0
+                        closure[i, j, step] = settled * (state.closure - settlement[step])
+                        if n == 1 and step < len(tested):
+                            domains.append(state.in_contact)
     pressed = xr.Dataset(
         {
             "nodes": (
@@ -117,7 +139,7 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
             ),
             "spacing": (
                 "resolution",
-                np.sqrt(spacing.prod()) * np.array(factors),
+                s,
                 about("mm", "spacing s"),
             ),
         },
@@ -133,7 +155,28 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
             ),
         },
     )
-    return pressed, domains
+    return pressed, np.array(domains)
+
+
+def real_pressure(force, nodes, spacing):
+    """Geometric mean of sigma_n over the resolutions, MPa.
+
+    Parameters
+    ----------
+    force : (..., step) ndarray
+        N.
+    nodes : (..., step, resolution) ndarray
+        In contact; the mean number for several windows together.
+    spacing : (resolution,) ndarray
+        mm.
+
+    Returns
+    -------
+    (..., step) ndarray
+        NaN where there are fewer than `FEWEST_NODES` nodes at a resolution.
+    """
+    nodes = np.where(nodes >= FEWEST_NODES - 1e-9, nodes, np.nan)
+    return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
 
 
 def whole_areas(specimen, direction, cells, settings, solver, pressed):

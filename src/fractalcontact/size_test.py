@@ -22,7 +22,7 @@ from .joint import direction_spacing
 from .labels import INTERVAL, about
 from .scaling import FEWEST_NODES, renormalisation
 from .size_prediction import predict_whole, predict_whole_strength
-from .size_pressing import press_parts, whole_areas
+from .size_pressing import press_parts, real_pressure, whole_areas
 from .specimen import cell_side
 from .states import chosen_offset
 from .windows import PARTS, split
@@ -219,16 +219,11 @@ def real_pressures(pressed):
     single : (part, window, step) ndarray
         NaN where the window holds fewer at a resolution.
     """
-    s = pressed["spacing"]
-    nodes = pressed["nodes"]
-    force = pressed["ladder_pressure"] * pressed["side"] ** 2
-
-    def mean(n):
-        of_resolution = np.log(force / (n.where(n >= FEWEST_NODES - 1e-9) * s**2))
-        return np.exp(of_resolution.mean("resolution", skipna=False))
-
-    together = mean(nodes.mean("window")).transpose("part", "step")
-    return together.values, mean(nodes).transpose("part", "window", "step").values
+    s = pressed["spacing"].values
+    nodes = pressed["nodes"].transpose("part", "window", "step", "resolution")
+    force = pressed["side"].values[:, np.newaxis] ** 2 * pressed["ladder_pressure"].values
+    together = real_pressure(force, nodes.mean("window").values, s)
+    return together, real_pressure(force[:, np.newaxis], nodes.values, s)
 
 
 def _equal_pressures(pressed, n_loads):
