@@ -95,6 +95,8 @@ $(VENV)/bin/python:
 $(VENV)/installed: requirements.lock pyproject.toml | $(VENV)/bin/python
 	$(PIP) install --require-hashes --compile -r requirements.lock
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
+# Compiled now too: else the first jobs of the first study would all do it.
+	$(BIN)/python -m fractalcontact.compile_kernels
 	@touch $@
 
 $(VENV)/tests-installed: requirements-test.lock $(VENV)/installed
