@@ -48,15 +48,18 @@ def contact_parts(wildcards):
     )
 
 
+# Closure curves and what follows from them alone: seconds of work, so one job.
 rule closure:
     input:
         specimen=rules.specimen.output[0],
+        surface_dimension=rules.surface_dimension.output[0],
         joint=rules.joint.output[0],
         contact=contact_parts,
     output:
         closure=f"{RESULTS}/closure/{{specimen}}.nc",
         dilatancy=f"{RESULTS}/dilatancy/{{specimen}}.nc",
         choices=f"{RESULTS}/choices/{{specimen}}.nc",
+        area=f"{RESULTS}/area/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/closure/{{specimen}}.log",
     benchmark:
@@ -69,7 +72,7 @@ rule closure:
     params:
         settings=settings_of,
         solver=SOLVER,
-        code=code("closure", "needs", "states", "store"),
+        code=code("area", "closure", "needs", "roughness", "states", "store"),
     script:
         "../scripts/closure.py"
 
@@ -97,14 +100,16 @@ rule contact_map:
         "../scripts/contact_map.py"
 
 
-# Box counts, dimension and clusters of every contact domain.
+# Box counts, dimension and clusters of every contact domain, and what changes with resolution.
 rule domains:
     input:
         specimen=rules.specimen.output[0],
         contact=contact_parts,
+        closure=rules.closure.output.closure,
     output:
         domains=f"{RESULTS}/domains/{{specimen}}.nc",
         contact=f"{RESULTS}/contact/{{specimen}}.nc",
+        scaling=f"{RESULTS}/scaling/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/domains/{{specimen}}.log",
     benchmark:

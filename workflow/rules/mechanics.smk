@@ -1,4 +1,4 @@
-# Joint mechanics beside the contact states: parts of the window, laws of the area, strength.
+# Joint mechanics beside the contact states: parts of the window, strength, made joints.
 
 
 rule windows:
@@ -23,30 +23,6 @@ rule windows:
         code=code("size_laws", "store"),
     script:
         "../scripts/windows.py"
-
-
-rule area:
-    input:
-        specimen=rules.specimen.output[0],
-        surface_dimension=rules.surface_dimension.output[0],
-        joint=rules.joint.output[0],
-        closure=rules.closure.output.closure,
-    output:
-        f"{RESULTS}/area/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/area/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/area/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    params:
-        settings=settings_of,
-        code=code("area", "store"),
-    script:
-        "../scripts/area.py"
 
 
 # Strength needs sliding.

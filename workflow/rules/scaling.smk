@@ -1,29 +1,6 @@
 # What changes with resolution. Then the atlas.
 
 
-rule scaling:
-    input:
-        specimen=rules.specimen.output[0],
-        closure=rules.closure.output.closure,
-        domains=rules.domains.output.domains,
-    output:
-        f"{RESULTS}/scaling/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/scaling/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/scaling/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    params:
-        settings=settings_of,
-        code=code("analysis", "store"),
-    script:
-        "../scripts/scaling.py"
-
-
 # The direct test of eq. 6, on parts of the window.
 rule size_test:
     input:
@@ -120,10 +97,10 @@ rule statements:
         specimen=rules.specimen.output[0],
         joint=rules.joint.output[0],
         closure=rules.closure.output.closure,
-        area=rules.area.output[0],
+        area=rules.closure.output.area,
         windows=rules.windows.output[0],
         domains=rules.domains.output.domains,
-        scaling=rules.scaling.output[0],
+        scaling=rules.domains.output.scaling,
         size_test=rules.size_test.output[0],
     output:
         f"{RESULTS}/statements/{{specimen}}.nc",
@@ -152,11 +129,11 @@ STAGE_FILES = {
     "closure": rules.closure.output.closure,
     "dilatancy": rules.closure.output.dilatancy,
     "choices": rules.closure.output.choices,
-    "area": rules.area.output[0],
+    "area": rules.closure.output.area,
     "windows": rules.windows.output[0],
     "domains": rules.domains.output.domains,
     "domain_measures": rules.domain_measures.output[0],
-    "scaling": rules.scaling.output[0],
+    "scaling": rules.domains.output.scaling,
     "size_test": rules.size_test.output[0],
     "statements": rules.statements.output[0],
 }
