@@ -3,7 +3,6 @@
 import contextlib
 import gc
 import json
-import re
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,18 +14,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import (
-    LogFormatterSciNotation,
-    LogLocator,
-    NullFormatter,
-    NullLocator,
-    StrMethodFormatter,
-)
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 
 from ..labels import printable
 from ..specimen import nominal_area
 from ..states import forces_of
 from ..store import written_whole
+from ._ticks import plain_ticks
 
 #: Okabe and Ito's colours, told apart by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
@@ -114,7 +108,7 @@ def save(drawing, folder, name):
     # The layout is found once and each file drawn once. `savefig` draws everything once more for
     # either file, to find the layout; and what the layout has measured, this canvas remembers.
     canvas = FigureCanvasAgg(figure)
-    _plain_ticks(figure)
+    plain_ticks(figure)
     _lay_out(figure)
     with written_whole(folder / f"{name}.png") as path:
         canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
@@ -124,32 +118,6 @@ def save(drawing, folder, name):
         path.write_text(drawing.caption + "\n", encoding="utf-8")
     with written_whole(folder / f"{name}.csv") as path:
         drawing.data.to_csv(path, index=False, float_format="%.8g", lineterminator="\n")
-
-
-class _Decades(LogFormatterSciNotation):
-    """Powers of ten as plain text, 10⁻³: as formulas they take long to read, axis by axis."""
-
-    _POWER = re.compile(r"\$\\mathdefault\{10\^\{(-?\d+)\}\}\$")
-    _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-    def __call__(self, x, pos=None):
-        text = super().__call__(x, pos)
-        power = self._POWER.fullmatch(text)
-        return f"10{power[1].translate(self._RAISED)}" if power else text
-
-
-_UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "right")}
-
-
-def _plain_ticks(figure):
-    """Have powers of ten written as plain text, and no label measured that is empty."""
-    for axes in figure.axes:
-        for panel in (axes, *axes.child_axes):
-            for axis in (panel.xaxis, panel.yaxis):
-                if type(axis.get_major_formatter()) is LogFormatterSciNotation:
-                    axis.set_major_formatter(_Decades())
-                if not any(axis.get_minor_formatter().format_ticks(axis.get_minorticklocs())):
-                    panel.tick_params(axis.axis_name, which="minor", **_UNLABELLED)
 
 
 def _lay_out(figure):
