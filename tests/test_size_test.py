@@ -243,6 +243,21 @@ def test_labels_and_words(which, flat, sliding):
     assert found.sizes["step"] == found.sizes["load"] + DOUBLINGS
 
 
+def test_doublings_that_are_left_out_change_nothing(flat, monkeypatch):
+    specimen, lazy = flat
+    # Nothing is ever enough: all of them are pressed.
+    monkeypatch.setattr(
+        "fractalcontact.size_pressing.real_pressure", lambda f, n, s: np.full(n.shape[:-1], -np.inf)
+    )
+    full = found_of(specimen, "none", [0], settings("flat"))
+    last = lazy["real_pressure"].isel(step=-1)
+    assert np.isnan(last.sel(part=1))
+    assert np.isfinite(full["real_pressure"].isel(step=-1, part=0))
+    known = np.isfinite(lazy["real_pressure"])
+    xr.testing.assert_identical(lazy["real_pressure"], full["real_pressure"].where(known))
+    xr.testing.assert_identical(lazy.drop_vars("real_pressure"), full.drop_vars("real_pressure"))
+
+
 def test_strength_without_a_size_effect_is_that_of_the_parts(sliding):
     assert (sliding["direct_strength"] > 0).all()
     error = sliding["strength_error"].sel(predictor="no_size_effect")
