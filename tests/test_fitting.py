@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from fractalcontact.fitting import fit_line, mean_interval, rank_correlation, without_mean_plane
+from fractalcontact.fitting import fit_line, mean_interval, without_mean_plane
 
 
 def test_points_on_a_line_give_it_back_without_error():
@@ -80,12 +80,3 @@ def test_mean_of_one_value_has_no_interval_and_of_none_no_value():
     np.testing.assert_array_equal(mean, [1, np.nan])
     assert np.isnan([low, high]).all()
     assert n.tolist() == [1, 0]
-
-
-@pytest.mark.parametrize("n", [4, 5, 30])
-def test_rank_correlation_is_spearmans(n):
-    x, y = np.random.default_rng(n).integers(0, n, (2, n))  # some are equal
-    y = x + y
-    np.testing.assert_allclose(rank_correlation(x, y), stats.spearmanr(x, y), rtol=1e-12)
-    assert rank_correlation(np.arange(n), np.arange(n) ** 3) == (1.0, 0.0)
-    assert np.isnan(rank_correlation(np.ones(n), y)).all()

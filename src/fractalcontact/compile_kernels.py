@@ -1,6 +1,6 @@
 """Compile the kernels once, after the installation: else the first jobs of a study all would.
 
-    python -m fractalcontact.compile_kernels
+python -m fractalcontact.compile_kernels
 """
 
 import numpy as np

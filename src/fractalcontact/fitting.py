@@ -107,34 +107,6 @@ def mean_interval(values, axis: int = 0) -> Mean:
     return Mean(mean, mean - half, mean + half, n)
 
 
-def rank_correlation(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Spearman's rank correlation, and the chance of one as large between independent values.
-
-    Parameters
-    ----------
-    x, y : (n,) array_like
-        Three values or more, all finite; equal ones share their mean rank.
-
-    Returns
-    -------
-    correlation, chance : float
-        NaN where all x or all y are equal. The chance is two-sided, by Student's t.
-
-    Notes
-    -----
-    As scipy.stats.spearmanr, without the import of scipy.stats, which costs most of a second.
-    """
-    ranks = []
-    for values in (np.asarray(x, float), np.asarray(y, float)):
-        _, place, times = np.unique(values, return_inverse=True, return_counts=True)
-        ranks.append((np.cumsum(times) - (times - 1) / 2)[place])
-    a, b = (rank - rank.mean() for rank in ranks)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        r = np.clip(np.sum(a * b) / np.sqrt(np.sum(a * a) * np.sum(b * b)), -1, 1)
-        t = r * np.sqrt((a.size - 2) / ((1 - r) * (1 + r)))
-    return float(r), float(2 * special.stdtr(a.size - 2, -np.abs(t)))
-
-
 def without_mean_plane(heights: np.ndarray) -> np.ndarray:
     """Heights less the least-squares plane through the cells that were measured.
 

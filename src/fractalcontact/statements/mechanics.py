@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..fitting import fit_line, rank_correlation
+from ..fitting import fit_line
 from .findings import (
     FAILS,
     HOLDS,
@@ -116,11 +116,13 @@ def composite_dimension_rises(joint):
 
 def compliance_goes_with_dimension(joint):
     """Rank correlation of the closure with Delta_g of the composite topography."""
+    from scipy import stats  # slow to import, and used nowhere else
+
     dimension = joint.stages["joint"]["composite_dimension"].values
     usable = np.isfinite(dimension) & np.isfinite(joint.closure) & (joint.offset > 0)
     if usable.sum() < 4:
         return Finding(UNKNOWN, no_offsets("four"))
-    rank, chance = rank_correlation(dimension[usable], joint.closure[usable])
+    rank, chance = stats.spearmanr(dimension[usable], joint.closure[usable])
     verdict = PARTLY if rank > 0 else FAILS
     verdict = HOLDS if rank > 0 and chance < CHANCE else verdict
     return Finding(verdict, f"Spearman's rank correlation {rank:+.2f} over {usable.sum()} offsets")
