@@ -72,7 +72,7 @@ def analyse_domains(fields, spacing, *, fit_range=None):
     table = {name: np.full(shape, np.nan) for name in DOMAIN_FIELDS}
     # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
     n_octaves = int(domains[factors[0]][0, 0, 0].size).bit_length()
-    octaves = np.zeros((*shape, n_octaves), int)
+    octaves = np.full((*shape, n_octaves), np.nan)
     reason = np.full(shape, "", object)
     count = np.full((*shape, n_scales), np.nan)
     used = np.zeros(count.shape, bool)
@@ -99,6 +99,7 @@ def analyse_domains(fields, spacing, *, fit_range=None):
         for name, value in row.items():
             table[name][d, o, k, j] = value
         sizes_found = found["cluster_octaves"]
+        octaves[d, o, k, j] = 0
         octaves[d, o, k, j, : len(sizes_found)] = sizes_found
         reason[d, o, k, j] = box.reason
         count[d, o, k, j, : len(box.count)] = box.count
