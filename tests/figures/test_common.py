@@ -132,3 +132,28 @@ def test_the_picture_has_the_pixels_of_the_figure(tmp_path):
     with Image.open(tmp_path / "size.png") as picture:
         assert picture.size == (800, 600)
         assert picture.info["dpi"] == pytest.approx((200, 200), abs=0.1)
+
+
+def test_labels_stay_clear_of_the_numbers_in_both_files(tmp_path):
+    with print_style():
+        figure, axes = one_panel()
+        axes.plot([0, 1], [0, 123456])
+        axes.set_ylabel("height (mm)")
+        axes.set_xlabel("length (mm)")
+        save(drawing_of(figure), tmp_path, "labels")
+        # The canvas of the SVG, which was written last, has another resolution than the PNG.
+        x, y = axes.xaxis.label.get_window_extent(), axes.yaxis.label.get_window_extent()
+        assert y.x1 < min(tick.get_window_extent().x0 for tick in axes.get_yticklabels())
+        assert x.y1 < min(tick.get_window_extent().y0 for tick in axes.get_xticklabels())
+        assert y.x0 >= 0
+        assert x.y0 >= 0
+
+
+def test_a_long_label_makes_a_figure_higher_and_a_short_one_does_not():
+    with print_style():
+        heights = []
+        for label in ("short", LONG):
+            figure, _ = one_panel()
+            headline(figure, label)
+            heights.append(figure.get_figheight())
+    assert heights[0] == 3 < heights[1]

@@ -15,20 +15,35 @@ _UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "righ
 def plain_ticks(figure):
     """Spare what cannot be seen of the ticks of a figure on which everything is drawn.
 
-    Powers of ten become plain text, ticks between them are made within the axes alone, and labels
-    of these that are empty are not measured.
+    Powers of ten become plain text, ticks between them are made within the axes alone, and nothing
+    is measured for labels that are empty.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
     """
+    for panel, axis in _axes_of(figure):
+        _spare(panel, axis)
+
+
+def keep_labels(figure):
+    """Leave the labels of all axes where the last drawing has put them, clear of the numbers."""
+    for panel, axis in _axes_of(figure):
+        place = axis.label.get_transform().transform(axis.label.get_position())
+        axis.set_label_coords(*panel.transAxes.inverted().transform(place))
+
+
+def _axes_of(figure):
+    """Every axis of a figure, after the panel it belongs to."""
     for axes in figure.axes:
         for panel in (axes, *axes.child_axes):
-            for axis in (panel.xaxis, panel.yaxis):
-                _spare(panel, axis)
+            yield panel, panel.xaxis
+            yield panel, panel.yaxis
 
 
 def _spare(panel, axis):
+    if not axis.label.get_text():
+        axis.set_label_coords(0, 0)  # else a place clear of the numbers is sought for it too
     if type(axis.get_major_formatter()) is LogFormatterSciNotation:
         axis.set_major_formatter(_Decades())
     minor = axis.get_minorticklocs()

@@ -20,7 +20,7 @@ from ..labels import printable
 from ..specimen import nominal_area
 from ..states import forces_of
 from ..store import written_whole
-from ._ticks import plain_ticks
+from ._ticks import keep_labels, plain_ticks
 
 #: Okabe and Ito's colours, told apart by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
@@ -34,8 +34,8 @@ WIDTH = 7.2
 DPI = 200
 #: Of the PNG: a third less time than by default, for files larger by a fiftieth.
 COMPRESSION = 3
-#: Points of the letters of a figure's title, and how many of them stand in an inch.
-TITLE_SIZE, LETTERS_AN_INCH = 9, 14
+#: Points of the letters of a figure's title, how many stand in an inch, and inches a line is high.
+TITLE_SIZE, LETTERS_AN_INCH, LINE = 9, 14, 0.15
 #: Letters of a specimen's label that are shown.
 LONGEST_LABEL = 300
 _DOLLAR = "\ue000"
@@ -112,6 +112,7 @@ def save(drawing, folder, name):
     _lay_out(figure)
     with written_whole(folder / f"{name}.png") as path:
         canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
+    keep_labels(figure)
     with written_whole(folder / f"{name}.svg") as path:
         FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
     with written_whole(folder / f"{name}.txt") as path:
@@ -233,6 +234,9 @@ def headline(figure, label, *where, below=""):
         What stands in a line of its own.
     """
     text = label_in_lines(label, *where, width=figure.bbox.width / figure.dpi)
+    if isinstance(figure, Figure):
+        # What is below loses no height to a long label.
+        figure.set_figheight(figure.get_figheight() + LINE * text.count("\n"))
     figure.suptitle("\n".join(filter(None, (text, below))), fontsize=TITLE_SIZE)
 
 
