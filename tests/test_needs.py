@@ -100,6 +100,15 @@ def test_states_lie_within_their_errors_of_exact_ones(hardness):
     assert np.mean(dimensions) >= 0.95
 
 
+def test_extent_is_that_of_the_rectangle_around_the_contact():
+    height = -np.ones((20, 30))
+    height[4, 6], height[8, 25] = 0.0, -1e-3
+    space = HalfSpace(height.shape, (SPACING, SPACING), 2e4)
+    state = solve_contact(height, space, closure=0.01)
+    assert np.count_nonzero(state.in_contact) == 2
+    assert numbers_of(state)["extent"] == pytest.approx(5 * 20 / 600)
+
+
 def test_errors_are_small_where_the_state_is_exact():
     height = self_affine((48, 48), SPACING, 0.6, seed=1, rms=0.05)
     space = HalfSpace(height.shape, (SPACING, SPACING), 2e4)
@@ -148,6 +157,7 @@ def test_a_study_solves_less_and_says_so(specimen):
     assert table.attrs["states_solved"] == 20
     assert table.attrs["states"] == 48
     assert float(table["error"].sel(choice="solver tolerance")) < 2e-3
+    assert "under the largest" in str(table["reason"].sel(choice="extent of the solve").values)
     assert "E: 2" in str(table["value"].sel(choice="directions").values)
     assert str(table["value"].sel(choice="resolutions (curves)").values) == (
         "1: 4 of 4, 2: 1 of 4, 4: 1 of 4"

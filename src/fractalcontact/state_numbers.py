@@ -27,11 +27,20 @@ def numbers_of(state):
     spacing = state.space.spacing
     of_domain = {
         "nodes": np.count_nonzero(state.in_contact),
+        "extent": _extent(state.in_contact),
         "perimeter": contact_perimeter(state.in_contact, spacing),
         "area_corrected": corrected_area(state.in_contact, spacing),
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
     return of_domain | of_state | state_errors(state)
+
+
+def _extent(in_contact):
+    """Share of the cells within the smallest rectangle around those in contact."""
+    sides = [np.flatnonzero(in_contact.any(axis=axis)) for axis in (0, 1)]
+    return (
+        float(np.prod([np.ptp(side) + 1 if side.size else 0 for side in sides])) / in_contact.size
+    )
 
 
 def state_errors(state):

@@ -15,6 +15,7 @@ SCALARS = {
     "force": ("N", "normal force F"),
     "area": ("mm2", "real contact area A_r"),
     "nodes": ("1", "nodes in contact"),
+    "extent": ("1", "share of the window within the smallest rectangle around the contact"),
     "perimeter": ("mm", "perimeter of the contact domain's cells inside the window"),
     "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
