@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
-from fractalcontact.figures import figures_of
+from fractalcontact.figures import figures_of, plateau
 from fractalcontact.figures.common import WIDTH, Drawing, headline, letter, print_style, save
 
 #: 200 letters, with dollar signs that begin no formula.
@@ -157,3 +157,15 @@ def test_a_long_label_makes_a_figure_higher_and_a_short_one_does_not():
             headline(figure, label)
             heights.append(figure.get_figheight())
     assert heights[0] == 3 < heights[1]
+
+
+def test_long_labels_stay_within_the_legend_of_a_study(labelled, tmp_path):
+    with print_style():
+        drawing = plateau.draw(labelled, ["sliding", "pair"])
+        save(drawing, tmp_path, "plateau")
+        texts = [t for t in drawing.figure.findobj(Text) if t.get_text().startswith("Sandstein")]
+        assert texts
+        for text in texts:
+            extent = text.get_window_extent()
+            assert 0 <= extent.x0 < extent.x1 <= drawing.figure.bbox.width
+    assert LONG.strip() in set(drawing.data["specimen"].str.strip())

@@ -22,6 +22,7 @@ from .common import (
     entries,
     group,
     heading,
+    label_in_lines,
     legends_below,
     letter,
     settings_of,
@@ -29,6 +30,9 @@ from .common import (
 
 #: Specimens whose largest offsets differ by more than this are drawn in decades.
 WIDE = 5
+
+#: Inches that a label's lines are broken for, so that a column of the legend holds them.
+COLUMN = 4
 
 #: A change over the second half of v below this share of the mean is called level.
 LEVEL = 0.1
@@ -186,7 +190,13 @@ def _draw_slide(panels, n, slide):
         if axes.get_yscale() == "log":
             mean, low, high = (np.where(y > 0, y, np.nan) for y in (mean, low, high))
         axes.fill_between(slide.v, low, high, color=colour, alpha=0.15, lw=0)
-        axes.plot(slide.v, mean, color=colour, ls=LINES[n % 4], label=slide.label)
+        axes.plot(
+            slide.v,
+            mean,
+            color=colour,
+            ls=LINES[n % 4],
+            label=label_in_lines(slide.label, width=COLUMN),
+        )
     panels[1].plot(slide.v, slide.expected.mean(axis=0), color=colour, **_EXPECTED)
     for at, marker in ((slide.roll_off, _ROLL_OFF), (slide.uncorrelated, _UNCORRELATED)):
         if at is not None and slide.v[0] <= at <= slide.v[-1]:
