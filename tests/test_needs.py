@@ -127,6 +127,20 @@ def specimen():
     return make_specimen(scan, window=4.0, name="rock", multiple=4)
 
 
+def test_a_small_closure_of_the_interface_is_as_exact_as_a_large_one():
+    """Near full contact it is a small part of the whole closure."""
+    heights = self_affine((80, 80), SPACING, 0.8, seed=3, rms=2e-4)
+    coords = {axis: SPACING * np.arange(80) for axis in "yx"}
+    attrs = {"spacing_y": SPACING, "spacing_x": SPACING}
+    scan = xr.DataArray(heights, dims=("y", "x"), coords=coords, attrs=attrs)
+    smooth = make_specimen(scan, window=4.0, name="smooth", multiple=4)
+    found = curves_of(smooth, solver_settings({}, "study"))
+    closure = found["interface_closure"].isel(direction=0).sel(resolution=1)
+    assert float((closure / found["closure"]).isel(load=-1).min()) < 0.3
+    share = found["interface_closure_error"] / abs(found["interface_closure"])
+    assert float(share.max()) <= 0.01
+
+
 def curves_of(specimen, solver):
     states = [
         contact_states(specimen, direction, [2, 5], SETTINGS, [1, 2, 4], solver, mapped=5)

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from .closure import bulk_settlement
 from .contact import solve_contact
 from .errors import NotConverged
 from .halfspace import HalfSpace
@@ -13,7 +14,7 @@ from .specimen import nominal_area
 from .state_numbers import numbers_of
 from .states import ERRORS, OFFSETS, SCALARS, chosen_offset, forces_of, hardness_of
 
-#: Tolerances are tightened by so much where that of the study leaves too many nodes undecided.
+#: Tolerances are tightened by so much where that of the study leaves too large an error.
 TIGHTENING = 10.0
 #: But to no less than this: nodes that just touch are undecided at any tolerance.
 TIGHTEST = 1e-8
@@ -131,7 +132,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
             )
             states = load_steps(composite, space, forces[steps], solving, where)
             for j, state in zip(steps, states, strict=True):
-                state = _decided(state, composite, solving, solver.get("accuracy"))
+                state = _exact_enough(state, composite, solving, solver.get("accuracy"))
                 solved[0, i, k, j] = True
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state).items():
@@ -168,19 +169,26 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
     )
 
 
-def _decided(state, composite, solving, accuracy):
-    """The state solved more tightly until few enough of its nodes are undecided.
+def _exact_enough(state, composite, solving, accuracy):
+    """The state, solved more tightly until its errors are within what is asked for.
 
-    Of those the error of Delta_sigma is estimated. Started from itself, a state is soon better.
+    They are those of the closure of the interface, which may be a small part of the whole closure,
+    and of Delta_sigma, estimated from the nodes that are undecided. Started from itself, a state is
+    soon better.
     """
     if accuracy is None:
         return state
-    rtol = solving["rtol"]
     few = accuracy["delta_sigma"] * np.count_nonzero(state.in_contact)
-    while state.undecided > few and rtol > TIGHTEST:
+    space, rtol = state.space, solving["rtol"]
+    sides = np.multiply(space.shape, space.spacing)
+    settlement = bulk_settlement(state.force, space.modulus, *sides)
+    # Faces that are flush have no interface to close.
+    interface = abs(state.closure - settlement) if np.ptp(composite) > 0 else state.closure
+    small = accuracy["closure"] * interface
+    while rtol > TIGHTEST and (state.undecided > few or state.residual * state.closure > small):
         rtol /= TIGHTENING
         tighter = solving | {"rtol": rtol}
-        state = solve_contact(composite, state.space, force=state.force, start=state, **tighter)
+        state = solve_contact(composite, space, force=state.force, start=state, **tighter)
     return state
 
 

@@ -82,7 +82,7 @@ def _table(made):
                 "choice": str(choice),
                 "value": str(made["value"].values[i]),
                 "reason": str(made["reason"].values[i]),
-                "error": f"{error:.1g}" if np.isfinite(error) else "–",
+                "error": f"{float(f'{error:.1g}'):g}" if np.isfinite(error) else "–",
             }
         )
     return rows
