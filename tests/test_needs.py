@@ -5,9 +5,10 @@ import pytest
 import xarray as xr
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.closure import closure_curves
+from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.domain import box_dimension
 from fractalcontact.errors import InputError
+from fractalcontact.joint import describe_joint
 from fractalcontact.needs import choices, solved_loads, tolerance
 from fractalcontact.specimen import make_specimen
 from fractalcontact.state_numbers import numbers_of
@@ -18,7 +19,10 @@ from fractalcontact.synthesis import self_affine
 
 SPACING = 0.1
 SETTINGS = {
+    "directions": ["W", "E"],
     "contact_directions": ["W", "E"],
+    "offsets": [0.2, 0.5],
+    "surface_range": None,
     "resolutions": [1, 2, 4],
     "loads": [(2.0, "pressure"), (20.0, "force"), (100.0, "force"), (300.0, "force")],
     "dilatancy_loads": [(100.0, "force")],
@@ -167,7 +171,8 @@ def test_a_study_solves_less_and_says_so(specimen):
     # Twice the spacing was solved in the first direction at the offset of the maps alone.
     spacing = np.isfinite(found["closure_spacing_error"])
     assert spacing.any("load").sum() == 2
-    table = choices(found, SETTINGS, solver).set_index(choice="choice")
+    dilatancy = elastic_dilatancy(found, describe_joint(specimen, SETTINGS))
+    table = choices(found, dilatancy, SETTINGS, solver).set_index(choice="choice")
     assert table.attrs["states_solved"] == 20
     assert table.attrs["states"] == 48
     assert float(table["error"].sel(choice="solver tolerance")) < 2e-3

@@ -90,7 +90,9 @@ def analyse_domains(fields, spacing, *, fit_range=None):
             "delta_sigma": box.dimension,
             "delta_sigma_low": box.low,
             "delta_sigma_high": box.high,
-            "delta_sigma_error": undecided[d, o, k, j] / domain.sum() + 0 * box.dimension,
+            "delta_sigma_error": np.nan
+            if np.isnan(box.dimension)
+            else undecided[d, o, k, j] / domain.sum(),
             "fit_min": box.r_min,
             "fit_max": box.r_max,
             "fit_n": box.n,

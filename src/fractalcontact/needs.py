@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from .labels import about
-from .load_curve import left_out_misses
+from .states import forces_of
 
 #: The solver's share of the errors asked for. At a tolerance of 1e-3 closures of 250 states of
 #: three twins were off by at most 7e-5 and Delta_sigma by 0.0017, at 1e-2 by 5e-4 (4 % where the
@@ -74,18 +74,19 @@ def solved_loads(settings, forces, area, *, first, mapped, factor, everything):
         return np.arange(len(forces))
     if factor != min(settings["resolutions"]):
         return np.arange(0)
-    chosen = [*settings["dilatancy_loads"], settings["map_load"]]
-    wanted = [value * area if kind == "pressure" else value for value, kind in chosen]
+    wanted = forces_of([*settings["dilatancy_loads"], settings["map_load"]], area)
     return np.flatnonzero(np.isin(forces, wanted))
 
 
-def choices(curves, settings, solver):
+def choices(curves, dilatancy, settings, solver):
     """What was chosen for a specimen, why, and what error it makes.
 
     Parameters
     ----------
     curves : xr.Dataset
         From :func:`fractalcontact.closure.closure_curves`.
+    dilatancy : xr.Dataset
+        From :func:`fractalcontact.closure.elastic_dilatancy`.
     settings, solver : dict
         From :mod:`fractalcontact.study`.
 
@@ -99,7 +100,7 @@ def choices(curves, settings, solver):
     asked = solver["accuracy"]
     rows = [
         _of_tolerance(curves, solver, asked),
-        _of_loads(curves, asked),
+        _of_loads(curves, dilatancy, asked),
         _of_directions(curves, settings),
         _of_resolutions(curves),
         _of_extent(curves),
@@ -151,12 +152,12 @@ def _of_tolerance(curves, solver, asked):
     return "solver tolerance", f"{solver['rtol']:.1g}", reason, "interface closure", _largest(share)
 
 
-def _of_loads(curves, asked):
-    finest = curves.sel(resolution=curves["resolution"].min())
-    misses = left_out_misses(finest["load"].values, finest["closure"], finest["stiffness"])
-    shares = abs(misses / finest["interface_closure"].where(lambda w: w != 0))
+def _of_loads(curves, dilatancy, asked):
+    closure = curves["interface_closure"].sel(resolution=curves["resolution"].min())
+    misses = dilatancy["left_out_error"].rename(contact_direction="direction")
+    shares = abs(misses / closure.where(closure != 0))
     known = shares.values[np.isfinite(shares.values)]
-    value = f"{finest.sizes['load']} in the first direction, none read between others"
+    value = f"{closure.sizes['load']} in the first direction, none read between others"
     if not known.size:
         return "load steps", value, "too few to tell what lies between them", "", np.nan
     within = np.mean(known <= asked["closure"]) if asked else np.nan

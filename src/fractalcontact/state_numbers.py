@@ -37,10 +37,9 @@ def numbers_of(state):
 
 def _extent(in_contact):
     """Share of the cells within the smallest rectangle around those in contact."""
-    sides = [np.flatnonzero(in_contact.any(axis=axis)) for axis in (0, 1)]
-    return (
-        float(np.prod([np.ptp(side) + 1 if side.size else 0 for side in sides])) / in_contact.size
-    )
+    touched = [np.flatnonzero(in_contact.any(axis=axis)) for axis in (0, 1)]
+    sides = [np.ptp(along) + 1 if along.size else 0 for along in touched]
+    return float(np.prod(sides)) / in_contact.size
 
 
 def state_errors(state):

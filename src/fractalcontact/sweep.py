@@ -46,27 +46,40 @@ def load_steps(composite, space, forces, solving, where):
     """
     state = None
     for force in forces:
-        try:
-            state = solve_contact(composite, space, force=force, start=state, **solving)
-        except NotConverged as error:
-            error.add_note(f"{where}, F = {force:g} N")
-            raise
+        state = _solved(composite, space, force, state, solving, where)
         yield state
 
 
-def map_cells(joint, settings, direction):
-    """Offset of the contact maps in a direction, in cells of the scan.
+def _solved(composite, space, force, start, solving, where):
+    """The state of a force; a failure names what is pressed."""
+    try:
+        return solve_contact(composite, space, force=force, start=start, **solving)
+    except NotConverged as error:
+        error.add_note(f"{where}, F = {force:g} N")
+        raise
+
+
+def map_place(joint, settings, direction):
+    """Offset of the contact maps, and how many cells of the scan it is in a direction.
 
     Parameters
     ----------
     joint : xr.Dataset
         From :func:`fractalcontact.joint.describe_joint`.
     settings : dict
+        From :func:`fractalcontact.study.resolve_settings`.
     direction : str
+
+    Returns
+    -------
+    offset : float
+        mm, in the first direction.
+    cells : int
     """
     offsets = joint["offset"].values
     offset = chosen_offset(settings["map_offset"], np.sort(offsets))
-    return joint["offset_cells"].sel(contact_direction=direction).values[offsets == offset][0]
+    cells = joint["offset_cells"].sel(contact_direction=direction).values
+    return offset, cells[offsets == offset][0]
 
 
 def contact_states(specimen, direction, cells, settings, resolutions, solver, *, mapped=None):
@@ -86,7 +99,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
         From :func:`fractalcontact.study.solver_settings`. With an ``accuracy`` only those states
         are solved that :func:`fractalcontact.needs.solved_loads` names, else all.
     mapped : int, optional
-        Offset of the contact maps in cells, from :func:`map_cells`.
+        Offset of the contact maps in cells, from :func:`map_place`.
 
     Returns
     -------
@@ -106,6 +119,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
     area = nominal_area(specimen)
     forces = forces_of(settings["loads"], area)
     solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
+    accuracy = solver.get("accuracy")
     cells = np.asarray(cells, int)
     shape = (1, len(cells), len(resolutions), len(forces))
     kept = SCALARS | ERRORS
@@ -123,7 +137,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
                 first=direction == settings["contact_directions"][0],
                 mapped=n == mapped,
                 factor=factor,
-                everything=solver.get("accuracy") is None,
+                everything=accuracy is None,
             )
             composite = prefractal(composite_topography(specimen, direction, n), factor)
             where = (
@@ -132,7 +146,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
             )
             states = load_steps(composite, space, forces[steps], solving, where)
             for j, state in zip(steps, states, strict=True):
-                state = _exact_enough(state, composite, solving, solver.get("accuracy"))
+                state = _exact_enough(state, composite, solving, accuracy, where)
                 solved[0, i, k, j] = True
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state).items():
@@ -169,7 +183,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
     )
 
 
-def _exact_enough(state, composite, solving, accuracy):
+def _exact_enough(state, composite, solving, accuracy, where):
     """The state, solved more tightly until its errors are within what is asked for.
 
     They are those of the closure of the interface, which may be a small part of the whole closure,
@@ -188,7 +202,7 @@ def _exact_enough(state, composite, solving, accuracy):
     while rtol > TIGHTEST and (state.undecided > few or state.residual * state.closure > small):
         rtol /= TIGHTENING
         tighter = solving | {"rtol": rtol}
-        state = solve_contact(composite, space, force=state.force, start=state, **tighter)
+        state = _solved(composite, space, state.force, state, tighter, where)
     return state
 
 
@@ -217,8 +231,7 @@ def map_states(specimen, joint, settings, solver):
         As :func:`contact_states`.
     """
     direction = settings["contact_directions"][0]
-    cells = map_cells(joint, settings, direction)
-    offset = chosen_offset(settings["map_offset"], np.sort(joint["offset"].values))
+    offset, cells = map_place(joint, settings, direction)
     composite = composite_topography(specimen, direction, cells)
     space = _space(specimen, 1, settings, solver)
     forces = forces_of(settings["loads"], nominal_area(specimen))

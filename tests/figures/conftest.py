@@ -24,7 +24,7 @@ from fractalcontact.statements import judge
 from fractalcontact.states import combine, domains_of, force_range
 from fractalcontact.strength import joint_strength
 from fractalcontact.study import resolve_settings, solver_settings, window_arguments
-from fractalcontact.sweep import contact_states, map_cells, map_states
+from fractalcontact.sweep import contact_states, map_place, map_states
 from fractalcontact.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -138,7 +138,7 @@ def atlas_file(tmp_path_factory):
                     chosen,
                     chosen["resolutions"],
                     SOLVER,
-                    mapped=map_cells(joint, chosen, direction),
+                    mapped=map_place(joint, chosen, direction)[1],
                 )
                 for direction in chosen["contact_directions"]
             ]
@@ -174,7 +174,7 @@ def atlas_file(tmp_path_factory):
             "joints": joint,
             "contact": fields,
             "closure": curves,
-            "choices": choices(curves, chosen, SOLVER),
+            "choices": choices(curves, dilatancy, chosen, SOLVER),
             "dilatancy": dilatancy,
             "area": area,
             "windows": windows,

@@ -23,7 +23,8 @@ with reported(snakemake.log) as log:
     dilatancy = elastic_dilatancy(curves, joint)
     store.write(curves, snakemake.output.closure)
     store.write(dilatancy, snakemake.output.dilatancy)
-    store.write(choices(curves, settings, snakemake.params.solver), snakemake.output.choices)
+    made = choices(curves, dilatancy, settings, snakemake.params.solver)
+    store.write(made, snakemake.output.choices)
     laws = area_laws(
         curves,
         joint_statistics(specimen, joint),

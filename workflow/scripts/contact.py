@@ -3,7 +3,7 @@
 from _job import reported
 
 from fractalcontact import store
-from fractalcontact.sweep import contact_states, map_cells
+from fractalcontact.sweep import contact_states, map_place
 
 with reported(snakemake.log) as log:
     params = snakemake.params
@@ -17,7 +17,7 @@ with reported(snakemake.log) as log:
         params.settings,
         params.resolutions,
         params.solver,
-        mapped=map_cells(joint, params.settings, direction),
+        mapped=map_place(joint, params.settings, direction)[1],
     )
     store.write(states, snakemake.output[0])
     log.info("%d states, largest residual %s", states.solved.sum(), states.residual.max().item())

@@ -7,7 +7,7 @@ A module has ``draw(atlas, name)``: the atlas as an xarray DataTree and a specim
 import importlib
 from dataclasses import replace
 
-from ..store import read_atlas
+from ..store import STAGES, read_atlas
 from .common import print_style, save, uncollected
 
 #: Figures of a joint that slides, and of a surface against a plane: module names, in order.
@@ -63,23 +63,8 @@ ACCURACY = {
     "convergence": ("convergence",),
     "stability": ("stability", "elimination"),
 }
-#: What no figure of a whole study draws, and takes long to read.
-_NOT_OF_A_STUDY = (
-    "quality",
-    "surface_dimension",
-    "contact",
-    "closure",
-    "dilatancy",
-    "area",
-    "strength",
-    "windows",
-    "domains",
-    "scaling",
-    "domain_measures",
-    "size_test",
-    "contact_maps",
-    "statements",
-)
+#: Stages that figures of a whole study draw: to read the others takes long.
+_OF_A_STUDY = {"specimens", "joints", *EXPERIMENTS, *ACCURACY, "speed_growth", "elimination"}
 
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
@@ -155,7 +140,8 @@ def draw_study_figures(atlas_path, specimens, folder, names):
     dict
         Figure name to caption.
     """
-    return _draw(read_atlas(atlas_path, without=_NOT_OF_A_STUDY), list(specimens), folder, names)
+    atlas = read_atlas(atlas_path, without=STAGES.keys() - _OF_A_STUDY)
+    return _draw(atlas, list(specimens), folder, names)
 
 
 def _draw(atlas, subject, folder, names, warning=""):

@@ -1,11 +1,10 @@
 """What was solved and how exactly, why, and the errors that are stated for it."""
 
-from textwrap import fill
-
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from ._tables import LINE_HEIGHT, draw_rows, wrap_rows
 from ._words import opening, place, short
 from .common import (
     COLOURS,
@@ -24,7 +23,6 @@ from .common import (
 #: Columns of the table: where they begin, as shares of the width, and how many letters they hold.
 COLUMNS = {"choice": (0.0, 18), "value": (0.16, 34), "reason": (0.45, 62), "error": (0.93, 9)}
 HEADS = {"choice": "What", "value": "Chosen", "reason": "Because", "error": "Error"}
-LINE_HEIGHT = 0.135  # inches
 
 #: Errors drawn: stage, variable, its error, whether as a share of it, and the words of the legend.
 ERRORS = (
@@ -57,12 +55,13 @@ def draw(atlas, name):
     direction = settings["contact_directions"][0]
     table = _table(made)
     errors = _errors(atlas, name, direction)
-    texts = [{key: fill(row[key], COLUMNS[key][1]) for key in COLUMNS} for row in table]
-    lines = [1 + max(text.count("\n") + 1 for text in row.values()) for row in texts]
+    texts, lines = wrap_rows(table, COLUMNS)
     height = LINE_HEIGHT * (sum(lines) + 2.5)
     figure = Figure(figsize=(WIDTH, height + 3.4))
     above, below = figure.subplots(2, 1, height_ratios=(height, 3.0))
-    _draw_table(above, texts, lines, height / LINE_HEIGHT)
+    above.set_ylim(height / LINE_HEIGHT, 0)
+    letter(above, "a", "what was chosen")
+    draw_rows(above, texts, lines, COLUMNS, HEADS, 0.4)
     _draw_errors(below, errors)
     legends_below(figure, entries(below)[::2], entries(below)[1::2])
     headline(figure, settings["label"], place(direction))
@@ -102,21 +101,6 @@ def _errors(atlas, name, direction):
                 row = {"quantity": words, "force_N": load, "offsets": known.size}
                 rows.append(row | {"median": np.median(known), "largest": known.max()})
     return pd.DataFrame(rows)
-
-
-def _draw_table(axes, texts, lines, height):
-    axes.set_axis_off()
-    axes.set_xlim(0, 1)
-    axes.set_ylim(height, 0)
-    letter(axes, "a", "what was chosen")
-    for key, (x, _) in COLUMNS.items():
-        axes.text(x, 0.4, HEADS[key], va="top", weight="bold", fontsize=7)
-    y = 2.0
-    for row, rows in zip(texts, lines, strict=True):
-        axes.axhline(y - 0.35, color="0.8", lw=0.5)
-        for key, (x, _) in COLUMNS.items():
-            axes.text(x, y, row[key], va="top", fontsize=7, linespacing=1.15)
-        y += rows
 
 
 def _draw_errors(axes, errors):

@@ -1,11 +1,10 @@
 """What the paper says, and whether it holds for this joint: a table."""
 
-from textwrap import fill
-
 import pandas as pd
 from matplotlib.figure import Figure
 
 from ..statements import FAILS, HOLDS, PARTLY, UNKNOWN
+from ._tables import LINE_HEIGHT, draw_rows, wrap_rows
 from ._words import force_label, opening, place
 from .common import (
     COLOURS,
@@ -23,7 +22,6 @@ SIGNS |= {FAILS: ("○", COLOURS[2]), UNKNOWN: ("–", "0.4")}
 
 #: Where the columns begin, as shares of the width, and how many letters they hold.
 COLUMNS = {"figure": (0.01, 8), "claim": (0.065, 46), "verdict": (0.44, 24), "numbers": (0.575, 60)}
-LINE_HEIGHT = 0.135  # inches
 
 
 def draw(atlas, name):
@@ -42,31 +40,20 @@ def draw(atlas, name):
     label = settings_of(atlas, name)["label"]
     found = group(atlas, "statements", name)
     table = pd.DataFrame({key: found[key].values.astype(str) for key in COLUMNS})
-    texts = [
-        {key: fill(row[key], COLUMNS[key][1]) for key in COLUMNS} for _, row in table.iterrows()
-    ]
-    lines = [1 + max(text.count("\n") + 1 for text in row.values()) for row in texts]
+    texts, lines = wrap_rows(table.to_dict("records"), COLUMNS)
     title = label_in_lines(label, width=WIDTH)
     top = 1.3 * title.count("\n")
     height = LINE_HEIGHT * (top + sum(lines) + 4.4)
     figure = Figure(figsize=(WIDTH, height))
     figure.set_layout_engine("none")
     axes = figure.add_axes((0, 0, 1, 1))
-    axes.set_axis_off()
-    axes.set_xlim(0, 1)
     axes.set_ylim(height / LINE_HEIGHT, 0)
     axes.text(0.5, 0.8, title, ha="center", va="top", fontsize=TITLE_SIZE)
     heads = {"figure": "Fig.", "claim": "The paper says", "verdict": "Here", "numbers": "Because"}
-    for key, (x, _) in COLUMNS.items():
-        axes.text(x, top + 2.6, heads[key], va="top", weight="bold", fontsize=7)
-    y = top + 4.2
-    for row, verdict, rows in zip(texts, table["verdict"], lines, strict=True):
-        axes.axhline(y - 0.35, color="0.8", lw=0.5)
-        for key, (x, _) in COLUMNS.items():
-            axes.text(x, y, row[key], va="top", fontsize=7, linespacing=1.15)
+    places = draw_rows(axes, texts, lines, COLUMNS, heads, top + 2.6)
+    for y, verdict in zip(places, table["verdict"], strict=True):
         sign, colour = SIGNS[verdict]
         axes.text(0.42, y, sign, va="top", color=colour, fontsize=8, family="DejaVu Sans")
-        y += rows
     return Drawing(figure, table, _caption(label, found, table))
 
 
