@@ -171,6 +171,8 @@ def _of_loads(curves, dilatancy, asked):
 
 def _of_directions(curves, settings):
     first, *others = settings["contact_directions"]
+    if first == "none":
+        return "directions", "none", "a surface against a plane does not slide", "", np.nan
     if not others:
         return "directions", first, "the only one whose contact is asked for", "", np.nan
     finest = curves["solved"].sel(resolution=curves["resolution"].min())
