@@ -11,7 +11,6 @@ if not workflow.configfiles:
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/specimens.smk"
-include: "workflow/rules/joints.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/mechanics.smk"
 include: "workflow/rules/scaling.smk"

@@ -102,8 +102,8 @@ def stages(**changes):
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
     )
     return {
-        "specimen": specimen,
-        "joint": slid,
+        "specimens": specimen,
+        "joints": slid,
         "closure": xr.Dataset(
             {
                 "interface_closure": states("closure"),

@@ -66,6 +66,28 @@ def _row(domain, spacing, gliding, pressure):
     }
 
 
+def measures_of_map_states(states, spacing):
+    """:func:`measures_of_states` of the states that are looked at closely.
+
+    Parameters
+    ----------
+    states : xr.Dataset
+        From :func:`fractalcontact.states.map_states`.
+    spacing : float
+        Of the scan, mm.
+
+    Returns
+    -------
+    xr.Dataset
+        With the scalars ``direction``, ``offset`` and ``resolution``.
+    """
+    pressures = states["pressure"].values
+    side = spacing * int(states["resolution"])
+    measures = measures_of_states(pressures > 0, pressures, side, states["load"].values)
+    place = {name: states[name] for name in ("direction", "offset", "resolution")}
+    return measures.assign_coords(place)
+
+
 def measures_of_states(domains, pressures, spacing, forces):
     """Measures of one joint's contact under every load: dataset of the stage domain_measures.
 

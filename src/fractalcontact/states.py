@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .errors import InputError
+from .labels import about
 from .specimen import nominal_area
 
 #: Scalars kept of every state: name, unit, long name.
@@ -40,6 +41,11 @@ OFFSETS = {
     "rigid_opening": ("mm", "rigid dilatancy delta_r at the offset made"),
     "composite_spread": ("mm", "standard deviation of the composite topography"),
 }
+
+
+#: Pressures of the states that are looked at closely: those of the contact maps, in the first
+#: direction and at the finest resolution, under every load. They are in one part of several.
+MAP_PRESSURE = "map_pressure"
 
 
 def forces_of(loads, area):
@@ -104,12 +110,13 @@ def combine(parts):
     Parameters
     ----------
     parts : sequence of xr.Dataset
-        From :func:`contact_states`; empty ones are passed over.
+        From :func:`fractalcontact.sweep.contact_states` or from here; empty ones are passed over.
 
     Returns
     -------
     xr.Dataset
-        Offsets, resolutions and loads ascending, directions in the order of ``parts``.
+        Offsets, resolutions and loads ascending, directions in the order of ``parts``. Without
+        :data:`MAP_PRESSURE`: see :func:`map_states`.
 
     Notes
     -----
@@ -126,24 +133,81 @@ def combine(parts):
     groups = {}
     for part in parts:
         if part.sizes["offset"]:
-            key = (part.direction.item(), tuple(part.resolution.values))
-            groups.setdefault(key, []).append(part)
+            states = part.drop_vars(MAP_PRESSURE, errors="ignore")
+            for i, direction in enumerate(part["direction"].values):
+                key = (direction, tuple(part["resolution"].values))
+                groups.setdefault(key, []).append(states.isel(direction=[i]))
     by_direction = {}
     for (direction, _), members in groups.items():
         whole = xr.concat(members, "offset", data_vars="minimal").sortby("offset")
         by_direction.setdefault(direction, []).append(whole)
-    return xr.concat(
-        [_join_resolutions(members) for members in by_direction.values()],
-        "direction",
-        data_vars="minimal",
-        join="override",
-    )
+    return side_by_side([_join_resolutions(members) for members in by_direction.values()])
+
+
+def side_by_side(directions):
+    """One dataset of the states of several directions, at the offsets of the first."""
+    states = [part.drop_vars(MAP_PRESSURE, errors="ignore") for part in directions]
+    joined = xr.concat(states, "direction", data_vars="minimal", join="override")
+    for part in directions:
+        if MAP_PRESSURE in part:
+            joined[MAP_PRESSURE] = part[MAP_PRESSURE]
+    return joined
 
 
 def domains_of(states):
     """The contact domains alone, with what says which of them are known, and how well."""
     kept = ("solved", "nodes_error")
     return states.drop_vars([name for name in (*OF_STATES, *OFFSETS) if name not in kept])
+
+
+def map_pressure(pressures, offset, direction, factor):
+    """The variable :data:`MAP_PRESSURE` of a dataset, from what it says of itself.
+
+    Parameters
+    ----------
+    pressures : (load, ny, nx) array_like
+        MPa.
+    offset : float
+        mm.
+    direction : str
+    factor : int
+        Resolution k.
+    """
+    of_place = {"offset": offset, "direction": direction, "resolution": factor}
+    labels = about("MPa", "pressure p at the offset of the contact maps") | of_place
+    return {MAP_PRESSURE: (("load", f"y_{factor}", f"x_{factor}"), np.array(pressures), labels)}
+
+
+def map_states(parts):
+    """Pressures of the states that are looked at closely, under every load.
+
+    Parameters
+    ----------
+    parts : sequence of xr.Dataset
+        From :func:`fractalcontact.sweep.contact_states`.
+
+    Returns
+    -------
+    xr.Dataset
+        ``pressure`` (load, y, x), MPa, with the scalars ``direction``, ``offset`` and
+        ``resolution``, the multiple k of the scan's spacing.
+    """
+    part = next(part for part in parts if MAP_PRESSURE in part)
+    pressure = part[MAP_PRESSURE]
+    place = pressure.attrs
+    return xr.Dataset(
+        {"pressure": (("load", "y", "x"), pressure.values, about("MPa", "pressure p"))},
+        coords={
+            "load": part["load"],
+            "direction": place["direction"],
+            "offset": ((), place["offset"], about("mm", "shear offset v")),
+            "resolution": (
+                (),
+                int(place["resolution"]),
+                about("1", "multiple k of the scan's spacing"),
+            ),
+        },
+    )
 
 
 def _join_resolutions(parts):

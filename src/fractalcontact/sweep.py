@@ -12,7 +12,16 @@ from .labels import about
 from .needs import solved_loads
 from .specimen import nominal_area
 from .state_numbers import numbers_of
-from .states import ERRORS, OFFSETS, SCALARS, chosen_offset, forces_of, hardness_of
+from .states import (
+    ERRORS,
+    OFFSETS,
+    SCALARS,
+    chosen_offset,
+    forces_of,
+    hardness_of,
+    map_pressure,
+    side_by_side,
+)
 
 #: Tolerances are tightened by so much where that of the study leaves too large an error.
 TIGHTENING = 10.0
@@ -60,7 +69,7 @@ def _solved(composite, space, force, start, solving, where):
 
 
 def map_place(joint, settings, direction):
-    """Offset of the contact maps, and how many cells of the scan it is in a direction.
+    """Offset of the contact maps in cells of a direction.
 
     Parameters
     ----------
@@ -72,14 +81,46 @@ def map_place(joint, settings, direction):
 
     Returns
     -------
-    offset : float
-        mm, in the first direction.
-    cells : int
+    int
     """
     offsets = joint["offset"].values
     offset = chosen_offset(settings["map_offset"], np.sort(offsets))
     cells = joint["offset_cells"].sel(contact_direction=direction).values
-    return offset, cells[offsets == offset][0]
+    return cells[offsets == offset][0]
+
+
+def joint_states(specimen, joint, directions, offsets, settings, resolutions, solver):
+    """:func:`contact_states` of some directions and offsets of a joint.
+
+    Parameters
+    ----------
+    specimen, settings, resolutions, solver
+        As for :func:`contact_states`.
+    joint : xr.Dataset
+        From :func:`fractalcontact.joint.describe_joint`.
+    directions : sequence of str
+    offsets : slice
+        Which of the joint's.
+
+    Returns
+    -------
+    xr.Dataset
+        As of :func:`contact_states`; ``offset`` is that of the first of the directions.
+
+    Raises
+    ------
+    NotConverged, InputError
+        As :func:`contact_states`.
+    """
+    parts = []
+    for direction in directions:
+        cells = joint["offset_cells"].sel(contact_direction=direction).values[offsets]
+        mapped = map_place(joint, settings, direction)
+        found = contact_states(
+            specimen, direction, cells, settings, resolutions, solver, mapped=mapped
+        )
+        parts.append(found)
+    return side_by_side(parts)
 
 
 def contact_states(specimen, direction, cells, settings, resolutions, solver, *, mapped=None):
@@ -107,7 +148,8 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
         The scalars of :data:`SCALARS` with their :data:`ERRORS`, and ``solved``, over (direction,
         offset, resolution, load), those of :data:`OFFSETS` over (direction, offset) and, for each
         resolution k, the contact domain ``in_contact_k`` over (direction, offset, load, y_k, x_k).
-        NaN, and no contact, where a state was not solved.
+        NaN, and no contact, where a state was not solved. Where the states that are looked at
+        closely are among them, :data:`fractalcontact.states.MAP_PRESSURE` over (load, y_k, x_k).
 
     Raises
     ------
@@ -121,11 +163,13 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
     solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
     accuracy = solver.get("accuracy")
     cells = np.asarray(cells, int)
+    offsets_made = cells * direction_spacing(specimen, direction)
     shape = (1, len(cells), len(resolutions), len(forces))
     kept = SCALARS | ERRORS
     scalars = {name: np.full(shape, np.nan) for name in kept}
     solved = np.zeros(shape, bool)
     fields = {}
+    first = direction == settings["contact_directions"][0]
     for k, factor in enumerate(resolutions):
         space = _space(specimen, factor, settings, solver)
         touching = np.zeros((1, len(cells), len(forces), *space.shape), bool)
@@ -134,7 +178,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
                 settings,
                 forces,
                 area,
-                first=direction == settings["contact_directions"][0],
+                first=first,
                 mapped=n == mapped,
                 factor=factor,
                 everything=accuracy is None,
@@ -145,21 +189,24 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
                 f"resolution {factor}"
             )
             states = load_steps(composite, space, forces[steps], solving, where)
+            pressures = []
             for j, state in zip(steps, states, strict=True):
                 state = _exact_enough(state, composite, solving, accuracy, where)
+                pressures.append(state.pressure.astype(np.float32))
                 solved[0, i, k, j] = True
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state).items():
                     scalars[name][0, i, k, j] = value
+            if first and n == mapped and factor == min(settings["resolutions"]):
+                fields |= map_pressure(pressures, offsets_made[i], direction, factor)
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "load", f"y_{factor}", f"x_{factor}"),
             touching,
             about("1", f"contact domain at {factor} times the scan's spacing"),
         )
     dims = ("direction", "offset", "resolution", "load")
-    made = cells * direction_spacing(specimen, direction)
     opened, spread = rigid_dilatancy(specimen, direction, cells)
-    of_offsets = {"offset_made": made, "rigid_opening": opened, "composite_spread": spread}
+    of_offsets = {"offset_made": offsets_made, "rigid_opening": opened, "composite_spread": spread}
     return xr.Dataset(
         {
             **{name: (dims, values, about(*kept[name])) for name, values in scalars.items()},
@@ -172,7 +219,7 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
         },
         coords={
             "direction": [direction],
-            "offset": ("offset", made, about("mm", "shear offset v")),
+            "offset": ("offset", offsets_made, about("mm", "shear offset v")),
             "resolution": (
                 "resolution",
                 np.array(resolutions),
@@ -204,52 +251,6 @@ def _exact_enough(state, composite, solving, accuracy, where):
         tighter = solving | {"rtol": rtol}
         state = _solved(composite, space, state.force, state, tighter, where)
     return state
-
-
-def map_states(specimen, joint, settings, solver):
-    """Contact domains and pressures of the states that are looked at closely, under every load.
-
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    joint : xr.Dataset
-        From :func:`fractalcontact.joint.describe_joint`.
-    settings : dict
-        From :func:`fractalcontact.study.resolve_settings`.
-    solver : dict
-        ``rtol`` and ``kernel``.
-
-    Returns
-    -------
-    xr.Dataset
-        ``in_contact`` and ``pressure`` (load, y, x) at the scan's spacing, with the scalars
-        ``direction``, the first whose contact is solved, and ``offset``, that of the maps.
-
-    Raises
-    ------
-    NotConverged, InputError
-        As :func:`contact_states`.
-    """
-    direction = settings["contact_directions"][0]
-    offset, cells = map_place(joint, settings, direction)
-    composite = composite_topography(specimen, direction, cells)
-    space = _space(specimen, 1, settings, solver)
-    forces = forces_of(settings["loads"], nominal_area(specimen))
-    solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
-    where = f"specimen {specimen.attrs['name']}, direction {direction}, offset {cells} cells"
-    states = list(load_steps(composite, space, forces, solving, where))
-    dims = ("load", "y", "x")
-    return xr.Dataset(
-        {
-            "in_contact": (dims, [s.in_contact for s in states], about("1", "contact domain")),
-            "pressure": (dims, [s.pressure for s in states], about("MPa", "pressure p")),
-        },
-        coords={
-            "load": ("load", forces, about("N", "normal force F")),
-            "direction": direction,
-            "offset": ((), offset, about("mm", "shear offset v")),
-        },
-    )
 
 
 def _space(specimen, factor, settings, solver):

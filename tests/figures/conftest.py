@@ -10,7 +10,7 @@ from fractalcontact.area import area_laws, joint_statistics
 from fractalcontact.area_slope import area_slope
 from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.dimension_test import dimension_test
-from fractalcontact.domain_measures import measures_of_states
+from fractalcontact.domain_measures import measures_of_map_states
 from fractalcontact.estimator_bias import estimator_bias
 from fractalcontact.joint import describe_joint
 from fractalcontact.needs import choices
@@ -21,10 +21,10 @@ from fractalcontact.size_laws import joint_by_size
 from fractalcontact.size_test import size_test
 from fractalcontact.specimen import make_specimen, window_sides
 from fractalcontact.statements import judge
-from fractalcontact.states import combine, domains_of, force_range
+from fractalcontact.states import combine, domains_of, force_range, map_states
 from fractalcontact.strength import joint_strength
 from fractalcontact.study import resolve_settings, solver_settings, window_arguments
-from fractalcontact.sweep import contact_states, map_place, map_states
+from fractalcontact.sweep import joint_states
 from fractalcontact.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -129,20 +129,16 @@ def atlas_file(tmp_path_factory):
         chosen = settings[name]
         specimen = make_specimen(lower, upper, name=name, **window_arguments(chosen))
         joint = describe_joint(specimen, chosen)
-        states = combine(
-            [
-                contact_states(
-                    specimen,
-                    direction,
-                    joint["offset_cells"].sel(contact_direction=direction).values,
-                    chosen,
-                    chosen["resolutions"],
-                    SOLVER,
-                    mapped=map_place(joint, chosen, direction)[1],
-                )
-                for direction in chosen["contact_directions"]
-            ]
+        solved = joint_states(
+            specimen,
+            joint,
+            chosen["contact_directions"],
+            slice(None),
+            chosen,
+            chosen["resolutions"],
+            SOLVER,
         )
+        states = combine([solved])
         curves = closure_curves(
             states,
             window_sides(specimen),
@@ -182,14 +178,8 @@ def atlas_file(tmp_path_factory):
             "scaling": scaling_over_resolutions(curves, domains, SPACING),
         }
         made["size_test"] = size_test(*of_solved, windows)
-        looked_at = map_states(specimen, joint, chosen, SOLVER)
-        made["domain_measures"] = measures_of_states(
-            looked_at["in_contact"].values,
-            looked_at["pressure"].values,
-            SPACING,
-            looked_at["load"].values,
-        ).assign_coords(direction=looked_at["direction"], offset=looked_at["offset"])
-        made["statements"] = judge(made | {"specimen": specimen, "joint": joint}, chosen)
+        made["domain_measures"] = measures_of_map_states(map_states([solved]), SPACING)
+        made["statements"] = judge(made, chosen)
         if name != "flat":
             made["strength"] = joint_strength(dilatancy, joint, specimen, chosen)
         for stage, dataset in made.items():

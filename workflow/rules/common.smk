@@ -73,9 +73,10 @@ def one_of(names):
 wildcard_constraints:
     specimen=one_of(SPECIMENS),
     map=one_of(MAPS),
-    direction="E|N|W|S|none",
+    directions=r"\d+",
+    offsets=r"\d+",
+    resolutions=r"\d+",
     part=r"\d+",
-    level=r"\d+",
 
 
 def settings_of(wildcards):

@@ -1,25 +1,39 @@
-# Contact solves, the costly part. One job takes one specimen and direction, and as many offsets and
+# Contact solves, the costly part. One job takes one specimen, and as many directions, offsets and
 # resolutions as the study's `grain` says, with all their loads.
 
 
 def parts_of(specimen):
-    """Slices of offsets and of resolutions that the jobs of a specimen take."""
+    """Slices of directions, of offsets and of resolutions that the jobs of a specimen take."""
     settings = SETTINGS[specimen]
     # How many offsets "auto" finds is known only later; a job without any writes an empty part.
     n_offsets = len(settings["offsets"]) if settings["offsets"] else AUTOMATIC_OFFSETS + 1
-    return grain("offsets", n_offsets), grain("resolutions", len(settings["resolutions"]))
+    return {
+        "directions": grain("directions", len(settings["contact_directions"])),
+        "offsets": grain("offsets", n_offsets),
+        "resolutions": grain("resolutions", len(settings["resolutions"])),
+    }
+
+
+def taken(key, of_settings=None):
+    """What a contact job takes: a slice, or these of the settings."""
+
+    def take(wildcards):
+        start, stop = parts_of(wildcards.specimen)[key][int(wildcards[key])]
+        return settings_of(wildcards)[of_settings][start:stop] if of_settings else [start, stop]
+
+    return take
 
 
 rule contact:
     input:
         specimen=rules.specimen.output[0],
-        joint=rules.joint.output[0],
+        joint=rules.surfaces.output.joint,
     output:
-        f"{RESULTS}/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.nc",
+        f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
     log:
-        f"{RESULTS}/logs/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.log",
+        f"{RESULTS}/logs/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/contact/{{specimen}}/{{direction}}.{{part}}.{{level}}.tsv"
+        f"{RESULTS}/benchmarks/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.tsv"
     conda:
         "../../environment.yml"
     resources:
@@ -28,32 +42,25 @@ rule contact:
     params:
         settings=settings_of,
         solver=SOLVER,
-        offsets=lambda wc: parts_of(wc.specimen)[0][int(wc.part)],
-        resolutions=lambda wc: SETTINGS[wc.specimen]["resolutions"][
-            slice(*parts_of(wc.specimen)[1][int(wc.level)])
-        ],
+        directions=taken("directions", "contact_directions"),
+        offsets=taken("offsets"),
+        resolutions=taken("resolutions", "resolutions"),
         code=code("sweep", "store"),
     script:
         "../scripts/contact.py"
 
 
 def contact_parts(wildcards):
-    offsets, resolutions = parts_of(wildcards.specimen)
-    return expand(
-        rules.contact.output,
-        specimen=wildcards.specimen,
-        direction=SETTINGS[wildcards.specimen]["contact_directions"],
-        part=range(len(offsets)),
-        level=range(len(resolutions)),
-    )
+    counts = {key: range(len(slices)) for key, slices in parts_of(wildcards.specimen).items()}
+    return expand(rules.contact.output, specimen=wildcards.specimen, **counts)
 
 
 # Closure curves and what follows from them alone: seconds of work, so one job.
 rule closure:
     input:
         specimen=rules.specimen.output[0],
-        surface_dimension=rules.surface_dimension.output[0],
-        joint=rules.joint.output[0],
+        surface_dimension=rules.surfaces.output.surface_dimension,
+        joint=rules.surfaces.output.joint,
         contact=contact_parts,
     output:
         closure=f"{RESULTS}/closure/{{specimen}}.nc",
@@ -100,7 +107,8 @@ rule contact_map:
         "../scripts/contact_map.py"
 
 
-# Box counts, dimension and clusters of every contact domain, and what changes with resolution.
+# Box counts, dimension and clusters of every contact domain; what changes with resolution; lacunarity
+# and generalised dimensions of the domains that are drawn.
 rule domains:
     input:
         specimen=rules.specimen.output[0],
@@ -110,6 +118,7 @@ rule domains:
         domains=f"{RESULTS}/domains/{{specimen}}.nc",
         contact=f"{RESULTS}/contact/{{specimen}}.nc",
         scaling=f"{RESULTS}/scaling/{{specimen}}.nc",
+        domain_measures=f"{RESULTS}/domain_measures/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/domains/{{specimen}}.log",
     benchmark:
@@ -121,6 +130,6 @@ rule domains:
         runtime=20,
     params:
         settings=settings_of,
-        code=code("analysis", "states", "store"),
+        code=code("analysis", "domain_measures", "states", "store"),
     script:
         "../scripts/domains.py"

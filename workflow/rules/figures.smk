@@ -26,7 +26,7 @@ def beside(opposite):
 
 rule figures:
     input:
-        rules.specimen_atlas.output[0],
+        rules.specimen_atlas.output.atlas,
     output:
         *pictures("match"),
         *beside("match"),

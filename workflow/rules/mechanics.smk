@@ -4,8 +4,8 @@
 rule windows:
     input:
         specimen=rules.specimen.output[0],
-        surface_dimension=rules.surface_dimension.output[0],
-        joint=rules.joint.output[0],
+        surface_dimension=rules.surfaces.output.surface_dimension,
+        joint=rules.surfaces.output.joint,
     output:
         f"{RESULTS}/windows/{{specimen}}.nc",
     log:
@@ -29,7 +29,7 @@ rule windows:
 rule strength:
     input:
         specimen=rules.specimen.output[0],
-        joint=rules.joint.output[0],
+        joint=rules.surfaces.output.joint,
         dilatancy=rules.closure.output.dilatancy,
     output:
         f"{RESULTS}/strength/{{specimen}}.nc",

@@ -5,7 +5,7 @@
 rule size_test:
     input:
         specimen=rules.specimen.output[0],
-        joint=rules.joint.output[0],
+        joint=rules.surfaces.output.joint,
         windows=rules.windows.output[0],
     output:
         f"{RESULTS}/size_test/{{specimen}}.nc",
@@ -24,30 +24,6 @@ rule size_test:
         code=code("size_test", "store"),
     script:
         "../scripts/size_test.py"
-
-
-# Lacunarity, correlation dimension and generalised dimensions of the domains that are drawn.
-rule domain_measures:
-    input:
-        specimen=rules.specimen.output[0],
-        joint=rules.joint.output[0],
-    output:
-        f"{RESULTS}/domain_measures/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/domain_measures/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/domain_measures/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=30,
-    params:
-        settings=settings_of,
-        solver=SOLVER,
-        code=code("sweep", "domain_measures", "store"),
-    script:
-        "../scripts/domain_measures.py"
 
 
 # Experiments on made surfaces: whether the two estimates of Delta_sigma agree in any limit, and how
@@ -91,40 +67,11 @@ rule estimator_bias:
         "../scripts/estimator_bias.py"
 
 
-# What the paper says, held against all of this.
-rule statements:
-    input:
-        specimen=rules.specimen.output[0],
-        joint=rules.joint.output[0],
-        closure=rules.closure.output.closure,
-        area=rules.closure.output.area,
-        windows=rules.windows.output[0],
-        domains=rules.domains.output.domains,
-        scaling=rules.domains.output.scaling,
-        size_test=rules.size_test.output[0],
-    output:
-        f"{RESULTS}/statements/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/statements/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/statements/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    params:
-        settings=settings_of,
-        code=code("statements", "store"),
-    script:
-        "../scripts/statements.py"
-
-
 STAGE_FILES = {
     "specimens": rules.specimen.output[0],
-    "quality": rules.quality.output[0],
-    "surface_dimension": rules.surface_dimension.output[0],
-    "joints": rules.joint.output[0],
+    "quality": rules.surfaces.output.quality,
+    "surface_dimension": rules.surfaces.output.surface_dimension,
+    "joints": rules.surfaces.output.joint,
     "contact": rules.domains.output.contact,
     "closure": rules.closure.output.closure,
     "dilatancy": rules.closure.output.dilatancy,
@@ -132,10 +79,9 @@ STAGE_FILES = {
     "area": rules.closure.output.area,
     "windows": rules.windows.output[0],
     "domains": rules.domains.output.domains,
-    "domain_measures": rules.domain_measures.output[0],
+    "domain_measures": rules.domains.output.domain_measures,
     "scaling": rules.domains.output.scaling,
     "size_test": rules.size_test.output[0],
-    "statements": rules.statements.output[0],
 }
 # What only joints that slide have.
 SLIDING_FILES = {"strength": rules.strength.output[0]}
@@ -149,13 +95,14 @@ def stages_of(wildcards):
     return STAGE_FILES | MAP_FILES | (SLIDING_FILES if wildcards.specimen in SLIDING else {})
 
 
-# An atlas of one specimen: its figures need no other, so a new scan redraws only its own, and one
-# bad scan does not keep the others from theirs.
+# What the paper says, held against all of this, and the atlas of one specimen: its figures need no
+# other, so a new scan redraws only its own, and one bad scan does not keep the others from theirs.
 rule specimen_atlas:
     input:
         unpack(stages_of),
     output:
-        f"{RESULTS}/atlas/{{specimen}}.nc",
+        atlas=f"{RESULTS}/atlas/{{specimen}}.nc",
+        statements=f"{RESULTS}/statements/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/atlas/{{specimen}}.log",
     benchmark:
@@ -167,9 +114,9 @@ rule specimen_atlas:
         runtime=10,
     params:
         configuration=lambda wc: {"study": config, "settings": {wc.specimen: settings_of(wc)}},
-        code=code("store"),
+        code=code("statements", "store"),
     script:
-        "../scripts/atlas.py"
+        "../scripts/specimen_atlas.py"
 
 
 rule atlas:
@@ -178,6 +125,7 @@ rule atlas:
         **{stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()},
         **MAP_FILES,
         **STUDY_FILES,
+        statements=expand(rules.specimen_atlas.output.statements, specimen=SPECIMENS),
     output:
         f"{RESULTS}/atlas.nc",
     log:

@@ -1,4 +1,4 @@
-# From scan files, a user's or the study's own, to levelled specimens and their surface dimension.
+# From scan files, a user's or the study's own, to levelled specimens, their surfaces and joints.
 
 
 rule embedded:
@@ -53,44 +53,27 @@ rule specimen:
         "../scripts/specimen.py"
 
 
-rule surface_dimension:
+# What is known of a joint before anything is pressed: the dimension of its face, what the instrument
+# adds and which resolutions go below it, and one face slid over the other (offsets, composite
+# topographies, rigid dilatancy). Seconds of work, so one job.
+rule surfaces:
     input:
         rules.specimen.output,
     output:
-        f"{RESULTS}/surface_dimension/{{specimen}}.nc",
+        surface_dimension=f"{RESULTS}/surface_dimension/{{specimen}}.nc",
+        quality=f"{RESULTS}/quality/{{specimen}}.nc",
+        joint=f"{RESULTS}/joints/{{specimen}}.nc",
     log:
-        f"{RESULTS}/logs/surface_dimension/{{specimen}}.log",
+        f"{RESULTS}/logs/surfaces/{{specimen}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/surface_dimension/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    params:
-        settings=settings_of,
-        code=code("roughness", "store"),
-    script:
-        "../scripts/surface_dimension.py"
-
-
-# What the instrument adds, and which resolutions go below it.
-rule quality:
-    input:
-        rules.specimen.output,
-    output:
-        f"{RESULTS}/quality/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/quality/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/quality/{{specimen}}.tsv"
+        f"{RESULTS}/benchmarks/surfaces/{{specimen}}.tsv"
     conda:
         "../../environment.yml"
     resources:
         mem_mb=lambda wc, attempt: 2000 * attempt,
         runtime=10,
     params:
-        resolutions=lambda wc: settings_of(wc)["resolutions"],
-        code=code("quality", "store"),
+        settings=settings_of,
+        code=code("joint", "quality", "roughness", "store"),
     script:
-        "../scripts/quality.py"
+        "../scripts/surfaces.py"

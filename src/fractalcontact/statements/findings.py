@@ -30,7 +30,7 @@ class Joint:
     Attributes
     ----------
     stages : dict of str to xr.Dataset
-        ``specimen``, ``joint``, ``closure``, ``dilatancy``, ``area``, ``windows``, ``domains``.
+        ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``, ``domains``.
     settings : dict
     """
 
@@ -40,12 +40,12 @@ class Joint:
     @cached_property
     def direction(self):
         """The direction judged."""
-        return str(self.stages["joint"]["contact_direction"].values[0])
+        return str(self.stages["joints"]["contact_direction"].values[0])
 
     @cached_property
     def force(self):
         """Load of the contact maps, N."""
-        specimen = self.stages["specimen"]
+        specimen = self.stages["specimens"]
         return float(forces_of([self.settings["map_load"]], nominal_area(specimen))[0])
 
     def at_load(self, stage, name):
@@ -88,7 +88,7 @@ class Joint:
 
     def of_direction(self, name):
         """A variable of the joint in the direction judged."""
-        return self.stages["joint"][name].sel(direction=self.direction).values
+        return self.stages["joints"][name].sel(direction=self.direction).values
 
     @cached_property
     def initial(self):

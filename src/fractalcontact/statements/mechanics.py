@@ -98,7 +98,7 @@ def area_settles(joint):
 
 def composite_dimension_rises(joint):
     """Delta_g of the composite topography against offset."""
-    dimension = joint.stages["joint"]["composite_dimension"].values
+    dimension = joint.stages["joints"]["composite_dimension"].values
     slid = joint.offset > 0
     v, dimension = joint.offset[slid], dimension[slid]
     line = fit_line(np.log(v), dimension)
@@ -118,7 +118,7 @@ def compliance_goes_with_dimension(joint):
     """Rank correlation of the closure with Delta_g of the composite topography."""
     from scipy import stats  # slow to import, and used nowhere else
 
-    dimension = joint.stages["joint"]["composite_dimension"].values
+    dimension = joint.stages["joints"]["composite_dimension"].values
     usable = np.isfinite(dimension) & np.isfinite(joint.closure) & (joint.offset > 0)
     if usable.sum() < 4:
         return Finding(UNKNOWN, no_offsets("four"))
@@ -130,7 +130,7 @@ def compliance_goes_with_dimension(joint):
 
 def dilatancy_flattens(joint):
     """Change of the rigid dilatancy over the second half of the offsets, by direction."""
-    means, changes = _plateaus(joint.stages["joint"])
+    means, changes = _plateaus(joint.stages["joints"])
     if not changes.size:
         return Finding(UNKNOWN, no_offsets("three rigid"))
     flat = int((np.abs(changes) <= NEARLY).sum())
@@ -144,8 +144,8 @@ def dilatancy_flattens(joint):
 
 def dilatancy_is_anisotropic(joint):
     """Difference of the rigid dilatancy among directions, over the last quarter of the offsets."""
-    v = joint.stages["joint"]["rigid_offset"].values
-    opened = joint.stages["joint"]["rigid_dilatancy"].values[:, v >= 0.75 * v[-1]].mean(axis=1)
+    v = joint.stages["joints"]["rigid_offset"].values
+    opened = joint.stages["joints"]["rigid_dilatancy"].values[:, v >= 0.75 * v[-1]].mean(axis=1)
     if opened.size < 2:
         return Finding(UNKNOWN, "fewer than two directions")
     spread = np.ptp(opened) / opened.mean()
@@ -165,8 +165,8 @@ def domains_cluster(joint):
 
 def no_correlation_is_left(joint):
     """Correlation of the faces at the largest offset solved."""
-    limit = float(joint.stages["joint"]["correlation_limit"])
-    v = joint.stages["joint"]["rigid_offset"].values
+    limit = float(joint.stages["joints"]["correlation_limit"])
+    v = joint.stages["joints"]["rigid_offset"].values
     correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offset[-1]))]
     numbers = f"correlation {correlation:+.2f} at v = {joint.offset[-1]:.3g} mm"
     if not np.isfinite(limit):
