@@ -58,6 +58,7 @@ rule roll_off:
         f"{RESULTS}/logs/roll_off.log",
     benchmark:
         f"{RESULTS}/benchmarks/roll_off.tsv"
+    priority: 1
     conda:
         "../../environment.yml"
     resources:

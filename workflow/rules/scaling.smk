@@ -35,6 +35,8 @@ rule dimension_test:
         f"{RESULTS}/logs/dimension_test.log",
     benchmark:
         f"{RESULTS}/benchmarks/dimension_test.tsv"
+    # Long, and nothing waits for it: begun last it would keep one core busy and the others idle.
+    priority: 1
     conda:
         "../../environment.yml"
     resources:
