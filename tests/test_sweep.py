@@ -5,10 +5,11 @@ import pytest
 import xarray as xr
 
 from fractalcontact.closure import closure_curves, elastic_dilatancy
+from fractalcontact.halfspace import HalfSpace
 from fractalcontact.joint import composite_topography, describe_joint
 from fractalcontact.specimen import make_specimen, window_sides
-from fractalcontact.states import OFFSETS, combine, domains_of
-from fractalcontact.sweep import contact_states
+from fractalcontact.states import MAP_PRESSURE, OFFSETS, combine, domains_of, map_states
+from fractalcontact.sweep import contact_states, joint_states, load_steps
 from fractalcontact.synthesis import self_affine
 
 SPACING_Y, SPACING_X = 0.12, 0.1
@@ -64,6 +65,50 @@ def test_parts_may_come_in_any_order_within_a_direction(parts):
     n = len(parts) // 3
     mixed = [part for i in range(3) for part in reversed(parts[i * n : (i + 1) * n])]
     xr.testing.assert_identical(combine(mixed), combine(parts))
+
+
+def of_jobs(specimen, joint, directions, offsets, resolutions):
+    """What jobs write that each take some of them; the maps are at the second offset."""
+    settings = SETTINGS | {"map_offset": 0.7, "resolutions": [1, 2]}
+    return [
+        joint_states(specimen, joint, some, slice(*these), settings, factors, SOLVER)
+        for some in directions
+        for these in offsets
+        for factors in resolutions
+    ]
+
+
+GRAINS = {
+    "one job": ([["W", "N", "E"]], [(0, 2)], [[1, 2]]),
+    "a direction each": ([["W"], ["N"], ["E"]], [(0, 2)], [[1, 2]]),
+    "an offset and a resolution each": ([["W", "N", "E"]], [(0, 1), (1, 2)], [[1], [2]]),
+    "a job without offsets": ([["W", "N", "E"]], [(0, 2), (2, 4)], [[1, 2]]),
+}
+
+
+@pytest.fixture(params=GRAINS.values(), ids=GRAINS)
+def jobs(request, specimen, joint):
+    return of_jobs(specimen, joint, *request.param)
+
+
+def test_the_grain_of_jobs_does_not_matter(jobs, parts):
+    xr.testing.assert_identical(combine(jobs), combine(parts))
+
+
+def test_pressures_of_the_maps_are_those_solved(jobs, specimen, joint):
+    states = map_states(jobs)
+    assert states["direction"] == "W"
+    assert states["resolution"] == 1
+    assert states["offset"] == pytest.approx(0.7)
+    assert sum(MAP_PRESSURE in job for job in jobs) == 1
+    contact = combine(jobs)["in_contact_1"].sel(direction="W").isel(offset=1)
+    np.testing.assert_array_equal(states["pressure"].values > 0, contact.values)
+    composite = composite_topography(specimen, "W", joint["offset_cells"].values[0, 1])
+    space = HalfSpace(composite.shape, (SPACING_Y, SPACING_X), 2e4)
+    solved = load_steps(composite, space, states["load"].values, {"rtol": 1e-6}, "rock")
+    for pressure, state in zip(states["pressure"].values, solved, strict=True):
+        np.testing.assert_allclose(pressure, state.pressure, rtol=1e-6)
+        assert pressure.sum() * space.cell_area == pytest.approx(state.force)
 
 
 def test_every_state_stands_at_its_own_place(parts):
