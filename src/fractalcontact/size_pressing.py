@@ -64,98 +64,140 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     area = nominal_area(specimen)
     of_study = forces_of(settings["loads"], area) / area
     pressures = _ladder(of_study, hardness)
-    tested = pressures[: len(of_study) + BEYOND]
-    shape = (len(parts), max(parts) ** 2, len(factors), len(pressures))
-    nodes, closure = np.full(shape, np.nan), np.full((*shape[:2], shape[3]), np.nan)
-    sides = np.empty((len(parts), 2))
+    n_tested = len(pressures[: len(of_study) + BEYOND])
     solving = {"rtol": solver["rtol"], "hardness": hardness}
-    s = np.sqrt(spacing.prod()) * np.array(factors)
-    # Tested loads and the next doubling window by window, further doublings one by one.
-    more = range(len(tested) + 1, len(pressures))
-    rounds = [range(more.start), *(range(step, step + 1) for step in more)]
-    domains, largest = [], np.inf
-    for i, n in enumerate(parts):
+    spaces = {"modulus": settings["material"]["e_star"], "kernel": solver["kernel"]}
+    sizes, largest = [], np.inf
+    for n in parts:
         windows = _cut(composite, n, max(factors))
-        sub = np.array(windows.shape[1:])
-        sides[i] = sub * spacing
-        loads = pressures * sides[i].prod()
-        modulus = settings["material"]["e_star"]
-        settlement = bulk_settlement(loads, modulus, *sides[i])
-        states = {}
-        for k, factor in enumerate(factors):
-            space = HalfSpace(
-                tuple(sub // factor), tuple(spacing * factor), modulus, kernel=solver["kernel"]
-            )
-            for j, window in enumerate(windows):
-                where = f"{n} x {n} parts, sub-window {j}, resolution {factor}"
-                h = prefractal(window, factor)
-                states[j, k] = load_steps(h, space, loads, solving, where)
+        size = _Size(windows, spacing, factors, pressures, spaces, solving, f"{n} x {n} parts")
+        size.press(n_tested + 1)
+        if n == 1:
+            largest = np.nanmax(size.real_pressure()[0, :n_tested], initial=0.0)
+        while size.pressed < len(pressures):
+            last = size.pressed - 1
+            asked = pressures[last] < n * pressures[n_tested - 1] * (1 - 1e-9)
+            if not asked and (size.real_pressure()[:, last] >= largest).all():
+                break
+            size.press(1)
+        sizes.append(size)
+    pressed = _labelled(sizes, parts, of_study[-1], n_tested, area)
+    place = cells * direction_spacing(specimen, direction)
+    pressed = pressed.assign_coords(
+        direction=direction, offset=((), place, about("mm", "shear offset v"))
+    )
+    return pressed, np.array(sizes[0].domains[:n_tested])
 
-        for steps in rounds:
-            if steps.start > len(tested):
-                real = real_pressure(loads, nodes[i, : n**2].swapaxes(1, 2), s)
-                if n == 1:
-                    largest = np.nanmax(real[0, : len(tested)], initial=0.0)
-                asked = pressures[steps.start - 1] < n * tested[-1] * (1 - 1e-9)
-                if not asked and (real[:, steps.start - 1] >= largest).all():
-                    break
-            for (j, k), rising in states.items():
-                for step, state in zip(steps, rising, strict=False):
-                    nodes[i, j, k, step] = np.count_nonzero(state.in_contact)
-                    if k == 0:
-                        # Faces that match everywhere have nothing to close.
-                        settled = np.ptp(windows[j]) > 0
-                        closure[i, j, step] = settled * (state.closure - settlement[step])
-                        if n == 1 and step < len(tested):
-                            domains.append(state.in_contact)
-    pressed = xr.Dataset(
+
+class _Size:
+    """All sub-windows of one size at all resolutions, pressed step by step.
+
+    Parameters
+    ----------
+    windows : (window, ny, nx) ndarray
+        Composite topographies, mm.
+    spacing : (2,) ndarray
+        mm.
+    factors : sequence of int
+        Resolutions k, the finest first.
+    pressures : (step,) ndarray
+        Nominal, MPa.
+    spaces, solving : dict
+        Options of :class:`fractalcontact.halfspace.HalfSpace` and of
+        :func:`fractalcontact.contact.solve_contact`.
+    what : str
+        For errors.
+
+    Attributes
+    ----------
+    nodes : (window, resolution, step) ndarray
+        In contact; NaN for steps not pressed yet.
+    closure : (window, step) ndarray
+        Of the interface, mm.
+    domains : list of (ny, nx) bool ndarray
+        Of the first window at the finest resolution, a step each.
+    """
+
+    def __init__(self, windows, spacing, factors, pressures, spaces, solving, what):
+        cells = np.array(windows.shape[1:])
+        self.sides, self.pressures, self.factors = cells * spacing, pressures, factors
+        self.spacing = np.sqrt(spacing.prod()) * np.array(factors)
+        self.loads = pressures * self.sides.prod()
+        self.nodes = np.full((len(windows), len(factors), len(pressures)), np.nan)
+        self.closure = np.full((len(windows), len(pressures)), np.nan)
+        self.domains, self.pressed = [], 0
+        self._settlement = bulk_settlement(self.loads, spaces["modulus"], *self.sides)
+        # Faces that match everywhere have nothing to close.
+        self._open = [np.ptp(window) > 0 for window in windows]
+        self._states = {}
+        for k, factor in enumerate(factors):
+            space = HalfSpace(tuple(cells // factor), tuple(spacing * factor), **spaces)
+            for j, window in enumerate(windows):
+                where = f"{what}, sub-window {j}, resolution {factor}"
+                h = prefractal(window, factor)
+                self._states[j, k] = load_steps(h, space, self.loads, solving, where)
+
+    def press(self, steps):
+        """Press every sub-window by so many steps more, as far as there are any."""
+        following = range(self.pressed, min(self.pressed + steps, len(self.loads)))
+        for (j, k), rising in self._states.items():
+            for step, state in zip(following, rising, strict=False):
+                self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
+                if k == 0:
+                    interface = state.closure - self._settlement[step]
+                    self.closure[j, step] = self._open[j] * interface
+                    if j == 0:
+                        self.domains.append(state.in_contact)
+        self.pressed = following.stop
+
+    def real_pressure(self):
+        """:func:`real_pressure` of each sub-window, (window, step)."""
+        return real_pressure(self.loads, self.nodes.swapaxes(1, 2), self.spacing)
+
+
+def _labelled(sizes, parts, largest_of_study, n_tested, area):
+    """The dataset of :func:`press_parts`; windows that a size does not have are NaN."""
+    pressures = sizes[0].pressures
+    n_windows, n_factors = max(parts) ** 2, len(sizes[0].spacing)
+    nodes = np.full((len(parts), n_windows, n_factors, len(pressures)), np.nan)
+    closure = np.full((len(parts), n_windows, len(pressures)), np.nan)
+    for i, size in enumerate(sizes):
+        nodes[i, : len(size.nodes)], closure[i, : len(size.nodes)] = size.nodes, size.closure
+    s = sizes[0].spacing
+    sides = [np.sqrt(size.sides.prod()) for size in sizes]
+    tested = pressures[:n_tested]
+    closing = about("mm", "interface closure w_int = w - w_b of a sub-window")
+    beyond = about("1", "whether the load is larger than those of the study")
+    ladder = about("MPa", "nominal pressures that every window was pressed with")
+    return xr.Dataset(
         {
             "nodes": (
                 ("part", "window", "resolution", "step"),
                 nodes,
                 about("1", "nodes in contact"),
             ),
-            "interface_closure": (
-                ("part", "window", "step"),
-                closure,
-                about("mm", "interface closure w_int = w - w_b of a sub-window"),
-            ),
-            "side": ("part", np.sqrt(sides.prod(axis=1)), about("mm", "side b of the sub-windows")),
+            "interface_closure": (("part", "window", "step"), closure, closing),
+            "side": ("part", sides, about("mm", "side b of the sub-windows")),
             "windows": ("part", np.square(parts), about("1", "sub-windows pressed of each size")),
             "nominal_pressure": (
                 "load",
                 tested,
                 about("MPa", "nominal pressure sigma_0 of the whole window"),
             ),
-            "beyond_study": (
-                "load",
-                tested > of_study[-1],
-                about("1", "whether the load is larger than those of the study"),
-            ),
-            "ladder_pressure": (
-                "step",
-                pressures,
-                about("MPa", "nominal pressures that every window was pressed with"),
-            ),
-            "spacing": (
-                "resolution",
-                s,
-                about("mm", "spacing s"),
-            ),
+            "beyond_study": ("load", tested > largest_of_study, beyond),
+            "ladder_pressure": ("step", pressures, ladder),
+            "spacing": ("resolution", s, about("mm", "spacing s")),
         },
         coords={
             "part": ("part", parts, about("1", "sub-windows along a side of the window")),
-            "resolution": ("resolution", factors, about("1", "multiple k of the scan's spacing")),
-            "load": ("load", tested * area, about("N", "force on the whole window")),
-            "direction": direction,
-            "offset": (
-                (),
-                cells * direction_spacing(specimen, direction),
-                about("mm", "shear offset v"),
+            "resolution": (
+                "resolution",
+                sizes[0].factors,
+                about("1", "multiple k of the scan's spacing"),
             ),
+            "load": ("load", tested * area, about("N", "force on the whole window")),
         },
     )
-    return pressed, np.array(domains)
 
 
 def real_pressure(force, nodes, spacing):
