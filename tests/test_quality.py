@@ -7,13 +7,8 @@ import pytest
 import xarray as xr
 from scipy import stats
 
-from fractalcontact.quality import (
-    height_step,
-    noise_words,
-    radial_spectrum,
-    range_words,
-    scan_quality,
-)
+from fractalcontact.quality import height_step, radial_spectrum, scan_quality
+from fractalcontact.quality_words import noise_words, range_words
 from fractalcontact.specimen import make_specimen
 from fractalcontact.synthesis import self_affine
 

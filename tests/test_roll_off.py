@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fractalcontact.directions import DIRECTIONS
 from fractalcontact.roll_off import roll_off_effect
-from fractalcontact.specimen import DIRECTIONS
 
 RECIPE = {
     "label": "made",

@@ -18,7 +18,8 @@ from .contact_map import is_contact_map, read_contact_map
 from .errors import InputError
 from .labels import printable
 from .preparation import prepare_specimen
-from .quality import length_words, scan_quality
+from .quality import scan_quality
+from .quality_words import length_words
 from .specimen import STEEP_TILT, window_sides
 from .study import check_study, read_sidecar, read_study, resolve_settings
 

@@ -7,11 +7,12 @@ surface by more than it grows over the second half of the offsets.
 import numpy as np
 import xarray as xr
 
+from .directions import DIRECTIONS
 from .fitting import fit_line, mean_interval, without_mean_plane
 from .joint import direction_spacing, face_correlation, rigid_dilatancy
 from .labels import INTERVAL, about
 from .roughness import slope_statistics
-from .specimen import DIRECTIONS, faces, largest_offset, make_specimen, window_slices
+from .specimen import faces, largest_offset, make_specimen, window_slices
 from .synthesis import embedded_surface
 
 SURFACES = ("with_roll_off", "without_roll_off")

@@ -9,10 +9,11 @@ asperities, the sum can pass the vertical, and what is stated as strength is hel
 import numpy as np
 import xarray as xr
 
+from .directions import DIRECTIONS
 from .fitting import mean_interval, without_mean_plane
 from .joint import direction_spacing, rigid_dilatancy
 from .labels import about
-from .specimen import DIRECTIONS, faces, nominal_area, window_sides, window_slices
+from .specimen import faces, nominal_area, window_sides, window_slices
 from .theory import (
     LABORATORY_LENGTH,
     LARGEST_FRICTION_ANGLE,

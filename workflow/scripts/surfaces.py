@@ -4,7 +4,8 @@ from _job import reported
 
 from fractalcontact import store
 from fractalcontact.joint import describe_joint
-from fractalcontact.quality import noise_words, range_words, scan_quality
+from fractalcontact.quality import scan_quality
+from fractalcontact.quality_words import noise_words, range_words
 from fractalcontact.roughness import surface_dimension
 
 with reported(snakemake.log) as log:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..quality import AXES, length_words, noise_words, range_words
+from ..quality_words import AXES, length_words, noise_words, range_words
 from ..specimen import window_slices
 from ._history import history
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline

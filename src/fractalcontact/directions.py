@@ -1,0 +1,19 @@
+"""The directions in which the lower face slides, seen from above."""
+
+from .errors import InputError
+
+#: Axis and sign of each.
+DIRECTIONS = {"E": ("x", 1), "N": ("y", 1), "W": ("x", -1), "S": ("y", -1)}
+
+
+def axis_and_sign(direction: str) -> tuple[str, int]:
+    """Axis, "x" or "y", along which a direction goes, and its sign there.
+
+    Raises
+    ------
+    InputError
+        If there is no such direction.
+    """
+    if direction not in DIRECTIONS:
+        raise InputError(f"direction {direction!r}; expected one of {', '.join(DIRECTIONS)}")
+    return DIRECTIONS[direction]
