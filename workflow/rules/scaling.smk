@@ -41,7 +41,8 @@ rule dimension_test:
         "../../environment.yml"
     resources:
         mem_mb=4000,
-        runtime=120,
+        # A partition may allow no more than an hour; who needs more gets it at the second attempt.
+        runtime=lambda wc, attempt: 60 * attempt,
     params:
         recipe=config.get("dimension_test"),
         rtol=SOLVER["rtol"],
