@@ -23,7 +23,8 @@ def test_estimators_keep_their_promises(bias):
     unbiased = (np.abs(natural["bias"]) <= 0.03).all("hurst")
     assert unbiased.sum() >= 3
     assert (np.abs(natural["bias"].sel(estimator=list(LITTLE_BIASED))) <= 0.04).all()
-    assert (natural["coverage"] >= 0.9).all()
+    # Rougher surfaces than natural ones too, whose missing short waves raise H.
+    assert (bias["coverage"] >= 0.9).all()
     # No interval is wide enough to hold anything.
     assert (natural["half_width"].sel(estimator=list(LITTLE_BIASED)) < 0.13).all()
 
@@ -34,7 +35,7 @@ def test_known_bias_is_taken_off(bias):
         assert smooth["slope_bias"].sel(estimator=name) < -0.05
         assert np.abs(smooth["bias"].sel(estimator=name)) < 0.04
     without = smooth.sel(estimator=list(LITTLE_BIASED))
-    np.testing.assert_allclose(without["slope_bias"], without["bias"])
+    np.testing.assert_allclose(without["slope_bias"], without["bias"], atol=0.005)
 
 
 def test_table_is_that_of_the_single_surfaces(bias):
@@ -80,7 +81,7 @@ def test_figure_shows_the_table_and_says_what_holds(bias):
     for (name, hurst, size), value in shown.items():
         assert value == bias["bias"].sel(estimator=name, hurst=hurst, size=size)
     assert "In no figure of the paper" in drawing.caption
-    assert "hold H less often" in drawing.caption  # of H = 0.3
+    assert "On rougher surfaces they do so too." in drawing.caption  # of H = 0.3
 
 
 def test_verdict_follows_the_numbers(bias):
@@ -92,6 +93,7 @@ def test_verdict_follows_the_numbers(bias):
     bad = bias.assign(worst_bias=xr.full_like(bias["worst_bias"], 0.1))
     bad["coverage"] = xr.full_like(bias["coverage"], 0.5)
     words = drawn(bad).caption
+    assert "hold H less often than that, down to 50 %" in words
     assert "none of 7 keeps its bias" in words
     assert "and not all estimators reach 90 %" in words
 

@@ -16,7 +16,8 @@ from fractalcontact.curves import (
     second_difference_curves,
     variogram_curves,
 )
-from fractalcontact.estimators import ESTIMATORS, HURST_GRID, extended, levelled_slope, slopes
+from fractalcontact.estimators import ESTIMATORS
+from fractalcontact.known_bias import slopes
 from fractalcontact.synthesis import disc_outline, self_affine
 
 SCANS = Path(__file__).parents[2] / "shared" / "scans"
@@ -95,25 +96,6 @@ def test_square_islands_on_a_plain():
     np.testing.assert_allclose(curve.measure()[near], 4.0)
 
 
-def test_levelling_takes_a_plane_off_whole():
-    # The limit of H = 1: planes of random slope, of mean square 1 along each axis.
-    near_one = np.polynomial.Polynomial.fit(HURST_GRID[-5:], levelled_slope()[-5:], 2)
-    assert near_one(1.0) == pytest.approx(1.0, abs=1e-4)
-
-
-def test_lines_with_gaps():
-    x = np.arange(5.0)
-    y = np.array([2 * x, [0, 1, np.nan, 3, 4], [np.nan] * 4 + [1]])
-    np.testing.assert_allclose(slopes(x, y), [2, 1, np.nan])
-
-
-def test_interpolation_goes_straight_on():
-    known, values = np.array([0.0, 1.0, 3.0]), np.array([0.0, 2.0, 3.0])
-    np.testing.assert_allclose(
-        extended(np.array([-1.0, 0.5, 2.0, 5.0]), known, values), [-2, 1, 2.5, 4]
-    )
-
-
 # -- independent -----------------------------------------------------------------------------------
 
 
@@ -132,16 +114,6 @@ def test_differences_are_those_of_numpy(surface):
             for lag in {h for h in lags if h in found}:
                 expected = np.mean(difference(z, lag) ** 2)
                 assert found[lag] == pytest.approx(expected, rel=1e-12), (name, axis, lag)
-
-
-@pytest.mark.parametrize("target", [0.3, 0.5, 0.8])
-def test_levelling_takes_the_slope_that_a_sum_over_all_pairs_says(target):
-    n = 30
-    y, x = (a.ravel() for a in (np.mgrid[:n, :n] + 0.5) / n)
-    pull = (x - 0.5) / np.sum((x - 0.5) ** 2)  # the plane's slope along x is pull @ z
-    squares = np.hypot(x - x[:, np.newaxis], y - y[:, np.newaxis]) ** (2 * target)
-    expected = -pull @ squares @ pull / 2
-    assert np.interp(target, HURST_GRID, levelled_slope()) == pytest.approx(expected, rel=0.02)
 
 
 def test_islands_are_those_counted_by_hand():
@@ -196,13 +168,6 @@ def test_missing_cells_change_the_curves_little(name):
     middle = (cut.length > 0.4) & (cut.length < 2.4) & np.isfinite(cut.measure() + shared)
     assert middle.sum() >= 3
     np.testing.assert_allclose(cut.measure()[middle], shared[middle], rtol=0.3)
-
-
-@pytest.mark.parametrize("name", ESTIMATORS)
-def test_what_a_slope_says_rises_with_the_exponent(name):
-    estimator = ESTIMATORS[name]
-    if estimator.found is not None:
-        assert (np.diff(estimator.found(np.geomspace(1 / 64, 1 / 8, 12))) > 0).all()
 
 
 # -- another program -------------------------------------------------------------------------------

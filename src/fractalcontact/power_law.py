@@ -18,6 +18,7 @@ The thresholds below were chosen on carpets, dusts, percolation clusters and ran
 D is then found within 0.02. On other sets, drawn as whole cells, that they were not chosen on
 (Vicsek's, Sierpinski's triangle, dusts and carpets of ratios 4 and 5, upright and turned) the
 median error is 0.03 and the largest 0.07, mostly upwards, where whole cells pass for centres.
+Whoever drew a set knows which they are, and may say so.
 """
 
 from dataclasses import dataclass, replace
@@ -64,7 +65,9 @@ class Law:
     outline: int
 
 
-def best_law(sizes: np.ndarray, count: np.ndarray, side: float) -> tuple[Law | None, list[Law]]:
+def best_law(
+    sizes: np.ndarray, count: np.ndarray, side: float, whole_cells: bool | None = None
+) -> tuple[Law | None, list[Law]]:
     """The law that mean box counts follow, and its rivals.
 
     Parameters
@@ -73,21 +76,26 @@ def best_law(sizes: np.ndarray, count: np.ndarray, side: float) -> tuple[Law | N
         Box sides in cells and the mean number of boxes over all origins.
     side : float
         Extent L of the set, cells.
+    whole_cells : bool, optional
+        What is known of the nodes: c = 0 if they are whole cells, c = 1 if centres.
 
     Returns
     -------
     law : Law or None
-        Nodes are taken for centres (c = 1) unless counts plainly follow the law of whole cells.
+        Unless it is known, nodes are taken for centres (c = 1) where counts do not plainly follow
+        the law of whole cells.
         None where no law with such terms fits.
     rivals : list of Law
         Those with other terms that fit almost as well.
     """
-    forms = [Law(np.nan, np.inf, c, outline) for c in (_WHOLE, _CENTRE) for outline in range(3)]
+    stand_for = {None: (_WHOLE, _CENTRE), True: (_WHOLE,), False: (_CENTRE,)}[whole_cells]
+    forms = [Law(np.nan, np.inf, c, outline) for c in stand_for for outline in range(3)]
     laws = [_fit(form, sizes, count, side) for form in forms]
     laws = {(law.c, law.outline): law for law in laws if law is not None}
     if not laws:
         return None, []
-    law = _whole_cells(laws) or _simplest([law for law in laws.values() if law.c == _CENTRE])
+    law = _whole_cells(laws) if whole_cells is None else None
+    law = law or _simplest([law for law in laws.values() if law.c == _CENTRE])
     law = law or _simplest(list(laws.values()))
     kept = sizes >= SMALLEST
     law = _fit(law, sizes[kept], count[kept], side) or law

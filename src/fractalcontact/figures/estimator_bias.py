@@ -134,8 +134,7 @@ def _caption(bias):
         ]
         below = (
             f" On rougher surfaces the intervals of {', '.join(failing)} hold H less often than "
-            f"that, down to {100 * float(rough.min()):.0f} %: a made surface has no waves shorter "
-            "than two nodes, which is felt at the short end of the range."
+            f"that, down to {100 * float(rough.min()):.0f} %."
             if failing
             else " On rougher surfaces they do so too."
         )
