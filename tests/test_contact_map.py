@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import yaml
 
-from fractalcontact.contact_map import is_contact_map, read_contact_map
+from fractalcontact.contact_map import CELLS, is_contact_map, read_contact_map
 from fractalcontact.errors import InputError
 
 OPTIONS = {"kind": "contact-map", "unit": "mm", "spacing": 0.5}
@@ -41,6 +41,31 @@ def test_stresses_above_the_threshold_are_in_contact(carpet, tmp_path):
         read_contact_map(stresses, OPTIONS, label="film")
     with pytest.raises(InputError, match="no cell lies above the threshold of 50"):
         read_contact_map(stresses, OPTIONS | {"threshold": 50}, label="film")
+
+
+def test_what_a_cell_stands_for_may_be_said(tmp_path):
+    """A turned dust, every cell marked that it meets: more than it is if taken for centres."""
+    corner = np.array([[0, 0], [0, 2], [2, 0], [2, 2]]) / 3
+    points = np.zeros((1, 2))
+    for level in range(8):
+        points = (points[:, np.newaxis] + corner / 3**level).reshape(-1, 2)
+    cosine, sine = np.cos(np.radians(20)), np.sin(np.radians(20))
+    row, column = np.floor(
+        512 * (0.7 * (points - 0.5) @ [[cosine, sine], [-sine, cosine]] + 0.5)
+    ).T.astype(int)
+    dust = np.zeros((512, 512))
+    dust[row, column] = 1
+    path = tmp_path / "dust.npy"
+    np.save(path, dust)
+    exact = np.log(4) / np.log(3)
+    found = {
+        cells: read_contact_map(path, OPTIONS | {"cells": cells}, label="dust") for cells in CELLS
+    }
+    dimension = {cells: float(of_map["delta_sigma"]) for cells, of_map in found.items()}
+    assert dimension["any contact"] == pytest.approx(exact, abs=0.02)
+    assert dimension["contact at the centre"] > dimension["any contact"] + 0.02
+    assert {of_map.attrs["cells"] for of_map in found.values()} == set(CELLS)
+    assert "cells" not in read_contact_map(path, OPTIONS, label="dust").attrs
 
 
 def test_a_force_is_spread_over_what_was_measured(carpet, tmp_path):

@@ -26,7 +26,7 @@ ONE_NODE = "one node is in contact, and what touches within its cell is not know
 NOT_NEEDED = "not solved, since nothing shown needs it"
 
 
-def analyse_domains(fields, spacing, *, fit_range=None):
+def analyse_domains(fields, spacing, *, fit_range=None, whole_cells=None):
     """Box counts, Delta_sigma and clusters of every contact domain.
 
     Parameters
@@ -39,6 +39,8 @@ def analyse_domains(fields, spacing, *, fit_range=None):
         Of the scan, mm; a domain at resolution k has k times this.
     fit_range : (float, float), optional
         Smallest and largest box of the fits, mm; by default all that say something.
+    whole_cells : bool, optional
+        What is known of the nodes, see :func:`fractalcontact.domain.box_dimension`.
 
     Returns
     -------
@@ -82,7 +84,13 @@ def analyse_domains(fields, spacing, *, fit_range=None):
             continue
         factor = factors[k]
         domain = domains[factor][d, o, j]
-        box = box_dimension(domain, factor * spacing, fit_range=fit_range, sizes=sizes[factor])
+        box = box_dimension(
+            domain,
+            factor * spacing,
+            fit_range=fit_range,
+            sizes=sizes[factor],
+            whole_cells=whole_cells,
+        )
         if domain.sum() == 1:
             box = no_dimension(box.r, box.count, ONE_NODE)
         found = cluster_statistics(domain, factor * spacing)

@@ -15,7 +15,9 @@ from .scan import read_matrix
 from .units import load as read_load
 
 #: Keys of a sidecar that only maps have.
-MAP_KEYS = ("kind", "threshold", "load")
+MAP_KEYS = ("kind", "threshold", "load", "cells")
+#: What a cell in contact stands for, and whether it is one of those that hold any contact at all.
+CELLS = {"any contact": True, "contact at the centre": False}
 
 
 def is_contact_map(scan_options):
@@ -34,7 +36,9 @@ def read_contact_map(path, options, *, label):
     options : mapping
         Scan keys of the sidecar; ``unit`` (of x and y) and ``spacing`` as for a scan,
         ``threshold``: cells above it are in contact (not needed for a map of 0 and 1), ``load``:
-        the force on the whole map or its nominal pressure.
+        the force on the whole map or its nominal pressure, ``cells``: what a cell in contact
+        stands for (:data:`CELLS`), else its counts decide, see
+        :func:`fractalcontact.domain.box_dimension`.
     label : str
         What it is, in words.
 
@@ -66,7 +70,10 @@ def read_contact_map(path, options, *, label):
         {"in_contact_1": (dims, touching[np.newaxis, np.newaxis, np.newaxis])},
         coords={"direction": ["none"], "offset": [0.0], "load": [0.0]},
     )
-    found = analyse_domains(domains, float(np.sqrt(dx * dy))).squeeze(drop=True)
+    stands_for = options.get("cells")
+    known = CELLS.get(stands_for)
+    spacing = float(np.sqrt(dx * dy))
+    found = analyse_domains(domains, spacing, whole_cells=known).squeeze(drop=True)
     nominal = measured.sum() * dx * dy
     result = found[[*DOMAIN_FIELDS, "reason"]]
     result["in_contact"] = (("y", "x"), touching, about("1", "cell in contact"))
@@ -83,6 +90,7 @@ def read_contact_map(path, options, *, label):
         "threshold": float(threshold),
         "spacing_y": dy,
         "spacing_x": dx,
+        **({"cells": stands_for} if stands_for else {}),
         **provenance,
     }
     return result
