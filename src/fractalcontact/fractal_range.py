@@ -4,19 +4,10 @@ What an instrument adds shows in the spectrum of profiles at short wavelengths. 
 of the nodes make it flat, and with N the level of that floor their standard deviation is the root
 of N / spacing. A finite spot, smoothing or interpolation makes it steeper than the surface. At the
 long end a surface may roll off. A model with any of these is fitted to the spectrum, and one of
-them counts as seen where the spectrum cannot be told as well without it.
-
-The model, with x the wave number over that of the shortest wave (two spacings):
-
-    C(x) = P(x) G(x / x_f) + N,    P(x) = A x^-(1 + 2H) above the roll-off
-
-Several forms are tried for what the grid does to P: nothing; aliasing, where points of a finer
-surface were taken; a band limit, where a surface was made on the grid itself. Each of them bends
-the last octave a little, and none is the instrument's. So are several forms of the filter G, which
-halves the spectrum at x_f.
+them counts as seen where the spectrum cannot be told as well without it; the model is that of
+:mod:`fractalcontact.spectrum_model`.
 """
 
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -25,10 +16,7 @@ from scipy.optimize import least_squares
 
 from .curves import Curve, ratio
 from .fitting import CONFIDENCE
-
-#: Of a filter: Gaussian, and such as fall with powers of the wave number (2 f of straight facets).
-FILTERS = ("Gaussian", "second order", "fourth order")
-SAMPLINGS = ("ideal", "aliased", "band-limited")
+from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, named
 
 #: A feature must lower the score (BIC) by this beyond its share: "strong" in Kass & Raftery,
 #: J. Am. Stat. Assoc. 90 (1995) 773.
@@ -61,30 +49,6 @@ LENGTHS = ("noise", "filter", "roll_off")
 SPIKY = 3.0
 #: Spectra of fewer bins are not fitted.
 FEWEST_BINS = 7
-
-
-class Form(NamedTuple):
-    """Which parts a model of the spectrum has."""
-
-    sampling: str
-    filtering: str
-    rolls_off: bool
-    noisy: bool
-
-    @property
-    def features(self) -> int:
-        """How many parts it has beyond the self-affine one."""
-        return bool(self.filtering) + self.rolls_off + self.noisy
-
-
-FORMS = tuple(
-    Form(sampling, filtering, rolls_off, noisy)
-    for (sampling, filtering), rolls_off, noisy in product(
-        [*((sampling, "") for sampling in SAMPLINGS), *(("ideal", f) for f in FILTERS)],
-        (False, True),
-        (False, True),
-    )
-)
 
 
 class FractalRange(NamedTuple):
@@ -171,7 +135,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
 
     form, fit, values = _most_likely(x, logs, error, parts)
     fitted = np.full(len(level), np.nan)
-    fitted[known] = np.exp(_log_model(form, fit.x, x))
+    fitted[known] = np.exp(log_model(form, fit.x, x))
     misfit = float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2)))
     if misfit > np.log(NO_POWER_LAW):
         values = {"hurst": values["hurst"]}
@@ -221,73 +185,6 @@ def _above_leakage(length, level) -> np.ndarray:
     return known
 
 
-# -- the model -------------------------------------------------------------------------------------
-
-
-def _log_model(form: Form, parameters: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Logarithm of the spectrum (k,) at wave numbers x.
-
-    Parameters in order: ln A, slope, then the logarithms of roll-off, filter and noise level of
-    those the form has.
-    """
-    own = _named(form, parameters)
-    log_x = np.log(x)
-    surface = own["a"] - own["slope"] * log_x
-    surface += np.log(_sampled(form, own["slope"], x))
-    if form.rolls_off:
-        surface += np.log(_rolled_off(own["slope"], np.exp(own["roll_off"]), x))
-    if form.filtering:
-        surface += _filtered(form.filtering, log_x - own["filter"])
-    return np.logaddexp(surface, own["level"]) if form.noisy else surface
-
-
-def _named(form: Form, parameters: np.ndarray) -> dict[str, float]:
-    names = ["a", "slope"]
-    names += ["roll_off"] * form.rolls_off + ["filter"] * bool(form.filtering)
-    return dict(zip(names + ["level"] * form.noisy, parameters, strict=True))
-
-
-def _sampled(form: Form, slope: float, x: np.ndarray):
-    """What the grid makes of x^-slope, as a factor."""
-    if form.sampling == "aliased":
-        # The sum of |x + 2k|^-slope over all whole k.
-        waves = special.zeta(slope, x / 2) + special.zeta(slope, 1 - x / 2)
-        return waves * (x / 2) ** slope
-    if form.sampling == "band-limited":
-        # A profile's spectrum is the surface's, integrated over the other axis: to x = 1 only.
-        return special.betainc(0.5, slope / 2, 1 / (1 + x**2))
-    return 1.0
-
-
-def _rolled_off(slope: float, start: float, x: np.ndarray) -> np.ndarray:
-    """Profiles of an isotropic surface whose own spectrum is flat below `start`, as a factor."""
-    whole = special.beta(0.5, slope / 2) / 2
-    inside = np.clip(1 - (x / start) ** 2, 0, None)
-    flat = np.sqrt(inside) * (x / start) ** slope
-    return flat / whole + 1 - special.betainc(0.5, slope / 2, inside)
-
-
-def _filtered(filtering: str, log_ratio: np.ndarray) -> np.ndarray:
-    """Logarithm of a filter's effect on the spectrum; it halves it where log_ratio is 0."""
-    if filtering == "Gaussian":
-        return -np.log(2) * np.exp(2 * log_ratio)
-    order = 2 if filtering == "second order" else 4
-    return -np.logaddexp(0, order * log_ratio)
-
-
-def _features(form: Form, parameters: np.ndarray, x: np.ndarray) -> dict[str, float]:
-    """H, and the logarithms of what the form has, noise as the x where the line meets it."""
-    own = _named(form, parameters)
-    found = {"hurst": (own["slope"] - 1) / 2}
-    found |= {name: own[name] for name in ("roll_off", "filter", "level") if name in own}
-    if form.noisy:
-        # A line below the floor everywhere meets it at no wave that is seen.
-        found["noise"] = max((own["a"] - own["level"]) / own["slope"], np.log(x.min()))
-        if found["noise"] > 0:  # a filter ends the range before the line could meet the floor
-            del found["noise"]
-    return found
-
-
 # -- fitting ---------------------------------------------------------------------------------------
 
 
@@ -334,7 +231,7 @@ def _is_told(values) -> bool:
 
 def _is_sensible(form: Form, parameters: np.ndarray, x: np.ndarray) -> bool:
     """Whether all features of a form lie where the spectrum shows them."""
-    own = _named(form, parameters)
+    own = named(form, parameters)
     short_end = 0.0
     if form.filtering:
         if own["filter"] > np.log(2 / SHORTEST_FILTER):
@@ -342,7 +239,7 @@ def _is_sensible(form: Form, parameters: np.ndarray, x: np.ndarray) -> bool:
         short_end = own["filter"]
     if form.noisy:
         meeting = (own["a"] - own["level"]) / own["slope"]
-        silent = _log_model(form._replace(noisy=False), parameters[:-1], x[:1])
+        silent = log_model(form._replace(noisy=False), parameters[:-1], x[:1])
         if silent[0] > own["level"] or not (form.filtering or meeting < np.log(2 / SHORTEST_NOISE)):
             return False
         short_end = min(short_end, meeting)
@@ -356,7 +253,7 @@ def _fit(form: Form, x, logs, error):
     low, high = _bounds(form, x, logs)
 
     def residuals(parameters):
-        return (_log_model(form, parameters, x) - logs) / error
+        return (log_model(form, parameters, x) - logs) / error
 
     fits = [
         least_squares(
@@ -375,7 +272,7 @@ def _bounds(form: Form, x, logs):
         "filter": (np.log(x.min()), 3.0),
         "level": (logs.min() - 20, logs.max() + 5),
     }
-    names = _named(form, np.zeros(2 + form.features))
+    names = named(form, np.zeros(2 + form.features))
     return np.array([ends[name] for name in names], float).T
 
 
@@ -386,7 +283,7 @@ def _starts(form: Form, x, logs):
     a = np.mean(logs + slope * np.log(x))
     begin = {"a": a, "slope": slope, "roll_off": np.log(2 * x.min()), "level": logs.min()}
     places = (np.log(0.25), np.log(0.6)) if form.filtering else (0.0,)
-    names = _named(form, np.zeros(2 + form.features))
+    names = named(form, np.zeros(2 + form.features))
     return [np.array([(begin | {"filter": place})[name] for name in names]) for place in places]
 
 
@@ -396,12 +293,12 @@ def _with_intervals(form: Form, fit, x, logs, parts, error) -> dict[str, tuple]:
     Parameters without one strip follow from those of all by one step of Gauss and Newton.
     """
     inverse = np.linalg.pinv(fit.jac)
-    without = [_features(form, fit.x + inverse @ ((part - logs) / error), x) for part in parts]
+    without = [features_of(form, fit.x + inverse @ ((part - logs) / error), x) for part in parts]
     quantile = special.stdtrit(len(parts) - 1, (1 + CONFIDENCE) / 2)
     scatter = max(1.0, 2 * fit.cost / max(len(x) - len(fit.x), 1))
     covariance = scatter * inverse @ inverse.T
     intervals = {}
-    for name, value in _features(form, fit.x, x).items():
+    for name, value in features_of(form, fit.x, x).items():
         values = np.array([[found.get(name, 0.0)] for found in without])
         gradient = _gradient(form, fit.x, x, name, value)
         of_fit = np.sqrt(gradient @ covariance @ gradient)
@@ -418,7 +315,7 @@ def _gradient(form, parameters, x, name, value):
     """Derivative of a feature by the parameters."""
     step = 1e-6
     steps = parameters + step * np.eye(len(parameters))
-    return np.array([_features(form, p, x).get(name, value) - value for p in steps]) / step
+    return np.array([features_of(form, p, x).get(name, value) - value for p in steps]) / step
 
 
 def _jackknife(without: np.ndarray) -> np.ndarray:
