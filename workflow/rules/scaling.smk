@@ -40,7 +40,7 @@ rule dimension_test:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=4000,
+        mem_mb=lambda wc, attempt: 4000 * attempt,
         # A partition may allow no more than an hour; who needs more gets it at the second attempt.
         runtime=lambda wc, attempt: 60 * attempt,
     params:
