@@ -5,9 +5,10 @@ With the gap g = K p + c - w at the nodes (c the clearance at first touch), a st
 minimum of a strictly convex quadratic between bounds. The set of a correction is the nodes between
 the bounds and those at a bound that the gap pulls off it. Its first step is a whole one of the
 approximate inverse of K (`screening`), clipped at the bounds, so that nodes leave the set in the
-same application of K that moves the others; conjugate gradients follow on those that stay.
-Directions and their images are in single precision; what is returned was judged on a displacement
-in double precision.
+same application of K that moves the others; conjugate gradients follow on those that stay. While
+the set is far off, the nodes that a step would take to a bound are left out, and the step is made
+anew on the others, before K is applied at all. Directions and their images are in single precision;
+what is returned was judged on a displacement in double precision.
 """
 
 from dataclasses import dataclass, replace
@@ -15,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 
+from .balancing import differing
 from .set_equations import CLIPPING_PASSES, Operator, SetEquations
 
 # Corrections of the contact set before the solver gives up: trials needed at most some twenty.
@@ -22,6 +24,10 @@ MAX_CORRECTIONS = 200
 # The linear solve for a set is stopped at a share of its first residual, as the set will change:
 # so many times the share of the set that changed last, within these limits.
 REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
+# In so many corrections nodes are left out beforehand; in all of them the set might swing. No more
+# than this share of it: where most nodes yield, the few others would have to carry whatever a given
+# force lacks.
+FORESEEING, MOST_LEFT_OUT = 2, 0.5
 # A violation no larger than so many tolerances is expected to fall below one in a single step,
 # whose displacement is then computed in double precision at once.
 NEARLY = 2.0
@@ -148,7 +154,7 @@ class ActiveSet:
                 inside = (pressure[examined.free] > 0) & (pressure[examined.free] < problem.cap)
                 examined = replace(examined, free=examined.free[inside])
             self.operator.inverse.update(examined.free, fresh=correction == 0)
-            changed = _differing(free, examined.free) / max(examined.free.size, 1)
+            changed = differing(free, examined.free) / max(examined.free.size, 1)
             free = examined.free
             reduction = min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
             if patient:
@@ -156,7 +162,10 @@ class ActiveSet:
             elif not foreseen and examined.worst <= NEARLY * self.rtol * abs(closure):
                 # Once only: where one step gains too little, conjugate gradients must follow.
                 foreseen, reduction = True, None
-            closure = self._correct(pressure, displacement, closure, examined, reduction)
+            closure = self._correct(
+                *(pressure, displacement, closure, examined, reduction),
+                foreseeing=correction < FORESEEING,
+            )
             if reduction is None:
                 solution = self._verified(pressure, closure)
                 if solution.residual <= self.rtol:
@@ -260,16 +269,44 @@ class ActiveSet:
         residual = max(worst / abs(closure), lacking)
         return Solution(pressure, displacement, closure, residual, self.operator.applications)
 
-    def _correct(self, pressure, displacement, closure, examined, reduction):
+    def _correct(self, pressure, displacement, closure, examined, reduction, *, foreseeing):
         """Correct pressure and displacement in place; returns the closure.
 
         ``reduction`` is the share of the first residual at which the linear solve stops. Without
-        one a single step is taken, and the displacement left for a verification.
+        one a single step is taken, and the displacement left for a verification. If ``foreseeing``,
+        nodes that the first step takes to a bound are left out of the set.
         """
-        problem, free, beyond = self.problem, examined.free, examined.beyond
-        gap = displacement[free] + problem.clearance[free] - closure
-        bound = np.where(pressure[beyond] < 0, 0.0, problem.cap)
-        back = bound - pressure[beyond]
+        cap, patient = self.problem.cap, reduction == PATIENT_REDUCTION
+        free, beyond = examined.free, examined.beyond
+        bound = np.where(pressure[beyond] < 0, 0.0, cap)
+        gap = displacement[free] + self.problem.clearance[free] - closure
+        equations, back, scale = self._stepped(pressure, gap, free, beyond, bound, patient)
+        leaving = equations.at_zero | equations.at_cap
+        if foreseeing and 0 < np.count_nonzero(leaving) <= MOST_LEFT_OUT * free.size:
+            beyond = np.concatenate([beyond, free[leaving]])
+            bound = np.concatenate([bound, np.where(equations.at_zero[leaving], 0.0, cap)])
+            free, gap = free[~leaving], gap[~leaving]
+            self.operator.inverse.update(free, fresh=False)
+            equations, back, scale = self._stepped(pressure, gap, free, beyond, bound, patient)
+        if reduction is not None:
+            equations.carry_out(beyond, back / scale)
+            goal = max(reduction, SINGLE_REACHES, SAFETY * self.rtol * abs(closure) / scale)
+            equations.conjugate_gradients(goal, by_force=self.problem.by_force)
+            _add(displacement, scale, equations.image)
+        pressure[beyond] = bound
+        pressure[free] += scale * equations.solution.astype(float)
+        # Exactly at the bound, where rounding leaves them next to it.
+        pressure[free[equations.at_zero]] = 0.0
+        pressure[free[equations.at_cap]] = cap
+        return closure + scale * equations.common
+
+    def _stepped(self, pressure, gap, free, beyond, bound, patient):
+        """The equations on a set after their first step; and what goes with them.
+
+        That is by how much the pressures ``beyond`` change, which go to a ``bound``, and the scale
+        of all numbers in the equations.
+        """
+        problem, back = self.problem, bound - pressure[beyond]
         lacking = problem.load - pressure.sum() - back.sum() if problem.by_force else None
         scale = max(
             np.abs(gap).max(initial=0.0),
@@ -280,20 +317,9 @@ class ActiveSet:
         equations = SetEquations(self.operator, free, -gap / scale)
         start = pressure[free] / scale
         wanted = None if lacking is None else start.sum() + lacking / scale
-        patient = reduction == PATIENT_REDUCTION
         bounds = (-np.inf, np.inf) if patient else (0.0, problem.cap / scale)
         equations.clipped_step(start, bounds, wanted)
-        if reduction is not None:
-            equations.carry_out(beyond, back / scale)
-            goal = max(reduction, SINGLE_REACHES, SAFETY * self.rtol * abs(closure) / scale)
-            equations.conjugate_gradients(goal, by_force=problem.by_force)
-            _add(displacement, scale, equations.image)
-        pressure[beyond] = bound
-        pressure[free] += scale * equations.solution.astype(float)
-        # Exactly at the bound, where rounding leaves them next to it.
-        pressure[free[equations.at_zero]] = 0.0
-        pressure[free[equations.at_cap]] = problem.cap
-        return closure + scale * equations.common
+        return equations, back, scale
 
 
 @dataclass(frozen=True)
@@ -355,22 +381,6 @@ def _add(values, scale, change):
     """values += scale * change, without arrays in between."""
     for i in range(values.size):
         values[i] += scale * change[i]
-
-
-@njit(cache=True)
-def _differing(first, second):
-    """How many numbers are in one only of two ascending arrays."""
-    a, b, common = 0, 0, 0
-    while a < first.size and b < second.size:
-        if first[a] == second[b]:
-            common += 1
-            a += 1
-            b += 1
-        elif first[a] < second[b]:
-            a += 1
-        else:
-            b += 1
-    return first.size + second.size - 2 * common
 
 
 @njit(cache=True)

@@ -22,8 +22,10 @@ MOST_HATS = 17
 #: Added to the coarse matrix, shares of each and of its largest diagonal: hats that hold few nodes
 #: may nearly coincide.
 RIDGE, LEAST_RIDGE = 1e-4, 1e-6
-#: Change of the set's size beyond which the coarse operator is made anew.
-LAG = 0.1
+#: The coarse operator is made anew where more than this share of the set's nodes changed.
+LAG = 0.05
+#: And always on sets of fewer nodes a hat: a change of one could make it a wrong one there.
+FEW = 10
 
 
 class SmoothCorrection:
@@ -49,21 +51,23 @@ class SmoothCorrection:
         self._own = np.float32(space.influence()[0, 0])
         self._hats = _hats(self._coarse, max(space.shape))
         self._extents = _extents(self._hats.reshape(-1, *self._coarse.shape))
-        self._size = 0
+        self._made_for = np.empty(0, np.int32)
 
     def update(self, rows, fresh):
-        """Take another contact set; the operator is made anew if it is ``fresh`` or much larger.
+        """Take another contact set; the operator is made anew if it lags behind.
 
         Parameters
         ----------
         rows : (n,) int32 ndarray
             Nodes as numbers of cells.
         fresh : bool
+            Whether to make it anew in any case.
         """
         self._place, self._share = _interpolation(rows, self._nx, self._step, *self._coarse.shape)
         self._missing = _missing(self._share, self._near, self._own)
-        if fresh or abs(rows.size - self._size) > LAG * self._size:
-            self._size = rows.size
+        few = rows.size < FEW * len(self._hats)
+        if fresh or few or differing(self._made_for, rows) > LAG * rows.size:
+            self._made_for = rows
             self._make_operator()
 
     def _make_operator(self):
@@ -304,3 +308,19 @@ def _add_interpolated(place, share, missing, field, values):
     for i in range(values.size):
         for a in range(4):
             values[i] += share[i, a] * field[place[i, a]]
+
+
+@njit(cache=True)
+def differing(first, second):
+    """How many numbers are in one only of two ascending arrays."""
+    a, b, common = 0, 0, 0
+    while a < first.size and b < second.size:
+        if first[a] == second[b]:
+            common += 1
+            a += 1
+            b += 1
+        elif first[a] < second[b]:
+            a += 1
+        else:
+            b += 1
+    return first.size + second.size - 2 * common

@@ -24,7 +24,7 @@ COARSEST = 24
 # little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
 KEPT_CELLS = 10_000
 # The coarse solution is only a start.
-COARSE_RTOL = 3e-2
+COARSE_RTOL = 2e-2
 # Earlier states are extrapolated by no more than this many of their own steps.
 FURTHEST = 2.0
 # Largest relative error of the stiffness.

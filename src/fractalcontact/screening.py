@@ -26,6 +26,8 @@ REACH = 2
 #: ... if they are no further than this, in squared blocks: a larger neighbourhood saves hardly an
 #: application and costs more than it.
 REACH_SQUARED = 5
+#: So far to each side in the rows of blocks 0, 1, 2 from a node's own.
+WIDE = tuple(int((REACH_SQUARED - row**2) ** 0.5) for row in range(REACH + 1))
 #: Most nodes that can condition one.
 MOST = 20
 #: Sets of at most so many nodes are inverted exactly.
@@ -80,8 +82,11 @@ class ContactInverse:
         slot = np.full(self._slot.size, -1, np.int32)
         slot[rows] = np.arange(rows.size, dtype=np.int32)
         blocks = _representatives(rows, *self._shape, self._shifts)
-        changed = np.flatnonzero(self._first != blocks[0])
-        touched = _touched(changed, self._first, blocks, self._shifts, nx)
+        if self._rows.size:
+            changed = np.flatnonzero(self._first != blocks[0])
+            touched = _touched(changed, self._first, blocks, self._shifts, nx)
+        else:
+            touched = np.ones(blocks[0].size, bool)
         self._first = blocks[0]
         factor = _empty_factor(rows.size)
         old, known = (self._rows, self._slot, self._factor), (*blocks, touched)
@@ -200,11 +205,11 @@ def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new)
     first, offsets, widths, level, touched = blocks
     old_rows, old_slot, (old_count, old_near, old_weight, old_own) = old
     count, near, weight, own = new
-    members = np.empty(MOST, np.int64)
-    waiting = np.empty(WIDTH, np.int64)
+    members = np.empty(MOST + 1, np.int64)
+    # Those solved side by side have equally many nodes, as far as there are enough such.
+    waiting, lanes = np.empty((MOST + 1, WIDTH), np.int64), np.zeros(MOST + 1, np.int64)
     lower = np.empty((MOST + 1) * (MOST + 1) * WIDTH, np.float32)
     column = np.empty((MOST + 1) * WIDTH, np.float32)
-    lanes = 0
     for i in range(start, stop):
         node = rows[i]
         y, x = node // nx, node % nx
@@ -219,22 +224,36 @@ def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new)
             continue
         n = 0
         for by in range(max(block_y - REACH, 0), min(block_y + REACH + 1, widths[k, 0])):
-            for bx in range(max(block_x - REACH, 0), min(block_x + REACH + 1, widths[k, 1])):
-                if (by - block_y) ** 2 + (bx - block_x) ** 2 > REACH_SQUARED:
-                    continue
-                other = first[offsets[k] + by * widths[k, 1] + bx]
-                if other >= 0 and (level[other] > k or (level[other] == k and other < node)):
-                    members[n] = other
-                    n += 1
+            row = offsets[k] + by * widths[k, 1]
+            reach = WIDE[abs(by - block_y)]
+            for bx in range(max(block_x - reach, 0), min(block_x + reach + 1, widths[k, 1])):
+                other = first[row + bx]
+                above = level[max(other, 0)]
+                # Put in its place before it is known to stay there: that takes less than a branch.
+                members[n] = other
+                n += (other >= 0) & ((above > k) | ((above == k) & (other < node)))
         count[i] = n
         for a in range(n):
             near[i, a] = slot[members[a]]
-        waiting[lanes] = i
-        lanes += 1
-        if lanes == WIDTH:
-            _solve_columns(waiting, rows, nx, influence, new, lower, column)
-            lanes = 0
-    _solve_columns(waiting[:lanes], rows, nx, influence, new, lower, column)
+        waiting[n, lanes[n]] = i
+        lanes[n] += 1
+        if lanes[n] == WIDTH:
+            _solve_columns(waiting[n], rows, nx, influence, new, lower, column)
+            lanes[n] = 0
+    left = _joined(waiting, lanes)
+    for a in range(0, left.size, WIDTH):
+        _solve_columns(left[a : a + WIDTH], rows, nx, influence, new, lower, column)
+
+
+@njit(cache=True)
+def _joined(lists, lengths):
+    """The beginnings of some lists, one after the other."""
+    joined = np.empty(lengths.sum(), lists.dtype)
+    n = 0
+    for k in range(lengths.size):
+        joined[n : n + lengths[k]] = lists[k, : lengths[k]]
+        n += lengths[k]
+    return joined
 
 
 @njit(cache=True)
