@@ -34,8 +34,11 @@ def test_known_bias_is_taken_off(bias):
     for name in ("variogram", "triangular_prism"):
         assert smooth["slope_bias"].sel(estimator=name) < -0.05
         assert np.abs(smooth["bias"].sel(estimator=name)) < 0.04
-    without = smooth.sel(estimator=list(LITTLE_BIASED))
-    np.testing.assert_allclose(without["slope_bias"], without["bias"], atol=0.005)
+    for name in LITTLE_BIASED:
+        # Of points nothing is to be taken off but the aliasing of the spectrum.
+        atol = 0.005 if name == "power_spectrum" else 1e-9
+        without = smooth.sel(estimator=name)
+        np.testing.assert_allclose(without["slope_bias"], without["bias"], rtol=1e-7, atol=atol)
 
 
 def test_table_is_that_of_the_single_surfaces(bias):

@@ -4,7 +4,6 @@ from brownian import brownian_surface
 
 from fractalcontact.estimators import ESTIMATORS
 from fractalcontact.known_bias import (
-    BAND_LIMITED,
     HURST_GRID,
     POINTS,
     Fit,
@@ -16,6 +15,7 @@ from fractalcontact.known_bias import (
     unresolved,
 )
 from fractalcontact.roughness import hurst_exponents
+from fractalcontact.spectrum_model import BAND_LIMITED
 from fractalcontact.synthesis import self_affine
 
 MADE = {

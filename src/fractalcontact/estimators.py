@@ -19,7 +19,6 @@ from .curves import (
     variogram_curves,
 )
 from .known_bias import (
-    BAND_LIMITED,
     POINTS,
     Fit,
     found_by_cubes,
@@ -30,6 +29,7 @@ from .known_bias import (
     found_by_second_differences,
     found_by_variogram,
 )
+from .spectrum_model import BAND_LIMITED
 
 
 class Estimator(NamedTuple):
@@ -52,7 +52,7 @@ class Estimator(NamedTuple):
     0.95 on made surfaces (50 of 256 x 256, 40 of 512 x 512)."""
     found: Callable[[Fit, str], np.ndarray]
     """What the slope of such a fit says on average at each of `known_bias.HURST_GRID`, if the nodes
-    are `known_bias.POINTS` or those of a `known_bias.BAND_LIMITED` surface."""
+    are `known_bias.POINTS` or those of a `spectrum_model.BAND_LIMITED` surface."""
     nodes: str = POINTS
     """What they are taken for. Errors of measurement make short lags too rough, as missing waves
     make them too smooth: of scans neither is taken off. Cubes and islands were tried on

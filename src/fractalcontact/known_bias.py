@@ -22,12 +22,13 @@ import numpy as np
 from scipy import special
 
 from .curves import ratio
+from .spectrum_model import ALIASED, BAND_LIMITED, sampled
 
 #: Exponents at which it is known what an estimator finds.
 HURST_GRID = np.linspace(0.02, 0.98, 97)
 
-#: What nodes can stand for: see above.
-BAND_LIMITED, POINTS = "band-limited", "points"
+#: The other thing nodes can stand for, beside `BAND_LIMITED`: see above.
+POINTS = ALIASED
 
 #: Exponents of the made surfaces on which cubes and islands were tried.
 MADE = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])
@@ -144,16 +145,9 @@ def found_by_roughness_length(fit: Fit, sampling: str) -> np.ndarray:
 def found_by_power_spectrum(fit: Fit, sampling: str) -> np.ndarray:
     """Profiles lack waves that are short across them, or have short waves along them folded back.
 
-    C(q_x), the integral of q^(-2 - 2H) over q_y, ends at the shortest wave; or the profile's q_x^-s
-    of all waves that look like this one add up, s = 1 + 2H.
+    Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long.
     """
-    s = 1 + 2 * HURST_GRID[:, np.newaxis]
-    if sampling == BAND_LIMITED:
-        kept = special.betainc(0.5, s / 2, 1 / (1 + (2 / fit.length) ** 2))
-    else:
-        wave = 1 / fit.length
-        kept = 1 + wave**s * (special.zeta(s, 1 - wave) + special.zeta(s, 1 + wave))
-    return _found(fit, kept)
+    return _found(fit, sampled(sampling, 1 + 2 * HURST_GRID[:, np.newaxis], 2 / fit.length))
 
 
 def found_by_prisms(fit: Fit, sampling: str) -> np.ndarray:

@@ -14,8 +14,9 @@ from scipy import special
 from .curves import Curve, roughness_length_curves
 from .estimators import ESTIMATORS, Estimator
 from .fitting import CONFIDENCE, fit_line, without_mean_plane
-from .known_bias import BAND_LIMITED, HURST_GRID, POINTS, Fit, extended, slopes
+from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
 from .labels import about
+from .spectrum_model import BAND_LIMITED
 
 #: Default fit range in cells and in parts of the smaller side. Below 4 cells interpolation and
 #: aliasing show; above an eighth of the side too few independent pairs or windows are left.

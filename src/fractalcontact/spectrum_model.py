@@ -18,7 +18,8 @@ from scipy import special
 
 #: Of a filter: Gaussian, and such as fall with powers of the wave number (2 f of straight facets).
 FILTERS = ("Gaussian", "second order", "fourth order")
-SAMPLINGS = ("ideal", "aliased", "band-limited")
+#: What the grid may have made of a surface: see above.
+IDEAL, ALIASED, BAND_LIMITED = SAMPLINGS = ("ideal", "aliased", "band-limited")
 
 
 class Form(NamedTuple):
@@ -38,7 +39,7 @@ class Form(NamedTuple):
 FORMS = tuple(
     Form(sampling, filtering, rolls_off, noisy)
     for (sampling, filtering), rolls_off, noisy in product(
-        [*((sampling, "") for sampling in SAMPLINGS), *(("ideal", f) for f in FILTERS)],
+        [*((sampling, "") for sampling in SAMPLINGS), *((IDEAL, f) for f in FILTERS)],
         (False, True),
         (False, True),
     )
@@ -54,7 +55,7 @@ def log_model(form: Form, parameters: np.ndarray, x: np.ndarray) -> np.ndarray:
     own = named(form, parameters)
     log_x = np.log(x)
     surface = own["a"] - own["slope"] * log_x
-    surface += np.log(_sampled(form, own["slope"], x))
+    surface += np.log(sampled(form.sampling, own["slope"], x))
     if form.rolls_off:
         surface += np.log(_rolled_off(own["slope"], np.exp(own["roll_off"]), x))
     if form.filtering:
@@ -69,13 +70,22 @@ def named(form: Form, parameters: np.ndarray) -> dict[str, float]:
     return dict(zip(names + ["level"] * form.noisy, parameters, strict=True))
 
 
-def _sampled(form: Form, slope: float, x: np.ndarray):
-    """What the grid makes of x^-slope, as a factor."""
-    if form.sampling == "aliased":
+def sampled(sampling: str, slope, x: np.ndarray):
+    """What the grid makes of a profile's spectrum x^-slope, as a factor.
+
+    Parameters
+    ----------
+    sampling : str
+        One of :data:`SAMPLINGS`.
+    slope : float or (n, 1) ndarray
+    x : (k,) ndarray
+        Wave numbers over that of the shortest wave, two spacings.
+    """
+    if sampling == ALIASED:
         # The sum of |x + 2k|^-slope over all whole k.
         waves = special.zeta(slope, x / 2) + special.zeta(slope, 1 - x / 2)
         return waves * (x / 2) ** slope
-    if form.sampling == "band-limited":
+    if sampling == BAND_LIMITED:
         # A profile's spectrum is the surface's, integrated over the other axis: to x = 1 only.
         return special.betainc(0.5, slope / 2, 1 / (1 + x**2))
     return 1.0

@@ -14,14 +14,9 @@ def parts_of(specimen):
     }
 
 
-def taken(key, of_settings=None):
-    """What a contact job takes: a slice, or these of the settings."""
-
-    def take(wildcards):
-        start, stop = parts_of(wildcards.specimen)[key][int(wildcards[key])]
-        return settings_of(wildcards)[of_settings][start:stop] if of_settings else [start, stop]
-
-    return take
+def part_of(wildcards, key):
+    """Start and stop of the directions, offsets or resolutions that a contact job takes."""
+    return parts_of(wildcards.specimen)[key][int(wildcards[key])]
 
 
 rule contact:
@@ -42,9 +37,11 @@ rule contact:
     params:
         settings=settings_of,
         solver=SOLVER,
-        directions=taken("directions", "contact_directions"),
-        offsets=taken("offsets"),
-        resolutions=taken("resolutions", "resolutions"),
+        directions=lambda wc: settings_of(wc)["contact_directions"][
+            slice(*part_of(wc, "directions"))
+        ],
+        offsets=lambda wc: part_of(wc, "offsets"),
+        resolutions=lambda wc: settings_of(wc)["resolutions"][slice(*part_of(wc, "resolutions"))],
         code=code("sweep", "store"),
     script:
         "../scripts/contact.py"
