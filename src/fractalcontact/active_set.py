@@ -17,7 +17,8 @@ import numpy as np
 from numba import njit
 
 from .balancing import differing
-from .set_equations import CLIPPING_PASSES, Operator, SetEquations
+from .conditions import between_bounds, examined_by
+from .set_equations import CLIPPING_PASSES, Operator, SetEquations, stiffness
 
 # Corrections of the contact set before the solver gives up: trials needed at most some twenty.
 MAX_CORRECTIONS = 200
@@ -50,40 +51,6 @@ SINGLE_REACHES = 1e-5
 CLOSURE_ROUNDING = 1e-12
 # A total this close to F is F.
 FORCE_ROUNDING = 1e-12
-# Stiffness: its error is of second order in this residual.
-TANGENT_RESIDUAL = 1e-4
-
-
-@dataclass
-class Problem:
-    """What is pressed, in units in which loads are near one.
-
-    Attributes
-    ----------
-    space : HalfSpace
-    clearance : (n,) ndarray
-        c at every node, flattened.
-    load : float
-        The closure, or the sum of the pressures.
-    by_force : bool
-        Which of the two.
-    cap : float
-        Largest pressure, or infinity.
-    """
-
-    space: object
-    clearance: np.ndarray
-    load: float
-    by_force: bool
-    cap: float = np.inf
-
-    def first_touch(self):
-        """The given force on the nodes that touch first, where nothing better is known.
-
-        Forces so small that the depths of all other nodes drown theirs leave no other start.
-        """
-        touching = self.clearance == 0
-        return touching * (self.load / np.count_nonzero(touching))
 
 
 @dataclass
@@ -121,7 +88,7 @@ class ActiveSet:
         self.problem, self.rtol = problem, rtol
         self.operator = Operator(problem.space)
 
-    def solve(self, pressure, displacement=None):
+    def solve(self, pressure, displacement=None, *, at_least=0):
         """Iterate until a state is verified or patience ends; the caller checks the residual.
 
         Parameters
@@ -130,6 +97,8 @@ class ActiveSet:
             Where to start; may violate the bounds. Overwritten, and so is the displacement.
         displacement : (n,) ndarray, optional
             K of it, where known.
+        at_least : int
+            Corrections made even of what satisfies the tolerance, unless nothing is left of them.
 
         Returns
         -------
@@ -140,11 +109,14 @@ class ActiveSet:
         pressure, displacement = self._loaded(pressure, displacement)
         if displacement is None:
             displacement = self.operator(pressure.astype(np.float32)).astype(float)
+            factor = self._best_factor(pressure, displacement)
+            pressure, displacement = factor * pressure, factor * displacement
         closure = self._mean_gap(pressure, displacement) if problem.by_force else problem.load
         free, foreseen = np.empty(0, np.int32), False
         for correction in range(MAX_CORRECTIONS):
             examined = self._examine(pressure, displacement, closure)
-            if examined.worst <= self.rtol * abs(closure):
+            done = correction >= at_least or examined.worst <= SINGLE_REACHES * abs(closure)
+            if done and examined.worst <= self.rtol * abs(closure):
                 solution = self._verified(pressure, closure)
                 if solution.residual <= self.rtol:
                     return solution
@@ -161,7 +133,7 @@ class ActiveSet:
             reduction = min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
             if patient:
                 reduction = PATIENT_REDUCTION
-            elif not foreseen and examined.worst <= NEARLY * self.rtol * abs(closure):
+            elif done and not foreseen and examined.worst <= NEARLY * self.rtol * abs(closure):
                 # Once only: where one step gains too little, conjugate gradients must follow.
                 foreseen, reduction = True, None
             closure = self._correct(
@@ -208,7 +180,7 @@ class ActiveSet:
 
     def _examine(self, pressure, displacement, closure):
         problem = self.problem
-        return Examined(*_examine(pressure, displacement, problem.clearance, closure, problem.cap))
+        return examined_by(pressure, displacement, problem.clearance, closure, problem.cap)
 
     def _loaded(self, pressure, displacement):
         """The start, scaled to the force where that is given."""
@@ -222,6 +194,17 @@ class ActiveSet:
         if pressure.max() * factor > problem.cap:
             return self._within_cap(pressure), None
         return pressure * factor, None if displacement is None else displacement * factor
+
+    def _best_factor(self, pressure, displacement):
+        """What a start under a given closure is to be multiplied with: its energy is least then.
+
+        On a coarse grid, of which each cell has its highest point, too much is carried.
+        """
+        problem, work = self.problem, pressure @ displacement
+        if problem.by_force or not work > 0:
+            return 1.0
+        factor = pressure @ (problem.load - problem.clearance) / work
+        return min(factor, problem.cap / pressure.max()) if factor > 0 else 1.0
 
     def _within_cap(self, pressure):
         """A start of the given force that breaks no bound.
@@ -324,48 +307,6 @@ class ActiveSet:
         return equations, back, scale
 
 
-@dataclass(frozen=True)
-class Examined:
-    """What the contact conditions say of a pressure: see :func:`_examine`."""
-
-    free: np.ndarray
-    beyond: np.ndarray
-    worst: float
-
-
-def between_bounds(pressure, cap):
-    """Nodes whose pressure is neither zero nor at the cap, (n,) int32: those that keep gap 0."""
-    return np.flatnonzero((pressure > 0) & (pressure < cap)).astype(np.int32)
-
-
-def stiffness(operator, free):
-    """Sum of q with K q = 1 on some nodes: dF/dw of a state in which these lie between the bounds.
-
-    Parameters
-    ----------
-    operator : Operator
-    free : (n,) int32 ndarray
-
-    Returns
-    -------
-    stiffness, error : float
-        0 without nodes. ``error`` estimates the relative error, of second order in the
-        residual of the equations.
-
-    Notes
-    -----
-    For an approximate q with residual r = 1 - K q, sum(q) + r.q errs by r.K^-1 r only.
-    """
-    if free.size == 0:
-        return 0.0, 0.0
-    operator.inverse.update(free, fresh=True)
-    equations = SetEquations(operator, free, np.ones(free.size))
-    equations.conjugate_gradients(TANGENT_RESIDUAL, by_force=False)
-    residual, q = equations.residual.astype(float), equations.solution.astype(float)
-    value = q.sum() + residual @ q
-    return value, float(residual @ operator.inverse(equations.residual)) / value
-
-
 def _with_total(pressure, total, cap):
     """Pressure scaled to a total, none above the cap."""
     for _ in range(CLIPPING_PASSES):
@@ -383,41 +324,3 @@ def _add(values, scale, change):
     """values += scale * change, without arrays in between."""
     for i in range(values.size):
         values[i] += scale * change[i]
-
-
-@njit(cache=True)
-def _examine(pressure, displacement, clearance, closure, cap):
-    """What the contact conditions say of every node.
-
-    Returns
-    -------
-    free : (n,) int32 ndarray
-        Nodes on which the gap is to vanish.
-    beyond : (m,) int32 ndarray
-        Nodes whose pressure is beyond a bound.
-    worst : float
-        Largest violation: of a gap condition, or of a bound (as a node's pressure displaces it by
-        about itself in these units).
-    """
-    free = np.empty(pressure.size, np.int32)
-    beyond = np.empty(pressure.size, np.int32)
-    n, m, worst = 0, 0, 0.0
-    for i in range(pressure.size):
-        p = pressure[i]
-        if p < 0 or p > cap:
-            beyond[m] = i
-            m += 1
-            worst = max(worst, -p if p < 0 else p - cap)
-            continue
-        gap = displacement[i] + clearance[i] - closure
-        if p == 0:
-            off = -gap
-        elif p == cap:
-            off = gap
-        else:
-            off = abs(gap)
-        if off > 0 or (p > 0 and p < cap):
-            free[n] = i
-            n += 1
-            worst = max(worst, off)
-    return free[:n].copy(), beyond[:m].copy(), worst

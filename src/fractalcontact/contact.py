@@ -12,19 +12,14 @@ from functools import cached_property
 import numpy as np
 
 from . import active_set
-from .active_set import ActiveSet, Problem
+from .active_set import ActiveSet
+from .coarse_start import coarse_start
+from .conditions import Problem, between_bounds
 from .effort import SOLVING
 from .errors import NotConverged
 from .halfspace import HalfSpace
-from .set_equations import Operator
+from .set_equations import Operator, stiffness
 
-# A coarser grid gives the start until its shorter side has fewer nodes than this.
-COARSEST = 24
-# The approximate inverse on coarse grids of more cells is not kept: it takes memory, and there is
-# little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
-KEPT_CELLS = 10_000
-# The coarse solution is only a start.
-COARSE_RTOL = 2e-2
 # Earlier states are extrapolated by no more than this many of their own steps.
 FURTHEST = 2.0
 # Largest relative error of the stiffness.
@@ -99,9 +94,9 @@ class ContactState:
         NotConverged
             If it is not known to 1e-6.
         """
-        free = active_set.between_bounds(self.pressure.ravel(), self.hardness)
+        free = between_bounds(self.pressure.ravel(), self.hardness)
         with SOLVING.counted(0):
-            value, error = active_set.stiffness(Operator(self.space), free)
+            value, error = stiffness(Operator(self.space), free)
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         return value * self.space.modulus * self.space.cell
@@ -148,7 +143,7 @@ def solve_contact(
     problem = units.problem(clearance, checked_hardness(hardness, space, force))
     with SOLVING.counted(1):
         if start is None or not start.pressure.any():
-            pressure, displacement = _coarse_start(problem), None
+            pressure, displacement = coarse_start(problem), None
         else:
             pressure, displacement = units.extrapolated(start, load)
         found = ActiveSet(problem, rtol).solve(pressure, displacement)
@@ -272,28 +267,3 @@ class _Units:
             hardness=problem.cap * self.pressure,
             _before=before,
         )
-
-
-def _coarse_start(problem):
-    """Pressure to start from: the solution on the topography pooled 2 x 2, spread out."""
-    space = problem.space
-    ny, nx = space.shape
-    if min(ny, nx) < COARSEST:
-        return np.full(ny * nx, min(1.0, problem.cap))
-    coarse_space = space.coarser(2)
-    pooled = _pool_minimum(problem.clearance.reshape(ny, nx)).ravel()
-    # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
-    load = problem.load / 2 if problem.by_force else problem.load
-    coarse = Problem(coarse_space, pooled, load, problem.by_force, 2 * problem.cap)
-    found = ActiveSet(coarse, COARSE_RTOL).solve(_coarse_start(coarse))
-    if pooled.size > KEPT_CELLS:
-        coarse_space.forget()
-    pressure = found.pressure.reshape(coarse_space.shape) / 2
-    return np.repeat(np.repeat(pressure, 2, axis=0), 2, axis=1)[:ny, :nx].ravel()
-
-
-def _pool_minimum(clearance):
-    """Smallest clearance of each 2 x 2 nodes, an odd last row or column standing alone."""
-    ny, nx = clearance.shape
-    padded = np.pad(clearance, ((0, ny % 2), (0, nx % 2)), constant_values=np.inf)
-    return padded.reshape((ny + 1) // 2, 2, (nx + 1) // 2, 2).min(axis=(1, 3))

@@ -9,6 +9,8 @@ MAX_INNER = 60
 CLIPPING_PASSES = 20
 # In it, least effect of closure on a node's pressure, as a share of the mean.
 LEAST_SHARE = 1e-2
+# Stiffness: its error is of second order in this residual.
+TANGENT_RESIDUAL = 1e-4
 
 
 class Operator:
@@ -148,6 +150,34 @@ class SetEquations:
             self.image += image
             on_set *= length
             self.residual -= on_set
+
+
+def stiffness(operator, free):
+    """Sum of q with K q = 1 on some nodes: dF/dw of a state in which these lie between the bounds.
+
+    Parameters
+    ----------
+    operator : Operator
+    free : (n,) int32 ndarray
+
+    Returns
+    -------
+    stiffness, error : float
+        0 without nodes. ``error`` estimates the relative error, of second order in the
+        residual of the equations.
+
+    Notes
+    -----
+    For an approximate q with residual r = 1 - K q, sum(q) + r.q errs by r.K^-1 r only.
+    """
+    if free.size == 0:
+        return 0.0, 0.0
+    operator.inverse.update(free, fresh=True)
+    equations = SetEquations(operator, free, np.ones(free.size))
+    equations.conjugate_gradients(TANGENT_RESIDUAL, by_force=False)
+    residual, q = equations.residual.astype(float), equations.solution.astype(float)
+    value = q.sum() + residual @ q
+    return value, float(residual @ operator.inverse(equations.residual)) / value
 
 
 @njit(cache=True)
