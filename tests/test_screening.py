@@ -99,3 +99,18 @@ def test_bits_do_not_depend_on_the_number_of_threads(monkeypatch):
         monkeypatch.setenv("OMP_NUM_THREADS", count)
         results.append(inverse_on(space, rows)(vector))
     np.testing.assert_array_equal(*results)
+
+
+def test_a_few_nodes_that_stand_alone_do_not_get_an_operator_out_of_date():
+    """Of all nodes they are nothing, of those around their own hat they are all."""
+    space = HalfSpace((400, 400), (1.0, 1.0), 1.0)
+    grid = np.zeros(space.shape, bool)
+    grid[:150, :150] = True
+    before, after = grid.copy(), grid.copy()
+    before[300:302, 300:302] = after[300, 300] = True
+    updated, fresh = ContactInverse(space), ContactInverse(space)
+    updated.update(np.flatnonzero(before).astype(np.int32), fresh=True)
+    updated.update(np.flatnonzero(after).astype(np.int32), fresh=False)
+    fresh.update(np.flatnonzero(after).astype(np.int32), fresh=True)
+    residual = np.ones(np.count_nonzero(after), np.float32)
+    np.testing.assert_array_equal(updated(residual), fresh(residual))

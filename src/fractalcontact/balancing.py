@@ -22,10 +22,9 @@ MOST_HATS = 17
 #: Added to the coarse matrix, shares of each and of its largest diagonal: hats that hold few nodes
 #: may nearly coincide.
 RIDGE, LEAST_RIDGE = 1e-4, 1e-6
-#: The coarse operator is made anew where more than this share of the set's nodes changed.
-LAG = 0.05
-#: And always on sets of fewer nodes a hat: a change of one could make it a wrong one there.
-FEW = 10
+#: The coarse operator is made anew where more than this share of the nodes around any one hat
+#: changed: out of date on a few nodes that stand alone it sends them back and forth for ever.
+LAG = 0.25
 
 
 class SmoothCorrection:
@@ -41,7 +40,7 @@ class SmoothCorrection:
         while max(space.shape) > COARSE * step:
             step *= 2
         self._coarse = space.coarser(step)
-        self._step, self._nx = step, space.shape[1]
+        self._step, self._shape = step, space.shape
         # A load on a coarse cell is a pressure 1/step^2 of it there, on cells step times as wide.
         self._factor = np.float32(1 / step)
         near = np.zeros((2, 2))
@@ -49,7 +48,8 @@ class SmoothCorrection:
         near[: known.shape[0], : known.shape[1]] = known
         self._near = (near * self._factor).astype(np.float32)
         self._own = np.float32(space.influence()[0, 0])
-        self._hats = _hats(self._coarse, max(space.shape))
+        self._knots = _knots(self._coarse, max(space.shape))
+        self._hats = _hats(self._coarse, self._knots)
         self._extents = _extents(self._hats.reshape(-1, *self._coarse.shape))
         self._made_for = np.empty(0, np.int32)
 
@@ -63,10 +63,11 @@ class SmoothCorrection:
         fresh : bool
             Whether to make it anew in any case.
         """
-        self._place, self._share = _interpolation(rows, self._nx, self._step, *self._coarse.shape)
+        self._place, self._share = _interpolation(
+            rows, self._shape[1], self._step, *self._coarse.shape
+        )
         self._missing = _missing(self._share, self._near, self._own)
-        few = rows.size < FEW * len(self._hats)
-        if fresh or few or differing(self._made_for, rows) > LAG * rows.size:
+        if fresh or _most_changed(self._made_for, rows, self._shape, self._knots) > LAG:
             self._made_for = rows
             self._make_operator()
 
@@ -105,15 +106,19 @@ class SmoothCorrection:
         return fine
 
 
-def _hats(coarse, cells):
-    """(hats, coarse cells): bilinear hats spread evenly along ``cells`` of the longer side."""
+def _knots(coarse, cells):
+    """Hats along y and along x, spread evenly along ``cells`` of the longer side."""
     sides = [n * d for n, d in zip(coarse.shape, coarse.spacing, strict=True)]
     spacing = max(sides) / (min(round(cells / HAT_SPACING) + 1, MOST_HATS) - 1)
+    return tuple(max(2, round(side / spacing) + 1) for side in sides)
+
+
+def _hats(coarse, knots):
+    """(hats, coarse cells): bilinear hats on so many knots along y and x."""
     along = []
-    for n, side in zip(coarse.shape, sides, strict=True):
-        knots = max(2, round(side / spacing) + 1)
-        at = (np.arange(n) + 0.5) / n * (knots - 1)
-        along.append(np.maximum(0, 1 - np.abs(at - np.arange(knots)[:, None])))
+    for n, k in zip(coarse.shape, knots, strict=True):
+        at = (np.arange(n) + 0.5) / n * (k - 1)
+        along.append(np.maximum(0, 1 - np.abs(at - np.arange(k)[:, None])))
     hats = np.einsum("ay,bx->abyx", *along)
     return np.ascontiguousarray(hats.reshape(-1, coarse.shape[0] * coarse.shape[1]), np.float32)
 
@@ -324,3 +329,22 @@ def differing(first, second):
         else:
             b += 1
     return first.size + second.size - 2 * common
+
+
+@njit(cache=True)
+def _most_changed(first, second, shape, knots):
+    """Of two sets of nodes, the share that differs around the hat where it is largest."""
+    changed, held = np.zeros(knots), np.zeros(knots)
+    per_y, per_x = (knots[0] - 1) / shape[0], (knots[1] - 1) / shape[1]
+    a, b = 0, 0
+    while a < first.size or b < second.size:
+        in_first = b == second.size or (a < first.size and first[a] <= second[b])
+        in_second = a == first.size or (b < second.size and second[b] <= first[a])
+        node = first[a] if in_first else second[b]
+        at_y, at_x = (node // shape[1] + 0.5) * per_y, (node % shape[1] + 0.5) * per_x
+        knot = int(at_y + 0.5), int(at_x + 0.5)
+        held[knot] += 1
+        changed[knot] += in_first != in_second
+        a += in_first
+        b += in_second
+    return np.max(changed / np.maximum(held, 1))
