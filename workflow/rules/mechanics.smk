@@ -1,13 +1,15 @@
 # Joint mechanics beside the contact states: parts of the window, strength, made joints.
 
 
+# How mechanics goes with size, and the direct test of eq. 6: both press parts of the window.
 rule windows:
     input:
         specimen=rules.specimen.output[0],
         surface_dimension=rules.surfaces.output.surface_dimension,
         joint=rules.surfaces.output.joint,
     output:
-        f"{RESULTS}/windows/{{specimen}}.nc",
+        windows=f"{RESULTS}/windows/{{specimen}}.nc",
+        size_test=f"{RESULTS}/size_test/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/windows/{{specimen}}.log",
     benchmark:
@@ -20,7 +22,7 @@ rule windows:
     params:
         settings=settings_of,
         solver=SOLVER,
-        code=code("size_laws", "store"),
+        code=code("size_laws", "size_test", "store"),
     script:
         "../scripts/windows.py"
 

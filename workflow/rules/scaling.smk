@@ -1,31 +1,4 @@
-# What changes with resolution. Then the atlas.
-
-
-# The direct test of eq. 6, on parts of the window.
-rule size_test:
-    input:
-        specimen=rules.specimen.output[0],
-        joint=rules.surfaces.output.joint,
-        windows=rules.windows.output[0],
-    output:
-        f"{RESULTS}/size_test/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/size_test/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/size_test/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=60,
-    params:
-        settings=settings_of,
-        solver=SOLVER,
-        code=code("size_test", "store"),
-    script:
-        "../scripts/size_test.py"
-
-
+# Experiments on made surfaces. Then the atlas.
 # Experiments on made surfaces: whether the two estimates of Delta_sigma agree in any limit, and how
 # far the estimators of Delta_g are off.
 rule dimension_test:
@@ -80,11 +53,11 @@ STAGE_FILES = {
     "dilatancy": rules.closure.output.dilatancy,
     "choices": rules.closure.output.choices,
     "area": rules.closure.output.area,
-    "windows": rules.windows.output[0],
+    "windows": rules.windows.output.windows,
     "domains": rules.domains.output.domains,
     "domain_measures": rules.domains.output.domain_measures,
     "scaling": rules.domains.output.scaling,
-    "size_test": rules.size_test.output[0],
+    "size_test": rules.windows.output.size_test,
 }
 # What only joints that slide have.
 SLIDING_FILES = {"strength": rules.strength.output[0]}
