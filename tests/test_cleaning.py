@@ -1,5 +1,6 @@
 """Outliers are found where they are and nowhere else; holes are filled with harmonic surfaces."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -214,3 +215,9 @@ def test_rough_rock_raises_few_false_alarms(file, options, largest_share):
     assert found.mean() <= largest_share
     if "test4" in file:  # the one node without a signal: 0.5 mm below all others
         assert found[np.unravel_index(np.argmin(heights.values), heights.shape)]
+
+
+def test_a_flat_face_has_no_outliers_and_no_warning():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert not find_outliers(np.full((40, 40), 1.5)).any()

@@ -118,7 +118,7 @@ def find_outliers(heights: np.ndarray) -> np.ndarray:
     """
     flagged = np.zeros(heights.shape, dtype=bool)
     present = np.isfinite(heights)
-    if min(heights.shape) < _SIDE or present.sum() < _FEWEST:
+    if min(heights.shape) < _SIDE or present.sum() < _FEWEST or np.ptp(heights[present]) == 0:
         return flagged
     # Less the plane, because surroundings are one-sided at a rim.
     z = without_mean_plane(heights)
@@ -129,16 +129,6 @@ def find_outliers(heights: np.ndarray) -> np.ndarray:
     typical = max(_NORMAL * np.nanmedian(deviation), recorded_step)
     # A comparison with NaN, for a cell that is not judged, is False.
     flagged[present] = (margin > _MANY_DEVIATIONS * typical) & (margin > _MANY_RELIEFS * relief)
-    return flagged
-    # Less the plane, because surroundings are one-sided at a rim.
-    middle, margin, relief = _surroundings(without_mean_plane(heights), present)
-    deviation = np.abs(middle)
-    typical = np.median(deviation)
-    if typical == 0:  # heights in coarse steps: more than half lie on their median
-        typical = np.mean(deviation)
-    flagged[present] = (margin > _MANY_DEVIATIONS * _NORMAL * typical) & (
-        margin > _MANY_RELIEFS * relief
-    )
     return flagged
 
 
