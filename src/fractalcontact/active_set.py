@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 
-from .balancing import differing
+from .balancing import only_in_one
 from .conditions import between_bounds, examined_by
 from .set_equations import CLIPPING_PASSES, Operator, SetEquations, stiffness
 
@@ -128,7 +128,7 @@ class ActiveSet:
                 inside = (pressure[examined.free] > 0) & (pressure[examined.free] < problem.cap)
                 examined = replace(examined, free=examined.free[inside])
             self.operator.inverse.update(examined.free, fresh=correction == 0)
-            changed = differing(free, examined.free) / max(examined.free.size, 1)
+            changed = only_in_one(free, examined.free).size / max(examined.free.size, 1)
             free = examined.free
             reduction = min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
             if patient:

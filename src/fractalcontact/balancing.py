@@ -316,35 +316,34 @@ def _add_interpolated(place, share, missing, field, values):
 
 
 @njit(cache=True)
-def differing(first, second):
-    """How many numbers are in one only of two ascending arrays."""
-    a, b, common = 0, 0, 0
-    while a < first.size and b < second.size:
-        if first[a] == second[b]:
-            common += 1
-            a += 1
-            b += 1
-        elif first[a] < second[b]:
-            a += 1
-        else:
-            b += 1
-    return first.size + second.size - 2 * common
-
-
-@njit(cache=True)
-def _most_changed(first, second, shape, knots):
-    """Of two sets of nodes, the share that differs around the hat where it is largest."""
-    changed, held = np.zeros(knots), np.zeros(knots)
-    per_y, per_x = (knots[0] - 1) / shape[0], (knots[1] - 1) / shape[1]
-    a, b = 0, 0
+def only_in_one(first, second):
+    """Numbers that are in one only of two ascending arrays, ascending."""
+    found = np.empty(first.size + second.size, np.int32)
+    a, b, n = 0, 0, 0
     while a < first.size or b < second.size:
         in_first = b == second.size or (a < first.size and first[a] <= second[b])
         in_second = a == first.size or (b < second.size and second[b] <= first[a])
-        node = first[a] if in_first else second[b]
-        at_y, at_x = (node // shape[1] + 0.5) * per_y, (node % shape[1] + 0.5) * per_x
-        knot = int(at_y + 0.5), int(at_x + 0.5)
-        held[knot] += 1
-        changed[knot] += in_first != in_second
+        if in_first != in_second:
+            found[n] = first[a] if in_first else second[b]
+            n += 1
         a += in_first
         b += in_second
-    return np.max(changed / np.maximum(held, 1))
+    return found[:n]
+
+
+def _most_changed(first, second, shape, knots):
+    """Of two sets of nodes together, the share that differs around the hat where it is largest."""
+    changed = _around_knots(only_in_one(first, second), shape, knots)
+    both = _around_knots(first, shape, knots) + _around_knots(second, shape, knots)
+    return np.max(2 * changed / np.maximum(both + changed, 1))
+
+
+@njit(cache=True)
+def _around_knots(nodes, shape, knots):
+    """How many nodes lie nearest to each knot."""
+    count = np.zeros(knots)
+    per_y, per_x = (knots[0] - 1) / shape[0], (knots[1] - 1) / shape[1]
+    for node in nodes:
+        y, x = (node // shape[1] + 0.5) * per_y, (node % shape[1] + 0.5) * per_x
+        count[int(y + 0.5), int(x + 0.5)] += 1
+    return count

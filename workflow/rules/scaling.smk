@@ -1,6 +1,8 @@
 # Experiments on made surfaces. Then the atlas.
-# Experiments on made surfaces: whether the two estimates of Delta_sigma agree in any limit, and how
-# far the estimators of Delta_g are off.
+
+
+# Whether the two estimates of Delta_sigma agree in any limit, and how far the estimators of Delta_g
+# are off.
 rule dimension_test:
     output:
         f"{RESULTS}/dimension_test/surfaces.nc",
