@@ -18,7 +18,7 @@ from numba import njit
 
 from .balancing import only_in_one
 from .conditions import between_bounds, examined_by
-from .set_equations import CLIPPING_PASSES, Operator, SetEquations, stiffness
+from .set_equations import CLIPPING_PASSES, Operator, SetEquations, add, stiffness
 
 # Corrections of the contact set before the solver gives up: trials needed at most some twenty.
 MAX_CORRECTIONS = 200
@@ -228,10 +228,11 @@ class ActiveSet:
         Where all that touches is at the cap, any closure does that presses all of it and nothing
         else. It is the least of these; where there is none, the mean still leads on.
         """
-        loaded = between_bounds(pressure, self.problem.cap)
-        if loaded.size:
-            return (displacement[loaded] + self.problem.clearance[loaded]).mean()
-        reached, capped = displacement + self.problem.clearance, pressure > 0
+        clearance, cap = self.problem.clearance, self.problem.cap
+        mean = _mean_reached(pressure, displacement, clearance, cap)
+        if np.isfinite(mean):
+            return mean
+        reached, capped = displacement + clearance, pressure > 0
         least = reached[capped].max()
         if least <= reached[~capped].min(initial=np.inf):
             return least
@@ -274,53 +275,105 @@ class ActiveSet:
             self.operator.inverse.update(free, fresh=False)
             equations, back, scale = self._stepped(pressure, gap, free, beyond, bound, patient)
         if reduction is not None:
-            equations.carry_out(beyond, back / scale)
+            equations.carry_out(beyond, back)
             goal = max(reduction, SINGLE_REACHES, SAFETY * self.rtol * abs(closure) / scale)
             equations.conjugate_gradients(goal, by_force=self.problem.by_force)
-            _add(displacement, scale, equations.image)
+            add(displacement, scale, equations.image)
         pressure[beyond] = bound
-        pressure[free] += scale * equations.solution.astype(float)
-        # Exactly at the bound, where rounding leaves them next to it.
-        pressure[free[equations.at_zero]] = 0.0
-        pressure[free[equations.at_cap]] = cap
+        _step(pressure, free, scale, equations.solution, equations.at_zero, equations.at_cap, cap)
         return closure + scale * equations.common
 
     def _stepped(self, pressure, gap, free, beyond, bound, patient):
         """The equations on a set after their first step; and what goes with them.
 
         That is by how much the pressures ``beyond`` change, which go to a ``bound``, and the scale
-        of all numbers in the equations.
+        of all numbers in the equations, of these too.
         """
-        problem, back = self.problem, bound - pressure[beyond]
-        lacking = problem.load - pressure.sum() - back.sum() if problem.by_force else None
-        scale = max(
-            np.abs(gap).max(initial=0.0),
-            np.abs(back).max(initial=0.0),
-            0.0 if lacking is None else abs(lacking) / max(free.size, 1),
-            np.finfo(float).tiny,
-        )
-        equations = SetEquations(self.operator, free, -gap / scale)
-        start = pressure[free] / scale
-        wanted = None if lacking is None else start.sum() + lacking / scale
+        problem = self.problem
+        load = problem.load if problem.by_force else np.nan
+        scale, right_side, start, back, wanted = _scaled(pressure, gap, free, beyond, bound, load)
+        equations = SetEquations(self.operator, free, right_side)
         bounds = (-np.inf, np.inf) if patient else (0.0, problem.cap / scale)
-        equations.clipped_step(start, bounds, wanted)
+        equations.clipped_step(start, bounds, wanted if problem.by_force else None)
         return equations, back, scale
 
 
+@njit(cache=True)
 def _with_total(pressure, total, cap):
     """Pressure scaled to a total, none above the cap."""
+    scaled = pressure.copy()
     for _ in range(CLIPPING_PASSES):
-        lacking = total - pressure.sum()
-        below = pressure < cap
-        part = pressure[below].sum()
+        lacking, part = total, 0.0
+        for value in scaled:
+            lacking -= value
+            if value < cap:
+                part += value
         if abs(lacking) <= FORCE_ROUNDING * total or part == 0:
             break
-        pressure = np.where(below, np.minimum(pressure * (1 + lacking / part), cap), pressure)
-    return pressure
+        factor = 1 + lacking / part
+        for i in range(scaled.size):
+            if scaled[i] < cap:
+                scaled[i] = min(scaled[i] * factor, cap)
+    return scaled
 
 
 @njit(cache=True)
-def _add(values, scale, change):
-    """values += scale * change, without arrays in between."""
-    for i in range(values.size):
-        values[i] += scale * change[i]
+def _mean_reached(pressure, displacement, clearance, cap):
+    """Mean displacement and clearance of the nodes between the bounds; NaN without any."""
+    total, n = 0.0, 0
+    for i in range(pressure.size):
+        if 0 < pressure[i] < cap:
+            total += displacement[i] + clearance[i]
+            n += 1
+    return total / n if n else np.nan
+
+
+@njit(cache=True)
+def _scaled(pressure, gap, free, beyond, bound, load):
+    """Numbers near one for the equations on a set: a scale, and what they are made of, over it.
+
+    Returns
+    -------
+    scale : float
+    right_side : (n,) float32 ndarray
+        What is to close the gaps.
+    start : (n,) ndarray
+        Pressure of the set.
+    back : (m,) float32 ndarray
+        By how much the pressures ``beyond`` change, which go to their ``bound``.
+    wanted : float
+        What the set is to carry of the load; NaN where none is given.
+    """
+    back = np.empty(beyond.size)
+    scale, lacking = np.finfo(np.float64).tiny, load
+    for value in pressure:
+        lacking -= value
+    for i in range(beyond.size):
+        back[i] = bound[i] - pressure[beyond[i]]
+        lacking -= back[i]
+        scale = max(scale, abs(back[i]))
+    for value in gap:
+        scale = max(scale, abs(value))
+    if np.isfinite(lacking):
+        scale = max(scale, abs(lacking) / max(free.size, 1))
+    right_side, start = np.empty(free.size, np.float32), np.empty(free.size)
+    carried = 0.0
+    for i in range(free.size):
+        right_side[i], start[i] = -gap[i] / scale, pressure[free[i]] / scale
+        carried += start[i]
+    return scale, right_side, start, (back / scale).astype(np.float32), carried + lacking / scale
+
+
+@njit(cache=True)
+def _step(pressure, free, scale, step, at_zero, at_cap, cap):
+    """Add a step to the pressure of some nodes.
+
+    Those that it takes to a bound are put exactly there, where rounding leaves them next to it.
+    """
+    for i in range(free.size):
+        if at_zero[i]:
+            pressure[free[i]] = 0.0
+        elif at_cap[i]:
+            pressure[free[i]] = cap
+        else:
+            pressure[free[i]] += scale * step[i]

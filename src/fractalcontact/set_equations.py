@@ -35,7 +35,7 @@ class Operator:
         """The same in single precision under (nodes, values) pairs alone."""
         grid = self._grid.ravel()
         for nodes, values in parts:
-            grid[nodes] = values
+            _put(grid, nodes, values)
         image = self(grid)
         for nodes, _ in parts:
             grid[nodes] = 0
@@ -84,41 +84,23 @@ class SetEquations:
 
         With a ``total``, start + x has that sum. What the step does is left to `carry_out`.
         """
-        low, high = bounds
         aim = start + self.inverse(self.residual)
-        end = np.clip(aim, low, high)
         if total is not None and self.free.size:  # none is free where all that touches yields
-            ones = self.inverse(np.ones(self.free.size, np.float32)).astype(float)
-            # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
-            ones = np.maximum(ones, LEAST_SHARE * ones.mean())
-            common, least, most = 0.0, -np.inf, np.inf
-            for _ in range(CLIPPING_PASSES):
-                missing = total - end.sum()
-                if abs(missing) <= 1e-7 * abs(total):
-                    break
-                least, most = (common, most) if missing > 0 else (least, common)
-                give = ones[(end > low) & (end < high)].sum()
-                if give > 0:
-                    common += missing / give
-                # Between two bounds Newton's step may go to where every node is at one of them.
-                if not least < common < most:
-                    if np.isinf(most - least):
-                        break
-                    common = (least + most) / 2
-                end = np.clip(aim + common * ones, low, high)
+            ones = self.inverse(np.ones(self.free.size, np.float32))
+            common = _common_part(aim, ones, *bounds, total)
             self.residual += np.float32(common)
             self.common += common
-        self.at_zero, self.at_cap = end <= low, end >= high
-        self.inside[self.at_zero | self.at_cap] = 0
-        self.solution = (end - start).astype(np.float32)
+        self.at_zero, self.at_cap = _clip(aim, start, *bounds, self.solution, self.inside)
 
     def carry_out(self, beyond, back):
         """The image of the step, and of ``back`` on the nodes ``beyond``, which goes with it."""
         self.image = self.operator.on((self.free, self.solution), (beyond, back))
-        self.residual = (self.residual - self.image[self.free]) * self.inside
+        self.residual *= self.inside
+        _take_off(self.residual, np.float32(1), self.image, self.free, self.inside)
 
     def conjugate_gradients(self, goal, *, by_force):
         """Go on until no residual exceeds ``goal``."""
+        ones, give = self.inside, 0.0
         if by_force:
             ones = self.inverse(self.inside) * self.inside
             give = ones.sum(dtype=float)
@@ -126,14 +108,10 @@ class SetEquations:
                 return
         direction, previous = None, 1.0
         for _ in range(MAX_INNER):
-            search = self.inverse(self.residual) * self.inside
-            if by_force:
-                offset = np.float32(-search.sum(dtype=float) / give)
-                search += offset * ones
-                self.residual += offset * self.inside
-                self.common += float(offset)
-            slope = _dot(search, self.residual)
-            if np.abs(self.residual).max(initial=0) <= goal or slope <= 0:
+            search = self.inverse(self.residual)
+            offset, slope, worst = _projected(search, self.residual, self.inside, ones, give)
+            self.common += offset
+            if worst <= goal or slope <= 0:
                 break
             if direction is None:
                 direction = search
@@ -142,14 +120,11 @@ class SetEquations:
                 direction += search
             previous = slope
             image = self.operator.on((self.free, direction))
-            on_set = image[self.free]
-            on_set *= self.inside
-            length = np.float32(slope / _dot(direction, on_set))
-            self.solution += length * direction
-            image *= length
-            self.image += image
-            on_set *= length
-            self.residual -= on_set
+            along = _along(direction, image, self.free, self.inside)
+            length = np.float32(slope / along)
+            add(self.solution, length, direction)
+            add(self.image, length, image)
+            _take_off(self.residual, length, image, self.free, self.inside)
 
 
 def stiffness(operator, free):
@@ -181,9 +156,99 @@ def stiffness(operator, free):
 
 
 @njit(cache=True)
-def _dot(first, second):
-    """In double precision, and without the threads of a library of linear algebra."""
+def add(values, scale, change):
+    """values += scale * change, without arrays in between."""
+    for i in range(values.size):
+        values[i] += scale * change[i]
+
+
+@njit(cache=True)
+def _put(values, places, those):
+    """values[places] = those."""
+    for i in range(places.size):
+        values[places[i]] = those[i]
+
+
+# Sums are made in double precision, and without the threads of a library of linear algebra.
+
+
+@njit(cache=True)
+def _projected(search, residual, inside, ones, give):
+    """Leave a search to the nodes inside; if ``ones`` give anything, make its sum zero by them.
+
+    Returns
+    -------
+    offset : float
+        What was added of ``ones``, and of 1 to the residual.
+    slope, worst : float
+        Search times residual, and the largest residual.
+    """
+    total, slope, worst = 0.0, 0.0, np.float32(0)
+    for i in range(search.size):
+        search[i] *= inside[i]
+        total += search[i]
+    offset = np.float32(-total / give) if give > 0 else np.float32(0)
+    for i in range(search.size):
+        search[i] += offset * ones[i]
+        residual[i] += offset * inside[i]
+        slope += search[i] * residual[i]
+        worst = max(worst, abs(residual[i]))
+    return float(offset), slope, worst
+
+
+@njit(cache=True)
+def _along(direction, image, free, inside):
+    """Direction times its image, on the nodes inside."""
     total = 0.0
-    for i in range(first.size):
-        total += first[i] * second[i]
+    for i in range(free.size):
+        total += direction[i] * image[free[i]] * inside[i]
     return total
+
+
+@njit(cache=True)
+def _take_off(residual, scale, image, free, inside):
+    """residual -= scale * image, on the nodes inside."""
+    for i in range(free.size):
+        residual[i] -= scale * image[free[i]] * inside[i]
+
+
+@njit(cache=True)
+def _common_part(aim, ones, low, high, total):
+    """Move an aim along ``ones`` until it has a total when clipped; returns by how much of them."""
+    n = aim.size
+    # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
+    ones = np.maximum(ones.astype(np.float64), LEAST_SHARE * ones.mean())
+    common, least, most = 0.0, -np.inf, np.inf
+    for _ in range(CLIPPING_PASSES):
+        missing, give = total, 0.0
+        for i in range(n):
+            end = aim[i] + common * ones[i]
+            missing -= min(max(end, low), high)
+            if low < end < high:
+                give += ones[i]
+        if abs(missing) <= 1e-7 * abs(total):
+            break
+        least, most = (common, most) if missing > 0 else (least, common)
+        if give > 0:
+            common += missing / give
+        # Between two bounds Newton's step may go to where every node is at one of them.
+        if not least < common < most:
+            if np.isinf(most - least):
+                break
+            common = (least + most) / 2
+    for i in range(n):
+        aim[i] += common * ones[i]
+    return common
+
+
+@njit(cache=True)
+def _clip(aim, start, low, high, step, inside):
+    """The step to an aim between bounds; nodes that it takes to the lower and to the upper one."""
+    at_low, at_high = np.empty(aim.size, np.bool_), np.empty(aim.size, np.bool_)
+    for i in range(aim.size):
+        end = min(max(aim[i], low), high)
+        step[i] = end - start[i]
+        at_low[i], at_high[i] = end <= low, end >= high
+        if at_low[i] or at_high[i]:
+            inside[i] = 0
+    return at_low, at_high
