@@ -122,6 +122,8 @@ def without_mean_plane(heights: np.ndarray) -> np.ndarray:
     """
     heights = np.asarray(heights, float)
     known = np.isfinite(heights)
+    if known.all() and min(heights.shape) > 1:
+        return without_mean_planes(heights)
     if not known.any():
         return np.full(heights.shape, np.nan)
     y, x = np.indices(heights.shape, dtype=float)
@@ -138,3 +140,26 @@ def without_mean_plane(heights: np.ndarray) -> np.ndarray:
     slope_y = (zy * xx - zx * xy) / determinant
     slope_x = (zx * yy - zy * xy) / determinant
     return heights - mean - slope_y * y - slope_x * x
+
+
+def without_mean_planes(heights):
+    """Complete grids, each less its own mean plane: their rows are orthogonal to their columns.
+
+    Parameters
+    ----------
+    heights : (..., ny, nx) array_like
+        Two cells or more along each side.
+
+    Returns
+    -------
+    (..., ny, nx) float64
+    """
+    heights = np.asarray(heights, float)
+    ny, nx = heights.shape[-2:]
+    y, x = np.arange(ny) - (ny - 1) / 2, np.arange(nx) - (nx - 1) / 2
+    left = heights - heights.mean(axis=(-2, -1), keepdims=True)
+    slope_y = np.sum(left.sum(axis=-1) * y, axis=-1) / (nx * np.sum(y * y))
+    slope_x = np.sum(left.sum(axis=-2) * x, axis=-1) / (ny * np.sum(x * x))
+    left -= slope_y[..., np.newaxis, np.newaxis] * y[:, np.newaxis]
+    left -= slope_x[..., np.newaxis, np.newaxis] * x
+    return left

@@ -164,11 +164,11 @@ def largest_offset(specimen: xr.Dataset, direction: str) -> int:
     if specimen.attrs["opposite"] == "flat":
         return 0
     rows, columns = window_slices(specimen)
-    present = np.isfinite(specimen["lower"].values)
+    lower = specimen["lower"].values
     if axis == "x":
-        lines, window = present[rows].all(axis=0), columns
+        lines, window = np.isfinite(lower[rows]).all(axis=0), columns
     else:
-        lines, window = present[:, columns].all(axis=1), rows
+        lines, window = np.isfinite(lower[:, columns]).all(axis=1), rows
     ahead = lines[window.stop :] if sign > 0 else lines[: window.start][::-1]
     return int(np.argmin(np.r_[ahead, False]))  # the first line with a hole, or the edge
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from .closure import bulk_settlement
-from .fitting import mean_interval, without_mean_plane
+from .fitting import mean_interval, without_mean_planes
 from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing
 from .labels import about
@@ -208,7 +208,7 @@ SHAPES = {
 def _sub_windows(specimen, direction, cells, parts, chosen, seated):
     """Composite topographies (n, ny, nx) of the sub-windows chosen."""
     windows = split(composite_topography(specimen, direction, cells), parts)[chosen]
-    return np.array([without_mean_plane(w) for w in windows]) if seated else windows
+    return without_mean_planes(windows) if seated else windows
 
 
 def _pressed(composite, space, forces, settlement, solving, where):
@@ -246,7 +246,7 @@ def local_roughness(windows):
         With the three degrees of freedom of the plane taken off, as the roughness-length estimator
         of :mod:`fractalcontact.roughness` has it.
     """
-    residuals = _without_planes(windows)
+    residuals = without_mean_planes(windows)
     ny, nx = residuals.shape[1:]
     return np.sqrt(np.sum(residuals**2, axis=(1, 2)) / (ny * nx - 3))
 
@@ -255,18 +255,8 @@ def tilt_share(windows):
     """Part of the variance of each window that its mean plane explains; NaN where it is flat."""
     windows = np.asarray(windows, float)
     total = windows.var(axis=(1, 2))
-    left = np.mean(_without_planes(windows) ** 2, axis=(1, 2))
+    left = np.mean(without_mean_planes(windows) ** 2, axis=(1, 2))
     return np.where(total > 0, 1 - left / np.where(total > 0, total, 1), np.nan)
-
-
-def _without_planes(windows):
-    """Each window less its own least-squares plane: on a full grid the terms are orthogonal."""
-    windows = np.asarray(windows, float)
-    y, x = (np.arange(n) - (n - 1) / 2 for n in windows.shape[1:])
-    z = windows - windows.mean(axis=(1, 2), keepdims=True)
-    slope_y = z.mean(axis=2) @ y / np.dot(y, y)
-    slope_x = z.mean(axis=1) @ x / np.dot(x, x)
-    return z - slope_y[:, np.newaxis, np.newaxis] * y[:, np.newaxis] - slope_x[:, None, None] * x
 
 
 def roughness_by_size(specimen, direction, cells):

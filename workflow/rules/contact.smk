@@ -52,8 +52,10 @@ def contact_parts(wildcards):
     return expand(rules.contact.output, specimen=wildcards.specimen, **counts)
 
 
-# Closure curves and what follows from them alone: seconds of work, so one job.
-rule closure:
+# What is made of the states of a specimen: closure curves and what follows from them; box counts,
+# dimension and clusters of every contact domain, what changes with resolution, lacunarity and
+# generalised dimensions of the domains that are drawn. Seconds of work, so one job.
+rule analysis:
     input:
         specimen=rules.specimen.output[0],
         surface_dimension=rules.surfaces.output.surface_dimension,
@@ -64,21 +66,34 @@ rule closure:
         dilatancy=f"{RESULTS}/dilatancy/{{specimen}}.nc",
         choices=f"{RESULTS}/choices/{{specimen}}.nc",
         area=f"{RESULTS}/area/{{specimen}}.nc",
+        domains=f"{RESULTS}/domains/{{specimen}}.nc",
+        contact=f"{RESULTS}/contact/{{specimen}}.nc",
+        scaling=f"{RESULTS}/scaling/{{specimen}}.nc",
+        domain_measures=f"{RESULTS}/domain_measures/{{specimen}}.nc",
     log:
-        f"{RESULTS}/logs/closure/{{specimen}}.log",
+        f"{RESULTS}/logs/analysis/{{specimen}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/closure/{{specimen}}.tsv"
+        f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=2000,
+        runtime=20,
     params:
         settings=settings_of,
         solver=SOLVER,
-        code=code("area", "closure", "needs", "roughness", "states", "store"),
+        code=code(
+            "analysis",
+            "area",
+            "closure",
+            "domain_measures",
+            "needs",
+            "roughness",
+            "states",
+            "store",
+        ),
     script:
-        "../scripts/closure.py"
+        "../scripts/analysis.py"
 
 
 # A measured map of contact goes straight to the analysis of domains.
@@ -102,31 +117,3 @@ rule contact_map:
         code=code("contact_map", "study", "store"),
     script:
         "../scripts/contact_map.py"
-
-
-# Box counts, dimension and clusters of every contact domain; what changes with resolution; lacunarity
-# and generalised dimensions of the domains that are drawn.
-rule domains:
-    input:
-        specimen=rules.specimen.output[0],
-        contact=contact_parts,
-        closure=rules.closure.output.closure,
-    output:
-        domains=f"{RESULTS}/domains/{{specimen}}.nc",
-        contact=f"{RESULTS}/contact/{{specimen}}.nc",
-        scaling=f"{RESULTS}/scaling/{{specimen}}.nc",
-        domain_measures=f"{RESULTS}/domain_measures/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/domains/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/domains/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=2000,
-        runtime=20,
-    params:
-        settings=settings_of,
-        code=code("analysis", "domain_measures", "states", "store"),
-    script:
-        "../scripts/domains.py"

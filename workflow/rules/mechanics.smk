@@ -32,7 +32,7 @@ rule strength:
     input:
         specimen=rules.specimen.output[0],
         joint=rules.surfaces.output.joint,
-        dilatancy=rules.closure.output.dilatancy,
+        dilatancy=rules.analysis.output.dilatancy,
     output:
         f"{RESULTS}/strength/{{specimen}}.nc",
     log:
