@@ -6,7 +6,7 @@ pressure. Two parts use that:
 
 - A sparse factor of the inverse. Nodes are ordered from coarse to fine, by blocks of 1, 2, 4, ...
   cells of which each has one representative; a node is conditioned on those that precede it within
-  :data:`REACH` blocks of its own level. On these few the small dense problem is solved exactly
+  :data:`WIDE` blocks of its own level. On these few the small dense problem is solved exactly
   (Kullback-Leibler minimisation: Schaefer, Katzfuss, Owhadi, SIAM J. Sci. Comput. 43 (2021) A2019;
   in geostatistics, Vecchia's approximation).
 - A coarse correction. What the factor gets wrong is smooth: it makes widespread pressures too
@@ -21,18 +21,17 @@ from . import threads
 from .balancing import SmoothCorrection, inverted, times
 from .lanes import WIDTH, load, store
 
-#: Blocks to each side of a node's own in which preceding nodes condition it ...
-REACH = 2
-#: ... if they are no further than this, in squared blocks: a larger neighbourhood saves hardly an
-#: application and costs more than it.
-REACH_SQUARED = 5
-#: So far to each side in the rows of blocks 0, 1, 2 from a node's own.
-WIDE = tuple(int((REACH_SQUARED - row**2) ** 0.5) for row in range(REACH + 1))
+#: Blocks along a row in which preceding nodes condition a node, so far to each side of its own, in
+#: the rows 0, 1, 2 from it. A larger neighbourhood saves hardly an application and costs more.
+WIDE = np.array([2, 2, 1])
+#: The same in windows of at most `SMALL` cells across, where applications cost little: up to a
+#: third more of them, and still a fifth less time under loads that double from step to step.
+NARROW = np.array([1, 1])
 #: Most nodes that can condition one.
 MOST = 20
 #: Sets of at most so many nodes are inverted exactly.
 DIRECT = 96
-#: Windows of at most so many cells across do without the correction for smooth pressures.
+#: Windows of at most so many cells across do without the correction for smooth pressures too.
 SMALL = 160
 #: A thread takes no fewer nodes than this.
 CHUNK = 512
@@ -57,7 +56,9 @@ class ContactInverse:
         self._shape = space.shape
         self._influence = space.influence().astype(np.float32)
         self._shifts = _block_shifts(space)
-        self._smooth = SmoothCorrection(space) if max(space.shape) > SMALL else None
+        small = max(space.shape) <= SMALL
+        self._near = NARROW if small else WIDE
+        self._smooth = None if small else SmoothCorrection(space)
         self._rows = np.empty(0, np.int32)
         self._slot = np.full(space.shape[0] * space.shape[1], -1, np.int32)
         self._factor = _empty_factor(0)
@@ -84,16 +85,15 @@ class ContactInverse:
         blocks = _representatives(rows, *self._shape, self._shifts)
         if self._rows.size:
             changed = np.flatnonzero(self._first != blocks[0])
-            touched = _touched(changed, self._first, blocks, self._shifts, nx)
+            touched = _touched(changed, self._first, blocks, self._shifts, self._near, nx)
         else:
             touched = np.ones(blocks[0].size, bool)
         self._first = blocks[0]
         factor = _empty_factor(rows.size)
         old, known = (self._rows, self._slot, self._factor), (*blocks, touched)
+        grid = self._shifts, self._near, nx, self._influence
         threads.in_parts(
-            lambda start, stop: _factorise(
-                start, stop, rows, slot, known, self._shifts, nx, self._influence, old, factor
-            ),
+            lambda start, stop: _factorise(start, stop, rows, slot, known, grid, old, factor),
             rows.size,
             smallest=CHUNK,
         )
@@ -174,38 +174,40 @@ def _representatives(rows, ny, nx, shifts):
 
 
 @njit(cache=True)
-def _touched(changed, before, blocks, shifts, nx):
+def _touched(changed, before, blocks, shifts, wide, nx):
     """For every level, the blocks whose nodes may be conditioned otherwise than ``before``."""
     first, offsets, widths, _ = blocks
+    reach = wide.size - 1
     touched = np.zeros(first.size, np.bool_)
     k = 0
     for block in changed:
         while block >= offsets[k + 1]:
             k += 1
         y, x = divmod(block - offsets[k], widths[k, 1])
-        _touch(touched, offsets[k], widths[k], y, x)
+        _touch(touched, offsets[k], widths[k], y, x, reach)
         # Both have come to, or lost, precedence on the level below.
         for node in (before[block], first[block]):
             if k > 0 and node >= 0:
                 y, x = (node // nx) >> shifts[k - 1, 0], (node % nx) >> shifts[k - 1, 1]
-                _touch(touched, offsets[k - 1], widths[k - 1], y, x)
+                _touch(touched, offsets[k - 1], widths[k - 1], y, x, reach)
     return touched
 
 
 @njit(cache=True)
-def _touch(touched, offset, width, y, x):
-    for by in range(max(y - REACH, 0), min(y + REACH + 1, width[0])):
-        for bx in range(max(x - REACH, 0), min(x + REACH + 1, width[1])):
+def _touch(touched, offset, width, y, x, reach):
+    for by in range(max(y - reach, 0), min(y + reach + 1, width[0])):
+        for bx in range(max(x - reach, 0), min(x + reach + 1, width[1])):
             touched[offset + by * width[1] + bx] = True
 
 
 @njit(cache=True, nogil=True)
-def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new):
+def _factorise(start, stop, rows, slot, blocks, grid, old, new):
     """Columns start ... stop of the factor: taken over where nothing changed, else solved."""
     first, offsets, widths, level, touched = blocks
+    shifts, wide, nx, influence = grid
     old_rows, old_slot, (old_count, old_near, old_weight, old_own) = old
     count, near, weight, own = new
-    members = np.empty(MOST + 1, np.int64)
+    members, far = np.empty(MOST + 1, np.int64), wide.size - 1
     # Those solved side by side have equally many nodes, as far as there are enough such.
     waiting, lanes = np.empty((MOST + 1, WIDTH), np.int64), np.zeros(MOST + 1, np.int64)
     lower = np.empty((MOST + 1) * (MOST + 1) * WIDTH, np.float32)
@@ -223,9 +225,9 @@ def _factorise(start, stop, rows, slot, blocks, shifts, nx, influence, old, new)
                 weight[i, a] = old_weight[before, a]
             continue
         n = 0
-        for by in range(max(block_y - REACH, 0), min(block_y + REACH + 1, widths[k, 0])):
+        for by in range(max(block_y - far, 0), min(block_y + far + 1, widths[k, 0])):
             row = offsets[k] + by * widths[k, 1]
-            reach = WIDE[abs(by - block_y)]
+            reach = wide[abs(by - block_y)]
             for bx in range(max(block_x - reach, 0), min(block_x + reach + 1, widths[k, 1])):
                 other = first[row + bx]
                 above = level[max(other, 0)]
