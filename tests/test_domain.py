@@ -11,8 +11,8 @@ from fractalcontact.box_counts import box_count, box_sizes
 from fractalcontact.domain import box_dimension, local_slopes
 from fractalcontact.synthesis import self_affine
 
-#: Of flights, cells.
-LEAST_STEP = 0.25
+#: Of flights, cells: at a quarter, one box in twenty of two cells that a flight meets is missed.
+LEAST_STEP = 0.1
 
 CARPET = np.log(8) / np.log(3)
 DUST = np.log(4) / np.log(3)
@@ -79,8 +79,9 @@ def percolation_cluster(n, seed):
 def _mark_flight(domain, exact, rng):
     """Mark the cells that a stable flight of index `exact` from the window's middle ever visits.
 
-    A flight far outside takes steps as long as it may without passing the window unseen. It ends
-    where it comes back with a probability of about 1e6^(exact - 2).
+    A step is as long as it may be without passing a cell unseen: to the nearest edge of the cell
+    that it starts in, or to the window. The flight ends where it comes back with a probability of
+    about 1e6^(exact - 2).
     """
     n = domain.shape[0]
     radius = n / np.sqrt(2)
@@ -90,6 +91,8 @@ def _mark_flight(domain, exact, rng):
         i, j = int(np.floor(y + n / 2)), int(np.floor(x + n / 2))
         if 0 <= i < n and 0 <= j < n:
             domain[i, j] = True
+            to_edge = 0.5 - max(abs(y + n / 2 - i - 0.5), abs(x + n / 2 - j - 0.5))
+            least = max(LEAST_STEP, to_edge)
         length = least / np.sqrt(rng.beta(exact / 2, 1 - exact / 2))
         angle = 2 * np.pi * rng.random()
         y += length * np.sin(angle)
