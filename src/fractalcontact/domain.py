@@ -105,7 +105,7 @@ def box_dimension(
     What one window cannot show is whether it was struck by chance more densely than others: where
     parts fall on the same boxes, as those of flights or trails, the counts of scale r differ by a
     random share of (r / L)^(2 - D), which is alike in all parts and nearly a power law. Such sets
-    of 1.5 are in 94 % of intervals; of 1.7, or trails that have not filled their window, in fewer.
+    of 1.5 are in 93 % of intervals; of 1.7, or trails that have not filled their window, in fewer.
 
     Figures apart, as two squares: once boxes are larger than a figure or than the gap, what is
     counted is no outline any more. With more of it than `power_law.MOST_OUTLINE` allows they read
