@@ -11,8 +11,8 @@ from fractalcontact.box_counts import box_count, box_sizes
 from fractalcontact.domain import box_dimension, local_slopes
 from fractalcontact.synthesis import self_affine
 
-#: Of flights, cells.
-LEAST_STEP = 0.25
+#: Of flights, cells: with a quarter, boxes of one and two cells that a flight meets are missed.
+LEAST_STEP = 0.1
 
 CARPET = np.log(8) / np.log(3)
 DUST = np.log(4) / np.log(3)
@@ -79,8 +79,9 @@ def percolation_cluster(n, seed):
 def _mark_flight(domain, exact, rng):
     """Mark the cells that a stable flight of index `exact` from the window's middle ever visits.
 
-    A flight far outside takes steps as long as it may without passing the window unseen. It ends
-    where it comes back with a probability of about 1e6^(exact - 2).
+    A step is as long as it may be without passing a cell unseen: to the nearest edge of the cell
+    that it starts in, or to the window. The flight ends where it comes back with a probability of
+    about 1e6^(exact - 2).
     """
     n = domain.shape[0]
     radius = n / np.sqrt(2)
@@ -90,6 +91,8 @@ def _mark_flight(domain, exact, rng):
         i, j = int(np.floor(y + n / 2)), int(np.floor(x + n / 2))
         if 0 <= i < n and 0 <= j < n:
             domain[i, j] = True
+            to_edge = 0.5 - max(abs(y + n / 2 - i - 0.5), abs(x + n / 2 - j - 0.5))
+            least = max(LEAST_STEP, to_edge)
         length = least / np.sqrt(rng.beta(exact / 2, 1 - exact / 2))
         angle = 2 * np.pi * rng.random()
         y += length * np.sin(angle)
@@ -103,11 +106,11 @@ def levy_dust(n, exact, seed):
     Fractal Geometry of Nature, 1982, ch. 32), but only on scales much longer than its least step,
     and in a window that it has all its time to come back to. So
 
-    - the flight is the stable process itself, seen whenever it leaves a circle of radius
-      `LEAST_STEP` about its last place: the step's inverse square is Beta(D/2, 1 - D/2) distributed
-      (Blumenthal, Getoor & Ray, Trans. Am. Math. Soc. 99 (1961) 540), with the tail l^-D. All
-      places are on the set, none of the set is farther from them than the least step, and nothing
-      of the set is lost below a cell;
+    - the flight is the stable process itself, seen whenever it leaves a circle about its last
+      place: the step's inverse square, in units of the circle's radius, is Beta(D/2, 1 - D/2)
+      distributed (Blumenthal, Getoor & Ray, Trans. Am. Math. Soc. 99 (1961) 540), with the tail
+      l^-D. All places are on the set; the circle lies in a cell that is marked, or it has the
+      radius `LEAST_STEP`, so that next to nothing of the set is lost below a cell;
     - it is followed until it will not come back, not for so many steps;
     - the window is about one of its places, which has others before and after it: two flights.
     """
@@ -171,6 +174,17 @@ def test_filled_rectangle(shape):
 def test_filled_rectangle_inside_a_window(shape):
     result = box_dimension(np.pad(np.ones(shape, dtype=bool), 60), 0.1)
     assert result.dimension == pytest.approx(2, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("side", "gap", "shift"), [(100, 40, 0), (60, 200, 0), (40, 300, 100), (100, 200, 150)]
+)
+def test_two_squares_are_plane_within_their_interval(side, gap, shift):
+    domain = np.zeros((512, 512), dtype=bool)
+    domain[100 : 100 + side, 10 : 10 + side] = True
+    domain[100 + shift : 100 + shift + side, 10 + side + gap : 10 + 2 * side + gap] = True
+    result = box_dimension(domain, 0.1)
+    assert result.low < 2 == pytest.approx(result.high)
 
 
 SIZES = [243, 256, 500, 512, 729, 1000]
@@ -273,9 +287,9 @@ def test_sets_turned_by_thirty_degrees(name):
     assert result.low <= exact <= result.high
 
 
-#: Index, cells, flights, and the share of intervals that hold. Those of an index of 1.5 do so less
-#: often: parts of one flight are more alike than flights are.
-LEVY = [(1.2, 512, 200, 0.9), (1.2, 1024, 64, 0.9), (1.5, 512, 80, 0.8)]
+#: Index, cells, flights, and how far their mean may be off. At 0.8, few boxes are left: 120 of four
+#: cells, 12 of 64. Windows of 512 read 0.03 high in the mean, of 2048 0.016 and of 4096 0.01.
+LEVY = [(0.8, 512, 200, 0.05), (1.2, 512, 120, 0.02), (1.2, 1024, 64, 0.02), (1.5, 512, 100, 0.02)]
 
 
 @pytest.mark.parametrize("angle", [0, 20, 30, 45])
@@ -296,16 +310,16 @@ def test_percolation_cluster(n):
     assert np.mean([f.low <= exact <= f.high for f in found]) >= 0.8
 
 
-@pytest.mark.parametrize(("exact", "n", "seeds", "held"), LEVY)
-def test_levy_dust(exact, n, seeds, held):
+@pytest.mark.parametrize(("exact", "n", "seeds", "within"), LEVY)
+def test_levy_dust(exact, n, seeds, within):
     found = [
         box_dimension(levy_dust(n, exact, seed), 0.1, whole_cells=True) for seed in range(seeds)
     ]
     dimension = np.array([f.dimension for f in found])
-    # Flights differ by 0.08: so many are needed to know their mean.
+    # Flights differ by 0.1: so many are needed to know their mean.
     assert dimension.std(ddof=1) / np.sqrt(seeds) < 0.01
-    assert dimension.mean() == pytest.approx(exact, abs=0.02)
-    assert np.mean([f.low <= exact <= f.high for f in found]) >= held
+    assert dimension.mean() == pytest.approx(exact, abs=within)
+    assert np.mean([f.low <= exact <= f.high for f in found]) >= 0.9
 
 
 @pytest.mark.parametrize("exact", [1.2, 1.5, 1.8])

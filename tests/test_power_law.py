@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 
@@ -12,8 +14,14 @@ def counts(dimension, c, outline, side=256):
     return rho ** (2 - dimension) * terms / SIZES**2
 
 
-@pytest.mark.parametrize("dimension", [0.3, 1.0, 1.26, 1.6, 2.0])
-@pytest.mark.parametrize("outline", [(1.0,), (2.0, 3.0), (1.0, 2.0, 1.0)])
+#: Dimensions and outlines; below 1 there is none.
+LAWS = [
+    *itertools.product([0.3, 0.8, 1.0, 1.26, 1.6, 2.0], [(1.0,)]),
+    *itertools.product([1.1, 1.26, 1.6, 2.0], [(2.0, 3.0), (1.0, 2.0, 1.0)]),
+]
+
+
+@pytest.mark.parametrize(("dimension", "outline"), LAWS)
 @pytest.mark.parametrize("c", [0, 1])
 def test_law_is_found_again(dimension, outline, c):
     law, _ = best_law(SIZES, counts(dimension, c, outline), 256)
@@ -31,6 +39,14 @@ def test_filled_figures_of_any_outline_are_plane():
     for half_perimeter in (1.8, 2.5, 3.9):
         law, _ = best_law(SIZES, counts(2.0, 0, (1.0, half_perimeter, 1.0)), 256)
         assert law.dimension == pytest.approx(2, abs=1e-3)
+
+
+@pytest.mark.parametrize("whole_cells", [True, False])
+def test_what_fills_less_than_a_line_has_no_outline(whole_cells):
+    bent = counts(0.8, int(not whole_cells), (1.0, 1.0))
+    law, rivals = best_law(SIZES, bent, 256, whole_cells)
+    assert (law.outline, law.dimension) == (0, pytest.approx(0.8, abs=0.1))
+    assert all(other.dimension >= 1 for other in rivals if other.outline)
 
 
 def test_rough_counts_are_taken_for_centres():

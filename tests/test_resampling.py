@@ -13,6 +13,16 @@ def test_jackknife_of_a_mean_is_its_t_interval():
     assert jackknife_error(left) == pytest.approx(expected)
 
 
+def test_jackknife_of_two_divisions_pools_them():
+    from scipy import stats
+
+    rows, columns = np.random.default_rng(0).normal(size=(2, 4))
+    expected = np.sqrt((stats.sem(rows) ** 2 + stats.sem(columns) ** 2) / 2) * stats.t.ppf(0.975, 6)
+    left = [(x.sum() - x) / 3 for x in (rows, columns)]
+    assert jackknife_error(*left) == pytest.approx(expected)
+    assert jackknife_error(left[0], [1.0]) == pytest.approx(jackknife_error(left[0]))
+
+
 def test_jackknife_with_too_little():
     assert jackknife_error([]) == 0
     assert jackknife_error([1.0]) == 0

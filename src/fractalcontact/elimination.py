@@ -15,7 +15,7 @@ import xarray as xr
 
 from .errors import NotConverged
 from .halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
-from .hard_scenes import pressed_closure, rough_heights
+from .hard_surfaces import pressed_closure, rough_heights
 from .labels import about
 from .methods import METHODS
 from .methods.common import influence_matrix

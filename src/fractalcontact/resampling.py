@@ -34,30 +34,31 @@ class Slope(NamedTuple):
 NO_SLOPE = Slope(*[np.nan] * 5, 0)
 
 
-def jackknife_error(found: np.ndarray, expected: float = np.nan) -> float:
+def jackknife_error(*divisions: np.ndarray) -> float:
     """Half the t-interval of a value from what is found with one part after another left out.
 
     Parameters
     ----------
-    found : (n,) array_like
-        NaN where nothing was found.
-    expected : float, optional
-        Value of the whole, for parts that all give the same.
+    *divisions : (n,) array_like
+        What is found without each part of a division of the window; NaN where nothing is. Where
+        the window is divided in more than one way, their variances are averaged and their degrees
+        of freedom added.
 
     Returns
     -------
     float
-        0 with less than two parts given, infinite where only one of them gives a value.
+        A division in less than two parts says nothing; 0 if there is no other, infinite where only
+        one of its parts gives a value.
     """
-    found = np.asarray(found, float)
-    if found.size < 2:
+    divisions = [np.asarray(found, float) for found in divisions]
+    divisions = [found[np.isfinite(found)] for found in divisions if found.size > 1]
+    if not divisions:
         return 0.0
-    found = found[np.isfinite(found)]
-    n = found.size
-    if n < 2:
+    if min(found.size for found in divisions) < 2:
         return np.inf
-    variance = (n - 1) / n * np.sum((found - found.mean()) ** 2)
-    return float(special.stdtrit(n - 1, (1 + CONFIDENCE) / 2) * np.sqrt(variance))
+    variance = np.mean([(found.size - 1) * np.var(found) for found in divisions])
+    freedom = sum(found.size - 1 for found in divisions)
+    return float(special.stdtrit(freedom, (1 + CONFIDENCE) / 2) * np.sqrt(variance))
 
 
 def wave_error(misfit: float, scales: np.ndarray) -> float:
