@@ -27,8 +27,8 @@ MAX_CORRECTIONS = 200
 REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
 # In so many corrections nodes are left out beforehand; in all of them the set might swing. Only on
 # the way from another state, whose gaps overlap all around what touched: from a coarse start it
-# saves applications, but no time. And no more than this share of the set: where most nodes yield,
-# the few others would have to carry whatever a given force lacks.
+# saves applications, but no time, and neither in small windows. And no more than this share of the
+# set: where most nodes yield, the few others would have to carry whatever a given force lacks.
 FORESEEING, MOST_LEFT_OUT = 2, 0.5
 # A violation no larger than so many tolerances is expected to fall below one in a single step,
 # whose displacement is then computed in double precision at once.
@@ -105,7 +105,8 @@ class ActiveSet:
         Solution
         """
         problem = self.problem
-        foreseeing = 0 if displacement is None else FORESEEING
+        small = self.operator.inverse.small
+        foreseeing = 0 if small or displacement is None else FORESEEING
         pressure, displacement = self._loaded(pressure, displacement)
         if displacement is None:
             displacement = self.operator(pressure.astype(np.float32)).astype(float)

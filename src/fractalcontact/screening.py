@@ -47,6 +47,11 @@ class ContactInverse:
     ----------
     space : HalfSpace
 
+    Attributes
+    ----------
+    small : bool
+        Whether the window is one of those in which applications cost little beside the rest.
+
     Notes
     -----
     ``update`` keeps what a new set leaves unchanged, bit for bit as a fresh start would have it.
@@ -56,9 +61,9 @@ class ContactInverse:
         self._shape = space.shape
         self._influence = space.influence().astype(np.float32)
         self._shifts = _block_shifts(space)
-        small = max(space.shape) <= SMALL
-        self._near = NARROW if small else WIDE
-        self._smooth = None if small else SmoothCorrection(space)
+        self.small = max(space.shape) <= SMALL
+        self._near = NARROW if self.small else WIDE
+        self._smooth = None if self.small else SmoothCorrection(space)
         self._rows = np.empty(0, np.int32)
         self._slot = np.full(space.shape[0] * space.shape[1], -1, np.int32)
         self._factor = _empty_factor(0)
