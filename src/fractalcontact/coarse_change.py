@@ -22,12 +22,14 @@ from .coarse_start import (
 from .conditions import Problem, between_bounds, examined_by
 
 # With fewer nodes along the shorter side, as many applications on the fine grid take no more time.
-SMALLEST = 1024
+SMALLEST = 768
 # No coarser grid has fewer.
 COARSEST = 96
 # Starts that violate the conditions by no more, as a share of the closure, are left as they are:
 # coarse solutions are hardly nearer.
 WORTHWHILE = 1e-2
+# Extrapolated from two states, a pressure at the cap in both may miss it by rounding.
+CAP_ROUNDING = 1e-9
 
 
 def coarse_change(problem, pressure, displacement):
@@ -42,10 +44,12 @@ def coarse_change(problem, pressure, displacement):
     Returns
     -------
     (n,) ndarray or None
-        Within its bounds; None if the grid is too small, or the change, for this to be worth while.
+        Within its bounds; None if the grid is too small, or the change, for this to be worth while,
+        and where nodes yield: those of one cell then differ in gap, which pooling cannot keep.
     """
     free = between_bounds(pressure, problem.cap)
-    if min(problem.space.shape) < SMALLEST or not free.size:
+    yields = pressure.max() >= (1 - CAP_ROUNDING) * problem.cap
+    if min(problem.space.shape) < SMALLEST or not free.size or yields:
         return None
     raised = displacement + problem.clearance
     closure = raised[free].mean() if problem.by_force else problem.load

@@ -46,7 +46,8 @@ class ContactState:
     residual : float
         Largest violation of the contact conditions, as a share of the closure.
     iterations : int
-        Applications of the elastic operator, whatever their precision, coarse starts not counted.
+        Applications of the elastic operator, whatever their precision. Those on coarser
+        grids, for a start, are not counted.
     space : HalfSpace
         The operator it was solved with.
     hardness : float
