@@ -47,9 +47,11 @@ def coarse_change(problem, pressure, displacement):
         Within its bounds; None if the grid is too small, or the change, for this to be worth while,
         and where nodes yield: those of one cell then differ in gap, which pooling cannot keep.
     """
+    if min(problem.space.shape) < SMALLEST:
+        return None
     free = between_bounds(pressure, problem.cap)
     yields = pressure.max() >= (1 - CAP_ROUNDING) * problem.cap
-    if min(problem.space.shape) < SMALLEST or not free.size or yields:
+    if yields or not free.size:
         return None
     raised = displacement + problem.clearance
     closure = raised[free].mean() if problem.by_force else problem.load
