@@ -38,7 +38,7 @@ def coarse_start(problem):
     if min(ny, nx) < COARSEST:
         return np.full(ny * nx, min(1.0, problem.cap))
     coarse_space = space.coarser(2)
-    pooled = _pool_minimum(problem.clearance.reshape(ny, nx)).ravel()
+    pooled = pool_minimum(problem.clearance.reshape(ny, nx)).ravel()
     # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
     load = problem.load / 2 if problem.by_force else problem.load
     coarse = Problem(coarse_space, pooled, load, problem.by_force, 2 * problem.cap)
@@ -51,11 +51,17 @@ def coarse_start(problem):
     return np.minimum(pressure, problem.cap).ravel()
 
 
-def _pool_minimum(clearance):
-    """Smallest clearance of each 2 x 2 nodes, an odd last row or column standing alone."""
-    ny, nx = clearance.shape
-    padded = np.pad(clearance, ((0, ny % 2), (0, nx % 2)), constant_values=np.inf)
-    return padded.reshape((ny + 1) // 2, 2, (nx + 1) // 2, 2).min(axis=(1, 3))
+def by_cells(values, missing):
+    """Values (ny, nx) as (my, 2, mx, 2): two by two nodes a cell, ``missing`` beyond the grid."""
+    ny, nx = values.shape
+    if ny % 2 or nx % 2:
+        values = np.pad(values, ((0, ny % 2), (0, nx % 2)), constant_values=missing)
+    return values.reshape((ny + 1) // 2, 2, (nx + 1) // 2, 2)
+
+
+def pool_minimum(gap):
+    """Smallest gap of each 2 x 2 nodes, an odd last row or column standing alone."""
+    return by_cells(gap, np.inf).min(axis=(1, 3))
 
 
 def spread(pressure, clearance, influence):
@@ -76,50 +82,73 @@ def spread(pressure, clearance, influence):
         Never negative. Of each cell it has the mean of the coarse one, or on an odd edge, where the
         cell reaches beyond the grid, that on the nodes there are.
     """
+    change = on_nodes(pressure, clearance.shape)
+    return shared_out(np.zeros(clearance.shape), change, clearance, influence)
+
+
+def on_nodes(cells, shape):
+    """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
+    return np.repeat(np.repeat(cells, 2, axis=0), 2, axis=1)[: shape[0], : shape[1]]
+
+
+def shared_out(before, change, gap, influence):
+    """Pressure, (ny, nx), of which each 2 x 2 nodes have a given sum, and even gaps where it is.
+
+    Parameters
+    ----------
+    before, change : (ny, nx) ndarray
+        A pressure, and a first guess of its change, which tells the sums: positive or zero.
+    gap : (ny, nx) ndarray
+        What the pressure before leaves open.
+    influence : (ny, nx) ndarray
+        As for :func:`spread`.
+    """
     # Two nodes of neighbouring cells are no more than three apart.
-    return _spread(pressure, np.ascontiguousarray(clearance), influence[:4, :4].astype(float))
+    near = influence[:4, :4].astype(float)
+    return _shared_out(before, np.ascontiguousarray(change), np.ascontiguousarray(gap), near)
 
 
 @njit(cache=True)
-def _spread(coarse, clearance, influence):
+def _shared_out(before, change, gap, influence):
     """One pass through the cells; each sees what those before it have become."""
-    ny, nx = clearance.shape
-    fine = np.empty((ny, nx))
-    for y in range(ny):
-        for x in range(nx):
-            fine[y, x] = coarse[y // 2, x // 2]
+    ny, nx = gap.shape
     own = np.empty((4, 4))
     for a in range(4):
         for b in range(4):
             own[a, b] = influence[abs(a // 2 - b // 2), abs(a % 2 - b % 2)]
-    gap, there = np.zeros(4), np.zeros(4, np.bool_)
-    for cell_y in range(coarse.shape[0]):
-        for cell_x in range(coarse.shape[1]):
-            if not coarse[cell_y, cell_x] > 0:
-                continue
+    known, left, there = np.zeros(4), np.zeros(4), np.zeros(4, np.bool_)
+    for cell_y in range((ny + 1) // 2):
+        for cell_x in range((nx + 1) // 2):
             total = 0.0
             for a in range(4):
                 y, x = 2 * cell_y + a // 2, 2 * cell_x + a % 2
                 there[a] = y < ny and x < nx
-                if there[a]:
-                    total += fine[y, x]
-                    gap[a] = clearance[y, x] + _from_around(fine, influence, y, x)
-            share = _shared(own, gap, there, total)
+                known[a] = before[y, x] if there[a] else 0.0
+                total += known[a] + change[y, x] if there[a] else 0.0
+            if not total > 0:
+                continue
             for a in range(4):
                 if there[a]:
-                    fine[2 * cell_y + a // 2, 2 * cell_x + a % 2] = share[a]
-    return fine
+                    y, x = 2 * cell_y + a // 2, 2 * cell_x + a % 2
+                    left[a] = gap[y, x] + _from_around(change, influence, y, x)
+                    for b in range(4):
+                        left[a] -= own[a, b] * known[b]
+            share = _shared(own, left, there, total)
+            for a in range(4):
+                if there[a]:
+                    change[2 * cell_y + a // 2, 2 * cell_x + a % 2] = share[a] - known[a]
+    return before + change
 
 
 @njit(cache=True)
-def _from_around(fine, influence, y, x):
+def _from_around(change, influence, y, x):
     """Displacement of a node by the eight cells around its own."""
     own_y, own_x = y // 2, x // 2
     total = 0.0
-    for y2 in range(max(2 * own_y - 2, 0), min(2 * own_y + 4, fine.shape[0])):
-        for x2 in range(max(2 * own_x - 2, 0), min(2 * own_x + 4, fine.shape[1])):
+    for y2 in range(max(2 * own_y - 2, 0), min(2 * own_y + 4, change.shape[0])):
+        for x2 in range(max(2 * own_x - 2, 0), min(2 * own_x + 4, change.shape[1])):
             if y2 // 2 != own_y or x2 // 2 != own_x:
-                total += influence[abs(y2 - y), abs(x2 - x)] * fine[y2, x2]
+                total += influence[abs(y2 - y), abs(x2 - x)] * change[y2, x2]
     return total
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from . import active_set
 from .active_set import ActiveSet
+from .coarse_change import coarse_change
 from .coarse_start import coarse_start
 from .conditions import Problem, between_bounds
 from .effort import SOLVING
@@ -45,7 +46,8 @@ class ContactState:
     residual : float
         Largest violation of the contact conditions, as a share of the closure.
     iterations : int
-        Applications of the elastic operator, whatever their precision, coarse starts not counted.
+        Applications of the elastic operator, whatever their precision. Those on coarser
+        grids, for a start, are not counted.
     space : HalfSpace
         The operator it was solved with.
     hardness : float
@@ -146,6 +148,10 @@ def solve_contact(
             pressure, displacement = coarse_start(problem), None
         else:
             pressure, displacement = units.extrapolated(start, load)
+            if displacement is not None:
+                changed = coarse_change(problem, pressure, displacement)
+                if changed is not None:
+                    pressure, displacement = changed, None
         found = ActiveSet(problem, rtol).solve(pressure, displacement)
     state = units.state(found, clearance, problem, start)
     if not state.residual <= rtol:
