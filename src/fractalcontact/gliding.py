@@ -21,6 +21,11 @@ PLACES = 16
 
 #: Orders q of the generalised dimensions.
 ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
+#: Of fewer nodes there is no D_q: each is a tenth of it. And gliding boxes meet those near a rim
+#: less often: a single one in a corner would have 1.8, and parts left out would not tell.
+FEWEST = 10
+#: An interval wider than this, as wide as all dimensions of the plane, says nothing of D_q.
+WIDEST = 2.0
 
 
 class Curve(NamedTuple):
@@ -171,11 +176,12 @@ def generalised_dimensions(
     Returns
     -------
     dict of float to Slope
-        D_q, its interval, and the smallest and largest box (mm) of the fit.
+        D_q, its interval, and the smallest and largest box (mm) of the fit; no slope where the
+        interval is wider than :data:`WIDEST`, or of fewer than :data:`FEWEST` nodes.
     """
     mass = np.asarray(mass, float)
     sizes = fit_sizes(mass.shape)
-    if sizes.size == 0 or not mass.any():
+    if sizes.size == 0 or np.count_nonzero(mass) < FEWEST:
         return dict.fromkeys(orders, NO_SLOPE)
     moments, places = gliding_moments(mass, sizes, [1.0, *orders])
     first, entropy = moments[:, 0], moments[:, -1]
@@ -206,4 +212,6 @@ def _dimension(slope, q):
     """D_q from the slope of its statistic."""
     factor = 1.0 if q == 1 else 1 / (q - 1)
     ends = sorted((2 + factor * slope.low, 2 + factor * slope.high))
+    if ends[1] - ends[0] > WIDEST:
+        return NO_SLOPE
     return slope._replace(value=2 + factor * slope.value, low=ends[0], high=ends[1])
