@@ -24,8 +24,6 @@ ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
 #: Of fewer nodes there is no D_q: each is a tenth of it. And gliding boxes meet those near a rim
 #: less often: a single one in a corner would have 1.8, and parts left out would not tell.
 FEWEST = 10
-#: An interval wider than this, as wide as all dimensions of the plane, says nothing of D_q.
-WIDEST = 2.0
 
 
 class Curve(NamedTuple):
@@ -176,8 +174,8 @@ def generalised_dimensions(
     Returns
     -------
     dict of float to Slope
-        D_q, its interval, and the smallest and largest box (mm) of the fit; no slope where the
-        interval is wider than :data:`WIDEST`, or of fewer than :data:`FEWEST` nodes.
+        D_q, its interval, and the smallest and largest box (mm) of the fit; none of fewer
+        than :data:`FEWEST` nodes.
     """
     mass = np.asarray(mass, float)
     sizes = fit_sizes(mass.shape)
@@ -212,6 +210,4 @@ def _dimension(slope, q):
     """D_q from the slope of its statistic."""
     factor = 1.0 if q == 1 else 1 / (q - 1)
     ends = sorted((2 + factor * slope.low, 2 + factor * slope.high))
-    if ends[1] - ends[0] > WIDEST:
-        return NO_SLOPE
     return slope._replace(value=2 + factor * slope.value, low=ends[0], high=ends[1])

@@ -142,8 +142,8 @@ def _caption(state, table):
     words = (
         "(a) Local slope of the box counts over a doubling of r, under several loads. "
         "(b) Lacunarity of gliding boxes; 1 where all boxes hold the same contact. (c) Generalised "
-        "dimensions of the pressure, where the interval is no wider than all there are, 0 to 2; "
-        "negative q weigh the rims of contact. Shaded: 95 % intervals at the map load. "
+        "dimensions of the pressure, of ten nodes or more; negative q weigh the rims of contact. "
+        "Shaded: 95 % intervals at the map load. "
     )
     at = f"At F = {force_label(float(state['load']))} "
     found = [
