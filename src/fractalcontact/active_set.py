@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from .balancing import only_in_one
-from .conditions import between_bounds, examined_by
+from .conditions import between_bounds, examined_by, mean_reached
 from .set_equations import CLIPPING_PASSES, Operator, SetEquations, add, stiffness
 
 # Corrections of the contact set before the solver gives up: trials needed at most some twenty.
@@ -213,7 +213,8 @@ class ActiveSet:
         What its nodes cannot carry goes to those that are nearest to touching.
         """
         problem = self.problem
-        pressure = _with_total(np.clip(pressure, 0.0, problem.cap), problem.load, problem.cap)
+        pressure = np.clip(pressure, 0.0, problem.cap)
+        _scale_to(problem.load, pressure, problem.cap)
         lacking = problem.load - pressure.sum()
         if lacking > FORCE_ROUNDING * problem.load:
             displacement = self.operator(pressure.astype(np.float32))
@@ -230,7 +231,7 @@ class ActiveSet:
         else. It is the least of these; where there is none, the mean still leads on.
         """
         clearance, cap = self.problem.clearance, self.problem.cap
-        mean = _mean_reached(pressure, displacement, clearance, cap)
+        mean = mean_reached(pressure, displacement, clearance, cap)
         if np.isfinite(mean):
             return mean
         reached, capped = displacement + clearance, pressure > 0
@@ -247,7 +248,7 @@ class ActiveSet:
         if problem.by_force:
             if not pressure.any():
                 pressure = problem.first_touch()
-            pressure = _with_total(pressure, problem.load, problem.cap)
+            _scale_to(problem.load, pressure, problem.cap)
             lacking = abs(1 - pressure.sum() / problem.load)
         displacement = self.operator(pressure)
         if problem.by_force:
@@ -300,33 +301,20 @@ class ActiveSet:
 
 
 @njit(cache=True)
-def _with_total(pressure, total, cap):
-    """Pressure scaled to a total, none above the cap."""
-    scaled = pressure.copy()
+def _scale_to(total, pressure, cap):
+    """Scale a pressure to a total in place, none above the cap."""
     for _ in range(CLIPPING_PASSES):
         lacking, part = total, 0.0
-        for value in scaled:
+        for value in pressure:
             lacking -= value
             if value < cap:
                 part += value
         if abs(lacking) <= FORCE_ROUNDING * total or part == 0:
             break
         factor = 1 + lacking / part
-        for i in range(scaled.size):
-            if scaled[i] < cap:
-                scaled[i] = min(scaled[i] * factor, cap)
-    return scaled
-
-
-@njit(cache=True)
-def _mean_reached(pressure, displacement, clearance, cap):
-    """Mean displacement and clearance of the nodes between the bounds; NaN without any."""
-    total, n = 0.0, 0
-    for i in range(pressure.size):
-        if 0 < pressure[i] < cap:
-            total += displacement[i] + clearance[i]
-            n += 1
-    return total / n if n else np.nan
+        for i in range(pressure.size):
+            if pressure[i] < cap:
+                pressure[i] = min(pressure[i] * factor, cap)
 
 
 @njit(cache=True)

@@ -19,7 +19,7 @@ from .coarse_start import (
     pool_minimum,
     shared_out,
 )
-from .conditions import Problem, between_bounds, examined_by
+from .conditions import Problem, examined_by, mean_reached
 
 # With fewer nodes along the shorter side, as many applications on the fine grid take no more time.
 SMALLEST = 768
@@ -49,16 +49,16 @@ def coarse_change(problem, pressure, displacement):
     """
     if min(problem.space.shape) < SMALLEST:
         return None
-    free = between_bounds(pressure, problem.cap)
-    yields = pressure.max() >= (1 - CAP_ROUNDING) * problem.cap
-    if yields or not free.size:
+    clearance, cap = problem.clearance, problem.cap
+    mean = mean_reached(pressure, displacement, clearance, cap)
+    yields = pressure.max() >= (1 - CAP_ROUNDING) * cap
+    if yields or not np.isfinite(mean):
         return None
-    raised = displacement + problem.clearance
-    closure = raised[free].mean() if problem.by_force else problem.load
-    known = pressure, displacement, problem.clearance, closure, problem.cap
-    if examined_by(*known).worst <= WORTHWHILE * closure:
+    closure = mean if problem.by_force else problem.load
+    worst = examined_by(pressure, displacement, clearance, closure, cap).worst
+    if worst <= WORTHWHILE * closure:
         return None
-    return _changed(problem, pressure, raised - closure, closure)
+    return _changed(problem, pressure, displacement + clearance - closure, closure)
 
 
 def _changed(problem, pressure, gap, closure):

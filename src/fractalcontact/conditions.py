@@ -82,6 +82,17 @@ def between_bounds(pressure, cap):
 
 
 @njit(cache=True)
+def mean_reached(pressure, displacement, clearance, cap):
+    """Mean displacement and clearance of the nodes between the bounds; NaN without any."""
+    total, n = 0.0, 0
+    for i in range(pressure.size):
+        if 0 < pressure[i] < cap:
+            total += displacement[i] + clearance[i]
+            n += 1
+    return total / n if n else np.nan
+
+
+@njit(cache=True)
 def _examine(pressure, displacement, clearance, closure, cap):
     """The parts of :class:`Examined`."""
     free = np.empty(pressure.size, np.int32)

@@ -8,7 +8,7 @@ import numpy as np
 from .box_counts import RATIOS, box_count, box_sizes, boxes_along, mean_count, whole_sizes
 from .fitting import FEWEST_POINTS, LineFit, fit_line
 from .power_law import SMALLEST, SMALLEST_TOLD, Law, best_law, law_dimension
-from .resampling import BLOCKS, FEWEST_SCALES, interval, jackknife_error, wave_error
+from .resampling import BLOCKS, FEWEST_SCALES, halves, interval, jackknife_error, wave_error
 
 #: Scales with all but this share of the nodes alone, or of the boxes occupied, are saturated.
 SATURATED = 0.02
@@ -206,10 +206,10 @@ def _law_of_means(extent, limits, fewest, whole_cells):
     kept = sizes >= SMALLEST
     sizes, parts, count = sizes[kept], parts[kept], count[kept]
     slopes = [law.dimension, fewest, *(rival.dimension for rival in rivals)]
-    half = sizes.size // 2
-    if half >= FEWEST_SCALES:
-        halves = slice(half + 1), slice(-half - 1, None)
-        small, large = (law_dimension(law, sizes[part], count[part], side) for part in halves)
+    if sizes.size // 2 >= FEWEST_SCALES:
+        small, large = (
+            law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
+        )
         # What drifts by so much from half to half need not stop where the scales end, either way.
         drift = np.abs(large - small)
         slopes += [small, large, law.dimension - drift, law.dimension + drift]

@@ -85,6 +85,12 @@ def interval(value: float, others: list[float], error: float, wave: float) -> tu
     return value - np.hypot(error, below) - wave, value + np.hypot(error, above) + wave
 
 
+def halves(n: int) -> tuple[slice, slice]:
+    """The lower and the upper half of n scales, the middle in both."""
+    half = n // 2
+    return slice(half + 1), slice(-half - 1, None)
+
+
 def slope_of_sums(
     scales: np.ndarray,
     parts: np.ndarray,
@@ -118,9 +124,7 @@ def slope_of_sums(
         return NO_SLOPE
     x, y = x[says], y[says]
     line = fit_line(x, y)
-    half = x.size // 2
-    halves = slice(half + 1), slice(-half - 1, None)
-    others = [fit_line(x[part], y[part]).slope for part in halves]
+    others = [fit_line(x[part], y[part]).slope for part in halves(x.size)]
     if other is not None:
         others.append(fit_line(x, _log(other(whole))[says]).slope)
     filled = np.flatnonzero(parts[says].any(axis=(0, 1)))
