@@ -8,13 +8,13 @@
 The tables of a run replace those of the last one in its ``--output``.
 
 Every solver runs in this process on the same scene, in turn, each at the loosest tolerance that
-brings its force within 1e-6 of a reference solved to 1e-12; ours at its default tolerance, or a
-tighter one where that leaves a larger error. The first scene of each size is measured with every
-solver, and over a sweep of 16 loads with ours and the fastest of the peers; the others with these
-two, one load. What is set up once for a grid (kernel, transform plans) is not timed, for anybody;
-ours keeps nothing of the solve before. Peers are taken in where they are installed:
-``pip install ContactMechanics tamaas``. Ours uses as many threads as OMP_NUM_THREADS says, or as
-there are cores; the peers' packages have one.
+brings its force within 1e-6 of a reference solved to 1e-12, at every load of a sweep with the same
+one; ours also at its default tolerance, or a tighter one where that leaves a larger error. The
+first scene of each size is measured with every solver, and over a sweep of 16 loads with ours and
+the fastest of the peers; the others with these two, one load. What is set up once for a grid
+(kernel, transform plans) is not timed, for anybody; ours keeps nothing of the solve before. Peers
+are taken in where they are installed: ``pip install ContactMechanics tamaas``. Ours uses as many
+threads as OMP_NUM_THREADS says, or as there are cores; the peers' packages have one.
 """
 
 import argparse
@@ -64,7 +64,7 @@ def _scene_rows(scene, options, *, first):
     from measure import measure_cold, measure_sweep
     from solvers import solvers_for
 
-    wanted = {"methods": options.methods, "with_peers": options.peers}
+    wanted = {"methods": options.methods, "peers_wanted": options.peers}
     _say(f"{scene.name}, cold ...")
     solvers = solvers_for(scene, every=first or options.every_solver, **wanted)
     rows = measure_cold(scene, solvers, runs=options.runs)
@@ -91,7 +91,8 @@ def _options():
     add("--every-sweep", action="store_true", help="a sweep of every scene")
     add("--no-sweep", dest="sweep", action="store_false")
     add("--no-methods", dest="methods", action="store_false")
-    add("--no-peers", dest="peers", action="store_false")
+    add("--peers", nargs="+", metavar="NAME", help="of the installed codes these alone")
+    add("--no-peers", dest="peers", action="store_const", const=[])
     add("--quick", action="store_true", help="256 x 256 and a small one, scaling to 512")
     add("--output", type=Path, default=Path("results/benchmarks"), help="folder of the tables")
     options = parser.parse_args()

@@ -50,9 +50,9 @@ class Solver:
 
 
 class Ours(Solver):
-    """`fractalcontact.solve_contact`, at its default tolerance or, if it must be, a tighter one."""
+    """`fractalcontact.solve_contact`."""
 
-    likely = loosest = 1e-6
+    likely = 1e-6
     press = staticmethod(solve_contact)
 
     def __init__(self, scene, control):
@@ -88,6 +88,16 @@ class Ours(Solver):
     def coarse_applications(self):
         """Convolutions of the last call on coarser grids, as shares of a full one by area."""
         return self.calls["coarse"]
+
+
+class AtDefault(Ours):
+    """The same at its default tolerance, or a tighter one where that leaves a larger error."""
+
+    loosest = Ours.likely
+
+    def __init__(self, scene, control):
+        super().__init__(scene, control)
+        self.name = f"fractalcontact at its default ({control})"
 
 
 def forget(space):
@@ -245,12 +255,20 @@ def _tamaas_counter(tamaas):
 FASTEST_PEER = "ContactMechanics dual"
 
 
-def solvers_for(scene, *, methods, with_peers, every):
+def solvers_for(scene, *, methods, peers_wanted, every):
     """The solvers that can carry a scene, ours first; peers only where they are installed.
 
-    Unless ``every`` one is wanted: ours, and the fastest of the peers.
+    Parameters
+    ----------
+    scene : RoughScene
+    methods : bool
+        Whether the package's comparison methods are wanted, if ``every`` solver is.
+    peers_wanted : list of str or None
+        Other codes, by name; all if None.
+    every : bool
+        Whether all that are wanted: else ours, and the fastest of the peers.
     """
-    chosen = [Ours(scene, "closure"), Ours(scene, "force")]
+    chosen = [Ours(scene, "closure"), Ours(scene, "force"), AtDefault(scene, "closure")]
     if methods and every:
         chosen += [
             Method(scene, control, method)
@@ -263,10 +281,9 @@ def solvers_for(scene, *, methods, with_peers, every):
                 ("nnls", "closure"),
             ]
         ]
-    if with_peers:
-        chosen += [
-            Tamaas(scene) if name == "Tamaas" else ContactMechanics(scene, name.split()[1])
-            for name in peers.installed()
-            if every or name == FASTEST_PEER
-        ]
+    chosen += [
+        Tamaas(scene) if name == "Tamaas" else ContactMechanics(scene, name.split()[1])
+        for name in peers.installed()
+        if (peers_wanted is None or name in peers_wanted) and (every or name == FASTEST_PEER)
+    ]
     return [solver for solver in chosen if solver.carries(scene)]

@@ -22,6 +22,9 @@ def test_every_method_reaches_the_error_and_is_timed(tmp_path):
     applications = {row["solver"]: row["applications"] for row in rows if row["loading"] == "cold"}
     assert float(applications["fractalcontact (closure)"]) > 0
     assert applications["dense (closure)"] == ""
+    tolerance = {row["solver"]: float(row["tolerance"]) for row in rows if row["loading"] == "cold"}
+    default = tolerance["fractalcontact at its default (closure)"]
+    assert default <= 1e-6 <= tolerance["fractalcontact (closure)"]
     text = (tmp_path / "benchmarks.md").read_text()
     assert "reference and elimination" in text
     with (tmp_path / "scaling.csv").open() as file:

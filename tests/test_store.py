@@ -23,6 +23,15 @@ def test_the_same_dataset_gives_the_same_bytes(tmp_path):
     assert read(tmp_path / "1.nc").identical(data)
 
 
+def test_words_are_not_cut_to_the_length_of_those_read_first(tmp_path):
+    for name in ("comb", "start from a wrong state"):
+        write(xr.Dataset(coords={"kind": [name]}), tmp_path / f"{name}.nc")
+    first, second = (read(path) for path in sorted(tmp_path.iterdir()))
+    write(xr.concat([first, second], "kind"), tmp_path / "whole.nc")
+    names = read(tmp_path / "whole.nc")["kind"].values
+    assert names.tolist() == ["comb", "start from a wrong state"]
+
+
 def test_padded_rows():
     table = padded([[1, 2], [3]])
     assert table[0].tolist() == [1, 2]

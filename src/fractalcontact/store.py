@@ -94,9 +94,13 @@ def write(dataset, path):
 
 
 def read(path):
-    """A dataset written by :func:`write`, in memory."""
+    """A dataset written by :func:`write`, in memory.
+
+    How it was kept is forgotten: the length of its longest word would cut off those of others that
+    are put behind it.
+    """
     with xr.open_dataset(path, engine="netcdf4") as dataset:
-        return dataset.load()
+        return dataset.load().drop_encoding()
 
 
 def _encoding(dataset):
