@@ -52,11 +52,11 @@ class Solver:
 class Ours(Solver):
     """`fractalcontact.solve_contact`."""
 
-    likely = 1e-6
+    called, likely = "fractalcontact", 1e-6
     press = staticmethod(solve_contact)
 
     def __init__(self, scene, control):
-        self.name, self.control = f"fractalcontact ({control})", control
+        self.name, self.control = f"{self.called} ({control})", control
         self.height, self.space = scene.height, scene.space
         self.calls = {"full": 0, "coarse": 0.0}
 
@@ -93,11 +93,7 @@ class Ours(Solver):
 class AtDefault(Ours):
     """The same at its default tolerance, or a tighter one where that leaves a larger error."""
 
-    loosest = Ours.likely
-
-    def __init__(self, scene, control):
-        super().__init__(scene, control)
-        self.name = f"fractalcontact at its default ({control})"
+    called, loosest = "fractalcontact at its default", Ours.likely
 
 
 def forget(space):

@@ -86,10 +86,9 @@ def error_against_time(scene, recipe):
         On ``point``, with ``method``, ``kind`` and ``tolerance`` (NaN where there is none):
         `ERRORS`, ``seconds`` (median; ``seconds_low`` and ``seconds_high`` are the fastest and the
         slowest run), ``runs``, ``memory`` (once a method), ``applications`` of the operator (of
-        ours), ``said`` (of a failure), and
-        ``on_front`` and ``on_pressure_front``: whether nothing else is both faster and closer.
-        Attributes describe the scene, the reference and its error; errors below
-        ``told_apart_to``, the tightest tolerance, count as alike.
+        ours), ``said`` (of a failure), and ``on_front`` and ``on_pressure_front``: whether nothing
+        else is both faster and closer. Attributes describe the scene, the reference and its error;
+        errors below ``told_apart_to``, the tightest tolerance, count as alike.
     """
     _warm_up(recipe)
     table, ways = _first_runs(scene, recipe)
@@ -329,7 +328,6 @@ def _about_scene(scene):
     """
     reference, space = scene.single, scene.space
     field = reference.state.pressure.astype(np.float32)
-    timed(partial(space.convolve, field))
     applied = [timed(partial(space.convolve, field))[1] for _ in range(9)]
     return {
         "scene": scene.name,
