@@ -288,8 +288,14 @@ def test_sets_turned_by_thirty_degrees(name):
 
 
 #: Index, cells, flights, and how far their mean may be off. At 0.8, few boxes are left: 120 of four
-#: cells, 12 of 64. Windows of 512 read 0.03 high in the mean, of 2048 0.016 and of 4096 0.01.
-LEVY = [(0.8, 512, 200, 0.05), (1.2, 512, 120, 0.02), (1.2, 1024, 64, 0.02), (1.5, 512, 100, 0.02)]
+#: cells, 12 of 64, and windows of 512 read 0.04 high in the mean.
+LEVY = [
+    (0.8, 512, 200, 0.05),
+    (0.8, 2048, 150, 0.02),
+    (1.2, 512, 120, 0.02),
+    (1.2, 1024, 64, 0.02),
+    (1.5, 512, 100, 0.02),
+]
 
 
 @pytest.mark.parametrize("angle", [0, 20, 30, 45])

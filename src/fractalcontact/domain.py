@@ -99,8 +99,10 @@ def box_dimension(
 
     Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean. Sets marked
     by whole cells read up to 0.1 high where their waves hide that, inside the interval: say
-    `whole_cells`. Levy dusts of 512, marked so and said to be, read 0.02 high at an index of 1.2,
-    0.015 at 1.5, and 0.03 at 0.8, where few boxes are left (of 4096, 0.01).
+    `whole_cells`. Levy dusts marked so and said to be read high, where chance bends what is no
+    outline like one (indices of 1.2 and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04
+    in windows of 512, by 0.02, 0.015 and 0.015 in windows of 2048; means of 120 to 400, known
+    within 0.007.
 
     What one window cannot show is whether it was struck by chance more densely than others: where
     parts fall on the same boxes, as those of flights or trails, the counts of scale r differ by a
