@@ -12,6 +12,7 @@ from matplotlib.text import Text
 from PIL import Image
 
 from fractalcontact.figures import figures_of, plateau
+from fractalcontact.figures._words import percent
 from fractalcontact.figures.common import WIDTH, Drawing, headline, letter, print_style, save
 
 #: 200 letters, with dollar signs that begin no formula.
@@ -24,6 +25,25 @@ def drawn_texts(folder, name):
     return [
         "".join(node.itertext()).strip() for node in root.iter("{http://www.w3.org/2000/svg}text")
     ]
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [
+        (0.0, "0 %"),
+        (0.01234, "1.2 %"),
+        (0.996, "99.6 %"),
+        (1.0, "100 %"),
+        (3.57, "360 %"),
+        (-1.04, "-100 %"),
+    ],
+)
+def test_shares_in_per_cent_have_no_exponent(share, words):
+    assert percent(np.float64(share)) == words
+
+
+def test_a_change_in_per_cent_has_its_sign():
+    assert [percent(change, "+") for change in (0.02, -0.02)] == ["+2 %", "-2 %"]
 
 
 def one_panel(width=4):

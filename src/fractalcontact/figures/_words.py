@@ -36,6 +36,16 @@ def short(value):
     return f"{float(f'{float(value):.3g}'):g}"
 
 
+def percent(share, sign=""):
+    """A share in per cent, without an exponent: two digits, three of what is nearly all.
+
+    With the ``sign`` "+" one stands before what is positive too.
+    """
+    share = float(share)
+    digits = 3 if 0.99 < abs(share) < 1 else 2
+    return f"{float(f'{100 * share:.{digits}g}'):{sign}g} %"
+
+
 def interval(value, low, high):
     """A dimension, or a slope, with its 95 % interval: two decimals."""
     return f"{number(value)} [{number(low)}, {number(high)}]"

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ..area import FEWEST_NODES, LIGHT_LOAD
 from ..states import chosen_offset
-from ._words import estimate, number, opening, place, short
+from ._words import estimate, number, opening, percent, place, short
 from .area_slope import kappa_lines
 from .common import (
     COLOURS,
@@ -243,7 +243,7 @@ def _law_words(law):
     )
     return (
         f"A_r grows as F to the power {fit} over {int(law['n'])} loads, which {linear} and "
-        f"{archard}; A_r/F departs from its mean by up to {100 * float(law['departure']):.2g} %."
+        f"{archard}; A_r/F departs from its mean by up to {percent(law['departure'])}."
     )
 
 

@@ -8,7 +8,7 @@ from ..area import FEWEST_NODES
 from ..clusters import QUADRATS, follows_law
 from ..fitting import FEWEST_POINTS, fit_line
 from ..specimen import cell_side
-from ._words import estimate, force_label, opening, place, short, slope_text
+from ._words import estimate, force_label, opening, percent, place, short, slope_text
 from .common import (
     LINES,
     MARKERS,
@@ -235,10 +235,10 @@ def _localisation_words(table):
     first, last = used.iloc[0], used.iloc[-1]
     return (
         f"The index goes as v to the power {powers}: {verdict}. Under F = {force_label(force)} "
-        f"half of the contact lies in {100 * first['half_share']:.2g} % of the window at "
-        f"v = {short(first['offset_mm'])} mm and in {100 * last['half_share']:.2g} % at "
+        f"half of the contact lies in {percent(first['half_share'])} of the window at "
+        f"v = {short(first['offset_mm'])} mm and in {percent(last['half_share'])} at "
         f"{short(last['offset_mm'])} mm (as many random nodes: "
-        f"{100 * first['half_share_random']:.2g} and {100 * last['half_share_random']:.2g} %)."
+        f"{percent(first['half_share_random'])} and {percent(last['half_share_random'])})."
     )
 
 

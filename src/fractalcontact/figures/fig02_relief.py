@@ -12,7 +12,7 @@ from scipy.ndimage import distance_transform_edt
 from ..roughness import dimension_table
 from ..specimen import window_sides
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
-from ._words import interval, length_unit, opening
+from ._words import interval, length_unit, opening, percent
 from .common import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 
 COLOUR_MAP = "cividis"
@@ -190,7 +190,7 @@ def _caption(label, specimen, faces, sides, dimension):
     return (
         f"{opening('Fig. 2', label)} Shaded relief about the mean plane, lit from the "
         f"North-West: {shape[1]} x {shape[0]} cells of {spacing[0]:.4g} x {spacing[1]:.4g} mm, "
-        f"{sides[1]:.4g} x {sides[0]:.4g} mm (x, y), {100 * absent:.2g} % of them not measured; "
+        f"{sides[1]:.4g} x {sides[0]:.4g} mm (x, y), {percent(absent)} of them not measured; "
         f"window {window[1]:.4g} x {window[0]:.4g} mm; {heights}. {_words(dimension)}"
     )
 

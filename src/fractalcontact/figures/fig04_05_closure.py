@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from ..area import FEWEST_NODES
 from ..fitting import fit_line
 from ..specimen import nominal_area
-from ._words import estimate, force_label, force_unit, opening, place, short, slope_text
+from ._words import estimate, force_label, force_unit, opening, percent, place, short, slope_text
 from .common import (
     LINES,
     MARKERS,
@@ -209,8 +209,8 @@ def _hyperbola_words(curves):
     beyond, clearly = (
         int((largest > curves[f"hyperbola_w_m{end}"]).values[fitted].sum()) for end in ("", "_high")
     )
-    misfit = 100 * float(curves["hyperbola_misfit"].max())
-    words = f"The hyperbolas miss the closures by up to {misfit:.2g} % of the largest (rms)"
+    misfit = percent(curves["hyperbola_misfit"].max())
+    words = f"The hyperbolas miss the closures by up to {misfit} of the largest (rms)"
     if beyond:
         return (
             f"{words}, and {beyond} of {fitted.sum()} computed curves pass beyond their own "

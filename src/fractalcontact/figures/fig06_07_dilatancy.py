@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 from ..fitting import fit_line
 from ..specimen import window_sides
 from ._maps import HALO, draw_domain
-from ._words import TOWARDS, force_label, opening, place, short, slope_text
+from ._words import TOWARDS, force_label, opening, percent, place, short, slope_text
 from .common import (
     LINES,
     MARKERS,
@@ -170,7 +170,7 @@ def _draw_domains(panels, domains, share, points, sides):
         draw_domain(panel, domains[i].values, sides)
         panel.set_title(
             f"{_domain_letter(k)}: $v$ = {short(share['offset'][i])} mm, "
-            f"$A_r/A_0$ = {100 * float(share[i]):.2g} %"
+            f"$A_r/A_0$ = {percent(share[i])}"
         )
 
 
@@ -224,7 +224,7 @@ def _plateau_words(plateaus):
     if not fitted:
         return "Too few offsets to tell whether there is a plateau."
     parts = [
-        f"{TOWARDS[direction]} {slope_text(line)}, {100 * change:+.2g} % of the mean"
+        f"{TOWARDS[direction]} {slope_text(line)}, {percent(change, '+')} of the mean"
         for direction, (line, change) in fitted.items()
     ]
     level = sum(line.slope_low <= 0 <= line.slope_high for line, _ in fitted.values())
@@ -257,5 +257,5 @@ def _area_words(share, force):
     )
     return (
         f"At F = {force_label(force)} A_r goes as v to the power {slope_text(line)} over "
-        f"{line.n} offsets from {100 * area[0]:.2g} to {100 * area[-1]:.2g} %: {verdict}."
+        f"{line.n} offsets from {percent(area[0])} to {percent(area[-1])}: {verdict}."
     )

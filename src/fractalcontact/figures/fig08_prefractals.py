@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from ..scaling import RESOLUTION
 from ._domains import Loading, disagreement
 from ._maps import draw_domain
-from ._words import force_label, short
+from ._words import force_label, percent, short
 from .common import WIDTH, Drawing, headline, letter
 
 #: Maps side by side.
@@ -42,7 +42,7 @@ def draw(atlas, name):
             which,
             f"$s$ = {short(row.spacing_mm)} mm\n"
             f"$A_r$ = {short(row.area_mm2)} mm$^2$\n"
-            f"$A_r/A_0$ = {100 * row.area_share:.2g} %\n"
+            f"$A_r/A_0$ = {percent(row.area_share)}\n"
             rf"$\sigma_r$ = {short(row.sigma_r_MPa)} MPa",
         )
         axes.label_outer()

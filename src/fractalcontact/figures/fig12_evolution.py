@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ._domains import Loading, disagreement, trend
 from ._maps import draw_domain
-from ._words import force_label, interval, short, wrapped
+from ._words import force_label, interval, percent, short, wrapped
 from .common import MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
 
 #: Contact domains drawn.
@@ -40,8 +40,8 @@ def draw(atlas, name):
     finest = loading.scaling["area"].sel(resolution=loading.finest).values
     for axes, which, i in zip(maps, "abcdef", shown, strict=False):
         draw_domain(axes, loading.domain(loading.finest, i), loading.sides, ticks=3)
-        share = 100 * finest[i] / nominal
-        letter(axes, which, f"{force_label(loading.forces[i])}\n$A_r/A_0$ = {share:.2g} %")
+        share = percent(finest[i] / nominal)
+        letter(axes, which, f"{force_label(loading.forces[i])}\n$A_r/A_0$ = {share}")
         axes.label_outer()
     axes = bottom.subplots()
     measured = measured_maps(atlas)
@@ -100,7 +100,7 @@ def _draw_measured(axes, measured, nominal):
 
 def _measured_words(measured):
     words = [
-        f"{found.attrs['label']} ({100 * float(found['area_share']):.2g} % in contact): "
+        f"{found.attrs['label']} ({percent(found['area_share'])} in contact): "
         + (
             found["reason"].item()
             or interval(*(float(found[f"delta_sigma{end}"]) for end in ("", "_low", "_high")))

@@ -13,7 +13,7 @@ from ..fitting import fit_line, mean_interval, without_mean_plane
 from ..roll_off import SURFACES
 from ..specimen import faces, window_slices
 from ..units import quantity
-from ._words import PAPER, estimate, short
+from ._words import PAPER, estimate, percent, short
 from .common import (
     LINES,
     WIDTH,
@@ -321,8 +321,8 @@ def _slope_words(slide):
     half = slide.spread[:, slide.second_half].mean()
     return (
         f"{slide.label} ({roll_off}): delta_r {estimate(opened.slope, opened.low, opened.high)} "
-        f"mm/mm, {100 * opened.change:+.2g} % of its mean, sigma_z "
-        f"{estimate(spread.slope, spread.low, spread.high)} mm/mm, {100 * spread.change:+.2g} %, "
+        f"mm/mm, {percent(opened.change, '+')} of its mean, sigma_z "
+        f"{estimate(spread.slope, spread.low, spread.high)} mm/mm, {percent(spread.change, '+')}, "
         f"there {half / (np.sqrt(2) * slide.face):.2g} of sqrt(2) sigma"
     )
 
@@ -337,7 +337,7 @@ def _explanation(made):
         f"{grown[1]:.3g} times without, their ratio stays between "
         f"{_span(np.concatenate(ratios), ' and ')}. With the roll-off the faces lose all "
         f"correlation (rho {_span(with_it.correlation[:, with_it.second_half].mean(axis=1))} over "
-        f"the second half of v), sigma_z follows from it to {100 * _missed(with_it):.2g} % (rms) "
+        f"the second half of v), sigma_z follows from it to {percent(_missed(with_it))} (rms) "
         f"and stays at sqrt(2) sigma, and delta_r {_level(with_it)}. Without, waves as long as the "
         f"window are left: sigma_z goes on growing, and delta_r {_level(without)}."
     )

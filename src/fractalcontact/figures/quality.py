@@ -13,7 +13,7 @@ from ..quality_words import AXES, length_words, noise_words, range_words
 from ..specimen import window_slices
 from ._history import history
 from ._maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
-from ._words import length_unit
+from ._words import length_unit, percent
 from .common import COLOURS, WIDTH, Drawing, group, headline, label_short_span, letter, settings_of
 from .fig02_relief import draw_faces
 
@@ -312,7 +312,7 @@ def _found_words(specimen, quality, faces):
     for face in faces:
         words = "; ".join(filter(None, (noise_words(quality, face), range_words(quality, face))))
         sentences.append(f"{face.capitalize()} face: {words}.")
-    share = ", ".join(f"{100 * quality['missing_share'].sel(face=f):.2g} %" for f in faces)
+    share = ", ".join(percent(quality["missing_share"].sel(face=f)) for f in faces)
     cells = f"{share} of the cells missing"
     if "outlier_count" in specimen.attrs:
         done = {"keep": "kept", "mask": "masked"}.get(specimen.attrs.get("outliers"), "")
