@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ._tables import LINE_HEIGHT, draw_rows, wrap_rows
-from ._words import opening, place, short
+from ._words import opening, percent, place, short
 from .common import (
     COLOURS,
     LINES,
@@ -119,10 +119,9 @@ def _caption(label, made, errors, direction):
     by_solver = errors[errors["quantity"] != ERRORS[-1][-1]]
     worst = by_solver.loc[by_solver["largest"].idxmax()]
     spacing = errors[errors["quantity"] == ERRORS[-1][-1]]["largest"]
+    least, most = percent(spacing.min()), percent(spacing.max())
     by_spacing = (
-        f"; twice the spacing changes the closure by {spacing.min():.1%} to {spacing.max():.1%}"
-        if len(spacing)
-        else ""
+        f"; twice the spacing changes the closure by {least} to {most}" if len(spacing) else ""
     )
     return (
         f"{opening('no figure', label, place(direction))} Asked for: {made.attrs['asked']}. "
