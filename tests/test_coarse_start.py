@@ -4,11 +4,21 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.coarse_start import spread
+from fractalcontact.coarse_start import pool_minimum, pool_sum, spread
 
 
 def half_space(ny, nx, spacing=(0.1, 0.1)):
     return HalfSpace(shape=(ny, nx), spacing=spacing, modulus=1.0)
+
+
+@pytest.mark.parametrize(("pool", "numpy_pool"), [(pool_minimum, np.nanmin), (pool_sum, np.nansum)])
+@pytest.mark.parametrize("shape", [(4, 6), (5, 7), (1, 2), (3, 1)])
+def test_cells_of_two_by_two_nodes(shape, pool, numpy_pool):
+    values = np.random.default_rng(1).standard_normal(shape)
+    ny, nx = shape
+    padded = np.pad(values, ((0, ny % 2), (0, nx % 2)), constant_values=np.nan)
+    cells = padded.reshape((ny + 1) // 2, 2, (nx + 1) // 2, 2)
+    np.testing.assert_allclose(pool(values), numpy_pool(cells, axis=(1, 3)), rtol=1e-14)
 
 
 @pytest.mark.parametrize("shape", [(24, 30), (25, 31)])

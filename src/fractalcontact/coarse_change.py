@@ -14,9 +14,9 @@ from .coarse_start import (
     COARSE_CORRECTIONS,
     COARSE_RTOL,
     KEPT_CELLS,
-    by_cells,
     on_nodes,
     pool_minimum,
+    pool_sum,
     shared_out,
 )
 from .conditions import Problem, examined_by, mean_reached
@@ -66,7 +66,7 @@ def _changed(problem, pressure, gap, closure):
     shape, space = problem.space.shape, problem.space.coarser(2)
     before, gap = np.clip(pressure, 0.0, problem.cap).reshape(shape), gap.reshape(shape)
     # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
-    pooled, pooled_gap = by_cells(before, 0.0).sum(axis=(1, 3)) / 2, pool_minimum(gap)
+    pooled, pooled_gap = pool_sum(before) / 2, pool_minimum(gap)
     displacement = _displacement(space, pooled)
     clearance = (pooled_gap + closure).ravel() - displacement
     load = problem.load / 2 if problem.by_force else problem.load
@@ -91,7 +91,7 @@ def _displacement(space, pressure):
 
 def _in_proportion(before, old, new):
     """Change of a fine pressure in proportion to that of its cells; even where there was none."""
-    nodes = by_cells(np.ones(before.shape), 0.0).sum(axis=(1, 3))
+    nodes = pool_sum(np.ones(before.shape))
     factor = np.divide(new, old, out=np.ones(old.shape), where=old > 0)
     fresh = np.where(old > 0, 0.0, 2 * new / nodes)
     return before * on_nodes(factor - 1, before.shape) + on_nodes(fresh, before.shape)

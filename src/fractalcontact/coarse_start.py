@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from .active_set import ActiveSet
+from .balancing import inverted
 from .conditions import Problem
 
 # A coarser grid gives the start until its shorter side has fewer nodes than this.
@@ -51,17 +52,40 @@ def coarse_start(problem):
     return np.minimum(pressure, problem.cap).ravel()
 
 
-def by_cells(values, missing):
-    """Values (ny, nx) as (my, 2, mx, 2): two by two nodes a cell, ``missing`` beyond the grid."""
+# Compiled: numpy takes twenty times as long for axes of two.
+
+
+@njit(cache=True)
+def pool_minimum(values):
+    """The smallest of each 2 x 2 nodes, an odd last row or column standing alone."""
     ny, nx = values.shape
-    if ny % 2 or nx % 2:
-        values = np.pad(values, ((0, ny % 2), (0, nx % 2)), constant_values=missing)
-    return values.reshape((ny + 1) // 2, 2, (nx + 1) // 2, 2)
+    pooled = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
+    for y in range(ny):
+        for x in range(nx):
+            pooled[y // 2, x // 2] = min(pooled[y // 2, x // 2], values[y, x])
+    return pooled
 
 
-def pool_minimum(gap):
-    """Smallest gap of each 2 x 2 nodes, an odd last row or column standing alone."""
-    return by_cells(gap, np.inf).min(axis=(1, 3))
+@njit(cache=True)
+def pool_sum(values):
+    """The sum of each 2 x 2 nodes, an odd last row or column standing alone."""
+    ny, nx = values.shape
+    pooled = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
+    for y in range(ny):
+        for x in range(nx):
+            pooled[y // 2, x // 2] += values[y, x]
+    return pooled
+
+
+@njit(cache=True)
+def on_nodes(cells, shape):
+    """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
+    ny, nx = shape
+    values = np.empty(shape)
+    for y in range(ny):
+        for x in range(nx):
+            values[y, x] = cells[y // 2, x // 2]
+    return values
 
 
 def spread(pressure, clearance, influence):
@@ -86,11 +110,6 @@ def spread(pressure, clearance, influence):
     return shared_out(np.zeros(clearance.shape), change, clearance, influence)
 
 
-def on_nodes(cells, shape):
-    """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
-    return np.repeat(np.repeat(cells, 2, axis=0), 2, axis=1)[: shape[0], : shape[1]]
-
-
 def shared_out(before, change, gap, influence):
     """Pressure, (ny, nx), of which each 2 x 2 nodes have a given sum, and even gaps where it is.
 
@@ -103,83 +122,99 @@ def shared_out(before, change, gap, influence):
     influence : (ny, nx) ndarray
         As for :func:`spread`.
     """
-    # Two nodes of neighbouring cells are no more than three apart.
-    near = influence[:4, :4].astype(float)
-    return _shared_out(before, np.ascontiguousarray(change), np.ascontiguousarray(gap), near)
+    # A cell's nodes and those of the eight around it lie in six rows and columns.
+    my, mx = ((n + 1) // 2 for n in gap.shape)
+    padded = np.zeros((2 * my + 4, 2 * mx + 4))
+    inside = padded[2 : gap.shape[0] + 2, 2 : gap.shape[1] + 2]
+    inside[:] = change
+    _share_out(before, padded, gap, influence[:4, :4].astype(float))
+    return before + inside
 
 
 @njit(cache=True)
-def _shared_out(before, change, gap, influence):
-    """One pass through the cells; each sees what those before it have become."""
+def _share_out(before, change, gap, influence):
+    """Share out a change, with two nodes more on each side; a cell sees what others have become."""
     ny, nx = gap.shape
-    own = np.empty((4, 4))
+    own, around = _influence_on(influence)
+    ways = _ways_to_share(own)
+    known, left, share = np.zeros(4), np.zeros(4), np.zeros(4)
+    for top in range(0, ny, 2):
+        for side in range(0, nx, 2):
+            total, those = 0.0, 0
+            for a in range(4):
+                y, x = top + a // 2, side + a % 2
+                known[a] = left[a] = 0.0
+                if y < ny and x < nx:
+                    known[a], left[a] = before[y, x], gap[y, x]
+                    total += known[a] + change[y + 2, x + 2]
+                    those |= 1 << a
+            if not total > 0:
+                continue
+            for i in range(6):
+                for j in range(6):
+                    value = change[top + i, side + j]
+                    for a in range(4):
+                        left[a] += around[i, j, a] * value
+            for a in range(4):
+                for b in range(4):
+                    left[a] -= own[a, b] * known[b]
+            _even_gaps(ways, left, total, those, share)
+            for a in range(4):
+                if those & (1 << a):
+                    change[top + a // 2 + 2, side + a % 2 + 2] = share[a] - known[a]
+
+
+@njit(cache=True)
+def _influence_on(influence):
+    """Of the four nodes of a cell on each other, and on each of those six by six about it.
+
+    The second leaves out what they have on each other.
+    """
+    own, around = np.empty((4, 4)), np.empty((6, 6, 4))
     for a in range(4):
         for b in range(4):
             own[a, b] = influence[abs(a // 2 - b // 2), abs(a % 2 - b % 2)]
-    known, left, there = np.zeros(4), np.zeros(4), np.zeros(4, np.bool_)
-    for cell_y in range((ny + 1) // 2):
-        for cell_x in range((nx + 1) // 2):
-            total = 0.0
-            for a in range(4):
-                y, x = 2 * cell_y + a // 2, 2 * cell_x + a % 2
-                there[a] = y < ny and x < nx
-                known[a] = before[y, x] if there[a] else 0.0
-                total += known[a] + change[y, x] if there[a] else 0.0
-            if not total > 0:
-                continue
-            for a in range(4):
-                if there[a]:
-                    y, x = 2 * cell_y + a // 2, 2 * cell_x + a % 2
-                    left[a] = gap[y, x] + _from_around(change, influence, y, x)
-                    for b in range(4):
-                        left[a] -= own[a, b] * known[b]
-            share = _shared(own, left, there, total)
-            for a in range(4):
-                if there[a]:
-                    change[2 * cell_y + a // 2, 2 * cell_x + a % 2] = share[a] - known[a]
-    return before + change
+        for i in range(6):
+            for j in range(6):
+                within = 2 <= i < 4 and 2 <= j < 4
+                away = abs(i - 2 - a // 2), abs(j - 2 - a % 2)
+                around[i, j, a] = 0.0 if within else influence[away]
+    return own, around
 
 
 @njit(cache=True)
-def _from_around(change, influence, y, x):
-    """Displacement of a node by the eight cells around its own."""
-    own_y, own_x = y // 2, x // 2
-    total = 0.0
-    for y2 in range(max(2 * own_y - 2, 0), min(2 * own_y + 4, change.shape[0])):
-        for x2 in range(max(2 * own_x - 2, 0), min(2 * own_x + 4, change.shape[1])):
-            if y2 // 2 != own_y or x2 // 2 != own_x:
-                total += influence[abs(y2 - y), abs(x2 - x)] * change[y2, x2]
-    return total
+def _ways_to_share(own):
+    """For each set of a cell's nodes, given by its bits, how they share a sum: (16, 4, 5).
+
+    Of gaps g and a sum S pressures p = -M g + c S leave even gaps: own p + g is the same for all,
+    which gives M = W - W 1 1' W / (1' W 1) and c = W 1 / (1' W 1), with W the inverse of own.
+    """
+    ways = np.zeros((16, 4, 5))
+    for those in range(1, 16):
+        nodes = np.array([a for a in range(4) if those & (1 << a)])
+        inverse = inverted(own[nodes][:, nodes])
+        ones = inverse.sum(axis=1)
+        for i, a in enumerate(nodes):
+            for j, b in enumerate(nodes):
+                ways[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
+            ways[those, a, 4] = ones[i] / ones.sum()
+    return ways
 
 
 @njit(cache=True)
-def _shared(own, gap, there, total):
-    """Pressures of a given sum, 0 where no node is there, that leave even gaps where positive.
+def _even_gaps(ways, gap, total, those, share):
+    """Pressures of a given sum, 0 but on ``those`` nodes, that leave even gaps where positive.
 
     Those in tension are dropped, the strongest first, until there is none.
     """
-    active = there.copy()
-    matrix, values = np.empty((5, 5)), np.empty(5)
     while True:
+        worst, least = 0, 0.0
         for a in range(4):
+            share[a] = ways[those, a, 4] * total
             for b in range(4):
-                alone = 1.0 if a == b else 0.0
-                matrix[a, b] = own[a, b] if active[a] and active[b] else alone
-            matrix[a, 4] = matrix[4, a] = 1.0 if active[a] else 0.0
-            values[a] = -gap[a] if active[a] else 0.0
-        matrix[4, 4], values[4] = 0.0, total
-        # The first four pivots are positive, the last is negative: none need be sought.
-        for k in range(5):
-            for i in range(k + 1, 5):
-                factor = matrix[i, k] / matrix[k, k]
-                for j in range(k + 1, 5):
-                    matrix[i, j] -= factor * matrix[k, j]
-                values[i] -= factor * values[k]
-        for k in range(4, -1, -1):
-            for i in range(k + 1, 5):
-                values[k] -= matrix[k, i] * values[i]
-            values[k] /= matrix[k, k]
-        worst = np.argmin(values[:4])
-        if not values[worst] < 0:
-            return values[:4]
-        active[worst] = False
+                share[a] += ways[those, a, b] * gap[b]
+            if share[a] < least:
+                worst, least = a, share[a]
+        if not least < 0:
+            break
+        those &= ~(1 << worst)
