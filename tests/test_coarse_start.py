@@ -59,3 +59,14 @@ def test_neighbours_take_load_off_the_edge_they_share():
     coarse[6, 5:7] = 1.0
     fine = spread(coarse, np.zeros((24, 24)), half_space(24, 24).influence())
     assert (fine[12:14, 13] < fine[12:14, 10]).all()
+
+
+def test_where_one_node_of_a_cell_can_touch_it_carries_all():
+    """Whatever its gap. On cells of this shape, W W / W is not W for rounding."""
+    clearance = np.full((24, 26), 1e30)
+    clearance[10, 12] = 1e20
+    coarse = np.zeros((12, 13))
+    coarse[5, 6] = 0.25
+    fine = spread(coarse, clearance, half_space(24, 26, (0.1, 0.155)).influence())
+    assert fine[10, 12] == 4 * 0.25
+    assert np.count_nonzero(fine) == 1

@@ -195,9 +195,10 @@ def _ways_to_share(own):
         inverse = inverted(own[nodes][:, nodes])
         ones = inverse.sum(axis=1)
         for i, a in enumerate(nodes):
-            for j, b in enumerate(nodes):
-                ways[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
             ways[those, a, 4] = ones[i] / ones.sum()
+            # A node alone carries all, whatever its gap: not but for rounding, gaps may be huge.
+            for j, b in enumerate(nodes if nodes.size > 1 else nodes[:0]):
+                ways[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
     return ways
 
 
