@@ -196,8 +196,7 @@ def _ways_to_share(own):
         ones = inverse.sum(axis=1)
         for i, a in enumerate(nodes):
             ways[those, a, 4] = ones[i] / ones.sum()
-            # A node alone carries all, whatever its gap: not but for rounding, gaps may be huge.
-            for j, b in enumerate(nodes if nodes.size > 1 else nodes[:0]):
+            for j, b in enumerate(nodes):
                 ways[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
     return ways
 
@@ -206,14 +205,19 @@ def _ways_to_share(own):
 def _even_gaps(ways, gap, total, those, share):
     """Pressures of a given sum, 0 but on ``those`` nodes, that leave even gaps where positive.
 
-    Those in tension are dropped, the strongest first, until there is none.
+    Those in tension are dropped, the strongest first, until there is none. Only by how much gaps
+    differ counts: what they share may be huge, and would leave the sum to rounding.
     """
     while True:
+        nearest = np.inf
+        for a in range(4):
+            if those & (1 << a):
+                nearest = min(nearest, gap[a])
         worst, least = 0, 0.0
         for a in range(4):
             share[a] = ways[those, a, 4] * total
             for b in range(4):
-                share[a] += ways[those, a, b] * gap[b]
+                share[a] += ways[those, a, b] * (gap[b] - nearest)
             if share[a] < least:
                 worst, least = a, share[a]
         if not least < 0:

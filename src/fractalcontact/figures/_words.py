@@ -31,19 +31,14 @@ def number(value, digits=2):
     return f"{round(float(value), digits) + 0.0:.{digits}f}"
 
 
-def short(value):
-    """Three digits of a number, without an exponent up to a million."""
-    return f"{float(f'{float(value):.3g}'):g}"
+def short(value, digits=3, sign=""):
+    """Some digits of a number, without an exponent up to a million; "+" as ``sign`` shows that."""
+    return f"{float(f'{float(value):.{digits}g}'):{sign}g}"
 
 
 def percent(share, sign=""):
-    """A share in per cent, without an exponent: two digits, three of what is nearly all.
-
-    With the ``sign`` "+" one stands before what is positive too.
-    """
-    share = float(share)
-    digits = 3 if 0.99 < abs(share) < 1 else 2
-    return f"{float(f'{100 * share:.{digits}g}'):{sign}g} %"
+    """A share in per cent: two digits, three of what is nearly all."""
+    return f"{short(100 * share, 3 if 0.99 < abs(share) < 1 else 2, sign)} %"
 
 
 def interval(value, low, high):

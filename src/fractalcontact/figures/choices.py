@@ -119,10 +119,10 @@ def _caption(label, made, errors, direction):
     by_solver = errors[errors["quantity"] != ERRORS[-1][-1]]
     worst = by_solver.loc[by_solver["largest"].idxmax()]
     spacing = errors[errors["quantity"] == ERRORS[-1][-1]]["largest"]
-    least, most = percent(spacing.min()), percent(spacing.max())
-    by_spacing = (
-        f"; twice the spacing changes the closure by {least} to {most}" if len(spacing) else ""
-    )
+    by_spacing = ""
+    if len(spacing):
+        least, most = percent(spacing.min()), percent(spacing.max())
+        by_spacing = f"; twice the spacing changes the closure by {least} to {most}"
     return (
         f"{opening('no figure', label, place(direction))} Asked for: {made.attrs['asked']}. "
         f"{made.attrs['states_solved']} of {made.attrs['states']} states were solved; the others "
