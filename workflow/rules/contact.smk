@@ -21,8 +21,8 @@ def part_of(wildcards, key):
 
 rule contact:
     input:
-        specimen=rules.specimen.output[0],
-        joint=rules.surfaces.output.joint,
+        specimen=rules.specimen.output.specimen,
+        joint=rules.specimen.output.joint,
     output:
         f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
     log:
@@ -52,28 +52,39 @@ def contact_parts(wildcards):
     return expand(rules.contact.output, specimen=wildcards.specimen, **counts)
 
 
-# What is made of the states of a specimen: closure curves and what follows from them; box counts,
-# dimension and clusters of every contact domain, what changes with resolution, lacunarity and
-# generalised dimensions of the domains that are drawn. Seconds of work, so one job.
+#: What every specimen has of its states, and what only joints that slide have.
+ANALYSES = (
+    "closure",
+    "dilatancy",
+    "choices",
+    "area",
+    "domains",
+    "contact",
+    "scaling",
+    "domain_measures",
+)
+ANALYSIS_FILES = {stage: f"{RESULTS}/{stage}/{{specimen}}.nc" for stage in ANALYSES}
+STRENGTH_FILE = f"{RESULTS}/strength/{{specimen}}.nc"
+
+
+# What is made of the states of a specimen: closure curves and what follows from them; strength; box
+# counts, dimension and clusters of every contact domain, what changes with resolution, lacunarity
+# and generalised dimensions of the domains that are drawn. Seconds of work, so one job.
 rule analysis:
     input:
-        specimen=rules.specimen.output[0],
-        surface_dimension=rules.surfaces.output.surface_dimension,
-        joint=rules.surfaces.output.joint,
+        specimen=rules.specimen.output.specimen,
+        surface_dimension=rules.specimen.output.surface_dimension,
+        joint=rules.specimen.output.joint,
         contact=contact_parts,
     output:
-        closure=f"{RESULTS}/closure/{{specimen}}.nc",
-        dilatancy=f"{RESULTS}/dilatancy/{{specimen}}.nc",
-        choices=f"{RESULTS}/choices/{{specimen}}.nc",
-        area=f"{RESULTS}/area/{{specimen}}.nc",
-        domains=f"{RESULTS}/domains/{{specimen}}.nc",
-        contact=f"{RESULTS}/contact/{{specimen}}.nc",
-        scaling=f"{RESULTS}/scaling/{{specimen}}.nc",
-        domain_measures=f"{RESULTS}/domain_measures/{{specimen}}.nc",
+        **ANALYSIS_FILES,
+        strength=STRENGTH_FILE,
     log:
         f"{RESULTS}/logs/analysis/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
+    wildcard_constraints:
+        specimen=one_of(SLIDING),
     conda:
         "../../environment.yml"
     resources:
@@ -91,9 +102,22 @@ rule analysis:
             "roughness",
             "states",
             "store",
+            "strength",
         ),
     script:
         "../scripts/analysis.py"
+
+
+# Strength needs sliding.
+use rule analysis as analysis_against_plane with:
+    output:
+        **ANALYSIS_FILES,
+    log:
+        f"{RESULTS}/logs/analysis/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
+    wildcard_constraints:
+        specimen=one_of(FLAT),
 
 
 # A measured map of contact goes straight to the analysis of domains.

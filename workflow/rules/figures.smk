@@ -1,4 +1,4 @@
-# Figures of every specimen, each from its own atlas: PNG, SVG, numbers as CSV, caption as text.
+# Figures of every specimen: PNG, SVG, numbers as CSV, caption as text.
 
 STUDY_FIGURES = study_figures_of(config)
 
@@ -24,12 +24,23 @@ def beside(opposite):
     )
 
 
+def configuration_of(wildcards):
+    return {"study": config, "settings": {wildcards.specimen: settings_of(wildcards)}}
+
+
+SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
+
+
+# The figures of a specimen are drawn from an atlas of its own, made just before: so a new scan draws
+# only its own, one bad scan does not keep the others from theirs, and the atlas of the study and
+# these are made side by side.
 rule figures:
     input:
-        rules.specimen_atlas.output.atlas,
+        unpack(stages_of),
     output:
         *pictures("match"),
         *beside("match"),
+        atlas=SPECIMEN_ATLAS,
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
@@ -43,7 +54,8 @@ rule figures:
         runtime=10,
     params:
         names=figures_of("match"),
-        code=code("figures", *figure_modules("match")),
+        configuration=configuration_of,
+        code=code("figures", "statements", "store", *figure_modules("match")),
     script:
         "../scripts/figures.py"
 
@@ -53,6 +65,7 @@ use rule figures as figures_against_plane with:
     output:
         *pictures("flat"),
         *beside("flat"),
+        atlas=SPECIMEN_ATLAS,
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
@@ -61,7 +74,8 @@ use rule figures as figures_against_plane with:
         specimen=one_of(FLAT),
     params:
         names=figures_of("flat"),
-        code=code("figures", *figure_modules("flat")),
+        configuration=configuration_of,
+        code=code("figures", "statements", "store", *figure_modules("flat")),
 
 
 # What only the whole study shows.

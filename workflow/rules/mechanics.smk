@@ -1,12 +1,12 @@
-# Joint mechanics beside the contact states: parts of the window, strength, made joints.
+# Joint mechanics beside the contact states: parts of the window, made joints.
 
 
 # How mechanics goes with size, and the direct test of eq. 6: both press parts of the window.
 rule windows:
     input:
-        specimen=rules.specimen.output[0],
-        surface_dimension=rules.surfaces.output.surface_dimension,
-        joint=rules.surfaces.output.joint,
+        specimen=rules.specimen.output.specimen,
+        surface_dimension=rules.specimen.output.surface_dimension,
+        joint=rules.specimen.output.joint,
     output:
         windows=f"{RESULTS}/windows/{{specimen}}.nc",
         size_test=f"{RESULTS}/size_test/{{specimen}}.nc",
@@ -25,32 +25,6 @@ rule windows:
         code=code("size_laws", "size_test", "store"),
     script:
         "../scripts/windows.py"
-
-
-# Strength needs sliding.
-rule strength:
-    input:
-        specimen=rules.specimen.output[0],
-        joint=rules.surfaces.output.joint,
-        dilatancy=rules.analysis.output.dilatancy,
-    output:
-        f"{RESULTS}/strength/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/strength/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
-    wildcard_constraints:
-        specimen=one_of(SLIDING),
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    params:
-        settings=settings_of,
-        code=code("strength", "store"),
-    script:
-        "../scripts/strength.py"
 
 
 rule roll_off:

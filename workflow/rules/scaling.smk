@@ -46,23 +46,16 @@ rule estimator_bias:
 
 
 STAGE_FILES = {
-    "specimens": rules.specimen.output[0],
-    "quality": rules.surfaces.output.quality,
-    "surface_dimension": rules.surfaces.output.surface_dimension,
-    "joints": rules.surfaces.output.joint,
-    "contact": rules.analysis.output.contact,
-    "closure": rules.analysis.output.closure,
-    "dilatancy": rules.analysis.output.dilatancy,
-    "choices": rules.analysis.output.choices,
-    "area": rules.analysis.output.area,
+    "specimens": rules.specimen.output.specimen,
+    "quality": rules.specimen.output.quality,
+    "surface_dimension": rules.specimen.output.surface_dimension,
+    "joints": rules.specimen.output.joint,
     "windows": rules.windows.output.windows,
-    "domains": rules.analysis.output.domains,
-    "domain_measures": rules.analysis.output.domain_measures,
-    "scaling": rules.analysis.output.scaling,
     "size_test": rules.windows.output.size_test,
+    **ANALYSIS_FILES,
 }
 # What only joints that slide have.
-SLIDING_FILES = {"strength": rules.strength.output[0]}
+SLIDING_FILES = {"strength": STRENGTH_FILE}
 # Measured contact maps stand in every atlas, beside the domains computed there.
 MAP_FILES = {"contact_maps": expand(rules.contact_map.output, map=MAPS)} if MAPS else {}
 # What the study has once.
@@ -73,37 +66,13 @@ def stages_of(wildcards):
     return STAGE_FILES | MAP_FILES | (SLIDING_FILES if wildcards.specimen in SLIDING else {})
 
 
-# What the paper says, held against all of this, and the atlas of one specimen: its figures need no
-# other, so a new scan redraws only its own, and one bad scan does not keep the others from theirs.
-rule specimen_atlas:
-    input:
-        unpack(stages_of),
-    output:
-        atlas=f"{RESULTS}/atlas/{{specimen}}.nc",
-        statements=f"{RESULTS}/statements/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/atlas/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/atlas/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=2000,
-        runtime=10,
-    params:
-        configuration=lambda wc: {"study": config, "settings": {wc.specimen: settings_of(wc)}},
-        code=code("statements", "store"),
-    script:
-        "../scripts/specimen_atlas.py"
-
-
+# All of this, with what the paper says held against it.
 rule atlas:
     input:
         **{stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()},
         **{stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()},
         **MAP_FILES,
         **STUDY_FILES,
-        statements=expand(rules.specimen_atlas.output.statements, specimen=SPECIMENS),
     output:
         f"{RESULTS}/atlas.nc",
     log:
@@ -117,6 +86,6 @@ rule atlas:
         runtime=10,
     params:
         configuration={"study": config, "settings": SETTINGS},
-        code=code("store"),
+        code=code("statements", "store"),
     script:
         "../scripts/atlas.py"

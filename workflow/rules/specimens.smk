@@ -31,12 +31,18 @@ def scan_files(wildcards):
     return {role: str(path) for role, path in files.items() if path is not None}
 
 
+# The levelled specimen, and what is known of its joint before anything is pressed: the dimension of
+# its face, what the instrument adds and which resolutions go below it, and one face slid over the
+# other (offsets, composite topographies, rigid dilatancy). Seconds of work, so one job.
 rule specimen:
     input:
         unpack(scan_files),
         schema=SCHEMA_FILE,
     output:
-        f"{RESULTS}/specimens/{{specimen}}.nc",
+        specimen=f"{RESULTS}/specimens/{{specimen}}.nc",
+        surface_dimension=f"{RESULTS}/surface_dimension/{{specimen}}.nc",
+        quality=f"{RESULTS}/quality/{{specimen}}.nc",
+        joint=f"{RESULTS}/joints/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/specimen/{{specimen}}.log",
     benchmark:
@@ -48,32 +54,6 @@ rule specimen:
         runtime=15,
     params:
         settings=settings_of,
-        code=code("preparation", "store"),
+        code=code("joint", "preparation", "quality", "roughness", "store"),
     script:
         "../scripts/specimen.py"
-
-
-# What is known of a joint before anything is pressed: the dimension of its face, what the instrument
-# adds and which resolutions go below it, and one face slid over the other (offsets, composite
-# topographies, rigid dilatancy). Seconds of work, so one job.
-rule surfaces:
-    input:
-        rules.specimen.output,
-    output:
-        surface_dimension=f"{RESULTS}/surface_dimension/{{specimen}}.nc",
-        quality=f"{RESULTS}/quality/{{specimen}}.nc",
-        joint=f"{RESULTS}/joints/{{specimen}}.nc",
-    log:
-        f"{RESULTS}/logs/surfaces/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/surfaces/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=10,
-    params:
-        settings=settings_of,
-        code=code("joint", "quality", "roughness", "store"),
-    script:
-        "../scripts/surfaces.py"

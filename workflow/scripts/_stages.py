@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from fractalcontact import store
+from fractalcontact.statements import judge
 
 
 def read_stages(files):
@@ -16,6 +17,15 @@ def read_stages(files):
 
 
 def write_atlas(stages, path, configuration):
-    """One file of all of them, with the configuration that they were made by."""
+    """One file of all of them, with the configuration that they were made by.
+
+    And with the paper's statements, judged for every specimen of the configuration.
+    """
+    judged = {}
+    for name, settings in configuration["settings"].items():
+        # Contact maps, the study's, stand under names of their own.
+        of_joint = {stage: parts[name] for stage, parts in stages.items() if name in parts}
+        judged[name] = judge(of_joint, settings)
+    everything = stages | ({"statements": judged} if judged else {})
     study = configuration["study"]["study"]
-    store.write_atlas(stages, path, study=study, configuration=configuration)
+    store.write_atlas(everything, path, study=study, configuration=configuration)

@@ -11,6 +11,7 @@ from fractalcontact.needs import choices
 from fractalcontact.roughness import best_dimension
 from fractalcontact.specimen import cell_side, window_sides
 from fractalcontact.states import combine, domains_of, force_range, map_states
+from fractalcontact.strength import joint_strength
 
 with reported(snakemake.log) as log:
     specimen = store.read(snakemake.input.specimen)
@@ -45,6 +46,8 @@ with reported(snakemake.log) as log:
         ),
         "domain_measures": measures_of_map_states(map_states(parts), spacing),
     }
+    if snakemake.output.get("strength"):
+        made["strength"] = joint_strength(dilatancy, joint, specimen, settings)
     for stage, dataset in made.items():
         store.write(dataset, snakemake.output[stage])
         log.info("%s", dataset)
