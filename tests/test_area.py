@@ -223,6 +223,8 @@ def _made_curves(share, statistics, e_star=1.0, nominal=100.0):
             "area_share": (dims, made),
             "area": (dims, made * nominal),
             "area_corrected": (dims, 0.9 * made * nominal),
+            "area_error": (dims, 0.01 * made * nominal),
+            "area_corrected_error": (dims, 0.02 * made * nominal),
             "nominal_pressure": ("load", pressure),
         },
         coords={
@@ -257,6 +259,37 @@ def test_exact_power_law_is_recovered(statistics):
     assert float(found["force_high"]) == pytest.approx(force[-1])
     # A/F ~ F^-0.1 over a ratio of 300, its geometric mean in the middle.
     assert float(found["departure"]) == pytest.approx(300**0.05 - 1)
+
+
+def test_errors_of_the_areas_are_passed_on(statistics):
+    made = _made_curves(lambda reduced: 0.8 * reduced**0.9, statistics)
+    found = area_laws(made, statistics, 1.0, 2.2)
+    np.testing.assert_allclose(found["kappa_error"], 0.01 * found["kappa"])
+    np.testing.assert_allclose(
+        found["corrected_kappa_error"], 0.02 / 0.9 * found["corrected_kappa"]
+    )
+    # Another set of areas within the errors stays within what is said of the largest deviation,
+    # and one of them takes up nearly all of it: one area lower, all others higher.
+    assert found["departure_error"].item() > 0
+    reached = []
+    for k in range(12):
+        other = made.copy(deep=True)
+        other["area"] = other["area"] * np.where(np.arange(12) == k, 0.99, 1.01)
+        departure = area_laws(other, statistics, 1.0, 2.2)["departure"]
+        reached.append(abs(departure - found["departure"]).item())
+    assert 0.8 * found["departure_error"].item() < max(reached) <= found["departure_error"].item()
+    # Where an area may be nothing but error, so may what is made of it.
+    made["area_error"] = made["area"]
+    assert area_laws(made, statistics, 1.0, 2.2)["departure_error"].item() == np.inf
+
+
+def test_area_at_one_newton_has_its_interval(statistics):
+    wavy = _made_curves(lambda reduced: reduced * (1 + 0.1 * (-1) ** np.arange(12)), statistics)
+    found = area_laws(wavy, statistics, 1.0, 2.2).isel(direction=0, offset=0)
+    assert found["unit_area_low"] < found["unit_area"] < found["unit_area_high"]
+    assert found["unit_area_low"] * found["unit_area_high"] == pytest.approx(
+        found["unit_area"].item() ** 2
+    )
 
 
 def test_line_of_a_theory_is_its_kappa(statistics):

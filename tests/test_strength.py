@@ -1,5 +1,7 @@
 """Dilatancy angle, shear strength, and Barton and Bandis' law."""
 
+import itertools
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +13,7 @@ from fractalcontact.states import combine
 from fractalcontact.strength import (
     JRC_RANGE,
     dilatancy_angle,
+    dilatancy_angle_error,
     from_flush,
     joint_strength,
     peak,
@@ -111,6 +114,18 @@ def test_a_straight_climb_has_one_angle(degrees):
     np.testing.assert_allclose(midpoint, [0.05, 0.25, 1.2])
 
 
+def test_error_of_an_angle_is_that_of_its_ends_in_opposite_directions():
+    v, delta, error = [0.0, 1.0, 2.0], [0.0, 0.5, 0.4], np.array([0.0, 0.01, 0.02])
+    _, angle = dilatancy_angle(v, delta)
+    found = dilatancy_angle_error(v, delta, error)
+    reached = np.zeros(2)
+    for signs in itertools.product((-1, 1), repeat=3):
+        off = abs(dilatancy_angle(v, delta + signs * error)[1] - angle)
+        assert (off <= found + 1e-12).all()
+        reached = np.maximum(reached, off)
+    np.testing.assert_allclose(reached, found)
+
+
 def test_strength_is_coulombs_and_its_angle_is_held():
     tau, held = shear_strength(2.0, np.array([-5.0, 0.0, 45.0, 70.0, 95.0, np.nan]))
     steepest = 2 * np.tan(np.radians(LARGEST_FRICTION_ANGLE))
@@ -198,6 +213,28 @@ def test_bartons_law_is_that_of_the_theory_with_the_roughness_of_the_face(streng
 
 
 # Properties
+
+
+def test_dilatancies_within_their_errors_give_strengths_within_theirs(twin):
+    chosen = settings(OFFSETS)
+    dilatancy, joint = pressed(twin, chosen)
+    delta = dilatancy["elastic_dilatancy"]
+    error = dilatancy["elastic_dilatancy_error"] = 0 * delta + 2e-4
+    found = joint_strength(dilatancy, joint, twin, chosen)
+    rng, reached = np.random.default_rng(1), {}
+    for _ in range(20):
+        signs = rng.choice([-1.0, 1.0], delta.shape)
+        other = joint_strength(
+            dilatancy.assign(elastic_dilatancy=delta + signs * error), joint, twin, chosen
+        )
+        for name in ("dilatancy_angle", "shear_strength", "peak_strength", "peak_dilatancy_angle"):
+            off, bound = abs(other[name] - found[name]), found[f"{name}_error"]
+            assert (off <= bound * (1 + 1e-9)).all(), name
+            reached[name] = max(reached.get(name, 0.0), float((off / bound).max()))
+    # The bound of a single interval is reached, that of a peak need not be.
+    assert reached["dilatancy_angle"] > 0.99
+    assert reached["shear_strength"] > 0.9
+    assert (found["friction_angle_error"] == found["dilatancy_angle_error"]).all()
 
 
 def test_west_on_the_mirrored_face_is_east(twin):

@@ -174,7 +174,8 @@ def area_laws(curves, statistics, e_star, dimension):
         deviation of A_r/F from its geometric mean over the loads fitted; means of kappa at light
         load; ``no_law`` and ``no_mean_kappa``, reasons; the asperities. Over (direction, offset,
         load): ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and
-        the shares A_r/A_0 of the theories.
+        the shares A_r/A_0 of the theories. ``departure`` and the kappas have an ``_error``, by the
+        solver.
 
     Notes
     -----
@@ -202,13 +203,15 @@ LAW = (
     ("exponent_low", "slope_low", "1", "exponent m, lower end of the 95 % interval"),
     ("exponent_high", "slope_high", "1", "exponent m, upper end of the 95 % interval"),
     ("unit_area", "intercept", "mm2", "real contact area at 1 N by the fitted law"),
+    ("unit_area_low", "intercept_low", "mm2", "that area, lower end of the 95 % interval"),
+    ("unit_area_high", "intercept_high", "mm2", "that area, upper end of the 95 % interval"),
     ("force_low", "x_min", "N", "smallest force fitted"),
     ("force_high", "x_max", "N", "largest force fitted"),
     ("n", "n", "1", "loads fitted"),
 )
 
 #: Fields of a fit in logarithms that are logarithms themselves.
-_LOGARITHMS = ("intercept", "x_min", "x_max")
+_LOGARITHMS = ("intercept", "intercept_low", "intercept_high", "x_min", "x_max")
 
 
 def _add_laws(result, curves):
@@ -232,6 +235,13 @@ def _add_laws(result, curves):
     result["departure"] = deviation.where(np.isfinite(result["exponent"]))
     result["departure"].attrs = about(
         "1", "largest deviation of A_r/F from its geometric mean, a part of it"
+    )
+    share = np.minimum(curves["area_error"] / curves["area"], 1)
+    with np.errstate(divide="ignore"):  # a law of which nothing is sure
+        off = -np.log1p(-share).where(result["fitted"])
+    error = (1 + result["departure"]) * np.expm1(off.max("load") + off.mean("load"))
+    result["departure_error"] = error.assign_attrs(
+        about("1", "largest deviation of A_r/F from its geometric mean, error by the solver")
     )
     full = (curves["area_share"] > 0.5).all("load") & ~result["fitted"].any("load")
     reasons = [
@@ -258,12 +268,15 @@ def _add_kappa(result, curves, e_star, touching):
         about("1", f"{FEWEST_NODES} nodes or more touch and p / (E* h'_rms) <= {LIGHT_LOAD:g}")
     )
     nominal = curves["load"] / curves["nominal_pressure"]
-    for prefix, area, words in (
-        ("", curves["area"], "area slope kappa = (A_r/A_0) E* h'_rms / p"),
-        ("corrected_", curves["area_corrected"], "area slope kappa, corrected area"),
+    for prefix, name, words in (
+        ("", "area", "area slope kappa = (A_r/A_0) E* h'_rms / p"),
+        ("corrected_", "area_corrected", "area slope kappa, corrected area"),
     ):
-        kappa = area / nominal / reduced
+        kappa = curves[name] / nominal / reduced
         result[f"{prefix}kappa"] = kappa.assign_attrs(about("1", words))
+        result[f"{prefix}kappa_error"] = (curves[f"{name}_error"] / nominal / reduced).assign_attrs(
+            about("1", f"{words}, error by the solver")
+        )
         means = xr.apply_ufunc(
             lambda values: mean_interval(values, axis=-1)[:3],
             kappa.where(light),

@@ -82,6 +82,28 @@ def dilatancy_angle(offset, dilatancy):
     return (offset[1:] + offset[:-1]) / 2, angle
 
 
+def dilatancy_angle_error(offset, dilatancy, error):
+    """How far off dilatancy angles may be where the dilatancies are.
+
+    Parameters
+    ----------
+    offset, dilatancy
+        As for :func:`dilatancy_angle`.
+    error : (n, ...) array_like
+        Bound on the error of each dilatancy, mm.
+
+    Returns
+    -------
+    (n - 1, ...) ndarray
+        Degrees; both ends of an interval may be off, in opposite directions.
+    """
+    offset, dilatancy, error = (np.asarray(x, float) for x in (offset, dilatancy, error))
+    step = np.diff(offset).reshape(-1, *[1] * (dilatancy.ndim - 1))
+    slope, off = np.diff(dilatancy, axis=0) / step, (error[1:] + error[:-1]) / step
+    ends = np.arctan([slope - off, slope + off])
+    return np.degrees(abs(ends - np.arctan(slope)).max(axis=0))
+
+
 def shear_strength(pressure, friction_angle):
     """tau = sigma_n tan(angle), the angle held between 0 and `LARGEST_FRICTION_ANGLE`.
 
@@ -229,8 +251,9 @@ def joint_strength(dilatancy, joint, specimen, settings):
     -------
     xr.Dataset
         Over (contact_direction, interval, load), (contact_direction, load) and
-        (contact_direction, sampling): :data:`FIELDS` and :func:`profile_roughness`. ``interval``
-        holds midpoints of the offsets in the first direction, ``midpoint`` those of each.
+        (contact_direction, sampling): :data:`FIELDS` and :func:`profile_roughness`. What rests on
+        solved states has an ``_error``, the solver's. ``interval`` holds midpoints of the offsets
+        in the first direction, ``midpoint`` those of each.
 
     Notes
     -----
@@ -260,8 +283,7 @@ def joint_strength(dilatancy, joint, specimen, settings):
     return result
 
 
-#: What is found: name to unit and long name.
-FIELDS = {
+_FOUND = {
     "midpoint": ("mm", "middle of the interval of offsets"),
     "dilatancy_angle": ("degree", "dilatancy angle i"),
     "rigid_dilatancy_angle": ("degree", "dilatancy angle of the rigid joint, F = 0"),
@@ -285,6 +307,20 @@ FIELDS = {
     "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n"),
 }
 
+#: What rests on solved states, and says how far off it may be for that.
+_SOLVED = (
+    "dilatancy_angle",
+    "friction_angle",
+    "shear_strength",
+    "peak_strength",
+    "peak_dilatancy_angle",
+)
+#: What is found: name to unit and long name.
+FIELDS = _FOUND | {
+    f"{name}_error": (_FOUND[name][0], f"{_FOUND[name][1]}, error by the solver")
+    for name in _SOLVED
+}
+
 
 def _one_direction(dilatancy, joint, specimen, material, direction, pressure):
     """All of :func:`joint_strength` for one direction."""
@@ -294,13 +330,21 @@ def _one_direction(dilatancy, joint, specimen, material, direction, pressure):
     elastic = curve["elastic_dilatancy"].transpose("offset", "load").values
     cells = joint["offset_cells"].sel(contact_direction=direction).values
     rigid, _ = rigid_dilatancy(specimen, direction, cells)
+    error = curve["elastic_dilatancy_error"].transpose("offset", "load").values
+    # Openings of rigid faces are read off the heights.
+    errors = np.column_stack([np.zeros_like(rigid), error])
     both = np.column_stack([rigid, elastic])
     largest = offset[-1]
     if specimen.attrs["opposite"] == "match":
+        # Flush faces have no dilatancy, whatever the load: no error either.
+        _, errors = from_flush(offset, errors)
         offset, both = from_flush(offset, both)
     midpoint, angles = dilatancy_angle(offset, both)
     rigid_angle, angle = angles[:, 0], angles[:, 1:]
+    angle_off = dilatancy_angle_error(offset, both, errors)[:, 1:]
     tau, held = shear_strength(pressure, angle_b + angle)
+    ends = [shear_strength(pressure, angle_b + angle + off)[0] for off in (-angle_off, angle_off)]
+    tau_off = abs(np.array(ends) - tau).max(axis=0)
     stated = np.where(np.isfinite(angle_b), 1.0, np.nan)
 
     roughness = profile_roughness(specimen, direction)
@@ -322,6 +366,14 @@ def _one_direction(dilatancy, joint, specimen, material, direction, pressure):
         "barton_scaled_strength": barton_strength(pressure, angle_b, scaled_jrc, scaled_wall),
     }
     found["peak_strength"], found["peak_offset"] = peak(midpoint, tau)
+    # The largest of several values is off by no more than the one that is off most.
+    found |= {
+        "dilatancy_angle_error": angle_off,
+        "friction_angle_error": stated * angle_off,
+        "shear_strength_error": tau_off,
+        "peak_strength_error": peak(midpoint, tau_off)[0],
+        "peak_dilatancy_angle_error": peak(midpoint, angle_off)[0],
+    }
     for name, values in (("strength", tau), ("angle", angle)):
         mean, low, high, n = residual(midpoint, values, largest)
         found |= {
