@@ -14,14 +14,8 @@ from fractalcontact.scan import read_faces
 from fractalcontact.size_laws import joint_by_size
 from fractalcontact.size_prediction import PREDICTORS, predict_whole
 from fractalcontact.size_pressing import BEYOND, DOUBLINGS, press_parts
-from fractalcontact.size_test import (
-    ESTIMATORS,
-    VERDICTS,
-    _equal_pressures,
-    equal_pressure,
-    real_pressures,
-    size_test,
-)
+from fractalcontact.size_slope import equal_pressure, real_pressures, slopes_at_equal_star
+from fractalcontact.size_test import ESTIMATORS, VERDICTS, size_test
 from fractalcontact.specimen import make_specimen
 from fractalcontact.study import resolve_settings
 from fractalcontact.synthesis import self_affine
@@ -98,6 +92,7 @@ def made_states(law, closure=None):
     return xr.Dataset(
         {
             "nodes": (("part", "window", "resolution", "step"), nodes),
+            "nodes_error": (("part", "window", "resolution", "step"), 0 * nodes),
             "interface_closure": (("part", "window", "step"), closed),
             "side": ("part", side),
             "windows": ("part", windows),
@@ -128,7 +123,7 @@ def test_place_on_a_curve():
 @pytest.mark.parametrize("delta", [0.5, 1.39, 2.0])
 def test_joint_that_obeys_eq_6(delta):
     states = made_states(lambda p, b: 100 * (p * b ** (2 - delta)) ** 0.2)
-    found = _equal_pressures(states, 4)
+    found = slopes_at_equal_star(states, 4)
     np.testing.assert_allclose(found["slope"], delta - 2, atol=1e-9)
     np.testing.assert_allclose(found["window_slope"], delta - 2, atol=1e-9)
     np.testing.assert_allclose(found["sensitivity"], 0.2, atol=1e-9)
@@ -254,8 +249,10 @@ def test_doublings_that_are_left_out_change_nothing(flat, monkeypatch):
     assert np.isnan(last.sel(part=1))
     assert np.isfinite(full["real_pressure"].isel(step=-1, part=0))
     known = np.isfinite(lazy["real_pressure"])
-    xr.testing.assert_identical(lazy["real_pressure"], full["real_pressure"].where(known))
-    xr.testing.assert_identical(lazy.drop_vars("real_pressure"), full.drop_vars("real_pressure"))
+    of_steps = ["real_pressure", "real_pressure_error"]
+    for name in of_steps:
+        xr.testing.assert_identical(lazy[name], full[name].where(known))
+    xr.testing.assert_identical(lazy.drop_vars(of_steps), full.drop_vars(of_steps))
 
 
 def test_strength_without_a_size_effect_is_that_of_the_parts(sliding):
@@ -283,6 +280,36 @@ def test_hardness_bounds_the_loads():
     assert len(domains) == pressed.sizes["load"]
     nodes = pressed["nodes"].isel(part=0, window=0, resolution=0).values
     assert (nodes * 0.01 * 1000 >= pressed["ladder_pressure"].values * 6.4**2 * (1 - 1e-9)).all()
+
+
+def test_undecided_nodes_are_passed_on():
+    # sigma_n ~ sigma_0^0.5, of the whole and of the parts: 1 % of the nodes of both is 2 % of
+    # sigma_n between them, and twice that of sigma_0.
+    states = made_states(lambda p, b: 100 * p**0.5 * b**-0.1)
+    exact = slopes_at_equal_star(states, 4)
+    for name in ("real_pressure", "equal_pressure", "window_pressure"):
+        np.testing.assert_allclose(exact[f"{name}_error"], 0 * exact[name], atol=1e-12)
+    states["nodes_error"] = 0.01 * states["nodes"]
+    found = slopes_at_equal_star(states, 4)
+    xr.testing.assert_equal(found["equal_pressure"], exact["equal_pressure"])
+    of_parts = {"part": slice(1, None)}
+    for name in ("equal_pressure", "window_pressure"):
+        share = (found[f"{name}_error"] / found[name]).isel(of_parts).values
+        np.testing.assert_allclose(share[1:], 0.99**-4 - 1, rtol=1e-9)
+        assert (found[f"{name}_error"].isel(part=0) == 0).all()
+    np.testing.assert_allclose(found["real_pressure_error"] / found["real_pressure"], 1 / 0.99 - 1)
+    # With the nodes off by that, the pressures are off by no more.
+    rng = np.random.default_rng(2)
+    for _ in range(5):
+        signs = rng.choice([-1, 1], states["nodes"].shape[:1])[:, None, None, None]
+        other = states.assign(nodes=states["nodes"] * (1 + 0.01 * signs))
+        off = abs(slopes_at_equal_star(other, 4)["equal_pressure"] - found["equal_pressure"])
+        assert (
+            (off <= found["equal_pressure_error"] * (1 + 1e-9)).where(np.isfinite(off), True).all()
+        )
+    # What may not be reached is off by nobody knows how much.
+    states["nodes_error"] = 0.5 * states["nodes"]
+    assert np.isinf(slopes_at_equal_star(states, 4)["equal_pressure_error"].isel(part=3)).any()
 
 
 def test_few_nodes_say_nothing():

@@ -12,8 +12,8 @@ from fractalcontact.specimen import make_specimen, nominal_area, window_sides
 from fractalcontact.states import combine
 from fractalcontact.strength import (
     JRC_RANGE,
+    angles_with_errors,
     dilatancy_angle,
-    dilatancy_angle_error,
     from_flush,
     joint_strength,
     peak,
@@ -117,7 +117,8 @@ def test_a_straight_climb_has_one_angle(degrees):
 def test_error_of_an_angle_is_that_of_its_ends_in_opposite_directions():
     v, delta, error = [0.0, 1.0, 2.0], [0.0, 0.5, 0.4], np.array([0.0, 0.01, 0.02])
     _, angle = dilatancy_angle(v, delta)
-    found = dilatancy_angle_error(v, delta, error)
+    *same, found = angles_with_errors(v, delta, error)
+    np.testing.assert_array_equal(same[1], angle)
     reached = np.zeros(2)
     for signs in itertools.product((-1, 1), repeat=3):
         off = abs(dilatancy_angle(v, delta + signs * error)[1] - angle)

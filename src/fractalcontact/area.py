@@ -238,7 +238,7 @@ def _add_laws(result, curves):
     )
     share = np.minimum(curves["area_error"] / curves["area"], 1)
     with np.errstate(divide="ignore"):  # a law of which nothing is sure
-        off = -np.log1p(-share).where(result["fitted"])
+        off = abs(np.log1p(-share)).where(result["fitted"])
     error = (1 + result["departure"]) * np.expm1(off.max("load") + off.mean("load"))
     result["departure_error"] = error.assign_attrs(
         about("1", "largest deviation of A_r/F from its geometric mean, error by the solver")

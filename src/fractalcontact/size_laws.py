@@ -7,12 +7,13 @@ from .fitting import fit_line, mean_interval
 from .labels import about
 from .strength import (
     FIELDS,
-    dilatancy_angle,
+    angles_with_errors,
     from_flush,
     peak,
     profile_roughness,
     residual,
-    shear_strength,
+    slopes_apart,
+    strength_with_error,
 )
 from .theory import LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
 from .windows import ENDINGS, FIRST_CELLS, LAST_PART, window_states
@@ -105,7 +106,7 @@ def size_laws(states, material, roughness, dimension, fit_range=None):
     result["windows"].attrs = about("1", "sub-windows pressed of each size")
     _add_hurst(result, states, dimension, fit_range)
     for name, (exponent, words) in _OVER_LOADS.items():
-        _add_mean(result, states[name], name)
+        _add_mean(result, states[name], name, states[f"{name}_error"])
         _add_law(result, result["side"], result[name], "part", exponent, words)
     for name in ("sigma_z", "tilt_share"):
         _add_mean(result, states[name], name)
@@ -147,29 +148,34 @@ def strength_by_size(states, material, roughness):
     """
     pressure = states["nominal_pressure"].values
     side = states["side"]
-    offset, curve = _dilatancy_curves(states)
-    midpoint, angle = dilatancy_angle(offset, curve)
-    strength, held = shear_strength(pressure, material["basic_friction_angle"] + angle)
+    offset, curve, error = _dilatancy_curves(states)
+    midpoint, angle, angle_off = angles_with_errors(offset, curve, error)
+    friction = material["basic_friction_angle"] + angle
+    strength, held, off = strength_with_error(pressure, friction, angle_off)
     held = np.where(np.isnan(strength), np.nan, held == 1)
 
     words = about("mm", "middle of the interval of offsets")
     result = xr.Dataset(coords={"interval": ("interval", midpoint, words)})
     dims = ("part", "window", "load")
+    largest = states["offset"].values[-1]
     of_curves = {
-        "peak_strength": peak(midpoint, strength)[0],
-        "peak_dilatancy_angle": peak(midpoint, angle)[0],
-        "residual_strength": residual(midpoint, strength, states["offset"].values[-1])[0],
+        "peak_strength": [peak(midpoint, values)[0] for values in (strength, off)],
+        "peak_dilatancy_angle": [peak(midpoint, values)[0] for values in (angle, angle_off)],
+        "residual_strength": [residual(midpoint, values, largest)[0] for values in (strength, off)],
+        "shear_strength": [strength, off],
     }
-    for name, values in of_curves.items():
-        _add_mean(result, xr.DataArray(values, dims=dims, attrs=about(*FIELDS[name])), name)
-    shear = xr.DataArray(strength, dims=("interval", *dims), attrs=about(*FIELDS["shear_strength"]))
-    _add_mean(result, shear, "shear_strength")
-    for name, values, units, text in (
-        ("similar_strength", strength, "MPa", "shear strength at v = share b"),
-        ("similar_slope", np.tan(np.radians(angle)), "1", "slope d delta/dv at v = share b"),
+    for name, (values, errors) in of_curves.items():
+        over = dims if values.ndim == 3 else ("interval", *dims)
+        values = xr.DataArray(values, dims=over, attrs=about(*FIELDS[name]))
+        _add_mean(result, values, name, values.copy(data=errors))
+    slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
+    for name, values, errors, units, text in (
+        ("similar_strength", strength, off, "MPa", "shear strength at v = share b"),
+        ("similar_slope", slopes[0], slopes[1] - slopes[0], "1", "slope d delta/dv at v = share b"),
     ):
-        at = _at_shares(offset, side.values, values)
-        _add_mean(result, xr.DataArray(at, dims=("share", *dims), attrs=about(units, text)), name)
+        values, errors = (_at_shares(offset, side.values, found) for found in (values, errors))
+        values = xr.DataArray(values, dims=("share", *dims), attrs=about(units, text))
+        _add_mean(result, values, name, values.copy(data=errors))
     result["share"] = ("share", np.array(SHARES), about("1", "offset as a share of the side, v/b"))
     for name, exponent in _STRENGTH_EXPONENTS.items():
         _add_law(result, side, result[name], "part", exponent, f"exponent of {name} against b")
@@ -200,15 +206,18 @@ _STRENGTH_EXPONENTS = {
 
 
 def _dilatancy_curves(states):
-    """Offsets (n,) and elastic dilatancy (n, part, window, load) of the sub-windows, mm."""
+    """Offsets (n,), elastic dilatancy (n, part, window, load) of the sub-windows, its error, mm."""
     elastic = states["rigid_opening"] - states["interface_closure"]
-    curve = elastic.transpose("offset", "part", "window", "load").values
+    order = ("offset", "part", "window", "load")
+    curve = elastic.transpose(*order).values
+    error = states["interface_closure_error"].transpose(*order).values
     offset = states["offset"].values
     if states.attrs["opposite"] == "match":
         absent = np.isnan(curve[:1])
+        _, error = from_flush(offset, error)
         offset, curve = from_flush(offset, curve)
-        curve[:1][absent] = np.nan
-    return offset, curve
+        curve[:1][absent] = error[:1][absent] = np.nan
+    return offset, curve, error
 
 
 def _add_barton(result, states, material, roughness):
@@ -258,13 +267,20 @@ def _at_shares(offset, side, values):
     return found
 
 
-def _add_mean(result, values, name):
-    """Mean of ``values`` over the sub-windows with its interval, into ``result``."""
+def _add_mean(result, values, name, errors=None):
+    """Mean of ``values`` over the sub-windows with its interval, into ``result``.
+
+    And the mean of their ``errors`` by the solver, which is a bound on that of the mean.
+    """
     dims = tuple(dim for dim in values.dims if dim != "window")
     found = mean_interval(values.values, axis=values.dims.index("window"))[:3]
     for ending, mean in zip(ENDINGS, found, strict=True):
         words = f"{values.attrs['long_name']}, mean over sub-windows{ENDINGS[ending]}"
         result[f"{name}{ending}"] = (dims, mean, about(values.attrs["units"], words))
+    if errors is not None:
+        words = f"{values.attrs['long_name']}, mean over sub-windows, error by the solver"
+        result[f"{name}_error"] = errors.mean("window").transpose(*dims)
+        result[f"{name}_error"].attrs = about(values.attrs["units"], words)
 
 
 def _add_law(result, side, values, dim, name, words):

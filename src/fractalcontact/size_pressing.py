@@ -38,10 +38,10 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     Returns
     -------
     pressed : xr.Dataset
-        ``nodes`` (part, window, resolution, step) in contact, ``interface_closure`` (part, window,
-        step) at the finest resolution, ``side`` b and ``windows`` (part), ``ladder_pressure``
-        (step) whose first steps are those of the loads. Steps that no window of a size needs are
-        NaN.
+        ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
+        solver leaves undecided; ``interface_closure`` (part, window, step) at the finest
+        resolution, ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps
+        are those of the loads. Steps that no window of a size needs are NaN.
     domains : (load, ny, nx) bool ndarray
         Contact domain of the whole window at the finest resolution.
 
@@ -110,8 +110,8 @@ class _Size:
 
     Attributes
     ----------
-    nodes : (window, resolution, step) ndarray
-        In contact; NaN for steps not pressed yet.
+    nodes, undecided : (window, resolution, step) ndarray
+        In contact, and those of which it is not certain; NaN for steps not pressed yet.
     closure : (window, step) ndarray
         Of the interface, mm.
     domains : list of (ny, nx) bool ndarray
@@ -124,6 +124,7 @@ class _Size:
         self.spacing = np.sqrt(spacing.prod()) * np.array(factors)
         self.loads = pressures * self.sides.prod()
         self.nodes = np.full((len(windows), len(factors), len(pressures)), np.nan)
+        self.undecided = self.nodes.copy()
         self.closure = np.full((len(windows), len(pressures)), np.nan)
         self.domains, self.pressed = [], 0
         self._settlement = bulk_settlement(self.loads, spaces["modulus"], *self.sides)
@@ -143,6 +144,7 @@ class _Size:
         for (j, k), rising in self._states.items():
             for step, state in zip(following, rising, strict=False):
                 self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
+                self.undecided[j, k, step] = state.undecided
                 if k == 0:
                     interface = state.closure - self._settlement[step]
                     self.closure[j, step] = self._open[j] * interface
@@ -160,21 +162,26 @@ def _labelled(sizes, parts, largest_of_study, n_tested, area):
     pressures = sizes[0].pressures
     n_windows, n_factors = max(parts) ** 2, len(sizes[0].spacing)
     nodes = np.full((len(parts), n_windows, n_factors, len(pressures)), np.nan)
+    undecided = nodes.copy()
     closure = np.full((len(parts), n_windows, len(pressures)), np.nan)
     for i, size in enumerate(sizes):
-        nodes[i, : len(size.nodes)], closure[i, : len(size.nodes)] = size.nodes, size.closure
+        taken = slice(len(size.nodes))
+        nodes[i, taken], undecided[i, taken] = size.nodes, size.undecided
+        closure[i, taken] = size.closure
     s = sizes[0].spacing
     sides = [np.sqrt(size.sides.prod()) for size in sizes]
     tested = pressures[:n_tested]
+    of_nodes = ("part", "window", "resolution", "step")
     closing = about("mm", "interface closure w_int = w - w_b of a sub-window")
     beyond = about("1", "whether the load is larger than those of the study")
     ladder = about("MPa", "nominal pressures that every window was pressed with")
     return xr.Dataset(
         {
-            "nodes": (
-                ("part", "window", "resolution", "step"),
-                nodes,
-                about("1", "nodes in contact"),
+            "nodes": (of_nodes, nodes, about("1", "nodes in contact")),
+            "nodes_error": (
+                of_nodes,
+                undecided,
+                about("1", "nodes in contact, error by the solver"),
             ),
             "interface_closure": (("part", "window", "step"), closure, closing),
             "side": ("part", sides, about("mm", "side b of the sub-windows")),

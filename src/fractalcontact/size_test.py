@@ -22,7 +22,8 @@ from .joint import direction_spacing
 from .labels import INTERVAL, about
 from .scaling import FEWEST_NODES, renormalisation
 from .size_prediction import predict_whole, predict_whole_strength
-from .size_pressing import press_parts, real_pressure, whole_areas
+from .size_pressing import press_parts, whole_areas
+from .size_slope import real_pressures, slopes_at_equal_star
 from .specimen import cell_side
 from .states import chosen_offset
 from .windows import PARTS, split
@@ -80,7 +81,8 @@ def size_test(specimen, direction, cells, settings, solver, windows, parts=PARTS
         ``slope`` of all windows of a size taken together and ``window_slope`` of the median of
         windows one by one, each with ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``;
         ``share_exponent`` and ``sensitivity``, which explain it. Over (load, part):
-        ``equal_pressure``, ``window_pressure``, ``windows_below``, ``windows_above``,
+        ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the solver's, which is
+        infinite where the value may not be reached at all), ``windows_below``, ``windows_above``,
         ``windows_unknown``, ``crossings``; and what is predicted for the whole window, see
         :func:`fractalcontact.size_prediction.predict_whole`. Loads ``beyond_study`` are those of
         :data:`fractalcontact.size_pressing.BEYOND`.
@@ -110,10 +112,10 @@ def size_test(specimen, direction, cells, settings, solver, windows, parts=PARTS
     offsets = cells * direction_spacing(specimen, direction)
     chosen = int(cells[offsets == chosen_offset(settings["map_offset"], offsets)][0])
     pressed, domains = press_parts(specimen, direction, chosen, settings, solver, parts)
-    result = pressed.drop_vars(["nodes", "interface_closure"])
+    result = pressed.drop_vars(["nodes", "nodes_error", "interface_closure"])
     areas = whole_areas(specimen, direction, chosen, settings, solver, pressed)
     result = result.merge(_dimensions(specimen, pressed, domains, areas, settings))
-    result = result.merge(_equal_pressures(pressed, result.sizes["load"]))
+    result = result.merge(slopes_at_equal_star(pressed, result.sizes["load"]))
     result = result.merge(_verdicts(result))
     result = result.merge(predict_whole(pressed, result["delta_sigma"], FEWEST_NODES))
     if direction != "none":
@@ -170,153 +172,6 @@ def _meeting_line(domain, pressed):
     met = [split(domain, n).any(axis=(1, 2)).sum() for n in pressed["part"].values]
     count = np.array(met, float)
     return fit_line(-np.log(pressed["part"].values), np.log(np.where(count > 0, count, np.nan)))
-
-
-# -- what is measured ------------------------------------------------------------------------------
-
-
-def equal_pressure(pressures, values, target):
-    """Pressures at which a curve has a value, by lines between the logarithms.
-
-    Parameters
-    ----------
-    pressures, values : (n,) array_like
-        The curve; NaN where it is not known.
-    target : float
-
-    Returns
-    -------
-    pressure : float
-        Geometric mean of all places where the curve has the value; 0 if all of the curve lies above
-        it, so that the place is below the pressures known, infinity if all lies below; NaN without
-        a curve.
-    crossings : int
-    """
-    known = np.isfinite(values)
-    if not known.any():
-        return np.nan, 0
-    x, above = np.log(pressures), np.log(values) - np.log(target)
-    places = []
-    for i in np.flatnonzero(known[:-1] & known[1:]):
-        left, right = above[i], above[i + 1]
-        if (left < 0) != (right < 0):
-            places.append(x[i] - left * (x[i + 1] - x[i]) / (right - left))
-        elif left == 0 and not known[:i].any():  # the curve starts at the value
-            places.append(x[i])
-    if places:
-        return float(np.exp(np.mean(places))), len(places)
-    return (0.0 if np.nanmin(above) >= 0 else np.inf), 0
-
-
-def real_pressures(pressed):
-    """Geometric mean of sigma_n over the resolutions, MPa, of each size and of each window.
-
-    Returns
-    -------
-    together : (part, step) ndarray
-        Of all windows of a size: sum of F over sum of A_n. NaN where they hold fewer than
-        `FEWEST_NODES` nodes on the average at a resolution.
-    single : (part, window, step) ndarray
-        NaN where the window holds fewer at a resolution.
-    """
-    s = pressed["spacing"].values
-    nodes = pressed["nodes"].transpose("part", "window", "step", "resolution")
-    force = pressed["side"].values[:, np.newaxis] ** 2 * pressed["ladder_pressure"].values
-    together = real_pressure(force, nodes.mean("window").values, s)
-    return together, real_pressure(force[:, np.newaxis], nodes.values, s)
-
-
-def _equal_pressures(pressed, n_loads):
-    """Pressures at equal sigma* and their slope over b; what explains it."""
-    log_b, pressures = np.log(pressed["side"].values), pressed["ladder_pressure"].values
-    together, single = real_pressures(pressed)
-    parts, windows = single.shape[:2]
-    equal, times = np.full((n_loads, parts), np.nan), np.zeros((n_loads, parts), int)
-    one = np.full((n_loads, parts, windows), np.nan)
-    for load in np.flatnonzero(np.isfinite(together[0, :n_loads])):
-        target = together[0, load]
-        for i in range(parts):
-            equal[load, i], times[load, i] = equal_pressure(pressures, together[i], target)
-            for j in range(int(pressed["windows"][i])):
-                one[load, i, j], _ = equal_pressure(pressures, single[i, j], target)
-    equal = _found(equal)
-    median = _median(one)
-    with_whole = np.isfinite(together[0, :n_loads, np.newaxis])
-    below, above = ((one == end).sum(axis=2) for end in (0, np.inf))
-    unknown = with_whole * (pressed["windows"].values - np.isfinite(np.log1p(one)).sum(axis=2))
-    of_size = ("load", "part")
-    result = xr.Dataset(
-        {
-            "real_pressure": (
-                ("part", "step"),
-                together,
-                about("MPa", "real mean pressure sigma_n, geometric mean over resolutions"),
-            ),
-            "equal_pressure": (
-                of_size,
-                equal,
-                about("MPa", "sigma_0 at which all windows of a size have the sigma* of the whole"),
-            ),
-            "crossings": (
-                of_size,
-                times,
-                about("1", "places where sigma*(sigma_0) of that size has that value"),
-            ),
-            "window_pressure": (of_size, median, about("MPa", "median of windows one by one")),
-            "windows_below": (
-                of_size,
-                below,
-                about("1", "windows above that sigma* at all loads with nodes enough"),
-            ),
-            "windows_above": (
-                of_size,
-                above,
-                about("1", "windows below that sigma* at all loads pressed"),
-            ),
-            "windows_unknown": (
-                of_size,
-                unknown - above,
-                about("1", "windows without nodes enough at any load"),
-            ),
-            "sensitivity": (
-                "load",
-                np.gradient(np.log(together[0]), np.log(pressures))[:n_loads],
-                about("1", "d log sigma* / d log sigma_0 of the whole window"),
-            ),
-        }
-    )
-    for name, curves, words in (
-        ("slope", equal, "slope of log sigma_0 over log b at equal sigma*, all windows of a size"),
-        ("window_slope", median, "slope of log sigma_0 over log b at equal sigma*, median windows"),
-        ("share_exponent", 1 / together[:, :n_loads].T, "exponent of A_r/A_0 at equal sigma_0"),
-    ):
-        _add_lines(result, name, [fit_line(log_b, row) for row in np.log(curves)], words)
-    return result
-
-
-def _found(pressures):
-    """Pressures without those known to lie below or above some value."""
-    return np.where((pressures > 0) & np.isfinite(pressures), pressures, np.nan)
-
-
-def _median(pressures):
-    """Median over the last axis, in which what lies below or above counts; NaN if it lies there."""
-    ordered = np.sort(pressures, axis=-1)  # NaN last
-    n = np.isfinite(np.where(ordered == np.inf, 0.0, ordered)).sum(axis=-1)
-    middle = np.stack([np.maximum(n - 1, 0) // 2, n // 2], axis=-1)
-    middle = np.minimum(middle, ordered.shape[-1] - 1)
-    return np.exp(np.log(_found(np.take_along_axis(ordered, middle, axis=-1))).mean(axis=-1))
-
-
-def _add_lines(result, name, lines, words):
-    for ending, more in INTERVAL.items():
-        values = [getattr(line, f"slope{ending}") for line in lines]
-        result[f"{name}{ending}"] = ("load", values, about("1", f"{words}{more}"))
-    result[f"{name}_n"] = ("load", [x.n for x in lines], about("1", f"{words}, points fitted"))
-    for ending, field in (("_b_min", "x_min"), ("_b_max", "x_max")):
-        values = np.exp([getattr(line, field) for line in lines])
-        which = "smallest" if ending == "_b_min" else "largest"
-        result[f"{name}{ending}"] = ("load", values, about("mm", f"{which} b of that fit"))
 
 
 # -- verdicts --------------------------------------------------------------------------------------

@@ -82,8 +82,8 @@ def dilatancy_angle(offset, dilatancy):
     return (offset[1:] + offset[:-1]) / 2, angle
 
 
-def dilatancy_angle_error(offset, dilatancy, error):
-    """How far off dilatancy angles may be where the dilatancies are.
+def angles_with_errors(offset, dilatancy, error):
+    """:func:`dilatancy_angle`, and how far off it may be where the dilatancies are.
 
     Parameters
     ----------
@@ -94,14 +94,21 @@ def dilatancy_angle_error(offset, dilatancy, error):
 
     Returns
     -------
-    (n - 1, ...) ndarray
-        Degrees; both ends of an interval may be off, in opposite directions.
+    midpoint, angle
+    off : (n - 1, ...) ndarray
+        Bound on the error of each angle, degrees: both ends of an interval may be off, in opposite
+        directions.
     """
-    offset, dilatancy, error = (np.asarray(x, float) for x in (offset, dilatancy, error))
-    step = np.diff(offset).reshape(-1, *[1] * (dilatancy.ndim - 1))
-    slope, off = np.diff(dilatancy, axis=0) / step, (error[1:] + error[:-1]) / step
-    ends = np.arctan([slope - off, slope + off])
-    return np.degrees(abs(ends - np.arctan(slope)).max(axis=0))
+    midpoint, angle = dilatancy_angle(offset, dilatancy)
+    ends = [slopes_apart(offset, dilatancy, sign * np.asarray(error)) for sign in (-1, 1)]
+    return midpoint, angle, abs(np.degrees(np.arctan(ends)) - angle).max(axis=0)
+
+
+def slopes_apart(offset, dilatancy, off):
+    """Slopes d delta/dv between successive offsets whose ends move apart by ``off``, mm."""
+    dilatancy, off = np.asarray(dilatancy, float), np.asarray(off, float)
+    step = np.diff(np.asarray(offset, float)).reshape(-1, *[1] * (dilatancy.ndim - 1))
+    return (np.diff(dilatancy, axis=0) + off[1:] + off[:-1]) / step
 
 
 def shear_strength(pressure, friction_angle):
@@ -125,6 +132,20 @@ def shear_strength(pressure, friction_angle):
     held = (angle > LARGEST_FRICTION_ANGLE).astype(int) - (angle < 0)
     angle = np.clip(angle, 0.0, LARGEST_FRICTION_ANGLE)
     return pressure * np.tan(np.radians(angle)), held
+
+
+def strength_with_error(pressure, friction_angle, off):
+    """:func:`shear_strength`, and how far off it may be where the angles are, by ``off`` degrees.
+
+    Returns
+    -------
+    strength, held
+    error : ndarray
+        MPa.
+    """
+    strength, held = shear_strength(pressure, friction_angle)
+    ends = [shear_strength(pressure, friction_angle + sign * off)[0] for sign in (-1, 1)]
+    return strength, held, abs(np.array(ends) - strength).max(axis=0)
 
 
 def peak(midpoint, values):
@@ -339,12 +360,9 @@ def _one_direction(dilatancy, joint, specimen, material, direction, pressure):
         # Flush faces have no dilatancy, whatever the load: no error either.
         _, errors = from_flush(offset, errors)
         offset, both = from_flush(offset, both)
-    midpoint, angles = dilatancy_angle(offset, both)
-    rigid_angle, angle = angles[:, 0], angles[:, 1:]
-    angle_off = dilatancy_angle_error(offset, both, errors)[:, 1:]
-    tau, held = shear_strength(pressure, angle_b + angle)
-    ends = [shear_strength(pressure, angle_b + angle + off)[0] for off in (-angle_off, angle_off)]
-    tau_off = abs(np.array(ends) - tau).max(axis=0)
+    midpoint, angles, angles_off = angles_with_errors(offset, both, errors)
+    rigid_angle, angle, angle_off = angles[:, 0], angles[:, 1:], angles_off[:, 1:]
+    tau, held, tau_off = strength_with_error(pressure, angle_b + angle, angle_off)
     stated = np.where(np.isfinite(angle_b), 1.0, np.nan)
 
     roughness = profile_roughness(specimen, direction)

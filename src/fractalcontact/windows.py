@@ -13,6 +13,7 @@ from .halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing
 from .labels import about
 from .specimen import cell_side, faces, nominal_area, window_slices
+from .state_numbers import state_errors
 from .states import forces_of, hardness_of
 from .sweep import load_steps
 
@@ -195,6 +196,9 @@ STATES = {
     "area_share": ("1", "real contact area A_r / A_0 of the sub-window"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
     "interface_compliance": ("mm/MPa", "compliance of the interface d w_int / d sigma"),
+    "interface_closure_error": ("mm", "interface closure w_int, error by the solver"),
+    "area_share_error": ("1", "real contact area A_r / A_0, error by the solver"),
+    "interface_compliance_error": ("mm/MPa", "compliance of the interface, error by the solver"),
 }
 
 #: What is kept of every sub-window at an offset.
@@ -219,10 +223,16 @@ def _pressed(composite, space, forces, settlement, solving, where):
     for j, state in enumerate(load_steps(composite, space, forces, solving, where)):
         for name in ("closure", "area", "stiffness"):
             found[name][j] = getattr(state, name)
+        off = state_errors(state)
+        found["interface_closure_error"][j] = off["closure_error"]
+        found["area_share_error"][j] = off["area_error"] / area
+        stiffness_error = off["stiffness_error"]
+        found["interface_compliance_error"][j] = stiffness_error * area / state.stiffness**2
     found["area_share"] = found["area"] / area
     # Faces that match everywhere have nothing to close, as in `closure.closure_curves`.
     if np.ptp(composite) == 0:
-        found["interface_closure"][:] = 0.0
+        found["interface_closure"][:] = found["interface_closure_error"][:] = 0.0
+        found["interface_compliance_error"][:] = np.nan
         return found
     found["interface_closure"] = found["closure"] - settlement
     found["interface_compliance"] = area / found["stiffness"] - settlement * area / forces
