@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import yaml
 
-from fractalcontact.contact_map import CELLS, is_contact_map, read_contact_map
+from fractalcontact.contact_map import CELLS, read_contact_map
 from fractalcontact.errors import InputError
+from fractalcontact.sidecar import is_contact_map
 
 OPTIONS = {"kind": "contact-map", "unit": "mm", "spacing": 0.5}
 

@@ -9,13 +9,14 @@ from fractalcontact.closure import closure_curves, elastic_dilatancy
 from fractalcontact.domain import box_dimension
 from fractalcontact.errors import InputError
 from fractalcontact.joint import describe_joint
-from fractalcontact.needs import choices, solved_loads, tolerance
+from fractalcontact.needs import choices, solved_loads
 from fractalcontact.specimen import make_specimen
 from fractalcontact.state_numbers import numbers_of
 from fractalcontact.states import UNCERTAIN, combine
 from fractalcontact.study import solver_settings
 from fractalcontact.sweep import contact_states
 from fractalcontact.synthesis import self_affine
+from fractalcontact.tolerance import tolerance
 
 SPACING = 0.1
 SETTINGS = {

@@ -14,12 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from .catalogue import list_scans
-from .contact_map import is_contact_map, read_contact_map
+from .contact_map import read_contact_map
 from .errors import InputError
 from .labels import printable
 from .preparation import prepare_specimen
 from .quality import scan_quality
 from .quality_words import length_words
+from .sidecar import is_contact_map
 from .specimen import STEEP_TILT, window_sides
 from .study import check_study, read_sidecar, read_study, resolve_settings
 

@@ -20,11 +20,6 @@ MAP_KEYS = ("kind", "threshold", "load", "cells")
 CELLS = {"any contact": True, "contact at the centre": False}
 
 
-def is_contact_map(scan_options):
-    """Whether a sidecar says that its file is a map of contact, not of heights."""
-    return scan_options.get("kind") == "contact-map"
-
-
 def read_contact_map(path, options, *, label):
     """The contact domain of a map, its dimension and its clusters.
 

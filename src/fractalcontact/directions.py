@@ -1,9 +1,12 @@
-"""The directions in which the lower face slides, seen from above."""
+"""The directions in which the lower face slides, seen from above, and how far."""
 
 from .errors import InputError
 
 #: Axis and sign of each.
 DIRECTIONS = {"E": ("x", 1), "N": ("y", 1), "W": ("x", -1), "S": ("y", -1)}
+
+#: Offsets that "auto" places between one cell and the largest possible, in geometric steps.
+AUTOMATIC_OFFSETS = 8
 
 
 def axis_and_sign(direction: str) -> tuple[str, int]:

@@ -7,6 +7,7 @@ direction d; h(xi; v, d) = z_l(xi + v d) - z_u(xi), and the largest h touches fi
 import numpy as np
 import xarray as xr
 
+from .directions import AUTOMATIC_OFFSETS
 from .errors import InputError
 from .fitting import without_mean_plane
 from .labels import about
@@ -19,9 +20,6 @@ STEPS = {"E": (0, 1), "N": (1, 0), "W": (0, -1), "S": (-1, 0), "none": (0, 0)}
 #: How Delta_g of the composite topographies is measured: of the estimators with little bias the
 #: one that a tilt of the composite, which is part of the joint, does not touch.
 COMPOSITE_ESTIMATOR = "second_differences"
-
-#: Offsets that "auto" places between one cell and the largest possible, in geometric steps.
-AUTOMATIC_OFFSETS = 8
 
 
 def composite_topography(specimen, direction, cells):

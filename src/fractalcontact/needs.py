@@ -10,33 +10,7 @@ import xarray as xr
 
 from .labels import about
 from .states import forces_of
-
-#: The solver's share of the errors asked for. At a tolerance of 1e-3 closures of 250 states of
-#: three twins were off by at most 7e-5 and Delta_sigma by 0.0017, at 1e-2 by 5e-4 (4 % where the
-#: pressure is capped) and 0.006. So 1e-3 leaves a factor of ten and more to 1 % and 0.02.
-SHARE_OF_CLOSURE = 0.1
-SHARE_OF_DIMENSION = 0.05
-#: Looser than this even the set of nodes in contact is no longer right.
-LOOSEST = 1e-2
-
-
-def tolerance(accuracy):
-    """Tolerance of the solver that an accuracy asks for.
-
-    Parameters
-    ----------
-    accuracy : dict
-        ``closure`` as a share of it, ``delta_sigma`` as it is.
-
-    Returns
-    -------
-    float
-    """
-    return min(
-        SHARE_OF_CLOSURE * accuracy["closure"],
-        SHARE_OF_DIMENSION * accuracy["delta_sigma"],
-        LOOSEST,
-    )
+from .tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
 
 
 def solved_loads(settings, forces, area, *, first, mapped, factor, everything):

@@ -26,6 +26,11 @@ _WORDS = (
 )
 
 
+def is_contact_map(scan_options):
+    """Whether a sidecar says that its file is a map of contact, not of heights."""
+    return scan_options.get("kind") == "contact-map"
+
+
 def read_yaml(path):
     """Mapping in a YAML file.
 

@@ -9,8 +9,8 @@ import jsonschema
 import yaml
 
 from .errors import InputError
-from .needs import tolerance
 from .sidecar import read_yaml
+from .tolerance import tolerance
 from .units import load, quantity, share
 
 #: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.

@@ -9,7 +9,8 @@ import pytest
 from fractalcontact import store
 from fractalcontact.accuracy import hertz_convergence, punch_convergence, richardson_trials
 from fractalcontact.elimination import elimination
-from fractalcontact.figures import ACCURACY, accuracy_figures_of, draw_study_figures
+from fractalcontact.figure_names import ACCURACY, accuracy_figures_of
+from fractalcontact.figures import draw_study_figures
 from fractalcontact.figures.common import print_style
 from fractalcontact.reference_scenes import scenes_of
 from fractalcontact.speed import OURS, error_against_time

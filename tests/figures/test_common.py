@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
-from fractalcontact.figures import figures_of, plateau
+from fractalcontact.figure_names import figures_of
+from fractalcontact.figures import plateau
 from fractalcontact.figures._words import percent
 from fractalcontact.figures.common import WIDTH, Drawing, headline, letter, print_style, save
 

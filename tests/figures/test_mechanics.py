@@ -10,7 +10,8 @@ import pytest
 import xarray as xr
 from matplotlib.colors import to_rgb
 
-from fractalcontact.figures import ENDINGS, draw_figures, figures_of
+from fractalcontact.figure_names import figures_of
+from fractalcontact.figures import ENDINGS, draw_figures
 from fractalcontact.figures._maps import MISSING
 from fractalcontact.figures._words import force_label, force_unit, length_unit
 from fractalcontact.figures.common import DPI, print_style, spread

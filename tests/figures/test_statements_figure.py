@@ -2,7 +2,8 @@
 
 import pytest
 
-from fractalcontact.figures import EXPERIMENTS, draw_study_figures, statements, study_figures_of
+from fractalcontact.figure_names import EXPERIMENTS, study_figures_of
+from fractalcontact.figures import draw_study_figures, statements
 from fractalcontact.figures.common import print_style
 
 

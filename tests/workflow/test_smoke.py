@@ -1,6 +1,7 @@
 """The Snakefile itself: the whole chain, small; a killed run; bad input among good."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -13,7 +14,7 @@ import pytest
 import yaml
 
 from fractalcontact.catalogue import find_scans
-from fractalcontact.figures import EXPERIMENTS, accuracy_figures_of, figures_of
+from fractalcontact.figure_names import EXPERIMENTS, accuracy_figures_of, figures_of
 from fractalcontact.store import read_atlas
 
 ROOT = Path(__file__).parents[2]
@@ -133,6 +134,16 @@ def test_accuracy_says_which_study_has_something_to_measure(project):
     assert done.returncode != 0
     assert "give --configfile config/accuracy.yaml" in done.stdout + done.stderr
     assert not (project / "results").exists()
+
+
+def test_reading_the_workflow_imports_nothing_heavy():
+    rules = (ROOT / "workflow/rules/common.smk").read_text()
+    modules = re.findall(r"^from (fractalcontact\S*) import", rules, re.MULTILINE)
+    assert "fractalcontact.study" in modules
+    names = "import sys; print(sorted({'xarray', 'numba', 'matplotlib'} & set(sys.modules)))"
+    code = f"import {', '.join(modules)}; {names}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_an_unknown_key_stops_before_anything_runs(project):

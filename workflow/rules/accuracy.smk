@@ -2,7 +2,7 @@
 # study of its own (config/accuracy.yaml), no part of `all`.
 from importlib.util import find_spec
 
-from fractalcontact.figures import accuracy_figures_of
+from fractalcontact.figure_names import accuracy_figures_of
 
 SCENES = []
 if "speed" in config:

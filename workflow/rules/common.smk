@@ -8,11 +8,12 @@ from pathlib import Path
 import yaml
 from snakemake.exceptions import WorkflowError
 
+# Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
 from fractalcontact.catalogue import find_scans
-from fractalcontact.contact_map import is_contact_map
+from fractalcontact.directions import AUTOMATIC_OFFSETS
 from fractalcontact.errors import InputError
-from fractalcontact.figures import EXPERIMENTS, figures_of, study_figures_of
-from fractalcontact.joint import AUTOMATIC_OFFSETS
+from fractalcontact.figure_names import EXPERIMENTS, figures_of, study_figures_of
+from fractalcontact.sidecar import is_contact_map
 from fractalcontact.study import (
     check_study,
     read_sidecar,
