@@ -246,6 +246,25 @@ def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
     assert strength["step"].sel(sampling="1.27 mm") == pytest.approx(1.3)
 
 
+def test_loose_states_are_off_by_no_more_than_they_say(rock, laws):
+    chosen = [1, 2, 4, 8, 16, 32]
+    loose = {"rtol": 1e-2, "kernel": "love"}
+    states = window_states(rock, "W", chosen, settings(), loose, (1, 2, 4, 8))
+    found = size_laws(states, ROCK, 12.0, DIMENSION)
+    differ = 0
+    for name in (
+        *("interface_closure", "interface_compliance", "area_share", "shear_strength"),
+        *("peak_strength", "peak_dilatancy_angle", "similar_strength", "similar_slope"),
+    ):
+        off, bound = abs(found[name] - laws[name]), found[f"{name}_error"] + laws[f"{name}_error"]
+        assert bound.dims == off.dims, name
+        np.testing.assert_array_equal(np.isfinite(bound), np.isfinite(off), err_msg=name)
+        inside = off <= bound + 1e-12 * abs(laws[name])
+        assert inside.where(np.isfinite(off), True).mean() > 0.99, name
+        differ += int((off > 1e-9 * abs(laws[name])).sum())
+    assert differ > 100
+
+
 # Properties
 
 

@@ -92,8 +92,9 @@ def size_laws(states, material, roughness, dimension, fit_range=None):
         Eq. 2: ``hurst`` (offset) of the composite topography and ``face_hurst``, with ``_low``,
         ``_high``, ``_n``; ``expected_hurst`` with its interval; the curves they come from.
         Closure: ``interface_closure``, ``interface_compliance`` and ``area_share`` (part, offset,
-        load) with the interval of the mean over the sub-windows, and their exponents (offset,
-        load). Strength, where the joint slides: see :func:`strength_by_size`.
+        load) with the interval of the mean over the sub-windows and the ``_error`` of the solver,
+        and their exponents (offset, load). Strength, where the joint slides: see
+        :func:`strength_by_size`.
 
     Notes
     -----
@@ -126,7 +127,8 @@ def strength_by_size(states, material, roughness):
     Returns
     -------
     xr.Dataset
-        Means over sub-windows with ``_low`` and ``_high``: ``peak_strength``,
+        Means over sub-windows with ``_low``, ``_high`` and the ``_error`` of the solver:
+        ``peak_strength``,
         ``peak_dilatancy_angle`` (which is not held), ``residual_strength`` (part, load) and
         ``shear_strength`` (part, interval, load); ``held_share`` (part, load) of the sub-windows
         whose peak was held; ``strength_exponent``, ``residual_exponent`` (load) and
