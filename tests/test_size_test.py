@@ -59,11 +59,11 @@ def pressed_apart(heights, opposite, cells, upper=None, window=9.6, **material):
     return specimen, found_of(specimen, direction, cells, settings(opposite, **material))
 
 
-def found_of(specimen, direction, cells, chosen):
+def found_of(specimen, direction, cells, chosen, solver=SOLVER):
     """The test, with the strength of the parts as the stage before it has it."""
     no_dimension = (np.nan,) * 3
-    windows = joint_by_size(specimen, direction, cells, chosen, SOLVER, no_dimension)
-    return size_test(specimen, direction, cells, chosen, SOLVER, windows)
+    windows = joint_by_size(specimen, direction, cells, chosen, solver, no_dimension)
+    return size_test(specimen, direction, cells, chosen, solver, windows)
 
 
 @pytest.fixture(scope="module")
@@ -253,6 +253,18 @@ def test_doublings_that_are_left_out_change_nothing(flat, monkeypatch):
     for name in of_steps:
         xr.testing.assert_identical(lazy[name], full[name].where(known))
     xr.testing.assert_identical(lazy.drop_vars(of_steps), full.drop_vars(of_steps))
+
+
+def test_doublings_that_no_estimate_asks_for_are_left_out_and_change_nothing(flat):
+    specimen, asked = flat
+    accuracy = {"closure": 0.01, "delta_sigma": 0.02}
+    found = found_of(specimen, "none", [0], settings("flat"), SOLVER | {"accuracy": accuracy})
+    of_steps = ["real_pressure", "real_pressure_error"]
+    assert found["real_pressure"].count() < asked["real_pressure"].count()
+    known = np.isfinite(found["real_pressure"])
+    for name in of_steps:
+        xr.testing.assert_identical(found[name], asked[name].where(known))
+    xr.testing.assert_identical(found.drop_vars(of_steps), asked.drop_vars(of_steps))
 
 
 def test_strength_without_a_size_effect_is_that_of_the_parts(sliding):

@@ -25,7 +25,7 @@ DOUBLINGS = 3
 LARGEST_PART = 0.98
 
 
-def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
+def press_parts(specimen, direction, cells, settings, solver, parts=PARTS, estimate=None):
     """Press all sub-windows of several sizes under the study's loads and some beyond.
 
     Parameters
@@ -34,10 +34,14 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
         As for :func:`size_test`.
     cells : int
         Offset in cells.
+    estimate : callable, optional
+        Takes this dataset of the whole window alone, its domains and the parts, and returns one
+        with ``delta_sigma`` (estimator, load).
 
     Returns
     -------
     pressed : xr.Dataset
+        What was estimated, and
         ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
         solver leaves undecided; ``interface_closure`` (part, window, step) at the finest
         resolution, ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps
@@ -50,10 +54,11 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     Sub-windows are cut to whole cells of the coarsest resolution, so that all of them cover the
     same area at each.
 
-    Doublings beyond the loads cost most, and are pressed where they can be asked for: n x n parts
-    up to n times the largest load, as eq. 6 has it where Delta_sigma is 1 or more, and on until
-    each of them has a larger real mean pressure than the whole has under any load. One doubling is
-    always pressed, for the slope of the curve at the largest load.
+    Doublings beyond the loads cost most, and are pressed where they are asked for: windows of side
+    b' up to sigma_0 (b/b')^(2 - Delta), where eq. 6 has the sigma* of the whole, for all loads and
+    estimates of Delta_sigma; and on until each of them has a larger real mean pressure than the
+    whole has under any load. Without an estimate, or where the study asks for everything, Delta = 1
+    is taken. One doubling is always pressed, for the slope of the curve at the largest load.
     """
     composite = composite_topography(specimen, direction, cells)
     spacing = np.array([specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]])
@@ -67,26 +72,36 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS):
     n_tested = min(len(of_study) + BEYOND, len(pressures))
     solving = {"rtol": solver["rtol"], "hardness": hardness}
     spaces = {"modulus": settings["material"]["e_star"], "kernel": solver["kernel"]}
-    sizes, largest = [], np.inf
+    sizes, largest, side = [], np.inf, np.nan
+    found, powers = xr.Dataset(), np.ones(1)
     for n in parts:
         windows = _cut(composite, n, max(factors))
         size = _Size(windows, spacing, factors, pressures, spaces, solving, f"{n} x {n} parts")
         size.press(n_tested + 1)
         if n == 1:
             largest = np.nanmax(size.real_pressure()[0, :n_tested], initial=0.0)
+            side = np.sqrt(size.sides.prod())
+            domains = np.array(size.domains[:n_tested])
+            if estimate is not None:
+                whole = _labelled([size], [1], of_study[-1], n_tested, area)
+                found = estimate(whole, domains, parts)
+                if solver.get("accuracy") is not None:
+                    powers = 2 - found["delta_sigma"].values
+        ratio = side / np.sqrt(size.sides.prod())
+        wanted = np.nanmax(pressures[:n_tested] * ratio**powers, initial=0.0)
         while size.pressed < len(pressures):
             last = size.pressed - 1
-            asked = pressures[last] < n * pressures[n_tested - 1] * (1 - 1e-9)
+            asked = pressures[last] < wanted * (1 - 1e-9)
             if not asked and (size.real_pressure()[:, last] >= largest).all():
                 break
             size.press(1)
         sizes.append(size)
-    pressed = _labelled(sizes, parts, of_study[-1], n_tested, area)
+    pressed = _labelled(sizes, parts, of_study[-1], n_tested, area).merge(found)
     place = cells * direction_spacing(specimen, direction)
     pressed = pressed.assign_coords(
         direction=direction, offset=((), place, about("mm", "shear offset v"))
     )
-    return pressed, np.array(sizes[0].domains[:n_tested])
+    return pressed, domains
 
 
 class _Size:

@@ -111,10 +111,13 @@ def size_test(specimen, direction, cells, settings, solver, windows, parts=PARTS
     cells = np.asarray(cells, int)
     offsets = cells * direction_spacing(specimen, direction)
     chosen = int(cells[offsets == chosen_offset(settings["map_offset"], offsets)][0])
-    pressed, domains = press_parts(specimen, direction, chosen, settings, solver, parts)
+
+    def estimate(whole, domains, parts):
+        areas = whole_areas(specimen, direction, chosen, settings, solver, whole)
+        return _dimensions(specimen, whole, domains, parts, areas, settings)
+
+    pressed, _ = press_parts(specimen, direction, chosen, settings, solver, parts, estimate)
     result = pressed.drop_vars(["nodes", "nodes_error", "interface_closure"])
-    areas = whole_areas(specimen, direction, chosen, settings, solver, pressed)
-    result = result.merge(_dimensions(specimen, pressed, domains, areas, settings))
     result = result.merge(slopes_at_equal_star(pressed, result.sizes["load"]))
     result = result.merge(_verdicts(result))
     result = result.merge(predict_whole(pressed, result["delta_sigma"], FEWEST_NODES))
@@ -126,16 +129,16 @@ def size_test(specimen, direction, cells, settings, solver, windows, parts=PARTS
 # -- what eq. 6 predicts ---------------------------------------------------------------------------
 
 
-def _dimensions(specimen, pressed, domains, areas, settings):
+def _dimensions(specimen, whole, domains, parts, areas, settings):
     """Delta_sigma of the whole window by every estimator, with sigma* and the slope predicted."""
     spacing = cell_side(specimen)
     s = spacing * areas["resolution"]
     if settings["scaling_range"] is not None:
         first, last = settings["scaling_range"]
         areas = areas.where((s >= first - 1e-9 * spacing) & (s <= last + 1e-9 * spacing))
-    by_area = renormalisation(s, areas, pressed["load"])
+    by_area = renormalisation(s, areas, whole["load"])
     boxes = [box_dimension(d, spacing, fit_range=settings["box_range"]) for d in domains]
-    lines = [_meeting_line(domain, pressed) for domain in domains]
+    lines = [_meeting_line(domain, parts) for domain in domains]
     found = {
         "area": [by_area[f"delta_sigma{end}"].values for end in ("", "_low", "_high")],
         "box": np.transpose([(box.dimension, box.low, box.high) for box in boxes]),
@@ -143,8 +146,8 @@ def _dimensions(specimen, pressed, domains, areas, settings):
     }
     delta = np.array([found[name] for name in ESTIMATORS])
     star = delta[:, 0] - 2  # sigma* = sigma_n s_n^(2 - Delta), geometric mean over the resolutions
-    star = real_pressures(pressed)[0][0, : len(domains)] * np.exp(
-        -star * np.log(pressed["spacing"].values).mean()
+    star = real_pressures(whole)[0][0, : len(domains)] * np.exp(
+        -star * np.log(whole["spacing"].values).mean()
     )
     dims = ("estimator", "load")
     result = xr.Dataset(
@@ -167,11 +170,11 @@ def _dimensions(specimen, pressed, domains, areas, settings):
     return result
 
 
-def _meeting_line(domain, pressed):
+def _meeting_line(domain, parts):
     """Line through log N over log b, N sub-windows that the domain of the whole window meets."""
-    met = [split(domain, n).any(axis=(1, 2)).sum() for n in pressed["part"].values]
+    met = [split(domain, n).any(axis=(1, 2)).sum() for n in parts]
     count = np.array(met, float)
-    return fit_line(-np.log(pressed["part"].values), np.log(np.where(count > 0, count, np.nan)))
+    return fit_line(-np.log(parts), np.log(np.where(count > 0, count, np.nan)))
 
 
 # -- verdicts --------------------------------------------------------------------------------------
