@@ -54,6 +54,8 @@ rule area_slope:
         f"{RESULTS}/logs/area_slope.log",
     benchmark:
         f"{RESULTS}/benchmarks/area_slope.tsv"
+    # Short, and nothing waits for it but the end: it fills the core that has nothing else to do.
+    priority: -1
     conda:
         "../../environment.yml"
     resources:

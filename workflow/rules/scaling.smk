@@ -33,6 +33,8 @@ rule estimator_bias:
         f"{RESULTS}/logs/estimator_bias.log",
     benchmark:
         f"{RESULTS}/benchmarks/estimator_bias.tsv"
+    # As area_slope.
+    priority: -1
     conda:
         "../../environment.yml"
     resources:
