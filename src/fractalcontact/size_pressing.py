@@ -72,30 +72,23 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS, estim
     n_tested = min(len(of_study) + BEYOND, len(pressures))
     solving = {"rtol": solver["rtol"], "hardness": hardness}
     spaces = {"modulus": settings["material"]["e_star"], "kernel": solver["kernel"]}
-    sizes, largest, side = [], np.inf, np.nan
-    found, powers = xr.Dataset(), np.ones(1)
+    sizes = []
     for n in parts:
         windows = _cut(composite, n, max(factors))
         size = _Size(windows, spacing, factors, pressures, spaces, solving, f"{n} x {n} parts")
         size.press(n_tested + 1)
-        if n == 1:
-            largest = np.nanmax(size.real_pressure()[0, :n_tested], initial=0.0)
-            side = np.sqrt(size.sides.prod())
-            domains = np.array(size.domains[:n_tested])
-            if estimate is not None:
-                whole = _labelled([size], [1], of_study[-1], n_tested, area)
-                found = estimate(whole, domains, parts)
-                if solver.get("accuracy") is not None:
-                    powers = 2 - found["delta_sigma"].values
-        ratio = side / np.sqrt(size.sides.prod())
-        wanted = np.nanmax(pressures[:n_tested] * ratio**powers, initial=0.0)
-        while size.pressed < len(pressures):
-            last = size.pressed - 1
-            asked = pressures[last] < wanted * (1 - 1e-9)
-            if not asked and (size.real_pressure()[:, last] >= largest).all():
-                break
-            size.press(1)
         sizes.append(size)
+
+    whole, found, powers = sizes[0], xr.Dataset(), np.ones(1)
+    domains = np.array(whole.domains[:n_tested])
+    if estimate is not None:
+        found = estimate(_labelled([whole], [1], of_study[-1], n_tested, area), domains, parts)
+        if solver.get("accuracy") is not None:
+            powers = 2 - found["delta_sigma"].values
+    largest = np.nanmax(whole.real_pressure()[0, :n_tested], initial=0.0)
+    for size in sizes:
+        ratio = np.sqrt(whole.sides.prod() / size.sides.prod())
+        size.press_on(np.nanmax(pressures[:n_tested] * ratio**powers, initial=0.0), largest)
     pressed = _labelled(sizes, parts, of_study[-1], n_tested, area).merge(found)
     place = cells * direction_spacing(specimen, direction)
     pressed = pressed.assign_coords(
@@ -166,6 +159,15 @@ class _Size:
                     if j == 0:
                         self.domains.append(state.in_contact)
         self.pressed = following.stop
+
+    def press_on(self, pressure, real_pressure):
+        """Press on to a nominal pressure, and until every sub-window has a real mean pressure."""
+        while self.pressed < len(self.pressures):
+            last = self.pressed - 1
+            reached = (self.real_pressure()[:, last] >= real_pressure).all()
+            if reached and self.pressures[last] >= pressure * (1 - 1e-9):
+                return
+            self.press(1)
 
     def real_pressure(self):
         """:func:`real_pressure` of each sub-window, (window, step)."""
