@@ -322,6 +322,13 @@ def test_undecided_nodes_are_passed_on():
     # What may not be reached is off by nobody knows how much.
     states["nodes_error"] = 0.5 * states["nodes"]
     assert np.isinf(slopes_at_equal_star(states, 4)["equal_pressure_error"].isel(part=3)).any()
+    # Nor where no node is certain; what was found stands all the same.
+    states["nodes_error"] = states["nodes"]
+    unsure = slopes_at_equal_star(states, 4)
+    for name in ("equal_pressure", "window_pressure"):
+        xr.testing.assert_equal(unsure[name], exact[name])
+        known = np.isfinite(exact[name])
+        assert np.isinf(unsure[f"{name}_error"]).where(known, True).all()
 
 
 def test_few_nodes_say_nothing():

@@ -80,13 +80,15 @@ def real_pressure_errors(pressed):
         )
 
 
-def _places(pressed, n_loads, shift):
+def _places(pressed, together, single, n_loads):
     """Where every size and every window has the real pressure of the whole under each load.
 
     Parameters
     ----------
-    shift : {-1, 0, 1}
-        By how much of the errors curves are taken higher and that of the whole lower.
+    pressed : xr.Dataset
+    together, single : ndarray
+        As :func:`real_pressures` has them.
+    n_loads : int
 
     Returns
     -------
@@ -96,28 +98,29 @@ def _places(pressed, n_loads, shift):
         Pressures of the windows one by one.
     """
     pressures = pressed["ladder_pressure"].values
-    together, single = real_pressures(pressed)
-    off_together, off_single = real_pressure_errors(pressed)
-    targets = _shifted(together[0], -shift * off_together[0])[:n_loads]
     parts, windows = single.shape[:2]
     equal, times = np.full((n_loads, parts), np.nan), np.zeros((n_loads, parts), int)
     one = np.full((n_loads, parts, windows), np.nan)
-    # The whole is compared with itself.
-    shifts = np.where(np.arange(parts) == 0, -shift, shift)[:, np.newaxis]
-    together = _shifted(together, shifts * off_together)
-    single = _shifted(single, shifts[..., np.newaxis] * off_single)
-    for load in np.flatnonzero(np.isfinite(targets)):
+    for load in np.flatnonzero(np.isfinite(together[0, :n_loads])):
+        target = together[0, load]
         for i in range(parts):
-            equal[load, i], times[load, i] = equal_pressure(pressures, together[i], targets[load])
+            equal[load, i], times[load, i] = equal_pressure(pressures, together[i], target)
             for j in range(int(pressed["windows"][i])):
-                one[load, i, j], _ = equal_pressure(pressures, single[i, j], targets[load])
+                one[load, i, j], _ = equal_pressure(pressures, single[i, j], target)
     return equal, times, one
 
 
-def _shifted(curve, by):
-    """A curve times exp(by); NaN where that is not finite."""
-    finite = np.isfinite(by)
-    return np.where(finite, curve * np.exp(np.where(finite, by, 0.0)), np.nan)
+def _at_end(curves, errors, sign):
+    """Curves of parts as high, and of the whole as low, as errors let them be; -1 for the reverse.
+
+    NaN where an error has no bound.
+    """
+    moved = []
+    for curve, off in zip(curves, errors, strict=True):
+        by = sign * off
+        by[0] *= -1
+        moved.append(np.where(np.isfinite(off), curve * np.exp(by), np.nan))
+    return moved
 
 
 def _off(found, ends):
@@ -145,9 +148,10 @@ def slopes_at_equal_star(pressed, n_loads):
         See :func:`fractalcontact.size_test.size_test`.
     """
     log_b, pressures = np.log(pressed["side"].values), pressed["ladder_pressure"].values
-    together, _ = real_pressures(pressed)
-    equal, times, one = _places(pressed, n_loads, 0)
-    ends = [_places(pressed, n_loads, shift) for shift in (-1, 1)]
+    together, single = curves = real_pressures(pressed)
+    errors = real_pressure_errors(pressed)
+    equal, times, one = _places(pressed, together, single, n_loads)
+    ends = [_places(pressed, *_at_end(curves, errors, sign), n_loads) for sign in (-1, 1)]
     equal = _found(equal)
     median = _median(one)
     equal_off = _off(equal, [end[0] for end in ends])
@@ -170,7 +174,7 @@ def slopes_at_equal_star(pressed, n_loads):
             ),
             "real_pressure_error": (
                 ("part", "step"),
-                together * np.expm1(real_pressure_errors(pressed)[0]),
+                together * np.expm1(errors[0]),
                 about("MPa", "real mean pressure sigma_n, error by the solver"),
             ),
             "equal_pressure_error": (
