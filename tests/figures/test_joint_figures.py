@@ -3,6 +3,7 @@
 import importlib
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from fractalcontact.clusters import cluster_sizes, cluster_statistics
+from fractalcontact.figures import plateau
 from fractalcontact.figures.common import offset_axis, print_style, save
 from fractalcontact.figures.plateau import Slide
 from fractalcontact.fitting import fit_line
@@ -284,6 +286,19 @@ def test_made_joints_are_drawn_with_every_seed(atlas):
 
 def test_a_scan_has_no_roll_off_that_is_known(atlas):
     assert "(roll-off not known)" in drawn(atlas, "plateau", ["sliding"]).caption
+
+
+def test_rounding_of_flush_faces_does_not_stretch_decades(atlas):
+    slide = Slide.of(atlas, "sliding")
+    flush = slide.expected.copy()
+    flush[:, 0] = 1e-8
+    slides = [slide, replace(slide, v=20 * slide.v, expected=flush)]
+    panels = Figure().subplots(1, 3, sharex=True)
+    plateau._prepare(panels, slides)
+    for n, one in enumerate(slides):
+        plateau._draw_slide(panels, n, one)
+    assert panels[1].get_yscale() == "log"
+    assert panels[1].get_ylim()[0] > 0.1 * slide.spread[:, 1:].min()
 
 
 def test_one_solved_offset_is_enough(atlas):

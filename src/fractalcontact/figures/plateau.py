@@ -183,21 +183,25 @@ def _roll_off(atlas, name):
 
 def _draw_slide(panels, n, slide):
     colour = colour_of(n)
+    # In decades flush faces have no place, and what rounding leaves of their spread would be shown.
+    shown = slide.v > 0 if panels[1].get_xscale() == "log" else np.full(slide.v.shape, True)
+    v = slide.v[shown]
     for axes, values in zip(panels, (slide.opened, slide.spread, slide.ratio), strict=True):
         if axes is panels[2] and not slide.matched:
             continue  # its dilatancy counts from faces that were apart already
+        values = values[:, shown]
         mean, low, high = values.mean(axis=0), values.min(axis=0), values.max(axis=0)
         if axes.get_yscale() == "log":
             mean, low, high = (np.where(y > 0, y, np.nan) for y in (mean, low, high))
-        axes.fill_between(slide.v, low, high, color=colour, alpha=0.15, lw=0)
+        axes.fill_between(v, low, high, color=colour, alpha=0.15, lw=0)
         axes.plot(
-            slide.v,
+            v,
             mean,
             color=colour,
             ls=LINES[n % 4],
             label=label_in_lines(slide.label, width=COLUMN),
         )
-    panels[1].plot(slide.v, slide.expected.mean(axis=0), color=colour, **_EXPECTED)
+    panels[1].plot(v, slide.expected[:, shown].mean(axis=0), color=colour, **_EXPECTED)
     for at, marker in ((slide.roll_off, _ROLL_OFF), (slide.uncorrelated, _UNCORRELATED)):
         if at is not None and slide.v[0] <= at <= slide.v[-1]:
             for axes, values in zip(panels[:2], (slide.opened, slide.spread), strict=True):
