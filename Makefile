@@ -1,4 +1,10 @@
 # make        environment, then the default study (config/paper.yaml)
+# make STUDY=config/mine.yaml   another study; DROP=yes lets its atlas lose specimens that it had
+# make dry-run  says what would be done
+# make keep-going   one bad scan does not keep the others from their figures
+# make slurm    the same on a cluster
+# make verify   every result against its checksum
+# make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
@@ -16,50 +22,51 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet --require-virtualenv
-SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default --cores $(CORES)
 
-# A killed run leaves Snakemake's lock behind. flock knows whether that run is still alive, so the
-# stale lock is taken away and a living one respected; where there is no flock, Snakemake asks.
-FLOCK := $(shell command -v flock 2>/dev/null)
-ifneq ($(FLOCK),)
-GUARD := $(FLOCK) --nonblock --no-fork .snakemake.guard
-# What is wrong with the study is said by the run itself: here it would be kept quiet.
-UNLOCK = $(BIN)/snakemake --configfile $(STUDY) --unlock --quiet all;
-else
-GUARD :=
-UNLOCK :=
-endif
+# Read from the environment, so that a shell never sees what stands in them.
+export STUDY SCANS
+# Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
+RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes 1,$(DROP)),--drop)
+OPTIONS = -- --cores $(CORES)
 
-# What the study calls itself.
-NAME = $(shell sed -n 's/^study: *//p' $(STUDY))
-
-.PHONY: all study smoke check-scans check-accuracy cost accuracy test bench scenes fuzz lint format lock clean
+.PHONY: all study smoke keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test bench scenes fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed
-	@$(GUARD) sh -c '$(UNLOCK) $(SNAKEMAKE) $(TARGET) --configfile $(STUDY)' \
-	  || { s=$$?; echo "make: the study did not finish; what is done is kept, and 'make' goes on from there." >&2; exit $$s; }
+	@$(RUN) $(OPTIONS) $(TARGET)
+
+keep-going: $(VENV)/installed
+	@$(RUN) $(OPTIONS) --keep-going $(TARGET)
+
+dry-run: $(VENV)/installed
+	@$(RUN) --dry-run $(OPTIONS) $(TARGET)
+
+# The scans and .venv on a file system that all nodes see.
+slurm: $(VENV)/slurm-installed
+	@$(RUN) --profile slurm -- $(TARGET)
+
+verify: $(VENV)/installed
+	@$(BIN)/python -m fractalcontact.verify "$$STUDY"
 
 smoke:
 	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
 
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
-	@$(BIN)/python -m fractalcontact.check_scans $(SCANS) --study $(STUDY)
+	@$(BIN)/python -m fractalcontact.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
 
 # Times are compared: let nothing else run meanwhile.
 accuracy: $(if $(PEERS),$(VENV)/peers-installed)
 	@$(MAKE) --no-print-directory study TARGET=accuracy \
-	  STUDY=$(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
+	  $(if $(filter file,$(origin STUDY)),STUDY=config/accuracy.yaml)
 
 # The study, then all of it at full cost beside it (results/NAME_full), then the two compared.
 check-accuracy: study
-	@$(SNAKEMAKE) --configfile $(STUDY) --config study=$(NAME)_full accuracy=full \
-	  -- results/$(NAME)_full/atlas.nc
-	@$(BIN)/python benchmarks/check_accuracy.py results/$(NAME) results/$(NAME)_full
+	@$(BIN)/python workflow/run.py "$$STUDY" --full $(OPTIONS) -- atlas
+	@$(BIN)/python benchmarks/check_accuracy.py "$$STUDY"
 
 cost: study
-	@$(BIN)/python benchmarks/study_cost.py results/$(NAME)
+	@$(BIN)/python benchmarks/study_cost.py "$$STUDY"
 
 test: $(VENV)/tests-installed
 	$(BIN)/python -m pytest
@@ -78,14 +85,14 @@ fuzz: $(VENV)/tests-installed
 	$(BIN)/python tests/fuzzing.py --files $(FILES) $(FUZZ)
 
 lint: $(VENV)/tests-installed
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
-	$(BIN)/snakefmt --check Snakefile workflow/rules
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m ruff format --check .
+	$(BIN)/python -m snakefmt --check Snakefile workflow/rules
 
 format: $(VENV)/tests-installed
-	$(BIN)/ruff check --fix .
-	$(BIN)/ruff format .
-	$(BIN)/snakefmt Snakefile workflow/rules
+	$(BIN)/python -m ruff check --fix .
+	$(BIN)/python -m ruff format .
+	$(BIN)/python -m snakefmt Snakefile workflow/rules
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit(f"fractalcontact needs Python 3.11 or later, {sys.executable} is {sys.version.split()[0]}: make PYTHON=python3.12")'
@@ -103,6 +110,10 @@ $(VENV)/tests-installed: requirements-test.lock $(VENV)/installed
 	$(PIP) install --require-hashes --compile -r requirements-test.lock
 	@touch $@
 
+$(VENV)/slurm-installed: $(VENV)/installed
+	$(PIP) install snakemake-executor-plugin-slurm==2.8.0
+	@touch $@
+
 # Not locked: nothing of the study depends on them, and pip leaves what is pinned as it is.
 $(VENV)/peers-installed: pyproject.toml $(VENV)/installed
 	$(PIP) install --no-build-isolation -e '.[peers]'
@@ -112,6 +123,10 @@ COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-
 lock:
 	$(COMPILE) --extra install -o requirements.lock
 	$(COMPILE) --extra install --extra test -c requirements.lock -o requirements-test.lock
+
+# Kills, damaged and replaced files, full disks, threads and forks: nothing may be wrong silently.
+faults: $(VENV)/tests-installed
+	$(BIN)/python tests/faults.py $(FAULTS)
 
 clean:
 	rm -rf results .snakemake .snakemake.guard

@@ -21,5 +21,8 @@ include: "workflow/rules/accuracy.smk"
 rule all:
     default_target: True
     input:
-        f"{RESULTS}/atlas.nc",
-        collect_figures,
+        rules.atlas.output,
+        collect_everything,
+    # Else some hundred names are printed.
+    message:
+        "everything of the study"

@@ -1,7 +1,7 @@
 """A study held against the same study at full cost: numbers within their errors, and seconds.
 
     make check-accuracy
-    python benchmarks/check_accuracy.py results/paper results/paper_full
+    python benchmarks/check_accuracy.py config/paper.yaml
 
 Every number that the first has is compared, in stages that rest on contact solves; how many points
 a fit had is not one. It is right if it differs from that of the second by no
@@ -12,13 +12,13 @@ more than its error (``NAME_error`` in the atlas), or lies within its interval (
 import argparse
 import json
 from collections import Counter
-from pathlib import Path
 
 import numpy as np
 from study_cost import stages_of
 
 from fractalcontact.store import read_atlas
 from fractalcontact.study import solver_settings
+from fractalcontact.verify import results_of
 
 #: Stages that rest on contact solves.
 _STAGES = (
@@ -109,16 +109,16 @@ def print_seconds(*results):
 
 
 def main():
-    """Compare two results given on the command line."""
+    """Compare the results of the study given on the command line with those at full cost."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("ours", type=Path, help="results of the study")
-    parser.add_argument("full", type=Path, help="results of the same with 'accuracy: full'")
-    options = parser.parse_args()
-    ours, full = (read_atlas(path / "atlas.nc") for path in (options.ours, options.full))
+    parser.add_argument("study", help="a study that was run, also with 'accuracy: full'")
+    ours_in = results_of(parser.parse_args().study)
+    full_in = ours_in.with_name(f"{ours_in.name}_full")
+    ours, full = (read_atlas(path / "atlas.nc") for path in (ours_in, full_in))
     config = json.loads(ours.attrs["configuration"])["study"]
-    share = solver_settings(config, str(options.ours))["accuracy"]["closure"]
+    share = solver_settings(config, str(ours_in))["accuracy"]["closure"]
     print_numbers(ours, full, share)
-    print_seconds(options.ours, options.full)
+    print_seconds(ours_in, full_in)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Where the time of a study went: solves, other work, and what is neither.
 
-    python benchmarks/study_cost.py results/paper --cores 2
+    python benchmarks/study_cost.py config/paper.yaml --cores 2
 
 It reads what each job wrote beside its results: its log's last line (work and solves) and its
 benchmark (from start to end, imports included).
@@ -10,7 +10,8 @@ import argparse
 import csv
 import re
 from collections import defaultdict
-from pathlib import Path
+
+from fractalcontact.verify import results_of
 
 WORKED = re.compile(r"worked ([\d.]+) s, of which ([\d.]+) s on (\d+) contact problems")
 
@@ -43,10 +44,10 @@ def stages_of(results):
 def main():
     """Print the cost of the results given on the command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("results", type=Path, help="folder of a study that was run from scratch")
+    parser.add_argument("study", help="a study that was run from scratch, or its results")
     parser.add_argument("--cores", type=int, default=2)
     options = parser.parse_args()
-    sums, wall = stages_of(options.results)
+    sums, wall = stages_of(results_of(options.study))
     print(
         f"{'stage':20s}{'jobs':>6s}{'seconds':>10s}{'work':>10s}{'solving':>10s}{'problems':>10s}"
     )

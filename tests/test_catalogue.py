@@ -36,8 +36,10 @@ def test_what_is_no_scan_is_passed_over(tmp_path):
     assert list(find_scans(tmp_path)) == ["b"]
 
 
-def test_a_missing_folder_holds_no_scans(tmp_path):
-    assert find_scans(tmp_path / "nowhere") == {}
+def test_a_missing_folder_is_an_error_and_an_empty_one_is_not(tmp_path):
+    with pytest.raises(InputError, match=r"nowhere: no such folder \(not mounted\?\); make it"):
+        find_scans(tmp_path / "nowhere")
+    assert find_scans(tmp_path) == {}
 
 
 @pytest.mark.parametrize("original", ["--rock", "a b/c", "Stein 3 (über)", "{x}", "-.-a", "..b"])

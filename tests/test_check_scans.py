@@ -119,7 +119,13 @@ def test_names_that_act_on_a_terminal_are_escaped_and_lines_stay_short(folder, c
     assert max(map(len, lines)) <= max(WIDTH, len(str(folder)) + 8)
 
 
+def test_a_missing_folder_is_one_error(folder, capsys):
+    assert main([str(folder), *ARGUMENTS]) == 1
+    assert capsys.readouterr().err.startswith(f"error: {folder}: no such folder (not mounted?)")
+
+
 def test_an_empty_folder_is_no_error(folder, check):
+    folder.mkdir()
     code, out = check()
     assert code == 0
     assert "0 ok, 0 with warnings, 0 refused" in out

@@ -2,6 +2,8 @@
 
 import importlib
 import pkgutil
+import subprocess
+import sys
 
 from numba.core.dispatcher import Dispatcher
 
@@ -23,3 +25,18 @@ def test_no_module_with_kernels_is_left_to_the_jobs_of_a_study():
                     used[home] = used.get(home, False) or bool(value.signatures)
     assert len(used) >= 10
     assert [home for home, called in used.items() if not called] == []
+
+
+def test_another_process_finds_every_kernel_compiled():
+    """Even those whose types have no name that stays the same."""
+    compile_kernels()
+    code = (
+        "import gc; from numba.core.dispatcher import Dispatcher\n"
+        "from fractalcontact.compile_kernels import compile_kernels; compile_kernels()\n"
+        "kernels = [k for k in gc.get_objects() if isinstance(k, Dispatcher)]\n"
+        "ours = [k for k in kernels if k.py_func.__module__.startswith('fractalcontact.')]\n"
+        "assert sum(sum(k.stats.cache_hits.values()) for k in ours) > 50\n"
+        "print([k.py_func.__qualname__ for k in ours if k.stats.cache_misses])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

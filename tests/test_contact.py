@@ -454,7 +454,7 @@ def test_other_grids_are_refused():
     with pytest.raises(ValueError, match="composite topography"):
         solve_contact(height[1:], space, closure=0.1)
     other = solve_contact(*rough(shape=(16, 17)), closure=0.1)
-    with pytest.raises(ValueError, match="start of shape"):
+    with pytest.raises(ValueError, match="pressure of the start"):
         solve_contact(height, space, closure=0.1, start=other)
 
 

@@ -90,6 +90,37 @@ def test_an_updated_inverse_is_that_of_a_fresh_start_to_the_bit():
     np.testing.assert_array_equal(updated(vector), inverse_on(space, second)(vector))
 
 
+def test_an_inverse_does_not_depend_on_the_sets_of_earlier_solves():
+    """Also where a solve begins with a few nodes, whose exact inverse needs no coarse operator."""
+    space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
+    before, few, many = (rough_set((200, 190), share) for share in (0.2, 0.002, 0.19))
+    assert few.size <= DIRECT
+    used, new = ContactInverse(space), ContactInverse(space)
+    used.update(before, fresh=True)
+    for inverse in (used, new):
+        inverse.update(few, fresh=True)
+        inverse.update(many, fresh=False)
+    vector = np.random.default_rng(6).standard_normal(many.size).astype(np.float32)
+    np.testing.assert_array_equal(used(vector), new(vector))
+
+
+def test_an_update_that_is_interrupted_changes_nothing(monkeypatch):
+    space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
+    first, second = rough_set((200, 190), 0.2), rough_set((200, 190), 0.3)
+    inverse = inverse_on(space, first)
+
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as broken:
+        broken.setattr("fractalcontact.screening.threads.in_parts", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            inverse.update(second, fresh=True)
+    inverse.update(second, fresh=True)
+    vector = np.random.default_rng(7).standard_normal(second.size).astype(np.float32)
+    np.testing.assert_array_equal(inverse(vector), inverse_on(space, second)(vector))
+
+
 def test_bits_do_not_depend_on_the_number_of_threads(monkeypatch):
     space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
     rows = rough_set((200, 190), 0.3)

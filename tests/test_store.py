@@ -1,18 +1,20 @@
-"""Files appear whole or not at all, and the same twice."""
+"""What is written comes back, the same twice, and says with which versions it was made."""
+
+import json
 
 import pytest
 import xarray as xr
 
-from fractalcontact.store import padded, read, read_atlas, write, write_atlas, written_whole
-
-
-def test_a_broken_write_leaves_the_old_file_and_nothing_else(tmp_path):
-    path = tmp_path / "x.txt"
-    path.write_text("old")
-    with pytest.raises(UnicodeEncodeError), written_whole(path) as temporary:
-        temporary.write_text("half \ud800", encoding="utf-8")
-    assert path.read_text() == "old"
-    assert list(tmp_path.iterdir()) == [path]
+from fractalcontact import store
+from fractalcontact.store import (
+    padded,
+    read,
+    read_atlas,
+    read_with_versions,
+    versions,
+    write,
+    write_atlas,
+)
 
 
 def test_the_same_dataset_gives_the_same_bytes(tmp_path):
@@ -64,3 +66,26 @@ def test_nothing_without_a_unit_enters_the_atlas(tmp_path):
     ):
         write_atlas(bare, tmp_path / "atlas.nc", study="test", configuration={})
     assert not list(tmp_path.iterdir())
+
+
+def test_parts_made_with_other_versions_are_named_in_the_atlas(tmp_path, monkeypatch):
+    labelled = xr.Dataset({"a": ("x", [1.0], {"units": "mm", "long_name": "a"})})
+    write(labelled, tmp_path / "new.nc")
+    older = versions() | {"numpy": "1.0"}
+    with monkeypatch.context() as patched:
+        patched.setattr(store, "versions", lambda: older)
+        write(labelled, tmp_path / "old.nc")
+    read_back = {name: read_with_versions(tmp_path / f"{name}.nc") for name in ("old", "new")}
+    assert [made for _, made in read_back.values()] == [older, versions()]
+    parts = {"specimens": {name: dataset for name, (dataset, _) in read_back.items()}}
+    made_with = {"specimens": {name: made for name, (_, made) in read_back.items()}}
+    path, asked = tmp_path / "atlas.nc", {"study": "test", "configuration": {}}
+    differing = write_atlas(parts, path, **asked, made_with=made_with)
+    (other,) = [words for words in differing if "numpy 1.0," in words]
+    assert differing[other] == ["specimens/old"]
+    attributes = read_atlas(path).attrs
+    assert json.loads(attributes["versions_differ"]) == differing
+    assert json.loads(attributes["versions"]) == versions()
+    del made_with["specimens"]["old"]
+    assert write_atlas(parts, path, **asked, made_with=made_with) == {}
+    assert "versions_differ" not in read_atlas(path).attrs

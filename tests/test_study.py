@@ -7,10 +7,14 @@ from pathlib import Path
 import pytest
 import yaml
 
+from fractalcontact import catalogue
 from fractalcontact.errors import InputError
 from fractalcontact.study import (
+    MOST_NODES,
+    check_names,
     check_study,
     read_sidecar,
+    read_study,
     resolve_embedded,
     resolve_roll_off,
     resolve_settings,
@@ -128,6 +132,17 @@ def test_cleaning_reaches_the_specimen_and_registration_the_reader(study, tmp_pa
         read_sidecar(sidecar, SCHEMA)
 
 
+def test_a_surface_has_as_many_nodes_per_side_wherever_a_study_asks_for_one():
+    sections = SCHEMA["properties"]
+    limits = [
+        SCHEMA["$defs"]["sizes"]["items"],
+        sections["area_slope"]["properties"]["nodes"],
+        sections["dimension_test"]["properties"]["capped_size"],
+        sections["speed"]["properties"]["sizes"]["items"],
+    ]
+    assert {limit["maximum"] for limit in limits} == {MOST_NODES}
+
+
 def test_embedded_lengths_are_in_millimetres(study):
     recipe = resolve_embedded({**study["embedded"]["concrete_twin"], "size": "4 cm"}, "here")
     assert (recipe["size"], recipe["outline"]) == (40, "square")
@@ -147,3 +162,94 @@ def test_joints_with_and_without_a_roll_off_follow_an_embedded_specimen(study):
     assert joints["recipe"]["roll_off"] == 5
     del study["roll_off"]
     assert resolve_roll_off(study, "paper") is None
+
+
+LONG = "a" * 240
+DIGITS = int("9" * 400)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (("study",), "paper\n", r"study: 'paper\\n' is not right; expected the study's name"),
+        (("study",), LONG, r"study: 'aaa.*\.\.\. is not right; .* up to 100 letters"),
+        (("embedded", "rock\n"), {}, r"embedded: 'rock\\n' is not right; expected the name of"),
+        (("embedded", LONG), {}, r"embedded: 'aaa.* is not right; expected the name of a specimen"),
+        (("embedded", 12), {}, "embedded: 12 is not right; expected the name of a specimen"),
+        (("materials", "rock\n"), {}, r"materials: 'rock\\n' is not right; expected the name of a"),
+        (("materials", LONG), {}, r"materials: 'aaa.* is not right; expected the name of a mater"),
+        (("materials", "a$b"), {}, r"materials: 'a\$b' is not right; expected the name of a mater"),
+        (("defaults", "label"), "rock\n", r"defaults.label: 'rock\\n' is not right; expected what"),
+        (("embedded", "joint_2.1", "label"), "a\nb", r"joint_2.1.label: 'a\\nb' is not right"),
+        (("embedded", "joint_2.1", "label"), LONG, r"joint_2.1.label: 'aaa.* up to 200 characters"),
+        (("embedded", "joint_2.1", "size"), "1e9 mm", r"size: '1e9 mm' at a spacing of .* nodes"),
+        (("embedded", "joint_2.1", "spacing"), "1 m", r"nodes per side; expected from 2 to 16384"),
+        (("embedded", "joint_2.1", "spacing"), "1e-200 mm", "'1e-200 mm' is beyond what can"),
+        (("embedded", "joint_2.1", "seed"), DIGITS, r"seed: 9{80}\.\.\. is not right; expected a"),
+        (("embedded", "joint_2.1", "seed"), 10**18, "seed: 1000000000000000000 is not right"),
+        (("embedded", "joint_2.1", "seed"), 7.0, "seed: 7.0 is not right; expected a whole number"),
+        (("roll_off", "seeds"), [1, DIGITS], r"roll_off.seeds.1: 9{80}\.\.\. is not right; "),
+        (("area_slope", "nodes"), DIGITS, r"area_slope.nodes: 9{80}\.\.\. is not right; "),
+        (("dimension_test", "sizes"), [10**6], "sizes.0: 1000000 is not right; expected a whole n"),
+        (("defaults", "resolutions"), [DIGITS], r"resolutions.0: 9{80}\.\.\. is not right; "),
+        (("defaults", "fill_holes"), DIGITS, "fill_holes: 9.* is not right; expected rows and col"),
+        (("defaults", "loads"), ["5e-324 N"], "loads: '5e-324 N' is beyond what can be computed"),
+        (("defaults", "loads"), ["1e200 MPa"], r"'1e200 MPa' is beyond .* 1e-150 to 1e\+150 MPa"),
+        (("materials", "concrete", "modulus"), "1e300 GPa", "'1e300 GPa' is beyond what can be"),
+    ],
+)
+def test_names_and_numbers_beyond_all_use_are_one_error_each(study, path, value, message):
+    if value == {}:  # what any of its kind is
+        value = next(iter(study[path[0]].values()))
+    broken(study, path, value)
+    with pytest.raises(InputError, match=r"mine\.yaml: .*") as caught:
+        check_study(study, SCHEMA, "mine.yaml")
+    assert caught.match(message)
+    assert len(str(caught.value)) < 350
+
+
+@pytest.mark.parametrize("length", [catalogue.LONGEST_NAME, catalogue.LONGEST_NAME + 1])
+def test_embedded_names_are_as_long_as_those_of_scans(study, length):
+    name = "".join(str(k) for k in range(150))[:length]  # no row of repeats
+    study["embedded"] = {name: study["embedded"]["joint_2.1"]}
+    del study["roll_off"], study["specimens"]
+    if length <= catalogue.LONGEST_NAME:
+        check_study(study, SCHEMA, "mine.yaml")
+    else:
+        with pytest.raises(InputError, match="up to 220 letters"):
+            check_study(study, SCHEMA, "mine.yaml")
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("Joint_2.1", "embedded.Joint_2.1: differs from the embedded specimen joint_2.1 in upper"),
+        ("CON", "embedded.CON: no name for files on every computer; write '_CON'"),
+        ("a" * 20, r"embedded.a+: no name for files on every computer; write 'a+-[0-9a-f]{6}'"),
+    ],
+)
+def test_embedded_names_that_files_cannot_have_are_refused(study, name, message):
+    study["embedded"][name] = study["embedded"]["joint_2.1"]
+    with pytest.raises(InputError, match=message):
+        check_study(study, SCHEMA, "mine.yaml")
+
+
+@pytest.mark.parametrize(
+    ("scan", "message"),
+    [
+        ("joint_2.1", "embedded.joint_2.1: has the name of a scan in rocks; rename one"),
+        ("JOINT_2.1", "embedded.joint_2.1: differs from a scan in rocks JOINT_2.1 in upper and"),
+    ],
+)
+def test_embedded_names_and_those_of_scans_are_told_apart(study, scan, message):
+    check_names(["other"], study, "rocks", "mine.yaml")
+    with pytest.raises(InputError, match=message):
+        check_names(["other", scan], study, "rocks", "mine.yaml")
+
+
+@pytest.mark.parametrize("value", ["9" * 5000, "2020-13-45"])
+def test_numbers_and_dates_that_are_none_are_refused_on_reading(tmp_path, value):
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"study: mine\nseed: {value}\n")
+    with pytest.raises(InputError, match=r"mine\.yaml: a date or number that is none"):
+        read_study(path)

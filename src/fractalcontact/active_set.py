@@ -14,10 +14,10 @@ what is returned was judged on a displacement in double precision.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
 from .balancing import only_in_one
 from .conditions import between_bounds, examined_by, mean_reached
+from .kernel_cache import njit
 from .set_equations import CLIPPING_PASSES, Operator, SetEquations, add, stiffness
 
 # Corrections of the contact set before the solver gives up: trials needed at most some twenty.
@@ -49,6 +49,7 @@ SAFETY = 0.3
 SINGLE_REACHES = 1e-5
 # No closure is known better than this, as a share of it.
 CLOSURE_ROUNDING = 1e-12
+_FLOAT64 = np.dtype(np.float64)
 # A total this close to F is F.
 FORCE_ROUNDING = 1e-12
 
@@ -82,9 +83,15 @@ class ActiveSet:
     problem : Problem
     rtol : float
         Largest violation allowed, share of the closure.
+
+    Raises
+    ------
+    ValueError
+        If the clearance is not one of the grid.
     """
 
     def __init__(self, problem, rtol):
+        _check_on_grid(problem.clearance, "clearance", problem.space)
         self.problem, self.rtol = problem, rtol
         self.operator = Operator(problem.space)
 
@@ -103,8 +110,16 @@ class ActiveSet:
         Returns
         -------
         Solution
+
+        Raises
+        ------
+        ValueError
+            If the start is not one of the grid.
         """
         problem = self.problem
+        _check_on_grid(pressure, "pressure", problem.space)
+        if displacement is not None:
+            _check_on_grid(displacement, "displacement", problem.space)
         small = self.operator.inverse.small
         foreseeing = 0 if small or displacement is None else FORESEEING
         pressure, displacement = self._loaded(pressure, displacement)
@@ -298,6 +313,13 @@ class ActiveSet:
         bounds = (-np.inf, np.inf) if patient else (0.0, problem.cap / scale)
         equations.clipped_step(start, bounds, wanted if problem.by_force else None)
         return equations, back, scale
+
+
+def _check_on_grid(values, name, space):
+    """Refuse what are not as many numbers as the grid has nodes."""
+    nodes = space.shape[0] * space.shape[1]
+    if values.shape != (nodes,) or values.dtype != _FLOAT64:
+        raise ValueError(f"{name} {values.shape} of {values.dtype}: expected {(nodes,)} of float64")
 
 
 @njit(cache=True)

@@ -1,7 +1,6 @@
 """Curves that need an area: prisms, cubes and islands (see :mod:`fractalcontact.curves`)."""
 
 import numpy as np
-from numba import njit
 from scipy import ndimage
 
 from .curves import (
@@ -13,6 +12,7 @@ from .curves import (
     lengths_in_cells,
     ratio,
 )
+from .kernel_cache import njit
 
 #: Prisms of side b start every b / PRISM_STEPS cells: closer ones tell nothing new.
 PRISM_STEPS = 4

@@ -10,7 +10,8 @@ beside those of the transforms.
 """
 
 import numpy as np
-from numba import njit
+
+from .kernel_cache import njit
 
 #: A coarse cell is this many fine ones across, or so much larger by powers of two that the coarse
 #: grid has no more than COARSE cells along a side.
@@ -22,6 +23,8 @@ MOST_HATS = 17
 #: Added to the coarse matrix, shares of each and of its largest diagonal: hats that hold few nodes
 #: may nearly coincide.
 RIDGE, LEAST_RIDGE = 1e-4, 1e-6
+# Types to compare with: of what else stands for them numpy has to find the type first.
+_INT32, _FLOAT32 = np.dtype(np.int32), np.dtype(np.float32)
 #: The coarse operator is made anew where more than this share of the nodes around any one hat
 #: changed: out of date on a few nodes that stand alone it sends them back and forth for ever.
 LAG = 0.25
@@ -59,10 +62,16 @@ class SmoothCorrection:
         Parameters
         ----------
         rows : (n,) int32 ndarray
-            Nodes as numbers of cells.
+            Nodes as numbers of cells, ascending.
         fresh : bool
             Whether to make it anew in any case.
+
+        Raises
+        ------
+        ValueError
+            If they are no such numbers.
         """
+        check_nodes(rows, self._shape)
         self._place, self._share = _interpolation(
             rows, self._shape[1], self._step, *self._coarse.shape
         )
@@ -70,6 +79,10 @@ class SmoothCorrection:
         if fresh or _most_changed(self._made_for, rows, self._shape, self._knots) > LAG:
             self._made_for = rows
             self._make_operator()
+
+    def forget(self):
+        """Make the operator anew at the next update."""
+        self._made_for = np.empty(0, np.int32)
 
     def _make_operator(self):
         shape = self._coarse.shape
@@ -94,7 +107,13 @@ class SmoothCorrection:
         Returns
         -------
         (n,) float32 ndarray
+
+        Raises
+        ------
+        ValueError
+            If the residual is not one on the contact set.
         """
+        check_on_set(residual, self._missing.size)
         mesh = self._place, self._share, self._missing
         loads, _ = _gather(*mesh, residual, self._hats.shape[1])
         first = times(self._inverse, times(self._hats, loads))
@@ -104,6 +123,49 @@ class SmoothCorrection:
         second = times(self._inverse, times(self._images, loads) + times(self._hats, own))
         _add_interpolated(*mesh, smooth - _combined(self._hats, second), fine)
         return fine
+
+
+def check_nodes(nodes, shape):
+    """Refuse what is no set of nodes: compiled code looks up whatever it is given.
+
+    Parameters
+    ----------
+    nodes : (n,) int32 ndarray
+        Numbers of cells, ascending.
+    shape : (int, int)
+        Of the grid.
+
+    Raises
+    ------
+    ValueError
+    """
+    if nodes.ndim != 1 or nodes.dtype != _INT32 or not _ascending(nodes, shape[0] * shape[1]):
+        raise ValueError(
+            f"nodes {nodes.shape} of {nodes.dtype}: expected numbers of cells (n,) of int32, "
+            f"ascending, on a grid of {shape}"
+        )
+
+
+def check_on_set(values, n):
+    """Refuse what are no float32 numbers, one for each node of a contact set of n.
+
+    Raises
+    ------
+    ValueError
+    """
+    if values.shape != (n,) or values.dtype != _FLOAT32:
+        raise ValueError(f"{values.shape} numbers of {values.dtype}: expected {(n,)} of float32")
+
+
+@njit(cache=True)
+def _ascending(nodes, cells):
+    """Whether these are numbers from 0 to cells - 1, each larger than the one before."""
+    before = -1
+    for node in nodes:
+        if node <= before or node >= cells:
+            return False
+        before = node
+    return True
 
 
 def _knots(coarse, cells):
@@ -234,6 +296,8 @@ def inverted(matrix):
     """Inverse by elimination; a positive definite matrix needs no pivots."""
     inverse = matrix.copy()
     n = inverse.shape[0]
+    if inverse.shape[1] != n:
+        raise ValueError("expected a square matrix")
     for k in range(n):
         pivot = 1 / inverse[k, k]
         inverse[k, k] = 1.0
@@ -263,6 +327,8 @@ def _ridged_inverse(matrix):
 @njit(cache=True, fastmath=True)
 def times(matrix, values):
     """matrix values."""
+    if matrix.shape[1] != values.size:
+        raise ValueError("expected as many values as columns")
     out = np.empty(matrix.shape[0], np.float32)
     for i in range(out.size):
         total = np.float32(0)

@@ -1,13 +1,19 @@
 """Boxes that meet a contact domain: the fewest over origins of the grid, and the mean of all."""
 
-import numba
 import numpy as np
+
+from . import arguments
+from .arguments import whole_number, whole_numbers
+from .kernel_cache import njit
 
 #: Box sizes in each doubling.
 SIZES_PER_OCTAVE = 4
 
 #: Whole ratios by which a deterministic set may repeat itself; their powers are among the sizes.
 RATIOS = (2, 3, 4, 5)
+
+#: Compiled code counts nodes in four bytes.
+_MOST_CELLS = 2**31 - 1
 
 #: Boxes of no size cover more than this many times an oblong extent.
 MOST_OVERHANG = 1.1
@@ -85,12 +91,11 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     Raises
     ------
     ValueError
-        If a size is below 1 or the domain is not a (y, x) grid.
+        If a size is below 1, or no number, or the domain is not a (y, x) grid.
     """
-    sizes = np.asarray(sizes, dtype=float)
+    sizes = _checked_sizes(sizes)
+    max_shifts = whole_number(max_shifts, "max_shifts", least=1, most=_MOST_CELLS)
     nodes = nodes_below(domain)
-    if sizes.size and sizes.min() < 1:
-        raise ValueError(f"a box is at least one cell wide, not {sizes.min()}")
     return np.array([_fewest_boxes(nodes, size, max_shifts) for size in sizes], dtype=np.int64)
 
 
@@ -110,13 +115,31 @@ def nodes_below(domain: np.ndarray) -> np.ndarray:
     ValueError
         If the domain is not a (y, x) grid.
     """
-    domain = np.asarray(domain, dtype=bool)
-    if domain.ndim != 2:
-        raise ValueError(f"a contact domain is a (y, x) grid, not of shape {domain.shape}")
+    domain = arguments.domain(domain, "a contact domain")
+    if domain.size > _MOST_CELLS:
+        raise ValueError(
+            f"a contact domain of {domain.shape}: expected {_MOST_CELLS} cells at most"
+        )
     return _summed(domain)
 
 
-@numba.njit(cache=True)
+def _checked_sizes(sizes):
+    """Sides of boxes in cells as (k,) float64.
+
+    Raises
+    ------
+    ValueError
+        If one is below 1, or no number.
+    """
+    sizes = arguments.real_array(sizes, "sizes of boxes").astype(float)
+    if sizes.ndim != 1:
+        raise ValueError(f"sizes of boxes {sizes.shape}: expected a list of numbers")
+    if not (np.isfinite(sizes) & (sizes >= 1)).all():
+        raise ValueError(f"a box is at least one cell wide, not {sizes.min()}")
+    return sizes
+
+
+@njit(cache=True)
 def _summed(domain):
     """Sums of all cells below and left of each corner, in one pass."""
     ny, nx = domain.shape
@@ -129,7 +152,7 @@ def _summed(domain):
     return nodes
 
 
-@numba.njit(cache=True)
+@njit(cache=True)
 def _edges(n, size, max_shifts):
     """First cell of each box along one axis, a row for each origin of the grid."""
     shifts = max(min(int(np.ceil(size)), max_shifts), 1)
@@ -144,7 +167,7 @@ def _edges(n, size, max_shifts):
     return edges
 
 
-@numba.njit(cache=True)
+@njit(cache=True)
 def _fewest_boxes(nodes, size, max_shifts):
     """N(r) over all pairs of origins along y and x."""
     edges_y = _edges(nodes.shape[0] - 1, size, max_shifts)
@@ -189,17 +212,16 @@ def mean_count(domain: np.ndarray, sizes: np.ndarray, *, blocks: int = 1) -> np.
     Raises
     ------
     ValueError
-        If a size is below 1 or the domain is not a (y, x) grid.
+        If a size is below 1, or not whole, or the domain is not a (y, x) grid.
     """
-    sizes = np.asarray(sizes, dtype=np.int64)
-    if sizes.size and sizes.min() < 1:
-        raise ValueError(f"a box is at least one cell wide, not {sizes.min()}")
+    sizes = whole_numbers(_checked_sizes(sizes), "sizes of boxes", least=1, most=_MOST_CELLS)
+    blocks = whole_number(blocks, "blocks", least=1, most=_MOST_CELLS)
     nodes = nodes_below(domain)
     counts = [_places(nodes, int(size), blocks) / size**2 for size in sizes]
     return np.array(counts).reshape(sizes.size, blocks, blocks)
 
 
-@numba.njit(cache=True)
+@njit(cache=True)
 def _places(nodes, size, blocks):
     """Places of a gliding box that meets the domain, by the part that holds its middle."""
     ny, nx = nodes.shape[0] - 1, nodes.shape[1] - 1

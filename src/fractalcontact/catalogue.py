@@ -86,7 +86,6 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     Parameters
     ----------
     folder : path-like
-        A folder that does not exist holds no scans.
 
     Returns
     -------
@@ -96,10 +95,10 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     Raises
     ------
     InputError
-        If two files claim one name, or names that differ in case alone; a face lacks its
-        counterpart, a sidecar has no scan; a name is too long, has no usable character, invisible
-        ones or braces; a link leads out of the folder; a file is a pipe or a device, or a folder
-        has the name of a scan file.
+        If the folder does not exist; two files claim one name, or names that differ in case alone;
+        a face lacks its counterpart, a sidecar has no scan; a name is too long, has no usable
+        character, invisible ones or braces; a link leads out of the folder; a file is a pipe or a
+        device, or a folder has the name of a scan file.
     """
     scans, refused = list_scans(folder)
     for error in refused.values():
@@ -120,10 +119,18 @@ def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
         As `find_scans` gives them.
     refused : dict of str to InputError
         By specimen name, or by file name where it gives none: the first thing wrong with each.
+
+    Raises
+    ------
+    InputError
+        If the folder does not exist.
     """
     folder = Path(folder)
     if not folder.is_dir():
-        return {}, {}
+        raise InputError(
+            f"{folder}: no such folder (not mounted?); make it, name another one under 'scans' in "
+            "the study, or write 'scans: null' if it has none"
+        )
     roles: dict[str, dict[str, Path]] = {}
     refused: dict[str, InputError] = {}
     for path in sorted(folder.iterdir()):

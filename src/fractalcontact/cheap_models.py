@@ -9,8 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arguments import whole_number
 from .contact import checked_hardness, checked_problem, solve_contact
 from .halfspace import rectangle_mean_displacement
+from .screening import forget_preconditioner
 
 #: Tolerance of the coarse solves: far below what the coarse grid itself is off by.
 COARSE_RTOL = 1e-4
@@ -175,6 +177,8 @@ def coarse_grid(composite, space, *, closure, factor=2):
     The force by an error of order `FORCE_ORDER` in s; the area by the power law A_r ~ s^a of
     self-affine surfaces (eq. 5 of the paper), which two spacings determine.
     """
+    factor = whole_number(factor, "factor", least=1, most=min(space.shape))
+    closure, _ = checked_problem(composite, space, closure, None, None, COARSE_RTOL)
     height = np.asarray(composite, float)
     finer, coarser = (_sampled(height, space, closure, k) for k in (factor, 2 * factor))
     steps = np.log2(factor)
@@ -198,5 +202,5 @@ def _sampled(height, space, closure, factor):
     sample = height[::factor, ::factor]
     left = max(closure - (height.max() - sample.max()), 0.0)
     coarse = space.coarser(factor)
-    coarse.forget()
+    forget_preconditioner(coarse)
     return solve_contact(sample, coarse, closure=left, rtol=COARSE_RTOL)

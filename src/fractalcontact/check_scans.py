@@ -290,10 +290,16 @@ def main(arguments=None):
     try:
         study, schema = read_study(asked.study), read_study(asked.schema)
         check_study(study, schema, asked.study)
+        return _print_table(
+            Path(asked.folder or study.get("scans") or "scans"), study, schema, asked
+        )
     except InputError as error:
         sys.stderr.write(f"error: {error}\n")
         return 1
-    folder = Path(asked.folder or study.get("scans") or "scans")
+
+
+def _print_table(folder, study, schema, asked):
+    """Print what each file of a folder holds; 1 if one was refused."""
     counts = {"ok": 0, "with warnings": 0, "refused": 0}
     _write([_row({key: key for key in COLUMNS}), "-" * WIDTH])
     for checked in check_scans(folder, study, schema, asked.study):

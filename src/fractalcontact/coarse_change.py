@@ -20,6 +20,7 @@ from .coarse_start import (
     shared_out,
 )
 from .conditions import Problem, examined_by, mean_reached
+from .screening import forget_preconditioner
 
 # With fewer nodes along the shorter side, as many applications on the fine grid take no more time.
 SMALLEST = 768
@@ -77,7 +78,7 @@ def _changed(problem, pressure, gap, closure):
         displacement = _displacement(space, start)
     found = ActiveSet(coarse, COARSE_RTOL).solve(start, displacement, at_least=COARSE_CORRECTIONS)
     if found.pressure.size > KEPT_CELLS:
-        space.forget()
+        forget_preconditioner(space)
     change = _in_proportion(before, pooled, found.pressure.reshape(space.shape))
     pressure = shared_out(before, change, gap, problem.space.influence())
     return np.minimum(pressure, problem.cap).ravel()

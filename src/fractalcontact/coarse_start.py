@@ -6,15 +6,16 @@ the eight cells around act on them as they are, from further away the four are d
 """
 
 import numpy as np
-from numba import njit
 
 from .active_set import ActiveSet
 from .balancing import inverted
 from .conditions import Problem
+from .kernel_cache import njit
+from .screening import forget_preconditioner
 
 # A coarser grid gives the start until its shorter side has fewer nodes than this.
 COARSEST = 24
-# The approximate inverse on coarse grids of more cells is not kept: it takes memory, and there is
+# The preconditioner on coarse grids of more cells is not kept: it takes memory, and there is
 # little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
 KEPT_CELLS = 10_000
 # The coarse solution is only a start. But on grids so fine that the next coarser one's already
@@ -46,7 +47,7 @@ def coarse_start(problem):
     search = ActiveSet(coarse, COARSE_RTOL)
     found = search.solve(coarse_start(coarse), at_least=COARSE_CORRECTIONS)
     if pooled.size > KEPT_CELLS:
-        coarse_space.forget()
+        forget_preconditioner(coarse_space)
     pressure = found.pressure.reshape(coarse_space.shape) / 2
     pressure = spread(pressure, problem.clearance.reshape(ny, nx), space.influence())
     return np.minimum(pressure, problem.cap).ravel()
@@ -81,6 +82,8 @@ def pool_sum(values):
 def on_nodes(cells, shape):
     """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
     ny, nx = shape
+    if cells.shape[0] != (ny + 1) // 2 or cells.shape[1] != (nx + 1) // 2:
+        raise ValueError("expected a cell for each 2 x 2 nodes")
     values = np.empty(shape)
     for y in range(ny):
         for x in range(nx):
@@ -105,6 +108,11 @@ def spread(pressure, clearance, influence):
     (ny, nx) ndarray
         Never negative. Of each cell it has the mean of the coarse one, or on an odd edge, where the
         cell reaches beyond the grid, that on the nodes there are.
+
+    Raises
+    ------
+    ValueError
+        If these are not on two such grids of at least four nodes each way.
     """
     change = on_nodes(pressure, clearance.shape)
     return shared_out(np.zeros(clearance.shape), change, clearance, influence)
@@ -121,7 +129,15 @@ def shared_out(before, change, gap, influence):
         What the pressure before leaves open.
     influence : (ny, nx) ndarray
         As for :func:`spread`.
+
+    Raises
+    ------
+    ValueError
+        If these are not on one grid of at least four nodes each way.
     """
+    if not before.shape == change.shape == gap.shape == influence.shape or min(gap.shape) < 4:
+        shapes = ", ".join(str(values.shape) for values in (before, change, gap, influence))
+        raise ValueError(f"shapes {shapes}: expected one grid of 4 x 4 nodes or more")
     # A cell's nodes and those of the eight around it lie in six rows and columns.
     my, mx = ((n + 1) // 2 for n in gap.shape)
     padded = np.zeros((2 * my + 4, 2 * mx + 4))

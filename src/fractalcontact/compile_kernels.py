@@ -17,7 +17,7 @@ SIDE = 200
 
 
 def compile_kernels():
-    """Use every kernel that a study uses, on a small made joint: numba keeps what it compiled.
+    """Use every kernel that a study uses, on a small made joint: what is compiled stays on disk.
 
     Returns
     -------

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+
+from .kernel_cache import njit
 
 
 @dataclass
@@ -72,7 +73,14 @@ def examined_by(pressure, displacement, clearance, closure, cap):
     Returns
     -------
     Examined
+
+    Raises
+    ------
+    ValueError
+        If these are not of one size.
     """
+    if not pressure.shape == displacement.shape == clearance.shape:
+        raise ValueError("expected pressure, displacement and clearance of one size")
     return Examined(*_examine(pressure, displacement, clearance, closure, cap))
 
 
@@ -84,6 +92,8 @@ def between_bounds(pressure, cap):
 @njit(cache=True)
 def mean_reached(pressure, displacement, clearance, cap):
     """Mean displacement and clearance of the nodes between the bounds; NaN without any."""
+    if pressure.size != displacement.size or pressure.size != clearance.size:
+        raise ValueError("expected pressure, displacement and clearance of one size")
     total, n = 0.0, 0
     for i in range(pressure.size):
         if 0 < pressure[i] < cap:

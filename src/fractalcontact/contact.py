@@ -6,13 +6,23 @@ at H, and points there may be pressed in. How such a state is found is told in `
 loads become dimensionless, starts are chosen, and nothing returns unverified.
 """
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+import dataclasses
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from . import active_set
 from .active_set import ActiveSet
+from .arguments import (
+    LEAST_INPUT,
+    LEAST_RESULT,
+    MOST_INPUT,
+    MOST_RESULT,
+    field,
+    number,
+    quoted,
+)
 from .coarse_change import coarse_change
 from .coarse_start import coarse_start
 from .conditions import Problem, between_bounds
@@ -20,6 +30,7 @@ from .effort import SOLVING
 from .errors import NotConverged
 from .halfspace import HalfSpace
 from .set_equations import Operator, stiffness
+from .threads import lazy
 
 # Earlier states are extrapolated by no more than this many of their own steps.
 FURTHEST = 2.0
@@ -61,9 +72,9 @@ class ContactState:
     force: float
     residual: float
     iterations: int
-    space: HalfSpace = field(repr=False)
+    space: HalfSpace = dataclasses.field(repr=False)
     hardness: float = np.inf
-    _before: "ContactState | None" = field(default=None, repr=False, compare=False)
+    _before: "ContactState | None" = dataclasses.field(default=None, repr=False, compare=False)
 
     @property
     def in_contact(self):
@@ -87,7 +98,7 @@ class ContactState:
         near = ~self.in_contact & (self.gap <= hidden)
         return int(np.count_nonzero(weak) + np.count_nonzero(near))
 
-    @cached_property
+    @lazy
     def stiffness(self):
         """Normal stiffness dF/dw, N/mm, from H q = 1 on the contact set; 0 without contact.
 
@@ -133,8 +144,9 @@ def solve_contact(
     Raises
     ------
     ValueError
-        If the topography has missing cells or another shape, the load makes no sense, or the force
-        is more than the hardness lets the whole window carry.
+        If the topography has missing or masked cells or another shape, the start is none of this
+        grid, the load makes no sense or double precision ends before its state, or the force is
+        more than the hardness lets the whole window carry.
     NotConverged
         If the conditions are not met to ``rtol``.
     """
@@ -164,15 +176,16 @@ def checked_hardness(hardness, space, force):
     """The hardness as a number, infinite if there is none, after it was found sound."""
     if hardness is None:
         return np.inf
-    if not hardness > 0:
-        raise ValueError(f"hardness {hardness}: expected > 0 MPa")
+    hardness = number(hardness, "hardness", "MPa")
+    if not hardness >= LEAST_INPUT:
+        raise ValueError(f"hardness {hardness}: expected > 0 MPa, and at least {LEAST_INPUT:g}")
     ny, nx = space.shape
     most = hardness * space.cell_area * ny * nx
     if force is not None and not force < most:
         raise ValueError(
             f"force {force:g} N: at hardness {hardness:g} MPa the window carries {most:g}"
         )
-    return float(hardness)
+    return hardness
 
 
 def checked_problem(composite, space, closure, force, start, rtol):
@@ -184,23 +197,70 @@ def checked_problem(composite, space, closure, force, start, rtol):
         The closure or the force.
     clearance : (ny, nx) ndarray
         Opening at first touch, mm.
+
+    Raises
+    ------
+    ValueError
+        As `solve_contact`.
     """
-    height = np.asarray(composite, float)
-    if height.shape != space.shape:
-        raise ValueError(f"composite topography {height.shape} on a half-space of {space.shape}")
+    if not isinstance(space, HalfSpace):
+        raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
+    height = field(composite, "composite topography", space.shape)
     if not np.isfinite(height).all():
         missing = np.count_nonzero(~np.isfinite(height))
         raise ValueError(f"the composite topography has {missing} missing or infinite cells")
     if (closure is None) == (force is None):
         raise ValueError("give either closure= or force=")
-    load = float(closure if force is None else force)
-    if not np.isfinite(load) or load < 0:
-        raise ValueError(f"{'closure' if force is None else 'force'} {load}: expected >= 0")
-    if start is not None and start.pressure.shape != space.shape:
-        raise ValueError(f"start of shape {start.pressure.shape} for a grid of {space.shape}")
-    if not 0 < rtol < 1:
+    name, unit = ("closure", "mm") if force is None else ("force", "N")
+    load = number(closure if force is None else force, name, unit)
+    if not math.isfinite(load) or load < 0:
+        raise ValueError(f"{name} {load}: expected a finite number >= 0, in {unit}")
+    if start is not None:
+        _check_start(start, space)
+    if not 0 < number(rtol, "rtol", "shares of the closure") < 1:
         raise ValueError(f"rtol {rtol}: expected between 0 and 1")
+    depth = float(height.max()) - float(height.min())
+    if not depth <= MOST_INPUT:
+        raise ValueError(f"composite topography {depth:g} mm deep: expected {MOST_INPUT:g} at most")
+    if load > 0 and not _within_double_precision(space, load, force is not None, depth):
+        raise ValueError(
+            f"{name} {load:g} {unit}: too {'small' if load < 1 else 'large'} for double precision; "
+            "expected such that closures, pressures and forces on this grid are of "
+            f"{LEAST_RESULT:g} to {MOST_RESULT:g} mm, MPa and N"
+        )
     return load, height.max() - height
+
+
+def _check_start(start, space):
+    """Refuse what is no state of this grid."""
+    if not isinstance(start, ContactState):
+        raise ValueError(f"start {quoted(start)}: expected a ContactState, as solve_contact gives")
+    for name in ("pressure", "displacement"):
+        values = field(getattr(start, name), f"{name} of the start", space.shape)
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name} of the start: expected finite numbers")
+    for name in ("closure", "force"):
+        if not math.isfinite(number(getattr(start, name), f"{name} of the start", "mm or N")):
+            raise ValueError(f"{name} of the start: expected a finite number")
+
+
+def _within_double_precision(space, load, by_force, depth):
+    """Whether the state of a load has numbers that keep all their digits."""
+    length, pressure = _load_units(space, load, by_force)
+    sizes = length, pressure, pressure * space.cell_area
+    if not LEAST_RESULT <= min(sizes) <= max(sizes) <= MOST_RESULT:
+        return False
+    return depth / length <= MOST_RESULT
+
+
+def _load_units(space, load, by_force):
+    """Units of length, mm, and of pressure, MPa, in which a load is near one."""
+    stress_per_length = space.modulus / space.cell
+    if not by_force:
+        return load, load * stress_per_length
+    ny, nx = space.shape
+    pressure = load / (space.cell_area * ny * nx)
+    return pressure / stress_per_length, pressure
 
 
 def unloaded_state(space, clearance):
@@ -214,19 +274,15 @@ class _Units:
 
     def __init__(self, space, load, by_force):
         self.space, self.by_force = space, by_force
-        stress_per_length = space.modulus / space.cell
-        if by_force:
-            ny, nx = space.shape
-            self.pressure = load / (space.cell_area * ny * nx)
-            self.length = self.pressure / stress_per_length
-            self.load = float(ny * nx)
-        else:
-            self.length = load
-            self.pressure = load * stress_per_length
-            self.load = 1.0
+        self.length, self.pressure = _load_units(space, load, by_force)
+        self.load = float(space.shape[0] * space.shape[1]) if by_force else 1.0
 
     def problem(self, clearance, hardness):
         cap = hardness / self.pressure
+        if cap < LEAST_RESULT:
+            raise ValueError(
+                f"hardness {hardness:g}: too low for pressures of {self.pressure:g} MPa"
+            )
         return Problem(self.space, clearance.ravel() / self.length, self.load, self.by_force, cap)
 
     def extrapolated(self, start, load):
@@ -247,11 +303,8 @@ class _Units:
         else:
             share = min(load / at, FURTHEST) if at > 0 else 1.0
             fields = [share * start.pressure, share * start.displacement]
-        pressure, displacement = fields
-        return (
-            pressure.ravel() / self.pressure,
-            displacement.ravel() / self.length if known else None,
-        )
+        pressure, displacement = (np.asarray(values, float).ravel() for values in fields)
+        return pressure / self.pressure, displacement / self.length if known else None
 
     def state(self, found, clearance, problem, start):
         """The solution in mm, N and MPa."""
@@ -259,6 +312,7 @@ class _Units:
         pressure = found.pressure.reshape(space.shape) * self.pressure
         displacement = found.displacement.reshape(space.shape) * self.length
         closure = found.closure * self.length if self.by_force else self.length
+        force = float(pressure.sum()) * space.cell_area
         # Of the states before, one is enough, and it need not hold on to its own.
         before = None if start is None or start.space != space else replace(start, _before=None)
         return ContactState(
@@ -266,8 +320,9 @@ class _Units:
             displacement=displacement,
             gap=displacement + clearance - closure,
             closure=closure,
-            force=float(pressure.sum()) * space.cell_area,
-            residual=found.residual,
+            force=force,
+            # What is no number violates no condition, and must not pass for a state.
+            residual=found.residual if math.isfinite(force) else math.nan,
             iterations=found.applications,
             space=space,
             hardness=problem.cap * self.pressure,

@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.fft
-from numba import njit
+
+from .arguments import field, whole_numbers
+from .kernel_cache import njit
 
 #: Lengths measured in each doubling.
 LENGTHS_PER_OCTAVE = 4
@@ -72,7 +74,15 @@ def lengths_in_cells(first: int, last: int) -> np.ndarray:
 
 
 def in_blocks(spacing: float, lengths: np.ndarray, heights: np.ndarray, add) -> Curve:
-    """Curve over lengths in cells: ``add(heights, length, total, weight)`` fills the blocks."""
+    """Curve over lengths in cells: ``add(heights, length, total, weight)`` fills the blocks.
+
+    Raises
+    ------
+    ValueError
+        If the heights are no (y, x) grid of real numbers, or a length is none from 1.
+    """
+    heights = field(heights, "heights")
+    lengths = whole_numbers(lengths, "lengths", least=1, most=max(1, *heights.shape))
     total, weight = np.zeros((2, len(lengths), BLOCKS, BLOCKS))
     for k, length in enumerate(lengths):
         add(heights, length, total[k], weight[k])

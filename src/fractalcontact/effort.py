@@ -1,16 +1,27 @@
 """What a process has spent on contact solves, for the log of its job. Nothing else reads it."""
 
 import contextlib
+import os
+import threading
 import time
-from dataclasses import dataclass
 
 
-@dataclass
 class Effort:
-    """Contact problems solved and the seconds they took."""
+    """Contact problems solved and the seconds they took, of all threads together.
 
-    problems: int = 0
-    seconds: float = 0.0
+    Attributes
+    ----------
+    problems : int
+    seconds : float
+    """
+
+    def __init__(self):
+        self.problems, self.seconds = 0, 0.0
+        self.renew_lock()
+
+    def renew_lock(self):
+        """Make the lock anew: one that another thread holds is never released in a fork."""
+        self._lock = threading.Lock()
 
     @contextlib.contextmanager
     def counted(self, problems):
@@ -19,9 +30,12 @@ class Effort:
         try:
             yield
         finally:
-            self.problems += problems
-            self.seconds += time.perf_counter() - begin
+            seconds = time.perf_counter() - begin
+            with self._lock:
+                self.problems += problems
+                self.seconds += seconds
 
 
 #: Of this process.
 SOLVING = Effort()
+os.register_at_fork(after_in_child=SOLVING.renew_lock)

@@ -9,6 +9,10 @@ class InputError(ValueError):
     """
 
 
+class OutputError(OSError):
+    """A result that could not be written, with the file's name and what to do."""
+
+
 class NotConverged(RuntimeError):
     """No state satisfying the contact conditions was reached.
 

@@ -12,9 +12,9 @@ transformed back. (Decimation in frequency forward, in time back: Cooley and Tuk
 """
 
 import numpy as np
-from numba import njit
 
 from . import threads
+from .kernel_cache import njit
 from .lanes import WIDTH, load, store, transpose
 
 #: Numbers in a row of a buffer: real, then imaginary parts of one index of all the transforms.
@@ -54,10 +54,25 @@ class Convolution:
         Lengths of the transforms, each a :func:`fast_length`.
     dtype : type
         float32 or float64.
+
+    Raises
+    ------
+    ValueError
+        If these do not go together.
     """
 
     def __init__(self, spectrum, shape, padded, dtype):
-        self._shape, self._dtype = shape, dtype
+        if dtype not in (np.float32, np.float64):
+            raise ValueError(f"dtype {dtype}: expected float32 or float64")
+        for n, length in zip(shape, padded, strict=True):
+            if n < 1 or length < 2 * n - 1 or length != fast_length(length):
+                raise ValueError(
+                    f"padded {padded}: expected the fast_length of twice the shape {shape} or more"
+                )
+        half = padded[0] // 2 + 1, padded[1] // 2 + 1
+        if np.shape(spectrum) != half:
+            raise ValueError(f"spectrum {np.shape(spectrum)}: expected {half}")
+        self._shape, self._dtype = tuple(shape), np.dtype(dtype)
         (radices_y, roots_y, frequency_y) = _plan(padded[0], dtype)
         (radices_x, roots_x, frequency_x) = _plan(padded[1], dtype)
         waves = padded[0] // 2 + 1
@@ -71,8 +86,19 @@ class Convolution:
         self._along_x = np.ascontiguousarray(lanes), mirrored, radices_x, roots_x
 
     def __call__(self, field):
-        """The convolution of a field, (ny, nx), of this precision."""
+        """The convolution of a field, (ny, nx), of this precision.
+
+        Raises
+        ------
+        ValueError
+            If it has another shape or type.
+        """
         field = np.ascontiguousarray(field)
+        # Compiled code writes to memory whatever it is given.
+        if field.shape != self._shape or field.dtype != self._dtype:
+            raise ValueError(
+                f"field {field.shape} of {field.dtype}: expected {self._shape} of {self._dtype}"
+            )
         result = np.empty_like(field)
         spectra = np.empty((self._waves, self._blocks * ROW * ROW), self._dtype)
         nx = self._shape[1]

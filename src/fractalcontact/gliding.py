@@ -6,10 +6,11 @@ what goes on beyond the window too, and nothing depends on where a grid of boxes
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
+from .arguments import real_array, refuse_masked, whole_numbers
 from .box_counts import whole_sizes
+from .kernel_cache import njit
 from .resampling import BLOCKS, NO_SLOPE, Slope, jackknife_error, slope_of_sums
 
 #: Smallest and largest box of the fits: cells, and share of the window's shorter side.
@@ -59,15 +60,11 @@ def gliding_moments(mass: np.ndarray, sizes: np.ndarray, orders) -> tuple[np.nda
     Raises
     ------
     ValueError
-        If the mass is not a (y, x) grid, negative or not finite.
+        If the mass is not a (y, x) grid, negative or not finite, or a size not whole or below 1.
     """
-    mass = np.asarray(mass, dtype=float)
-    if mass.ndim != 2:
-        raise ValueError(f"masses are a (y, x) grid, not of shape {mass.shape}")
-    if not np.isfinite(mass).all() or (mass < 0).any():
-        raise ValueError("masses must be finite and not negative")
-    sizes = np.asarray(sizes, dtype=np.int64)
-    orders = np.asarray(orders, dtype=float)
+    mass = _checked(mass)
+    sizes = whole_numbers(sizes, "sizes of boxes", least=1, most=max(1, *mass.shape))
+    orders = real_array(orders, "orders q").astype(float).ravel()
     moments = np.zeros((sizes.size, orders.size + 1, BLOCKS**2))
     places = np.zeros((sizes.size, BLOCKS**2), np.int64)
     total = mass.sum()
@@ -78,7 +75,18 @@ def gliding_moments(mass: np.ndarray, sizes: np.ndarray, orders) -> tuple[np.nda
     return moments, places
 
 
-@numba.njit(cache=True)
+def _checked(mass):
+    """Masses as (ny, nx) float64, none of them negative."""
+    refuse_masked(mass, "masses")
+    mass = real_array(mass, "masses", "biuf").astype(float, copy=False)
+    if mass.ndim != 2:
+        raise ValueError(f"masses are a (y, x) grid, not of shape {mass.shape}")
+    if not np.isfinite(mass).all() or (mass < 0).any():
+        raise ValueError("masses must be finite and not negative")
+    return np.ascontiguousarray(mass)
+
+
+@njit(cache=True)
 def _glide(share, size, step, orders, moments, places):
     """Add the moments of all boxes of one size; sums of columns move on with the box."""
     ny, nx = share.shape
@@ -131,7 +139,7 @@ def lacunarity(mass: np.ndarray, spacing: float) -> Curve:
         `r` in mm from one cell to half of the window; interval by the jackknife over parts of the
         window (on the logarithm); the slope over the boxes of `fit_sizes`. Empty window: NaN.
     """
-    mass = np.asarray(mass, float)
+    mass = _checked(mass)
     sizes = whole_sizes(min(mass.shape) / 2)
     moments, places = gliding_moments(mass, sizes, [1.0, 2.0])
     sums = np.concatenate([moments[:, :2], places[:, np.newaxis]], axis=1)
@@ -177,7 +185,7 @@ def generalised_dimensions(
         D_q, its interval, and the smallest and largest box (mm) of the fit; none of fewer
         than :data:`FEWEST` nodes.
     """
-    mass = np.asarray(mass, float)
+    mass = _checked(mass)
     sizes = fit_sizes(mass.shape)
     if sizes.size == 0 or np.count_nonzero(mass) < FEWEST:
         return dict.fromkeys(orders, NO_SLOPE)

@@ -4,13 +4,25 @@ Free space: the window stands alone on an infinite half-space, so the convolutio
 there are no periodic images.
 """
 
-from functools import cached_property
+from functools import partial
 
 import numpy as np
 from scipy import fft
 
+from .arguments import (
+    LEAST_INPUT,
+    MOST_INPUT,
+    MOST_RESULT,
+    field,
+    number,
+    pair,
+    quoted,
+    real_array,
+    refuse_masked,
+    whole_number,
+)
 from .fourier import Convolution, fast_length
-from .screening import ContactInverse
+from .threads import lazy
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
@@ -19,6 +31,8 @@ RIGID_PLATE_SELF_TERMS = {
     "equal-area disc": np.sqrt(np.pi) / 2,
     "inscribed disc": 1.0,
 }
+#: Compiled code counts cells in four bytes.
+MOST_CELLS = 2**31 - 1
 
 
 def love_displacement(x, y, dx, dy):
@@ -77,6 +91,8 @@ def rectangle_mean_displacement(a, b):
 class HalfSpace:
     """The elastic operator on a grid of rectangular cells.
 
+    It cannot be changed, and several threads may use one.
+
     Parameters
     ----------
     shape : (int, int)
@@ -96,25 +112,30 @@ class HalfSpace:
         If the shape, spacing, modulus or kernel makes no sense.
     """
 
+    _FIXED = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
+
     def __init__(self, shape, spacing, modulus, *, kernel="love"):
-        ny, nx = (int(n) for n in shape)
-        dy, dx = (float(d) for d in spacing)
-        if ny < 1 or nx < 1:
-            raise ValueError(f"shape {shape}: expected at least one cell each way")
-        if not (np.isfinite([dy, dx, modulus]).all() and min(dy, dx, modulus) > 0):
-            raise ValueError(f"spacing {spacing} and modulus {modulus} must be positive and finite")
-        if kernel != "love" and kernel not in RIGID_PLATE_SELF_TERMS:
-            names = ", ".join(["love", *RIGID_PLATE_SELF_TERMS])
-            raise ValueError(f"kernel {kernel!r}: expected one of {names}")
+        ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MOST_CELLS))
+        if ny * nx > MOST_CELLS:
+            raise ValueError(f"shape {(ny, nx)}: expected no more than {MOST_CELLS} cells")
+        dy, dx = pair(spacing, "spacing", partial(_size, name="spacing", unit="mm"))
+        modulus = _size(modulus, "modulus", "MPa (10 GPa are 10e3)")
+        names = ["love", *RIGID_PLATE_SELF_TERMS]
+        if not isinstance(kernel, str) or kernel not in names:
+            raise ValueError(f"kernel {quoted(kernel)}: expected one of {', '.join(names)}")
         if kernel != "love" and not np.isclose(dx, dy, rtol=1e-9, atol=0):
             raise ValueError("the rigid-plate kernels are known for square cells only")
-        self.shape = (ny, nx)
-        self.spacing = (dy, dx)
-        self.modulus = float(modulus)
-        self.kernel = kernel
-        #: Side of the square as large as a cell: the solver's unit of length in the plane.
-        self.cell = float(np.sqrt(dy * dx))
-        self._padded = (fast_length(2 * ny - 1), fast_length(2 * nx - 1))
+        # Side of the square as large as a cell: the solver's unit of length in the plane.
+        cell = float(np.sqrt(dy * dx))
+        padded = fast_length(2 * ny - 1), fast_length(2 * nx - 1)
+        vars(self).update(shape=(ny, nx), spacing=(dy, dx), modulus=modulus, kernel=kernel)
+        vars(self).update(cell=cell, _padded=padded)
+
+    def __setattr__(self, name, value):
+        # What is kept of the old grid would be used, out of bounds, on the new one.
+        if name in self._FIXED:
+            raise AttributeError(f"{name} of a HalfSpace cannot be changed; make another HalfSpace")
+        super().__setattr__(name, value)
 
     def __eq__(self, other):
         if not isinstance(other, HalfSpace):
@@ -129,17 +150,13 @@ class HalfSpace:
         return self.shape, self.spacing, self.modulus, self.kernel
 
     def __getstate__(self):
-        kept = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
-        return {name: self.__dict__[name] for name in kept}
-
-    @cached_property
-    def inverse(self):
-        """Approximate inverse of K on a contact set, kept because the next set is much the same."""
-        return ContactInverse(self)
+        return {name: vars(self)[name] for name in self._FIXED}
 
     def forget(self):
-        """Drop the approximate inverse, to save the memory or to start anew."""
-        vars(self).pop("inverse", None)
+        """Drop this thread's preconditioner; only until benchmarks/ ask `screening` for that."""
+        from .screening import forget_preconditioner
+
+        forget_preconditioner(self)
 
     @property
     def cell_area(self):
@@ -147,14 +164,34 @@ class HalfSpace:
         return self.spacing[0] * self.spacing[1]
 
     def displacement(self, pressure):
-        """Normal displacement of the surface, mm, under a pressure (ny, nx), MPa."""
-        return self.convolve(np.asarray(pressure, float)) * (self.cell / self.modulus)
+        """Normal displacement of the surface under a pressure.
+
+        Parameters
+        ----------
+        pressure : (ny, nx) array_like
+            MPa.
+
+        Returns
+        -------
+        (ny, nx) ndarray
+            mm.
+
+        Raises
+        ------
+        ValueError
+            If the pressure is on another grid, or is not finite and real.
+        """
+        pressure = field(pressure, "pressure", self.shape)
+        # Not so of a NaN either, which would be everywhere at once.
+        if not np.abs(pressure).max() <= MOST_RESULT:
+            raise ValueError(f"pressure: expected finite numbers, none over {MOST_RESULT:g} MPa")
+        return self.convolve(pressure) * (self.cell / self.modulus)
 
     def influence(self):
         """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only."""
         return self._influence
 
-    @cached_property
+    @lazy
     def _influence(self):
         dy, dx = (d / self.cell for d in self.spacing)
         y = np.arange(self.shape[0])[:, None] * dy
@@ -173,32 +210,70 @@ class HalfSpace:
         """The same half-space on cells ``factor`` times as long and as wide, covering the window.
 
         Distances counted in cells are the same, and so is the influence. Made once and kept.
+
+        Parameters
+        ----------
+        factor : int
+            From 1.
+
+        Returns
+        -------
+        HalfSpace
+
+        Raises
+        ------
+        ValueError
+            If the factor is no such number.
         """
+        factor = whole_number(factor, "factor", least=1, most=MOST_CELLS)
         if factor in self._coarser:
             return self._coarser[factor]
         shape = tuple(-(-n // factor) for n in self.shape)
         sides = tuple(factor * d for d in self.spacing)
         coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
-        coarse._influence = self.influence()[: shape[0], : shape[1]]
+        vars(coarse)["_influence"] = self.influence()[: shape[0], : shape[1]]
         return self._coarser.setdefault(factor, coarse)
 
-    @cached_property
+    @lazy
     def _coarser(self):
         return {}
 
     def convolve(self, values):
-        """Dimensionless operator K on fields (..., ny, nx), in the precision of ``values``."""
-        convolution = self._single if values.dtype == np.float32 else self._double
+        """The dimensionless operator K.
+
+        Parameters
+        ----------
+        values : (..., ny, nx) float32 or float64 ndarray
+            One field or several; NaN and infinities spread.
+
+        Returns
+        -------
+        ndarray
+            Of the same shape and precision.
+
+        Raises
+        ------
+        ValueError
+            If the fields are on another grid or of another type.
+        """
+        if type(values) is not np.ndarray:
+            refuse_masked(values, "values")
+            values = real_array(values, "values")
+        convolution = self._single if values.dtype.type is np.float32 else self._double
         if values.ndim == 2:
             return convolution(values)
-        fields = [convolution(field) for field in values.reshape(-1, *self.shape)]
-        return np.stack(fields).reshape(values.shape)
+        if values.shape[-2:] != self.shape:
+            raise ValueError(f"values {values.shape}: expected (..., ny, nx) of {self.shape}")
+        images = np.empty(values.shape, values.dtype)
+        for index in np.ndindex(values.shape[:-2]):
+            images[index] = convolution(values[index])
+        return images
 
-    @cached_property
+    @lazy
     def _double(self):
         return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
 
-    @cached_property
+    @lazy
     def _single(self):
         return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
 
@@ -211,3 +286,13 @@ class HalfSpace:
             circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)
             spectrum = fft.rfft(circulant, axis=axis).real
         return spectrum
+
+
+def _size(value, name, unit):
+    """A size that is neither zero nor such that the product or ratio of two would be."""
+    size = number(value, name, unit)
+    if not LEAST_INPUT <= size <= MOST_INPUT:
+        raise ValueError(
+            f"{name} {size:g}: expected between {LEAST_INPUT:g} and {MOST_INPUT:g} {unit}"
+        )
+    return size

@@ -25,7 +25,9 @@ Whoever drew a set knows which they are, and may say so.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
+
+from .arguments import real_array
+from .kernel_cache import njit
 
 #: Values of D that are tried first, and then about the best of them.
 _COARSE = np.linspace(0, 2, 101)
@@ -91,7 +93,13 @@ def best_law(
         None where no law with such terms fits.
     rivals : list of Law
         Those with other terms that fit almost as well.
+
+    Raises
+    ------
+    ValueError
+        If there is not one count for each size.
     """
+    sizes, count = _checked(sizes, count)
     stand_for = {None: (_WHOLE, _CENTRE), True: (_WHOLE,), False: (_CENTRE,)}[whole_cells]
     forms = [Law(np.nan, np.inf, c, outline) for c in stand_for for outline in range(3)]
     laws = [_fit(form, sizes, count, side) for form in forms]
@@ -139,9 +147,26 @@ def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -
     sizes, count : (k,) float ndarray
     side : float
         Extent L of the set, cells.
+
+    Raises
+    ------
+    ValueError
+        If there is not one count for each size.
     """
+    sizes, count = _checked(sizes, count)
     fitted = _fit(law, sizes, count, side)
     return np.nan if fitted is None else fitted.dimension
+
+
+def _checked(sizes, count):
+    """Sizes and counts as (k,) float64."""
+    sizes, count = (
+        np.ascontiguousarray(real_array(values, name), float)
+        for values, name in ((sizes, "sizes"), (count, "counts"))
+    )
+    if sizes.ndim != 1 or sizes.shape != count.shape:
+        raise ValueError(f"sizes {sizes.shape} and counts {count.shape}: expected one for each")
+    return sizes, count
 
 
 def _fit(law, sizes, count, side):

@@ -21,7 +21,7 @@ def prepare_specimen(lower, upper, options, settings, name):
     Returns
     -------
     Dataset
-        As :func:`fractalcontact.specimen.make_specimen` makes it, with its ``label``.
+        As :func:`fractalcontact.specimen.make_specimen` makes it.
 
     Raises
     ------
@@ -29,6 +29,4 @@ def prepare_specimen(lower, upper, options, settings, name):
         If a file cannot be read, or the window finds no place.
     """
     faces = read_faces(lower, upper, options)
-    specimen = make_specimen(*faces, name=name, **window_arguments(settings))
-    specimen.attrs["label"] = settings["label"]
-    return specimen
+    return make_specimen(*faces, name=name, **window_arguments(settings))

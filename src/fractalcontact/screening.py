@@ -14,11 +14,14 @@ pressure. Two parts use that:
   functions, on which the operator is taken from a coarse grid and the self-displacement of nodes.
 """
 
+import threading
+import weakref
+
 import numpy as np
-from numba import njit
 
 from . import threads
-from .balancing import SmoothCorrection, inverted, times
+from .balancing import SmoothCorrection, check_nodes, check_on_set, inverted, times
+from .kernel_cache import njit
 from .lanes import WIDTH, load, store
 
 #: Blocks along a row in which preceding nodes condition a node, so far to each side of its own, in
@@ -55,6 +58,7 @@ class ContactInverse:
     Notes
     -----
     ``update`` keeps what a new set leaves unchanged, bit for bit as a fresh start would have it.
+    It changes the object, so that no two threads may use one: `preconditioner` gives each its own.
     """
 
     def __init__(self, space):
@@ -64,10 +68,11 @@ class ContactInverse:
         self.small = max(space.shape) <= SMALL
         self._near = NARROW if self.small else WIDE
         self._smooth = None if self.small else SmoothCorrection(space)
-        self._rows = np.empty(0, np.int32)
-        self._slot = np.full(space.shape[0] * space.shape[1], -1, np.int32)
-        self._factor = _empty_factor(0)
-        self._first = _representatives(self._rows, *space.shape, self._shifts)[0]
+        rows = np.empty(0, np.int32)
+        slot = np.full(space.shape[0] * space.shape[1], -1, np.int32)
+        first = _representatives(rows, *space.shape, self._shifts)[0]
+        # All that belongs to one set, in one place: it changes as a whole, or not at all.
+        self._known = first, rows, slot, _empty_factor(0)
         self._exact = None
 
     def update(self, rows, *, fresh):
@@ -79,40 +84,106 @@ class ContactInverse:
             Its nodes as numbers of cells, ascending.
         fresh : bool
             Whether to make the coarse operator anew, which else may lag a little behind the set.
+
+        Raises
+        ------
+        ValueError
+            If they are no such numbers.
         """
+        check_nodes(rows, self._shape)
         nx = self._shape[1]
         self._exact = None
+        if fresh and self._smooth is not None:
+            # Also where so few nodes come first that none is needed yet.
+            self._smooth.forget()
         if rows.size <= DIRECT:
             self._exact = _exact_inverse(rows, nx, self._influence)
             return
-        slot = np.full(self._slot.size, -1, np.int32)
+        first, *old = self._known
+        slot = np.full(old[1].size, -1, np.int32)
         slot[rows] = np.arange(rows.size, dtype=np.int32)
         blocks = _representatives(rows, *self._shape, self._shifts)
-        if self._rows.size:
-            changed = np.flatnonzero(self._first != blocks[0])
-            touched = _touched(changed, self._first, blocks, self._shifts, self._near, nx)
+        if old[0].size:
+            changed = np.flatnonzero(first != blocks[0])
+            touched = _touched(changed, first, blocks, self._shifts, self._near, nx)
         else:
             touched = np.ones(blocks[0].size, bool)
-        self._first = blocks[0]
         factor = _empty_factor(rows.size)
-        old, known = (self._rows, self._slot, self._factor), (*blocks, touched)
+        old, known = tuple(old), (*blocks, touched)
         grid = self._shifts, self._near, nx, self._influence
         threads.in_parts(
             lambda start, stop: _factorise(start, stop, rows, slot, known, grid, old, factor),
             rows.size,
             smallest=CHUNK,
         )
-        self._rows, self._slot, self._factor = rows, slot, factor
+        self._known = blocks[0], rows, slot, factor
         if self._smooth is not None:
             self._smooth.update(rows, fresh)
 
     def __call__(self, residual):
-        """The approximate solution x of K x = residual, both (n,) float32 on the contact set."""
+        """The approximate solution x of K x = residual, both (n,) float32 on the contact set.
+
+        Raises
+        ------
+        ValueError
+            If the residual is not one on the set of the last update.
+        """
         if self._exact is not None:
+            check_on_set(residual, len(self._exact))
             return times(self._exact, residual)
+        _, rows, _, factor = self._known
+        check_on_set(residual, rows.size)
         if self._smooth is None:
-            return _apply(*self._factor, residual)
-        return self._smooth.balance(residual, lambda left: _apply(*self._factor, left))
+            return _apply(*factor, residual)
+        return self._smooth.balance(residual, lambda left: _apply(*factor, left))
+
+
+class _Kept(dict):
+    """By the id of a half-space: a weak reference to it, and its preconditioner."""
+
+
+class _OfThread(threading.local):
+    """What this thread keeps; it ends with the thread."""
+
+    def __init__(self):
+        self.kept = _Kept()
+
+
+_THREAD = _OfThread()
+
+
+def preconditioner(space):
+    """The approximate inverse of K that this thread keeps for a half-space.
+
+    It is kept as the next contact set is much the same, and as long as the half-space itself and
+    the thread. What it gives does not depend on the sets it was of before.
+
+    Parameters
+    ----------
+    space : HalfSpace
+        This very object, not one equal to it.
+
+    Returns
+    -------
+    ContactInverse
+    """
+    kept, key = _THREAD.kept, id(space)
+    of, found = kept.get(key, (None, None))
+    if of is None or of() is not space:
+        # The dictionary is not held by what it holds: neither would ever end.
+        mine, found = weakref.ref(kept), ContactInverse(space)
+        kept[key] = weakref.ref(space, lambda _: _drop(mine(), key)), found
+    return found
+
+
+def forget_preconditioner(space):
+    """Drop what this thread keeps for a half-space, to save the memory or to start anew."""
+    _drop(_THREAD.kept, id(space))
+
+
+def _drop(kept, key):
+    if kept is not None:
+        kept.pop(key, None)
 
 
 @njit(cache=True)

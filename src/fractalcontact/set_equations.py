@@ -1,7 +1,9 @@
 """Linear equations K x = b on a contact set, solved as far as the search for the set needs."""
 
 import numpy as np
-from numba import njit
+
+from .kernel_cache import njit
+from .screening import preconditioner
 
 # Applications in one solve: on an exact set about ten reach 1e-6.
 MAX_INNER = 60
@@ -14,7 +16,9 @@ TANGENT_RESIDUAL = 1e-4
 
 
 class Operator:
-    """K of one window with its approximate inverse, and how often K was applied.
+    """K of one window with its preconditioner, and how often K was applied.
+
+    Like that, it belongs to one thread.
 
     Parameters
     ----------
@@ -22,7 +26,7 @@ class Operator:
     """
 
     def __init__(self, space):
-        self.space, self.inverse = space, space.inverse
+        self.space, self.inverse = space, preconditioner(space)
         self.applications = 0
         self._grid = np.zeros(space.shape, np.float32)
 
@@ -32,7 +36,13 @@ class Operator:
         return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
 
     def on(self, *parts):
-        """The same in single precision under (nodes, values) pairs alone."""
+        """The same in single precision under (nodes, values) pairs alone.
+
+        Raises
+        ------
+        ValueError
+            If a pair does not go together, or lies outside the grid.
+        """
         grid = self._grid.ravel()
         for nodes, values in parts:
             _put(grid, nodes, values)
@@ -68,9 +78,16 @@ class SetEquations:
         0 at nodes that keep the x they have, whatever their equation says; else 1.
     at_zero, at_cap : (n,) bool ndarray
         Those that a clipped step took to a bound.
+
+    Raises
+    ------
+    ValueError
+        If the right side is not one on the set.
     """
 
     def __init__(self, operator, free, right_side):
+        if right_side.shape != free.shape:
+            raise ValueError(f"right side {right_side.shape}: expected {free.shape}")
         self.operator, self.free, self.inverse = operator, free, operator.inverse
         self.residual = right_side.astype(np.float32)
         self.solution = np.zeros(free.size, np.float32)
@@ -83,7 +100,14 @@ class SetEquations:
         """The approximate inverse's whole step, clipped so that start + x keeps within bounds.
 
         With a ``total``, start + x has that sum. What the step does is left to `carry_out`.
+
+        Raises
+        ------
+        ValueError
+            If the start is not one on the set.
         """
+        if start.shape != self.free.shape:
+            raise ValueError(f"start {start.shape}: expected {self.free.shape}")
         aim = start + self.inverse(self.residual)
         if total is not None and self.free.size:  # none is free where all that touches yields
             ones = self.inverse(np.ones(self.free.size, np.float32))
@@ -158,6 +182,8 @@ def stiffness(operator, free):
 @njit(cache=True)
 def add(values, scale, change):
     """values += scale * change, without arrays in between."""
+    if values.size != change.size:
+        raise ValueError("expected as many changes as values")
     for i in range(values.size):
         values[i] += scale * change[i]
 
@@ -165,7 +191,11 @@ def add(values, scale, change):
 @njit(cache=True)
 def _put(values, places, those):
     """values[places] = those."""
+    if places.size != those.size:
+        raise ValueError("expected as many values as nodes")
     for i in range(places.size):
+        if places[i] < 0 or places[i] >= values.size:
+            raise ValueError("expected nodes of the grid")
         values[places[i]] = those[i]
 
 

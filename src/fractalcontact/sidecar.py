@@ -31,6 +31,17 @@ def is_contact_map(scan_options):
     return scan_options.get("kind") == "contact-map"
 
 
+def sidecar_of_matrix(spacing):
+    """Scan keys of a matrix in mm.
+
+    Parameters
+    ----------
+    spacing : float
+        Distance of two cells, mm.
+    """
+    return {"unit": "mm", "spacing": f"{spacing:.12g} mm"}
+
+
 def read_yaml(path):
     """Mapping in a YAML file.
 
@@ -60,19 +71,33 @@ def read_yaml(path):
         )
     try:
         document = yaml.load(content, _Loader)
-    except yaml.MarkedYAMLError as error:
-        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
-        raise InputError(f"{path}: not readable as YAML: {line}{error.problem}") from error
-    except yaml.reader.ReaderError as error:
-        raise InputError(
-            f"{path}: not readable as YAML: {error.reason} at character {error.position}; save it "
-            "as plain text in UTF-8"
-        ) from error
+    except yaml.YAMLError as error:
+        raise unreadable(path, error) from error
     if document is None:
         return {}
     if not isinstance(document, dict):
         raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
     return document
+
+
+def unreadable(path, error):
+    """One sentence for what a file has that is not YAML.
+
+    Parameters
+    ----------
+    path : path-like
+    error : yaml.YAMLError
+
+    Returns
+    -------
+    InputError
+    """
+    if isinstance(error, yaml.MarkedYAMLError):
+        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
+        problem = f"{line}{error.problem}"
+    else:
+        problem = f"{error.reason} at character {error.position}; save it as plain text in UTF-8"
+    return InputError(f"{path}: not readable as YAML: {problem}")
 
 
 class _Loader(yaml.SafeLoader):

@@ -22,6 +22,7 @@ from .halfspace import HalfSpace
 from .labels import about
 from .methods import METHODS, peers
 from .reference_scenes import HertzScene
+from .screening import forget_preconditioner
 from .timing import peak_memory, repeated, timed
 
 OURS = "fractalcontact"
@@ -179,8 +180,8 @@ def _ladders(scene, recipe):
 
 
 def _cold(press, height, space, closure, rtol):
-    """A state from nothing: what the half-space keeps of the last contact set is dropped."""
-    space.forget()
+    """A state from nothing: what is kept of the last contact set is dropped."""
+    forget_preconditioner(space)
     options = {} if np.isnan(rtol) else {"rtol": rtol}
     return press(height, space, closure=closure, **options)
 

@@ -4,15 +4,13 @@ Nothing that differs between two runs of one study (times, host names, paths) is
 the same configuration, scans, versions and machine give the same bytes.
 """
 
-import contextlib
 import json
-import os
-import tempfile
 from importlib import metadata
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
+
+from .atomic import atomic_write
 
 #: Stages of the atlas, one group each, holding one group a specimen; strength only of joints
 #: that slide, roll_off and area_slope one of made surfaces where the study asks.
@@ -47,50 +45,21 @@ STAGES = {
 
 #: Libraries whose version can change a number.
 _NUMBER_MAKERS = ("fractalcontact", "numpy", "scipy", "numba", "xarray")
-
-
-@contextlib.contextmanager
-def written_whole(path):
-    """A temporary path beside ``path`` that takes its place when the block ends without error.
-
-    Parameters
-    ----------
-    path : path-like
-
-    Yields
-    ------
-    pathlib.Path
-        Same folder and same ending as ``path``.
-    """
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        yield temporary
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+#: Attribute of every part that says with which versions it was made.
+_VERSIONS = "made_with"
 
 
 def write(dataset, path):
-    """Write a dataset as netCDF-4, compressed, whole or not at all.
+    """Write a dataset as netCDF-4, compressed, whole or not at all, with the versions in use.
 
     Parameters
     ----------
     dataset : xr.Dataset
     path : path-like
     """
-    with written_whole(path) as temporary:
-        dataset.to_netcdf(temporary, engine="netcdf4", encoding=_encoding(dataset))
+    marked = dataset.assign_attrs({_VERSIONS: json.dumps(versions())})
+    with atomic_write(path) as temporary:
+        marked.to_netcdf(temporary, engine="netcdf4", encoding=_encoding(dataset))
 
 
 def read(path):
@@ -99,8 +68,19 @@ def read(path):
     How it was kept is forgotten: the length of its longest word would cut off those of others that
     are put behind it.
     """
+    return read_with_versions(path)[0]
+
+
+def read_with_versions(path):
+    """A dataset written by :func:`write`, and the versions it was made with by library."""
     with xr.open_dataset(path, engine="netcdf4") as dataset:
-        return dataset.load().drop_encoding()
+        dataset = dataset.load().drop_encoding()
+    return dataset, json.loads(dataset.attrs.pop(_VERSIONS, "{}"))
+
+
+def versions():
+    """Versions of the libraries in use that can change a number, by name."""
+    return {name: metadata.version(name) for name in _NUMBER_MAKERS}
 
 
 def _encoding(dataset):
@@ -111,7 +91,7 @@ def _encoding(dataset):
     }
 
 
-def write_atlas(parts, path, *, study, configuration):
+def write_atlas(parts, path, *, study, configuration, made_with=None):
     """Put everything a study made into one file.
 
     Parameters
@@ -123,29 +103,53 @@ def write_atlas(parts, path, *, study, configuration):
         Its name.
     configuration : mapping
         The study's configuration, kept word for word as JSON.
+    made_with : mapping of str to mapping of str to dict, optional
+        Stage to specimen to the versions each part was made with, from
+        :func:`read_with_versions`; those in use by default.
+
+    Returns
+    -------
+    dict of str to list of str
+        Parts by the versions they were made with, where those differ; else empty. The attribute
+        ``versions`` then holds those in use, ``versions_differ`` this.
 
     Raises
     ------
     ValueError
         If a variable has no unit or no long name: nothing unlabelled enters the atlas.
     """
+    differing = _by_versions(made_with or {})
     root = xr.Dataset(
         attrs={
             "title": f"fractalcontact study {study}",
             "study": study,
             "configuration": json.dumps(configuration, sort_keys=True),
-            "versions": json.dumps({name: metadata.version(name) for name in _NUMBER_MAKERS}),
+            "versions": json.dumps(versions()),
             "scan_checksums": json.dumps(_checksums(parts.get("specimens", {})), sort_keys=True),
         }
     )
+    if differing:
+        root.attrs["versions_differ"] = json.dumps(differing, sort_keys=True)
     groups = {"/": root}
     for stage, specimens in parts.items():
         groups[f"/{stage}"] = xr.Dataset(attrs={"description": STAGES[stage]})
         for name, dataset in specimens.items():
             _demand_labels(dataset, f"{stage}/{name}")
             groups[f"/{stage}/{name}"] = dataset
-    with written_whole(path) as temporary:
+    with atomic_write(path) as temporary:
         _write_groups(groups, temporary)
+    return differing
+
+
+def _by_versions(made_with):
+    """Names of parts by the versions they were made with; none if all are those in use."""
+    found = {}
+    for stage, specimens in made_with.items():
+        for name, known in specimens.items():
+            words = ", ".join(f"{library} {version}" for library, version in sorted(known.items()))
+            found.setdefault(words or "unknown versions", []).append(f"{stage}/{name}")
+    current = ", ".join(f"{library} {version}" for library, version in sorted(versions().items()))
+    return {} if set(found) <= {current} else found
 
 
 class _LastOfAll:

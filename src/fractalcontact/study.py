@@ -2,20 +2,27 @@
 
 import difflib
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
 import jsonschema
 import yaml
 
+from .catalogue import specimen_name
 from .errors import InputError
-from .sidecar import read_yaml
+from .sidecar import read_yaml, unreadable
 from .tolerance import tolerance
 from .units import load, quantity, share
 
 #: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
 _SCAN_DEFINITION, _SETTINGS_DEFINITION = "scan", "settings"
 
+#: Nodes per side of an embedded specimen: a surface of that many takes some 35 GB to make.
+FEWEST_NODES, MOST_NODES = 2, 16384
+
+_TEMPLATE = "__use_yte__"
+_MOST_VALUES = 100_000
 _LONGEST_QUOTE = 80  # characters of what the user wrote, in a message
 #: What a study that does not mention it gets; everything else must be stated.
 SOLVER = {"kernel": "love"}
@@ -38,15 +45,68 @@ def read_study(path):
     Raises
     ------
     InputError
-        If it cannot be read, or is no mapping.
+        If it cannot be read, is no mapping, or is more than plain data: Snakemake would run Python
+        that stands in a study which asks for it, and studies come from colleagues and supplements.
     """
     try:
         document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise InputError(f"{path}: not readable as YAML: {error}") from error
+    except yaml.YAMLError as error:
+        raise unreadable(path, error) from error
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not text in UTF-8 ({error.reason}); save it as that") from error
+    except ValueError as error:  # a day that no month has, an integer of thousands of digits
+        raise InputError(f"{path}: a date or number that is none ({error})") from error
     if not isinstance(document, dict):
         raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
+    if _TEMPLATE in document:
+        raise InputError(
+            f"{path}: the key '{_TEMPLATE}' makes Snakemake run what the file says as Python; a "
+            "study is plain data, so remove it and write the values themselves"
+        )
+    if _expanded(document) > _MOST_VALUES:
+        raise InputError(
+            f"{path}: more than {_MOST_VALUES} values once its aliases (*) are written out; a "
+            "study is no longer than a few pages"
+        )
     return document
+
+
+def study_name(document, source):
+    """Name of a study, which its results stand under.
+
+    Parameters
+    ----------
+    document : mapping
+        From :func:`read_study`.
+    source : str
+        For errors.
+
+    Raises
+    ------
+    InputError
+        If there is none, or one that could lead anywhere else.
+    """
+    name = document.get("study")
+    if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}", name):
+        raise InputError(
+            f"{source}: key 'study': found {_shortened(repr(name))}, expected the study's name: up "
+            "to 100 letters, digits, _ and -"
+        )
+    return name
+
+
+def _expanded(value, known=None):
+    """How many values a document has once every alias is written out."""
+    known = {} if known is None else known
+    if not isinstance(value, (dict, list)):
+        return 1
+    if id(value) not in known:
+        known[id(value)] = 1  # an alias of itself adds nothing more
+        parts = value.values() if isinstance(value, dict) else value
+        known[id(value)] = 1 + sum(_expanded(part, known) for part in parts)
+    return known[id(value)]
 
 
 def check_study(config, schema, source):
@@ -67,6 +127,7 @@ def check_study(config, schema, source):
         For the first thing found wrong: the file, the key, what was expected.
     """
     _validate(config, schema, source)
+    check_names({}, config, None, source)
     for name in config.get("specimens", {}):
         resolve_settings(config, name, {}, source)
     if "defaults" in config:
@@ -74,6 +135,42 @@ def check_study(config, schema, source):
     for name, recipe in config.get("embedded", {}).items():
         resolve_embedded(recipe, f"{source}: embedded.{name}")
     resolve_roll_off(config, source)
+
+
+def check_names(scans, config, folder, source):
+    """Refuse embedded specimens whose results would be taken for others.
+
+    Parameters
+    ----------
+    scans : collection of str
+        Names of the specimens that are scanned.
+    config : mapping
+        A study that passed the schema.
+    folder : path-like
+        Where the scans are, for errors.
+    source : str
+        The file the study came from, for errors.
+
+    Raises
+    ------
+    InputError
+        If one has the name of a scan or of another, upper and lower case being alike: on many
+        discs they would be one file. Or a name that no scan could have either.
+    """
+    known = {name.lower(): (name, f"a scan in {folder}") for name in scans}
+    for name in config.get("embedded", {}):
+        where = f"{source}: embedded.{_shortened(name)}"
+        safe = specimen_name(name)
+        if safe != name:
+            raise InputError(f"{where}: no name for files on every computer; write {safe!r}")
+        other, what = known.setdefault(name.lower(), (name, None))
+        if other == name and what is not None:
+            raise InputError(f"{where}: has the name of {what}; rename one")
+        if other != name:
+            raise InputError(
+                f"{where}: differs from {what or 'the embedded specimen'} {other} in upper and "
+                "lower case alone; rename one"
+            )
 
 
 def read_sidecar(path, schema):
@@ -215,7 +312,7 @@ def resolve_embedded(recipe, where):
     Raises
     ------
     InputError
-        If a length has no unit of length or is not positive.
+        If a length has no unit of length or is not positive, or the nodes are too few or too many.
     """
     numbers = dict(recipe)
     for key in ("size", "spacing", "rms", "roll_off"):
@@ -223,6 +320,13 @@ def resolve_embedded(recipe, where):
             numbers[key] = quantity(recipe[key], "length", f"{where}.{key}")
             if numbers[key] <= 0:
                 raise InputError(f"{where}.{key}: {recipe[key]!r} must be positive")
+    nodes = numbers["size"] / numbers["spacing"]
+    if not FEWEST_NODES <= round(nodes) <= MOST_NODES:
+        raise InputError(
+            f"{where}.size: {recipe['size']!r} at a spacing of {recipe['spacing']!r} are "
+            f"{nodes:.4g} nodes per side; expected from {FEWEST_NODES} to {MOST_NODES}, so change "
+            "size or spacing"
+        )
     numbers.setdefault("outline", "square")
     numbers.setdefault("roll_off", None)
     return numbers
@@ -340,8 +444,19 @@ def _lengths(values, where):
     return [quantity(text, "length", where) for text in values]
 
 
+def _is_integer(_checker, value):
+    """Whether a value is an integer; for JSON 512.0 is one, for numpy it is no number of nodes."""
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+_Validator = jsonschema.validators.extend(
+    jsonschema.Draft202012Validator,
+    type_checker=jsonschema.Draft202012Validator.TYPE_CHECKER.redefine("integer", _is_integer),
+)
+
+
 def _validate(document, schema, source):
-    errors = list(jsonschema.Draft202012Validator(schema).iter_errors(document))
+    errors = list(_Validator(schema).iter_errors(document))
     if not errors:
         return
     first = min(errors, key=lambda error: [str(part) for part in error.absolute_path])

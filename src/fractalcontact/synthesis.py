@@ -5,15 +5,15 @@ twins of specimens that are described but whose scans are not public. They are w
 scan files and enter the program through the same door as a measured surface.
 """
 
-import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
 import scipy.fft
 import yaml
 
+from .atomic import atomic_write
 from .fitting import without_mean_plane
+from .sidecar import sidecar_of_matrix
 
 #: Sides of the grid a surface is made on, in sides of the patch cut from it. The Fourier series is
 #: periodic on that grid; with two, opposite edges of the patch are as far apart as they look.
@@ -160,30 +160,14 @@ def write_scan(path: Path, heights: np.ndarray, spacing: float, *, sidecar: dict
     path = Path(path)
     if path.suffix != ".npy":
         raise ValueError(f"{path}: a scan is written as .npy")
-    described = {"unit": "mm", "spacing": f"{spacing:.12g} mm"}
+    described = sidecar_of_matrix(spacing)
     for key in described.keys() & sidecar.keys():
         raise ValueError(f"{path}: the key '{key}' of the sidecar is set by the scan itself")
-    path.parent.mkdir(parents=True, exist_ok=True)
     text = yaml.safe_dump(described | sidecar, sort_keys=False, allow_unicode=True)
-    _write_whole(path.with_suffix(".yaml"), lambda file: file.write(text.encode()))
-    _write_whole(path, lambda file: np.save(file, heights, allow_pickle=False))
-
-
-def _write_whole(path: Path, write) -> None:
-    """Let `write` fill a file beside `path`, then put it in place in one step."""
-    with tempfile.NamedTemporaryFile(
-        dir=path.parent, prefix=f".{path.name}.", delete=False
-    ) as file:
-        temporary = Path(file.name)
-        try:
-            write(file)
-            file.flush()
-            os.fsync(file.fileno())
-            os.chmod(temporary, 0o644)  # a temporary file is private; a scan is not
-            os.replace(temporary, path)
-        except BaseException:
-            temporary.unlink()
-            raise
+    with atomic_write(path.with_suffix(".yaml")) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    with atomic_write(path) as temporary:
+        np.save(temporary, heights, allow_pickle=False)
 
 
 def embedded_surface(recipe) -> np.ndarray:

@@ -1,8 +1,13 @@
-"""How many threads the solver uses: set here, and nowhere else."""
+"""Threads: how many the solver uses, set here and nowhere else, and what several may share.
+
+What is kept for later is kept without a lock, so that neither a thread nor a fork of the process
+ever waits for one: two threads may make the same thing at once, and all go on with the first.
+"""
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from functools import lru_cache
+
+from numba.core.compiler_lock import global_compiler_lock
 
 
 def count():
@@ -13,9 +18,20 @@ def count():
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-@lru_cache
+# By the number of their threads.
+_POOLS = {}
+# A fork has the pools of its parent, but none of their threads: it would wait for ever.
+os.register_at_fork(after_in_child=_POOLS.clear)
+# Kernels are compiled, and read from disk, under one lock: a fork waits until no thread has it.
+os.register_at_fork(
+    before=global_compiler_lock.acquire,
+    after_in_parent=global_compiler_lock.release,
+    after_in_child=global_compiler_lock.release,
+)
+
+
 def _pool(workers):
-    return ThreadPoolExecutor(workers)
+    return _POOLS.get(workers) or _POOLS.setdefault(workers, ThreadPoolExecutor(workers))
 
 
 def in_parts(function, n, *, smallest):
@@ -37,3 +53,27 @@ def in_parts(function, n, *, smallest):
         return
     edges = [n * k // parts for k in range(parts + 1)]
     list(_pool(parts).map(function, edges[:-1], edges[1:]))
+
+
+class lazy:
+    """A property made when first asked for, and kept in the object.
+
+    `functools.cached_property` holds a lock meanwhile, one for all objects (up to Python 3.11): a
+    process forked at that moment would wait for it for ever.
+
+    Parameters
+    ----------
+    make : callable
+        Takes the object; the same for equal objects, as several threads may call it at once.
+    """
+
+    def __init__(self, make):
+        self._make, self.__doc__ = make, make.__doc__
+
+    def __set_name__(self, owner, name):
+        self._name = name
+
+    def __get__(self, instance, owner=None):
+        if instance is None:
+            return self
+        return vars(instance).setdefault(self._name, self._make(instance))

@@ -6,6 +6,7 @@ from functools import cache
 
 import pint
 
+from .arguments import LEAST_INPUT, MOST_INPUT
 from .errors import InputError
 
 #: The program's unit for each kind of quantity.
@@ -20,6 +21,10 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _UNITS = rf"{_WORD}(?:(?:\s*[*/·]\s*|\s+){_WORD})*"
 _QUANTITY = re.compile(rf"\s*{_NUMBER}\s*(?:°|{_UNITS})?\s*")
 _LONGEST = 60  # characters
+
+
+class _OutOfRange(InputError):
+    """A quantity of the right kind whose value cannot be computed with."""
 
 
 @cache
@@ -47,7 +52,7 @@ def quantity(text, kind: str, where: str) -> float:
     Raises
     ------
     InputError
-        If the unit is missing, unknown, or of another kind.
+        If the unit is missing, unknown, or of another kind, or the value too small or too large.
     """
     unit = PROGRAM_UNITS[kind]
     wanted = f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
@@ -65,7 +70,12 @@ def quantity(text, kind: str, where: str) -> float:
         raise InputError(f"{where}: {text!r} is not {_article(kind)} {kind}; {wanted}")
     magnitude = float(value.to(unit).magnitude)
     if not math.isfinite(magnitude):
-        raise InputError(f"{where}: {text!r} is not finite; {wanted}")
+        raise _OutOfRange(f"{where}: {text!r} is not finite; {wanted}")
+    if magnitude and not LEAST_INPUT <= abs(magnitude) <= MOST_INPUT:
+        raise _OutOfRange(
+            f"{where}: {text!r} is beyond what can be computed with, {LEAST_INPUT:g} to "
+            f"{MOST_INPUT:g} {unit}; {wanted}"
+        )
     return magnitude
 
 
@@ -90,6 +100,8 @@ def load(text, where: str) -> tuple[float, str]:
     for kind in ("force", "pressure"):
         try:
             return quantity(text, kind, where), kind
+        except _OutOfRange:
+            raise
         except InputError:
             continue
     raise InputError(

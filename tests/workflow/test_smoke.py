@@ -7,55 +7,19 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from projects import ROOT, command, project, run, small_study, write_scan
 
 from fractalcontact.catalogue import find_scans
 from fractalcontact.figure_names import EXPERIMENTS, accuracy_figures_of, figures_of
 from fractalcontact.store import read_atlas
 
-ROOT = Path(__file__).parents[2]
+__all__ = ["project"]  # a fixture
 SCANS = ROOT.parent / "shared" / "scans"
 pytestmark = pytest.mark.workflow
-
-
-@pytest.fixture
-def project(tmp_path):
-    """A working copy without results; the package is the installed one."""
-    for name in ("Snakefile", "environment.yml", "config", "workflow", "src"):
-        source = ROOT / name
-        if source.is_dir():
-            shutil.copytree(source, tmp_path / name, ignore=shutil.ignore_patterns("*.pyc"))
-        else:
-            shutil.copy(source, tmp_path / name)
-    (tmp_path / "scans").mkdir()
-    return tmp_path
-
-
-def command(study, *options):
-    profile = ("--workflow-profile", "workflow/profiles/default")
-    base = (sys.executable, "-m", "snakemake", "--cores", "2", "--configfile", study)
-    return [*base, *profile, *options]
-
-
-def run(project, study="config/smoke.yaml", *options):
-    return subprocess.run(
-        command(study, *options), cwd=project, capture_output=True, text=True, timeout=900
-    )
-
-
-def small_study(project, **changes):
-    study = yaml.safe_load((project / "config/smoke.yaml").read_text())
-    study |= {"study": "test", "scans": "scans", "embedded": {}, "specimens": {}}
-    for experiment in EXPERIMENTS:
-        study.pop(experiment, None)
-    study["defaults"] |= {"window": "auto", "offsets": "auto", "loads": ["1 MPa", "10 MPa"]}
-    study |= changes
-    (project / "config/test.yaml").write_text(yaml.safe_dump(study))
-    return "config/test.yaml"
 
 
 def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(project):
@@ -92,10 +56,8 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
 
 def test_one_bad_scan_is_one_clear_error_and_the_good_one_finishes(project):
     study = small_study(project)
-    rough = np.random.default_rng(0).normal(size=(40, 40)).cumsum(0).cumsum(1) * 1e-3
-    for name, heights in {"good": rough, "constant": np.ones((40, 40))}.items():
-        np.save(project / f"scans/{name}.npy", heights)
-        (project / f"scans/{name}.yaml").write_text("unit: mm\nspacing: 0.1\n")
+    rough = write_scan(project, "good")
+    write_scan(project, "constant", np.ones((40, 40)))
     np.save(project / "scans/unitless.npy", rough)
     (project / "scans/empty.xyz").write_text("")
     (project / "scans/empty.yaml").write_text("unit: mm\n")
@@ -183,10 +145,8 @@ HOSTILE = [
 
 def test_files_of_any_permitted_name_are_scheduled_and_run(project):
     study = small_study(project)
-    rough = np.random.default_rng(0).normal(size=(40, 40)).cumsum(0).cumsum(1) * 1e-3
     for name in HOSTILE:
-        np.save(project / f"scans/{name}.npy", rough)
-        (project / f"scans/{name}.yaml").write_text("unit: mm\nspacing: 0.1\n")
+        write_scan(project, name)
     scans = find_scans(project / "scans")
     assert len(scans) == len(HOSTILE)
     planned = run(project, study, "--dry-run")

@@ -48,7 +48,7 @@ rule speed:
     params:
         recipe=config.get("speed"),
         peers=PEERS,
-        code=code("speed", "store", *METHOD_MODULES),
+        code=code("speed", *METHOD_MODULES),
     script:
         "../scripts/speed.py"
 
@@ -69,7 +69,7 @@ rule speed_growth:
         runtime=10,
     params:
         error=config.get("speed", {}).get("error"),
-        code=code("speed_growth", "store"),
+        code=code("speed_growth"),
     script:
         "../scripts/speed_growth.py"
 
@@ -90,7 +90,7 @@ rule convergence:
         runtime=30,
     params:
         recipe=config.get("convergence"),
-        code=code("accuracy", "store"),
+        code=code("convergence"),
     script:
         "../scripts/convergence.py"
 
@@ -111,7 +111,7 @@ rule stability_part:
         kinds=lambda wc: list(KINDS)[int(wc.part) : int(wc.part) + KINDS_A_JOB],
         draws=config.get("stability", {}).get("draws"),
         peers=PEERS,
-        code=code("stability", "store", *METHOD_MODULES),
+        code=code("stability_part", *METHOD_MODULES),
     script:
         "../scripts/stability_part.py"
 
@@ -131,7 +131,7 @@ rule stability:
         mem_mb=1000,
         runtime=10,
     params:
-        code=code("stability", "store"),
+        code=code("stability"),
     script:
         "../scripts/stability.py"
 
@@ -150,7 +150,7 @@ rule elimination:
         runtime=30,
     params:
         draws=config.get("stability", {}).get("elimination"),
-        code=code("elimination", "store", *METHOD_MODULES),
+        code=code("elimination", *METHOD_MODULES),
     script:
         "../scripts/elimination.py"
 
@@ -181,7 +181,7 @@ rule accuracy_atlas:
         runtime=10,
     params:
         configuration={"study": config, "settings": {}},
-        code=code("store"),
+        code=code("atlas"),
     script:
         "../scripts/atlas.py"
 
@@ -212,7 +212,7 @@ use rule study_figures as accuracy_figures with:
     params:
         specimens=[],
         names=ACCURACY_FIGURES,
-        code=code("figures", *(f"figures/{name}" for name in ACCURACY_FIGURES)),
+        code=code("study_figures", *(f"figures/{name}" for name in ACCURACY_FIGURES)),
 
 
 def accuracy_pictures(wildcards):

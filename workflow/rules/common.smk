@@ -1,19 +1,31 @@
-# What every rule file uses: the checked study, its specimens, and digests of the code.
-import ast
-import hashlib
+# What every rule file uses: the checked study, its specimens, and digests of scans and code.
+import os
 import re
-from functools import cache
+import sys
 from pathlib import Path
 
 import yaml
 from snakemake.exceptions import WorkflowError
+from snakemake.logging import logger
+
+# The code of this checkout, wherever its environment was installed from: it may have been moved.
+PACKAGE = Path(workflow.basedir) / "src/fractalcontact"
+SCRIPTS = Path(workflow.basedir) / "workflow/scripts"
+sys.path.insert(0, str(PACKAGE.parent))
+sys.path.append(str(SCRIPTS))
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")])
+)
+
+import _running
 
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
+from fractalcontact import checksums, sources
 from fractalcontact.catalogue import find_scans
 from fractalcontact.directions import AUTOMATIC_OFFSETS
 from fractalcontact.errors import InputError
 from fractalcontact.figure_names import EXPERIMENTS, figures_of, study_figures_of
-from fractalcontact.sidecar import is_contact_map
+from fractalcontact.sidecar import is_contact_map, sidecar_of_matrix
 from fractalcontact.study import (
     check_study,
     read_sidecar,
@@ -23,13 +35,18 @@ from fractalcontact.study import (
     solver_settings,
 )
 
-SCHEMA_FILE = workflow.source_path("../../config/schema/study.schema.yaml")
-SCHEMA = yaml.safe_load(Path(SCHEMA_FILE).read_text())
+SCHEMA = yaml.safe_load((Path(workflow.basedir) / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
+# Of whoever runs it, not of the study: `--config drop_specimens=true`.
+MAY_DROP = str(config.pop("drop_specimens", False)).lower() == "true"
+if workflow.is_main_process and "FRACTALCONTACT_ALONE" not in os.environ:
+    # Held as long as this process lives; jobs hold their own. workflow/run.py alone lets nobody
+    # else work while it looks at what killed runs left.
+    AT_WORK = _running.mark()
 
 
 def read_study():
-    """Scan files, settings of every specimen, embedded ones too, contact maps, and the solver's."""
+    """Scan files; settings and reading options by specimen; contact maps; the solver's settings."""
     check_study(config, SCHEMA, SOURCE)
     folder = config.get("scans", "scans")
     scans = find_scans(folder) if folder else {}
@@ -45,25 +62,85 @@ def read_study():
         raise InputError(
             f"{SOURCE}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
         )
-    settings, maps = {}, {}
+    settings, options, maps = {}, {}, {}
     for name, scan in scans.items():
-        options, own = read_sidecar(scan.sidecar, SCHEMA)
-        if is_contact_map(options):
-            maps[name] = scan
+        options[name], own = read_sidecar(scan.sidecar, SCHEMA)
+        if is_contact_map(options[name]):
+            maps[name] = own.get("label", name)
         else:
             settings[name] = resolve_settings(config, name, own, SOURCE)
     for name in config.get("embedded", {}):
         settings[name] = resolve_settings(config, name, {}, SOURCE)
-    return scans, settings, maps, solver_settings(config, SOURCE)
+    if folder and not scans and workflow.is_main_process:
+        logger.warning(f"{folder}: no scan files there; only what the study itself makes is used")
+    return scans, settings, options, maps, solver_settings(config, SOURCE)
 
 
+def refuse_loss(results, names):
+    """Keep an atlas from losing specimens unless that is what the user wants.
+
+    A folder that is not mounted, or half copied, looks like one from which scans were removed.
+    """
+    listed = Path(results) / "specimens.txt"
+    had = listed.read_text(encoding="utf-8").split() if listed.is_file() else []
+    lost = sorted(set(had) - set(names))
+    if lost and not MAY_DROP:
+        raise InputError(
+            f"{results}/atlas.nc has specimens that the study no longer has: {', '.join(lost)}; "
+            "put their scans back or, if they are to go, run 'make DROP=yes' (with snakemake: "
+            "--config drop_specimens=true). Nothing was changed"
+        )
+
+
+def refuse_damage(results):
+    """Stop before a damaged file is read, or what is good is removed to be made from it again."""
+    if "FRACTALCONTACT_CHECKED" not in os.environ:  # workflow/run.py has looked, and removed them
+        damaged = checksums.check(results, DIGESTS.of).damaged
+        if damaged:
+            raise InputError(
+                f"{damaged[0]}: damaged or replaced after it was made"
+                + (f", and {len(damaged) - 1} more files" if len(damaged) > 1 else "")
+                + "; run 'make', which removes and makes it again, or remove it yourself"
+            )
+
+
+DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
 try:
-    SCANS, SETTINGS, MAPS, SOLVER = read_study()
+    SCANS, SETTINGS, OPTIONS, LABELS, SOLVER = read_study()
+    RESULTS = f"results/{config['study']}"
+    if workflow.is_main_process:
+        refuse_loss(RESULTS, [*SETTINGS, *LABELS])
+        refuse_damage(RESULTS)
 except InputError as error:
     raise WorkflowError(str(error))
 
-RESULTS = f"results/{config['study']}"
+#: Measured contact maps, which have no settings.
+MAPS = {name: SCANS[name] for name in LABELS}
 SPECIMENS = sorted(SETTINGS)
+
+
+def digest_of(path):
+    """SHA-256 of a scan file; none of one that cannot be read, which its job explains."""
+    try:
+        return DIGESTS.of(path)
+    except OSError:
+        return ""
+
+
+def digests_of(scan):
+    """SHA-256 of the scan files of a specimen, by path: parameters of the rules that read them.
+
+    Times tell nothing of a file that was moved, copied or unpacked over another.
+    """
+    return {str(path): DIGEST_OF_SCAN[path] for path in (scan.lower, scan.upper) if path}
+
+
+# Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
+DIGEST_OF_SCAN = {
+    path: digest_of(path) for scan in SCANS.values() for path in (scan.lower, scan.upper) if path
+}
+if workflow.is_main_process:
+    DIGESTS.save()
 
 
 def one_of(names):
@@ -81,7 +158,9 @@ wildcard_constraints:
 
 
 def settings_of(wildcards):
-    return SETTINGS[wildcards.specimen]
+    """Settings of a specimen for what is computed: its label changes no number."""
+    settings = SETTINGS[wildcards.specimen]
+    return {key: value for key, value in settings.items() if key != "label"}
 
 
 def is_pair(specimen):
@@ -105,38 +184,24 @@ def grain(key, n):
     return [[start, min(start + size, n)] for start in range(0, n, size)]
 
 
-def code(*modules):
-    """Digest of modules of the package and of all they import from it: a change reruns the rule."""
-    package = Path(workflow.basedir) / "src/fractalcontact"
-    digest = hashlib.sha256()
-    for path in sorted(sources(package, [package / f"{module}.py" for module in modules])):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+def code(script, *modules):
+    """Digest of all that a script runs: a change of it reruns the rule.
+
+    Parameters
+    ----------
+    script : str
+        Of workflow/scripts; with it count all files it imports, of the package and beside it, and
+        the versions of the libraries that any of them imports.
+    *modules : str
+        Of the package, which are imported by names that only exist when it runs.
+    """
+    if (script, *modules) not in CODE:
+        paths = [SCRIPTS / f"{script}.py", *(PACKAGE / f"{module}.py" for module in modules)]
+        files = sources.source_files(paths, package=PACKAGE)
+        versions = sources.versions_of(sources.libraries(files))
+        CODE[script, *modules] = sources.digest(files, root=workflow.basedir, versions=versions)
+    return CODE[script, *modules]
 
 
-def sources(package, paths):
-    """These files of the package, and every file of it they import, near or far."""
-    seen = set()
-    queue = [path if path.exists() else path.with_suffix("") / "__init__.py" for path in paths]
-    while queue:
-        path = queue.pop()
-        if path not in seen:
-            seen.add(path)
-            queue += imported(package, path)
-    return seen
-
-
-# Three dozen rules ask for the same files, in every process that reads the workflow.
-@cache
-def imported(package, path):
-    """Files of the package that one of them imports."""
-    found = []
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            folder = path.parents[node.level - 1]
-            base = folder.joinpath(*(node.module or "").split("."))
-            names = [base] if node.module else []
-            names += [base / alias.name for alias in node.names]
-            files = [f for n in names for f in (n.with_suffix(".py"), n / "__init__.py")]
-            found += [file for file in files if file.is_file() and package in file.parents]
-    return found
+# Two rules may run one script, in every process that reads the workflow.
+CODE = {}

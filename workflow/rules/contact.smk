@@ -42,14 +42,19 @@ rule contact:
         ],
         offsets=lambda wc: part_of(wc, "offsets"),
         resolutions=lambda wc: settings_of(wc)["resolutions"][slice(*part_of(wc, "resolutions"))],
-        code=code("sweep", "store"),
+        code=code("contact"),
     script:
         "../scripts/contact.py"
 
 
+def contact_parts_of(specimen):
+    """Files of the contact jobs of a specimen."""
+    counts = {key: range(len(slices)) for key, slices in parts_of(specimen).items()}
+    return expand(rules.contact.output, specimen=specimen, **counts)
+
+
 def contact_parts(wildcards):
-    counts = {key: range(len(slices)) for key, slices in parts_of(wildcards.specimen).items()}
-    return expand(rules.contact.output, specimen=wildcards.specimen, **counts)
+    return contact_parts_of(wildcards.specimen)
 
 
 #: What every specimen has of its states, and what only joints that slide have.
@@ -93,17 +98,7 @@ rule analysis:
     params:
         settings=settings_of,
         solver=SOLVER,
-        code=code(
-            "analysis",
-            "area",
-            "closure",
-            "domain_measures",
-            "needs",
-            "roughness",
-            "states",
-            "store",
-            "strength",
-        ),
+        code=code("analysis"),
     script:
         "../scripts/analysis.py"
 
@@ -123,9 +118,7 @@ use rule analysis as analysis_against_plane with:
 # A measured map of contact goes straight to the analysis of domains.
 rule contact_map:
     input:
-        scan=lambda wc: str(MAPS[wc.map].lower),
-        sidecar=lambda wc: str(MAPS[wc.map].sidecar),
-        schema=SCHEMA_FILE,
+        scan=lambda wc: ancient(str(MAPS[wc.map].lower)),
     output:
         f"{RESULTS}/contact_maps/{{map}}.nc",
     log:
@@ -138,6 +131,9 @@ rule contact_map:
         mem_mb=2000,
         runtime=10,
     params:
-        code=code("contact_map", "study", "store"),
+        options=lambda wc: OPTIONS[wc.map],
+        label=lambda wc: LABELS[wc.map],
+        digests=lambda wc: digests_of(MAPS[wc.map]),
+        code=code("contact_map"),
     script:
         "../scripts/contact_map.py"

@@ -25,7 +25,7 @@ def beside(opposite):
 
 
 def configuration_of(wildcards):
-    return {"study": config, "settings": {wildcards.specimen: settings_of(wildcards)}}
+    return {"study": config, "settings": {wildcards.specimen: SETTINGS[wildcards.specimen]}}
 
 
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
@@ -55,7 +55,7 @@ rule figures:
     params:
         names=figures_of("match"),
         configuration=configuration_of,
-        code=code("figures", "statements", "store", *figure_modules("match")),
+        code=code("figures", *figure_modules("match")),
     script:
         "../scripts/figures.py"
 
@@ -75,7 +75,7 @@ use rule figures as figures_against_plane with:
     params:
         names=figures_of("flat"),
         configuration=configuration_of,
-        code=code("figures", "statements", "store", *figure_modules("flat")),
+        code=code("figures", *figure_modules("flat")),
 
 
 # What only the whole study shows.
@@ -109,21 +109,36 @@ rule study_figures:
     params:
         specimens=SPECIMENS,
         names=STUDY_FIGURES,
-        code=code("figures", *(f"figures/{name}" for name in STUDY_FIGURES)),
+        code=code("study_figures", *(f"figures/{name}" for name in STUDY_FIGURES)),
     script:
         "../scripts/study_figures.py"
 
 
-def collect_figures(wildcards):
-    study = rules.study_figures.output if STUDY_FIGURES else []
-    return (
-        list(study)
-        + expand(
-            f"{RESULTS}/figures/{{specimen}}/{{name}}.png",
-            specimen=SLIDING,
-            name=figures_of("match"),
-        )
-        + expand(
-            f"{RESULTS}/figures/{{specimen}}/{{name}}.png", specimen=FLAT, name=figures_of("flat")
-        )
+def figures_of_specimens(opposite, specimens):
+    """All files of the figures of some specimens, that one which is removed is made again."""
+    return expand(
+        f"{RESULTS}/figures/{{specimen}}/{{name}}.{{ending}}",
+        specimen=specimens,
+        name=figures_of(opposite),
+        ending=("png", "svg", "csv", "txt"),
     )
+
+
+def collect_everything(wildcards):
+    """Every file of the study: what was removed, or damaged and so removed, is made again."""
+    study = list(rules.study_figures.output) if STUDY_FIGURES else []
+    stages = [
+        *expand(list(STAGE_FILES.values()), specimen=SPECIMENS),
+        *expand(list(SLIDING_FILES.values()), specimen=SLIDING),
+        *expand(list(rules.embedded.output), specimen=set(SPECIMENS) - set(SCANS)),
+        *(path for paths in MAP_FILES.values() for path in paths),
+        *STUDY_FILES.values(),
+        *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
+        *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
+    ]
+    return [
+        *stages,
+        *study,
+        *figures_of_specimens("match", SLIDING),
+        *figures_of_specimens("flat", FLAT),
+    ]

@@ -22,7 +22,7 @@ rule windows:
     params:
         settings=settings_of,
         solver=SOLVER,
-        code=code("size_laws", "size_test", "store"),
+        code=code("windows"),
     script:
         "../scripts/windows.py"
 
@@ -42,7 +42,7 @@ rule roll_off:
         runtime=30,
     params:
         joints=resolve_roll_off(config, SOURCE),
-        code=code("roll_off", "store"),
+        code=code("roll_off"),
     script:
         "../scripts/roll_off.py"
 
@@ -64,6 +64,6 @@ rule area_slope:
     params:
         recipe=config.get("area_slope"),
         rtol=SOLVER["rtol"],
-        code=code("area_slope", "store"),
+        code=code("area_slope"),
     script:
         "../scripts/area_slope.py"

@@ -21,7 +21,7 @@ rule dimension_test:
     params:
         recipe=config.get("dimension_test"),
         rtol=SOLVER["rtol"],
-        code=code("dimension_test", "store"),
+        code=code("dimension_test"),
     script:
         "../scripts/dimension_test.py"
 
@@ -42,7 +42,7 @@ rule estimator_bias:
         runtime=60,
     params:
         recipe=config.get("estimator_bias"),
-        code=code("estimator_bias", "store"),
+        code=code("estimator_bias"),
     script:
         "../scripts/estimator_bias.py"
 
@@ -77,6 +77,8 @@ rule atlas:
         **STUDY_FILES,
     output:
         f"{RESULTS}/atlas.nc",
+        # Which specimens it has, one a line: kept from being lost without a word.
+        names=f"{RESULTS}/specimens.txt",
     log:
         f"{RESULTS}/logs/atlas.log",
     benchmark:
@@ -88,6 +90,6 @@ rule atlas:
         runtime=10,
     params:
         configuration={"study": config, "settings": SETTINGS},
-        code=code("statements", "store"),
+        code=code("atlas"),
     script:
         "../scripts/atlas.py"

@@ -1,6 +1,12 @@
 # From scan files, a user's or the study's own, to levelled specimens, their surfaces and joints.
 
 
+def recipe_of(wildcards):
+    """Recipe of an embedded specimen. Its label is only words: a new one makes no new surface."""
+    recipe = resolve_embedded(config["embedded"][wildcards.specimen], "embedded")
+    return {key: value for key, value in recipe.items() if key != "label"}
+
+
 rule embedded:
     output:
         scan=f"{RESULTS}/embedded/{{specimen}}.npy",
@@ -15,20 +21,31 @@ rule embedded:
         mem_mb=1000,
         runtime=10,
     params:
-        recipe=lambda wc: resolve_embedded(config["embedded"][wc.specimen], "embedded"),
-        code=code("synthesis"),
+        recipe=recipe_of,
+        code=code("embedded"),
     script:
         "../scripts/embedded.py"
 
 
 def scan_files(wildcards):
-    """The faces of a specimen and its sidecar, wherever they come from."""
+    """The faces of a specimen, wherever they come from. Their digests tell whether they changed."""
+    scan = SCANS.get(wildcards.specimen)
+    if scan is None:
+        return {"lower": rules.embedded.output.scan}
+    faces = {"lower": scan.lower, "upper": scan.upper}
+    return {face: ancient(str(path)) for face, path in faces.items() if path is not None}
+
+
+def scan_digests(wildcards):
+    """SHA-256 of the scan files of a specimen, by path; of embedded ones none."""
+    scan = SCANS.get(wildcards.specimen)
+    return {} if scan is None else digests_of(scan)
+
+
+def options_of(wildcards):
+    """How the scan of a specimen is read: the scan keys of its sidecar."""
     name = wildcards.specimen
-    if name not in SCANS:
-        return {"lower": rules.embedded.output.scan, "sidecar": rules.embedded.output.sidecar}
-    scan = SCANS[name]
-    files = {"lower": scan.lower, "upper": scan.upper, "sidecar": scan.sidecar}
-    return {role: str(path) for role, path in files.items() if path is not None}
+    return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_of(wildcards)["spacing"])
 
 
 # The levelled specimen, and what is known of its joint before anything is pressed: the dimension of
@@ -37,7 +54,6 @@ def scan_files(wildcards):
 rule specimen:
     input:
         unpack(scan_files),
-        schema=SCHEMA_FILE,
     output:
         specimen=f"{RESULTS}/specimens/{{specimen}}.nc",
         surface_dimension=f"{RESULTS}/surface_dimension/{{specimen}}.nc",
@@ -54,6 +70,8 @@ rule specimen:
         runtime=15,
     params:
         settings=settings_of,
-        code=code("joint", "preparation", "quality", "roughness", "store"),
+        options=options_of,
+        digests=scan_digests,
+        code=code("specimen"),
     script:
         "../scripts/specimen.py"

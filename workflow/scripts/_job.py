@@ -1,40 +1,95 @@
-"""What every script does around its one call: a log, and errors a user can read."""
+"""What every script does around its one call: a log, checked inputs, errors a user can read."""
 
 import contextlib
 import logging
+import signal
 import sys
 import time
+from pathlib import Path
 
+import _running
+
+from fractalcontact import checksums
 from fractalcontact.effort import SOLVING
-from fractalcontact.errors import InputError, NotConverged
+from fractalcontact.errors import InputError, NotConverged, OutputError
+
+#: What a job says, and exits with, that is told to end.
+STOPPED, STOPPED_CODE = "stopped before it was done", 143
 
 
 @contextlib.contextmanager
-def reported(log):
-    """Log to ``log[0]``; end with one clear line, not a traceback, where the input is at fault.
+def job(snakemake):
+    """One job: its inputs are as they were made, its outputs leave their checksums, it has a log.
 
+    Where the input is at fault, or the disk is full, it ends with one clear line and no traceback.
     The log's last line says what the job spent on its work, imports not counted, and of that on
     contact solves: ``benchmarks/study_cost.py`` adds them up.
+
+    Parameters
+    ----------
+    snakemake : object
+        What Snakemake puts into every script.
 
     Yields
     ------
     logging.Logger
     """
-    logging.basicConfig(filename=log[0], filemode="w", level=logging.INFO, format="%(message)s")
+    logging.basicConfig(
+        filename=snakemake.log[0], filemode="w", level=logging.INFO, format="%(message)s"
+    )
+    log = logging.getLogger("fractalcontact")
+    results = Path("results") / snakemake.config["study"]
+    signal.signal(signal.SIGTERM, _stop)
     begin = time.perf_counter()
     try:
-        yield logging.getLogger("fractalcontact")
-        logging.getLogger("fractalcontact").info(
+        with _running.marked():
+            for path in _below(results, snakemake.input):
+                checksums.require_intact(results, path)
+            yield log
+            checksums.record(results, _below(results, snakemake.output))
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # done: it ends at once anyway
+        log.info(
             "worked %.3f s, of which %.3f s on %d contact problems",
             time.perf_counter() - begin,
             SOLVING.seconds,
             SOLVING.problems,
         )
-    except (InputError, NotConverged) as error:
+    except (InputError, NotConverged, OutputError) as error:
         lines = [str(error), *getattr(error, "__notes__", [])]
         message = "error: " + "; ".join(lines)
-        logging.getLogger("fractalcontact").error(message)
+        log.error(message)
         sys.exit(message)
+    except KeyboardInterrupt:
+        log.error(STOPPED)
+        sys.exit(STOPPED_CODE)
     except Exception:
-        logging.getLogger("fractalcontact").exception("error in the program")
+        log.exception("error in the program")
         raise
+
+
+def _stop(number, frame):
+    """End as after Ctrl-C, so that nothing half written stays behind."""
+    raise KeyboardInterrupt
+
+
+def _below(folder, paths):
+    """Those files that the study itself makes."""
+    return [path for path in map(Path, paths) if path.is_relative_to(folder)]
+
+
+def require_unchanged(digests):
+    """Refuse what was made of scan files that are no longer those the study was planned with.
+
+    Parameters
+    ----------
+    digests : mapping of str to str
+        SHA-256 by path, taken when the workflow was read.
+
+    Raises
+    ------
+    InputError
+        If one is another by now: the results would not belong to it, and nothing would tell.
+    """
+    for path, digest in digests.items():
+        if digest and (not Path(path).is_file() or checksums.sha256(path) != digest):
+            raise InputError(f"{path}: changed while the study ran; run it again")

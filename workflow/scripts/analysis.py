@@ -1,6 +1,6 @@
 """What is made of the contact states of a specimen: curves, laws of area, domains, dimensions."""
 
-from _job import reported
+from _job import job
 
 from fractalcontact import store
 from fractalcontact.analysis import analyse_domains, scaling_over_resolutions
@@ -13,7 +13,7 @@ from fractalcontact.specimen import cell_side, window_sides
 from fractalcontact.states import combine, domains_of, force_range, map_states
 from fractalcontact.strength import joint_strength
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     specimen = store.read(snakemake.input.specimen)
     joint = store.read(snakemake.input.joint)
     parts = [store.read(path) for path in snakemake.input.contact]

@@ -1,11 +1,11 @@
 """Real contact area at light load on made surfaces, with and without a roll-off."""
 
-from _job import reported
+from _job import job
 
 from fractalcontact import store
 from fractalcontact.area_slope import area_slope
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     slopes = area_slope(snakemake.params.recipe, snakemake.params.rtol)
     store.write(slopes, snakemake.output[0])
     log.info("%s", slopes)

@@ -1,9 +1,15 @@
 """Put what was made of all specimens into one file."""
 
-from _job import reported
+from _job import job
 from _stages import read_stages, write_atlas
 
-with reported(snakemake.log) as log:
-    stages = read_stages(snakemake.input)
-    write_atlas(stages, snakemake.output[0], snakemake.params.configuration)
+from fractalcontact.atomic import atomic_write
+
+with job(snakemake) as log:
+    stages, made_with = read_stages(snakemake.input)
+    write_atlas(stages, made_with, snakemake.output[0], snakemake.params.configuration, log)
+    if snakemake.output.get("names"):
+        names = sorted([*stages.get("specimens", {}), *stages.get("contact_maps", {})])
+        with atomic_write(snakemake.output.names) as path:
+            path.write_text("".join(f"{name}\n" for name in names), encoding="utf-8")
     log.info("%d stages, specimens %s", len(stages), ", ".join(stages.get("specimens", {})))

@@ -1,11 +1,11 @@
 """Solve the contact of one specimen in some directions, at some offsets and resolutions."""
 
-from _job import reported
+from _job import job
 
 from fractalcontact import store
 from fractalcontact.sweep import joint_states
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     params = snakemake.params
     states = joint_states(
         store.read(snakemake.input.specimen),

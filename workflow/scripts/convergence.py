@@ -1,11 +1,11 @@
 """Error against spacing where the solution is known, or trials of Richardson's extrapolation."""
 
-from _job import reported
+from _job import job
 
 from fractalcontact import store
 from fractalcontact.accuracy import hertz_convergence, punch_convergence, richardson_trials
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     recipe, problem = snakemake.params.recipe, snakemake.wildcards.problem
     if problem == "richardson":
         result = richardson_trials(recipe["trials"], recipe["trial_cells"], seed=recipe["seed"])

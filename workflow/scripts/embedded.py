@@ -2,13 +2,12 @@
 
 from pathlib import Path
 
-from _job import reported
+from _job import job
 
 from fractalcontact.synthesis import embedded_surface, write_scan
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     recipe = snakemake.params.recipe
     heights = embedded_surface(recipe)
-    sidecar = {"label": recipe["label"]}
-    write_scan(Path(snakemake.output.scan), heights, recipe["spacing"], sidecar=sidecar)
+    write_scan(Path(snakemake.output.scan), heights, recipe["spacing"], sidecar={})
     log.info("%s nodes, %s", heights.shape, recipe)

@@ -2,16 +2,17 @@
 
 from pathlib import Path
 
-from _job import reported
+from _job import job
 from _stages import read_stages, write_atlas
 
 from fractalcontact.figures import draw_figures
 
-with reported(snakemake.log) as log:
-    stages = read_stages(snakemake.input)
-    write_atlas(stages, snakemake.output.atlas, snakemake.params.configuration)
+with job(snakemake) as log:
+    stages, made_with = read_stages(snakemake.input)
+    atlas = snakemake.output.atlas
+    write_atlas(stages, made_with, atlas, snakemake.params.configuration, log)
     captions = draw_figures(
-        snakemake.output.atlas,
+        atlas,
         snakemake.wildcards.specimen,
         Path(snakemake.output[0]).parent,
         snakemake.params.names,

@@ -1,23 +1,21 @@
 """Read the scan of a specimen, level it, place its window, and say what is known of its joint."""
 
-import yaml
-from _job import reported
+import json
+
+from _job import job, require_unchanged
 
 from fractalcontact import store
+from fractalcontact.errors import InputError
 from fractalcontact.joint import describe_joint
 from fractalcontact.preparation import prepare_specimen
 from fractalcontact.quality import scan_quality
 from fractalcontact.quality_words import noise_words, range_words
 from fractalcontact.roughness import surface_dimension
-from fractalcontact.study import read_sidecar
 
-with reported(snakemake.log) as log:
-    files, settings = snakemake.input, snakemake.params.settings
-    with open(files.schema, encoding="utf-8") as schema:
-        options, _ = read_sidecar(files.get("sidecar"), yaml.safe_load(schema))
-    specimen = prepare_specimen(
-        files.lower, files.get("upper"), options, settings, snakemake.wildcards.specimen
-    )
+with job(snakemake) as log:
+    files, params, name = snakemake.input, snakemake.params, snakemake.wildcards.specimen
+    settings = params.settings
+    specimen = prepare_specimen(files.lower, files.get("upper"), params.options, settings, name)
     quality = scan_quality(specimen, settings["resolutions"])
     made = {
         "specimen": specimen,
@@ -29,8 +27,13 @@ with reported(snakemake.log) as log:
         ),
         "quality": quality,
     }
-    for name, dataset in made.items():
-        store.write(dataset, snakemake.output[name])
+    # What was read, and what lies there now: a file may have been exchanged and put back.
+    require_unchanged(params.digests)
+    for face, digest in zip(("lower", "upper"), params.digests.values(), strict=False):
+        if json.loads(specimen.attrs[f"{face}_scan"])["sha256"] != digest:
+            raise InputError(f"{files[face]}: changed while it was read; run the study again")
+    for stage, dataset in made.items():
+        store.write(dataset, snakemake.output[stage])
     for key, value in specimen.attrs.items():
         log.info("%s: %s", key, value)
     log.info("%s\n%s", made["joint"], made["surface_dimension"])

@@ -6,13 +6,13 @@ import os
 # times slower; our own threads are another matter.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from _job import reported
+from _job import job
 
 from fractalcontact import store
 from fractalcontact.reference_scenes import scenes_of
 from fractalcontact.speed import error_against_time
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     recipe = snakemake.params.recipe
     scene = scenes_of(recipe)[snakemake.wildcards.scene]
     points = error_against_time(scene, recipe)

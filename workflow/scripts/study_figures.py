@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from _job import reported
+from _job import job
 
 from fractalcontact.figures import draw_study_figures
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     captions = draw_study_figures(
         snakemake.input[0],
         snakemake.params.specimens,

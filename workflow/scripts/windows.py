@@ -1,14 +1,14 @@
 """Press parts of the window: how its mechanics goes with their size, and whether eq. 6 tells it."""
 
 import numpy as np
-from _job import reported
+from _job import job
 
 from fractalcontact import store
 from fractalcontact.roughness import best_dimension
 from fractalcontact.size_laws import joint_by_size
 from fractalcontact.size_test import size_test
 
-with reported(snakemake.log) as log:
+with job(snakemake) as log:
     settings = snakemake.params.settings
     pressing = (
         store.read(snakemake.input.specimen),

@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 
+from ..atomic import atomic_write
 from ..labels import printable
 from ..specimen import nominal_area
 from ..states import forces_of
-from ..store import written_whole
 from ._ticks import keep_labels, plain_ticks
 
 #: Okabe and Ito's colours, told apart by colour-blind readers; black first.
@@ -110,14 +110,14 @@ def save(drawing, folder, name):
     canvas = FigureCanvasAgg(figure)
     plain_ticks(figure)
     _lay_out(figure)
-    with written_whole(folder / f"{name}.png") as path:
+    with atomic_write(folder / f"{name}.png") as path:
         canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
     keep_labels(figure)
-    with written_whole(folder / f"{name}.svg") as path:
+    with atomic_write(folder / f"{name}.svg") as path:
         FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
-    with written_whole(folder / f"{name}.txt") as path:
+    with atomic_write(folder / f"{name}.txt") as path:
         path.write_text(drawing.caption + "\n", encoding="utf-8")
-    with written_whole(folder / f"{name}.csv") as path:
+    with atomic_write(folder / f"{name}.csv") as path:
         drawing.data.to_csv(path, index=False, float_format="%.8g", lineterminator="\n")
 
 

@@ -108,12 +108,13 @@ def measured_state(
     if np.count_nonzero(pressure) * pressure.size <= LARGEST_SUM:
         displacement = sum_displacement(space, pressure)
     else:
-        displacement = space.displacement(pressure)
+        displacement = space.convolve(pressure) * (space.cell / space.modulus)
     gap = displacement + clearance - closure
     total = float(pressure.sum()) * space.cell_area
     parted = gap[pressure > 0].max(initial=0.0)
     overlap = -gap[pressure < hardness].min(initial=0.0)
-    worst = max(parted, overlap)
+    # What is no number violates no condition, and must not pass for a state.
+    worst = max(parted, overlap) if np.isfinite(total) else np.nan
     residual = worst / closure if worst != 0 and closure != 0 else worst
     if np.isfinite(hardness):
         residual = max(residual, pressure.max() / hardness - 1)

@@ -20,6 +20,8 @@ from .common import checked_state, in_stress
 MAX_ITERATIONS = 5000
 # The iteration ends this far below the tolerance of the final check.
 SAFETY = 0.9
+# Closures, mm, between which the squares of gaps so much smaller still are numbers.
+LEAST_CLOSURE, MOST_CLOSURE = 1e-140, 1e140
 
 
 def solve_contact(
@@ -62,6 +64,11 @@ def solve_contact(
     limit = checked_hardness(hardness, space, None)
     if load == 0:
         return unloaded_state(space, clearance)
+    if force is None and not LEAST_CLOSURE <= load <= MOST_CLOSURE:
+        raise ValueError(
+            f"closure {load:g} mm: conjugate gradients square gaps; expected "
+            f"{LEAST_CLOSURE:g} to {MOST_CLOSURE:g} mm"
+        )
     # Pressure is counted in units of E*/s throughout, so that the operator gives mm.
     unit = space.modulus / space.cell
     total = None if force is None else force / (space.cell_area * unit)

@@ -1,0 +1,115 @@
+"""Files that appear whole or not at all: the one writer of everything that is kept."""
+
+import contextlib
+import errno
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+from .errors import OutputError
+
+#: Beginning of the names of files that are being written; what a killed run left of them is swept.
+UNFINISHED = ".unfinished-"
+#: Of a disk with fewer bytes left than this, any error in writing is taken to come from that: the
+#: netCDF library says no more than "HDF error".
+FULL_DISK = 2**20
+
+
+@contextlib.contextmanager
+def atomic_write(path):
+    """A temporary path beside ``path`` that takes its place when the block ends without error.
+
+    Its content has reached the disk before it gets its name, so that a loss of power leaves the old
+    file or the new one.
+
+    Parameters
+    ----------
+    path : path-like
+        Its folder is made where it is missing.
+
+    Yields
+    ------
+    pathlib.Path
+        Same folder and same ending as ``path``.
+
+    Raises
+    ------
+    OutputError
+        If the disk is full or the folder cannot be written to. The old file stays.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=UNFINISHED, suffix=path.suffix)
+    except OSError as error:
+        raise _explained(path, error) from error
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        os.chmod(temporary, 0o666 & ~_umask())
+        with open(temporary, "rb") as file:
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    except Exception as error:
+        if _is_full(path.parent, error) or isinstance(error, PermissionError):
+            raise _explained(path, error) from error
+        raise
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def reach_disk(folders):
+    """Wait until the names in these folders have reached the disk, as their files' contents have.
+
+    Parameters
+    ----------
+    folders : iterable of path-like
+    """
+    for folder in sorted(set(folders)):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def sweep(folder):
+    """Remove what killed runs left half written; only while nothing writes there.
+
+    Parameters
+    ----------
+    folder : path-like
+
+    Returns
+    -------
+    list of pathlib.Path
+        What was removed.
+    """
+    left = sorted(Path(folder).rglob(f"{UNFINISHED}*"))
+    for path in left:
+        path.unlink(missing_ok=True)
+    return left
+
+
+def _is_full(folder, error):
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return True
+    return shutil.disk_usage(folder).free < FULL_DISK
+
+
+def _explained(path, error):
+    if isinstance(error, OSError) and not isinstance(error, PermissionError):
+        full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+        why = "no space left on its disk" if full else error.strerror or str(error)
+    else:
+        why = "no permission" if isinstance(error, PermissionError) else "no space left on its disk"
+    what = "make room there" if "space" in why else "allow writing there"
+    return OutputError(f"{path}: cannot be written, {why}; {what} and run again")
+
+
+def _umask():
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

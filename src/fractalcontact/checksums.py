@@ -1,0 +1,202 @@
+"""Checksums of what a study made: so that a file damaged later is noticed and never read as data.
+
+Every job leaves, beside its results, the SHA-256 of each file it made:
+``results/NAME/checksums/STAGE/SPECIMEN.sha256`` for ``results/NAME/STAGE/SPECIMEN.nc``; files of
+one folder that differ in their ending alone share one such record. Each line is as ``sha256sum -c``
+takes it, in the folder ``results/NAME``.
+"""
+
+import contextlib
+import hashlib
+import json
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from .atomic import atomic_write, reach_disk
+from .errors import InputError
+
+FOLDER, ENDING = "checksums", ".sha256"
+#: Within so many nanoseconds after a change a file may change again without its times showing it.
+_SAME_TICK = 2_000_000_000
+
+
+def sha256(path):
+    """SHA-256 of a file's content, in hexadecimal digits."""
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+class Digests:
+    """SHA-256 of files, not computed again while a file's identity, size and times are the same.
+
+    A change cannot keep the time of the last change of status, which no program can set. So moving,
+    copying or unpacking an older file over another is noticed, as git does it.
+
+    Parameters
+    ----------
+    cache : path-like
+        Where they are kept; damaged or missing, it is made anew.
+    """
+
+    def __init__(self, cache):
+        self._cache, self._new = Path(cache), False
+        try:
+            self._known = json.loads(self._cache.read_text(encoding="utf-8"))
+            if not isinstance(self._known, dict):
+                self._known = {}
+        except (OSError, ValueError):  # only a cache
+            self._known = {}
+
+    def of(self, path):
+        """SHA-256 of a file.
+
+        Raises
+        ------
+        OSError
+            If it cannot be read.
+        """
+        known = self._known.get(str(path))
+        found = _identity(path)
+        if known and known[1:] == found:
+            return known[0]
+        digest = sha256(path)
+        still = _identity(path) == found
+        if still and time.time_ns() - found[-1] > _SAME_TICK:
+            self._known[str(path)] = [digest, *found]
+            self._new = True
+        return digest
+
+    def save(self):
+        """Keep what was computed; without a place for it, it is computed again next time."""
+        if self._new:
+            with contextlib.suppress(OSError), atomic_write(self._cache) as path:
+                path.write_text(json.dumps(self._known), encoding="utf-8")
+
+
+def _identity(path):
+    found = os.stat(path)
+    return [found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns]
+
+
+def record(results, files):
+    """Keep the checksums of files that a job has made.
+
+    Parameters
+    ----------
+    results : path-like
+        Folder of the study.
+    files : iterable of path-like
+        All that were made, below it; those that share a record together.
+    """
+    results, records = Path(results), {}
+    for file in map(Path, files):
+        records.setdefault(_record_of(results, file), []).append(file)
+    for path, members in records.items():
+        lines = [f"{sha256(f)}  {f.relative_to(results).as_posix()}\n" for f in sorted(members)]
+        with atomic_write(path) as temporary:
+            temporary.write_text("".join(lines), encoding="utf-8")
+    folders = {file.parent for members in records.values() for file in members}
+    reach_disk(folders | {path.parent for path in records})
+
+
+def require_intact(results, file):
+    """Refuse a file that is not as the job that made it left it.
+
+    Raises
+    ------
+    InputError
+        If it is, or if its checksum is not known.
+    """
+    results, file = Path(results), Path(file)
+    path = _record_of(results, file)
+    if not path.is_file():
+        raise InputError(f"{file}: nothing says how it was made (no {path}); remove it, run again")
+    if sha256(file) != _lines(path).get(file.relative_to(results).as_posix()):
+        raise InputError(
+            f"{file}: damaged or replaced after it was made (its checksum is not that in {path}); "
+            "'make' removes it and makes it again"
+        )
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Files of a study, compared with their checksums.
+
+    Attributes
+    ----------
+    intact, damaged, missing : list of pathlib.Path
+        Files of which a checksum is known. Where the record is damaged, it and all its files are.
+    """
+
+    intact: list
+    damaged: list
+    missing: list
+
+
+def check(results, digest=sha256):
+    """Compare all files of a study with their checksums.
+
+    Parameters
+    ----------
+    results : path-like
+    digest : callable
+        From a path to its SHA-256: that of a :class:`Digests` to save time.
+
+    Returns
+    -------
+    Checked
+    """
+    results = Path(results)
+    checked = Checked([], [], [])
+    for path in sorted((results / FOLDER).rglob(f"*{ENDING}")):
+        lines = _lines(path)
+        if not lines:
+            checked.damaged.extend([path, *_recorded_in(results, path)])
+        for name, known in lines.items():
+            file = results / name
+            if not file.is_file():
+                checked.missing.append(file)
+            elif digest(file) == known:
+                checked.intact.append(file)
+            else:
+                checked.damaged.append(file)
+    return checked
+
+
+def lines_of(results):
+    """All lines of the records of a study, of files that are there, sorted."""
+    results, lines = Path(results), []
+    for path in (results / FOLDER).rglob(f"*{ENDING}"):
+        found = _lines(path).items()
+        lines += [f"{digest}  {name}\n" for name, digest in found if (results / name).is_file()]
+    return sorted(lines, key=lambda line: line[66:])
+
+
+def _record_of(results, file):
+    name = file.relative_to(results)
+    return results / FOLDER / name.with_name(name.stem + ENDING)
+
+
+def _recorded_in(results, path):
+    """The files whose checksums a record holds, told by their names: those that are there."""
+    folder = (results / path.relative_to(results / FOLDER)).parent
+    stem = path.name.removesuffix(ENDING)
+    return sorted(f for f in folder.glob("*") if f.is_file() and f.stem == stem)
+
+
+def _lines(path):
+    """Checksum by name in a record; none of a record that is missing or damaged."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (FileNotFoundError, UnicodeDecodeError):
+        return {}
+    found = {}
+    for line in text.splitlines(keepends=True):
+        digest, _, name = line.partition("  ")
+        whole = line.endswith("\n") and len(digest) == 64 and name.strip()
+        if not whole or Path(name).is_absolute() or ".." in Path(name).parts:
+            return {}
+        found[name.rstrip("\n")] = digest
+    return found

@@ -1,0 +1,42 @@
+"""Compare every file of a study with the checksum that the job which made it left.
+
+python -m fractalcontact.verify STUDY_FILE_OR_RESULTS_FOLDER
+"""
+
+import sys
+from pathlib import Path
+
+from .checksums import check
+from .errors import InputError
+from .study import read_study, study_name
+
+
+def main(arguments=None):
+    """Print what is damaged or missing; 1 if anything is, else 0."""
+    (given,) = sys.argv[1:] if arguments is None else arguments
+    try:
+        results = results_of(given)
+        if not results.is_dir():
+            raise InputError(f"{results}: no such folder; run 'make' first")
+        checked = check(results)
+    except InputError as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 1
+    for word in ("damaged", "missing"):
+        for path in getattr(checked, word):
+            sys.stdout.write(f"{word}: {path}\n")
+    counts = [f"{len(getattr(checked, word))} {word}" for word in ("intact", "damaged", "missing")]
+    wrong = bool(checked.damaged or checked.missing)
+    advice = "; 'make' makes them again" if wrong else ""
+    sys.stdout.write(f"{results}: {', '.join(counts)}{advice}\n")
+    return int(wrong)
+
+
+def results_of(given):
+    """Folder of the results of a study: given itself, or by the study's file."""
+    path = Path(given)
+    return path if path.is_dir() else Path("results") / study_name(read_study(path), path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,167 @@
+"""Studies that would run code, runs that live, runs that are told to end, disks that are full."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from projects import command, made, project, run, small_study, write_scan
+
+__all__ = ["project"]  # a fixture
+pytestmark = pytest.mark.workflow
+STUDY = "config/test.yaml"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "__use_yte__: true\nstudy: '?__import__(\"os\").system(\"touch pwned\")'\n",
+            "makes Snakemake run what the file says as Python",
+        ),
+        ("study: !!python/object/apply:os.system ['touch pwned']\n", "not readable as YAML"),
+        ("study: x; touch pwned\n", "key 'study': found 'x; touch pwned', expected"),
+        ("study: a\nstudy: $(touch pwned)\n", "expected the study's name"),
+        ("study: ../outside\n", "expected the study's name"),
+        ("a: &a [1,1,1,1,1,1,1,1,1]\nb: &b [*a,*a,*a,*a,*a,*a,*a,*a,*a]\n"
+         "c: &c [*b,*b,*b,*b,*b,*b,*b,*b,*b]\nd: &d [*c,*c,*c,*c,*c,*c,*c,*c,*c]\n"
+         "e: &e [*d,*d,*d,*d,*d,*d,*d,*d,*d]\nf: [*e,*e,*e,*e,*e,*e,*e,*e,*e]\n",
+         "once its aliases"),
+    ],
+)  # fmt: skip
+def test_a_study_is_plain_data_and_runs_nothing(project, text, said):
+    (project / STUDY).write_text(text)
+    for options in ((), ("--dry-run",), ("--full",)):
+        done = made(project, STUDY, *options)
+        assert done.returncode != 0
+        (line,) = done.stderr.strip().splitlines()
+        assert line.startswith(f"error: {STUDY}: ")
+        assert said in line
+    assert not list(project.rglob("pwned"))
+    assert not (project / "results").exists()
+
+
+def start(project, *words):
+    """A process of its own that writes what it says to a file."""
+    with open(project / "said", "w") as said:
+        return subprocess.Popen(
+            words, cwd=project, stdout=said, stderr=subprocess.STDOUT, start_new_session=True
+        )
+
+
+def wait_for(path, process, seconds=60):
+    end = time.monotonic() + seconds
+    while not path.exists():
+        assert process.poll() is None
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def made_words(*options):
+    return (sys.executable, "workflow/run.py", *options, "--", "--cores", "2")
+
+
+def locks(project):
+    return sorted((project / ".snakemake/locks").glob("*"))
+
+
+def test_the_lock_of_a_living_run_stays_however_it_was_started(project):
+    living = start(project, *command("config/smoke.yaml"))
+    wait_for(project / "results/smoke/logs/embedded", living)
+    held = locks(project)
+    assert held
+    second = made(project, "config/smoke.yaml")
+    assert second.returncode != 0
+    assert second.stderr.startswith("error: another run is at work in this folder")
+    assert second.stderr.count("\n") == 1
+    assert living.poll() is None
+    assert locks(project) == held
+    os.killpg(living.pid, signal.SIGKILL)
+    living.wait()
+    third = made(project, "config/smoke.yaml", targets=["results/smoke/embedded/small_twin.npy"])
+    assert third.returncode == 0, third.stderr[-3000:]
+
+
+def test_jobs_that_outlive_their_run_count_as_living(project):
+    """Snakemake alone killed: what its jobs still write must not mix with what a new run does."""
+    living = start(project, *command("config/smoke.yaml"))
+    wait_for(project / "results/smoke/logs/dimension_test.log", living)
+    for job in set(_at_work(project)) - {str(living.pid)}:
+        os.kill(int(job), signal.SIGSTOP)  # so that it does not end while this looks
+    os.kill(living.pid, signal.SIGKILL)
+    living.wait()
+    refused = made(project, "config/smoke.yaml")
+    assert "another run is at work" in refused.stderr
+    os.killpg(living.pid, signal.SIGKILL)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_a_run_that_is_told_to_end_ends_its_jobs(project, number):
+    running = start(project, *made_words("config/smoke.yaml"))
+    wait_for(project / "results/smoke/logs/dimension_test.log", running)
+    time.sleep(0.3)
+    began = time.monotonic()
+    running.send_signal(number)
+    running.wait(timeout=60)
+    said = (project / "said").read_text()
+    assert time.monotonic() - began < 45
+    assert running.returncode == 128 + number
+    assert "make: told to stop; jobs end" in said
+    assert "Traceback" not in said
+    deadline = time.monotonic() + 5
+    while _at_work(project) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert _at_work(project) == []
+    assert not list((project / "results").rglob(".unfinished-*"))
+
+
+def _at_work(project):
+    """Processes whose folder is the project's."""
+    found = []
+    for entry in os.listdir("/proc"):
+        if entry.isdigit() and int(entry) != os.getpid():
+            try:
+                if os.readlink(f"/proc/{entry}/cwd") == str(project):
+                    found.append(entry)
+            except OSError:
+                continue
+    return found
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
+@pytest.mark.parametrize("megabytes", [20, 51])
+def test_a_full_disk_is_said_in_one_sentence(project, megabytes):
+    """Before anything runs where it is known, else by the job that meets it."""
+    results = project / "results"
+    results.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={megabytes}m", "tmpfs", results]
+    mounted = subprocess.run(mount, capture_output=True, text=True)
+    if mounted.returncode:
+        pytest.skip(f"no tmpfs can be mounted here: {mounted.stderr.strip()}")
+    try:
+        small_study(project)
+        write_scan(project, "rock")
+        if megabytes > 50:
+            # Full only once it runs: 60 kB are left.
+            os.environ.pop("FRACTALCONTACT_CHECKED", None)
+            filler = results / "filler"
+            filler.write_bytes(b"x" * (megabytes * 2**20 - 60_000))
+            done = run(project, STUDY)
+            assert "no space left on its disk; make room there" in done.stderr
+        else:
+            done = made(project, STUDY)
+            (line,) = done.stderr.strip().splitlines()
+            assert line.startswith("error: results: 20 MB free on its disk, less than the 50 MB")
+        assert done.returncode != 0
+        assert not list(results.rglob(".unfinished-*"))
+        assert not list(results.rglob("*.nc"))
+    finally:
+        subprocess.run(["umount", results], check=True)
+
+
+def test_results_that_cannot_be_written_to_are_said_before_anything_runs(project):
+    (project / "results").write_text("a file")
+    done = made(project, "config/smoke.yaml")
+    assert done.stderr == "error: results: no folder that can be written to; allow it (chmod u+w)\n"

@@ -1,0 +1,83 @@
+"""Who is at work in this checkout: so that nobody takes away the lock of what lives.
+
+Snakemake's own lock is a file that a killed run leaves behind, and does not say whose it is. So
+every process that works here, the runs and each of their jobs, holds a shared lock of the system on
+one file for as long as it lives, however it ends. Who gets that file for itself alone knows that
+nothing lives.
+"""
+
+import contextlib
+import errno
+import os
+import time
+
+try:
+    import fcntl
+except ImportError:  # not on Windows, which this project does not run on but may be read on
+    fcntl = None
+
+FILE = ".snakemake.guard"
+#: File systems that know no such locks: nothing can be told there.
+_NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
+
+
+def _locked(handle, kind):
+    """Whether a lock was got; None where the file system knows none."""
+    if fcntl is None:
+        return None
+    try:
+        fcntl.flock(handle, kind | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError as error:
+        if error.errno in _NO_LOCKS:
+            return None
+        raise
+    return True
+
+
+def mark():
+    """Say that this process is at work, until it ends.
+
+    Returns
+    -------
+    int
+        A file descriptor that must stay open as long as that.
+    """
+    handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
+    while _locked(handle, fcntl.LOCK_SH if fcntl else 0) is False:
+        time.sleep(0.05)  # held alone for a moment, by a run that looks whether others live
+    return handle
+
+
+@contextlib.contextmanager
+def marked():
+    """The same for a block."""
+    handle = mark()
+    try:
+        yield
+    finally:
+        os.close(handle)
+
+
+def alone(seconds):
+    """The file for this process alone, as a file descriptor; None if others are at work.
+
+    Parameters
+    ----------
+    seconds : float
+        How long to wait for others: to read the workflow takes a moment, too.
+    """
+    handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
+    end = time.monotonic() + seconds
+    while _locked(handle, fcntl.LOCK_EX if fcntl else 0) is False:
+        if time.monotonic() > end:
+            os.close(handle)
+            return None
+        time.sleep(0.1)
+    return handle
+
+
+def share(handle):
+    """Let others work again; this process still counts as one that does."""
+    _locked(handle, fcntl.LOCK_SH if fcntl else 0)
