@@ -15,6 +15,7 @@ import numpy as np
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.methods import METHODS, peers
+from fractalcontact.screening import forget_preconditioner
 
 
 class Failed(RuntimeError):
@@ -98,7 +99,7 @@ class AtDefault(Ours):
 
 def forget(space):
     """Drop what a half-space has kept of the last contact set: a cold solve must not find it."""
-    space.forget()
+    forget_preconditioner(space)
 
 
 @contextmanager

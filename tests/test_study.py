@@ -197,6 +197,7 @@ DIGITS = int("9" * 400)
         (("defaults", "loads"), ["1e200 MPa"], r"'1e200 MPa' is beyond .* 1e-150 to 1e\+150 MPa"),
         (("materials", "concrete", "modulus"), "1e300 GPa", "'1e300 GPa' is beyond what can be"),
     ],
+    ids=lambda value: "digits" if value is DIGITS else None,
 )
 def test_names_and_numbers_beyond_all_use_are_one_error_each(study, path, value, message):
     if value == {}:  # what any of its kind is

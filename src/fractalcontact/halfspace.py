@@ -152,12 +152,6 @@ class HalfSpace:
     def __getstate__(self):
         return {name: vars(self)[name] for name in self._FIXED}
 
-    def forget(self):
-        """Drop this thread's preconditioner; only until benchmarks/ ask `screening` for that."""
-        from .screening import forget_preconditioner
-
-        forget_preconditioner(self)
-
     @property
     def cell_area(self):
         """Area of one cell, mm2."""

@@ -27,6 +27,7 @@ from fractalcontact.errors import InputError
 from fractalcontact.figure_names import EXPERIMENTS, figures_of, study_figures_of
 from fractalcontact.sidecar import is_contact_map, sidecar_of_matrix
 from fractalcontact.study import (
+    check_names,
     check_study,
     read_sidecar,
     resolve_embedded,
@@ -50,11 +51,7 @@ def read_study():
     check_study(config, SCHEMA, SOURCE)
     folder = config.get("scans", "scans")
     scans = find_scans(folder) if folder else {}
-    twice = sorted(set(scans) & set(config.get("embedded", {})))
-    if twice:
-        raise InputError(
-            f"{folder}: specimen '{twice[0]}' is also embedded in {SOURCE}; rename one"
-        )
+    check_names(scans, config, folder, SOURCE)
     unknown = sorted(
         set(config.get("specimens", {})) - set(scans) - set(config.get("embedded", {}))
     )

@@ -59,16 +59,21 @@ def job(snakemake):
         message = "error: " + "; ".join(lines)
         log.error(message)
         sys.exit(message)
-    except KeyboardInterrupt:
-        log.error(STOPPED)
-        sys.exit(STOPPED_CODE)
-    except Exception:
+    except (Exception, KeyboardInterrupt) as error:
+        # Inside a compiled kernel the interrupt ends as an error of another kind.
+        if isinstance(error, KeyboardInterrupt) or _told_to_stop:
+            log.error(STOPPED)
+            sys.exit(STOPPED_CODE)
         log.exception("error in the program")
         raise
 
 
+_told_to_stop = []
+
+
 def _stop(number, frame):
     """End as after Ctrl-C, so that nothing half written stays behind."""
+    _told_to_stop.append(number)
     raise KeyboardInterrupt
 
 
