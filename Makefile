@@ -26,7 +26,7 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet --require-vir
 # Read from the environment, so that a shell never sees what stands in them.
 export STUDY SCANS
 # Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
-RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes 1,$(DROP)),--drop)
+RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
 OPTIONS = -- --cores $(CORES)
 
 .PHONY: all study smoke keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test bench scenes fuzz lint format lock clean
@@ -43,10 +43,10 @@ dry-run: $(VENV)/installed
 
 # The scans and .venv on a file system that all nodes see.
 slurm: $(VENV)/slurm-installed
-	@$(RUN) --profile slurm -- $(TARGET)
+	@$(RUN) --profile slurm -- -- $(TARGET)
 
 verify: $(VENV)/installed
-	@$(BIN)/python -m fractalcontact.verify "$$STUDY"
+	@$(BIN)/python -m fractalcontact.verify "$$STUDY" || { rm -f .snakemake/fractalcontact-digests.json; exit 1; }
 
 smoke:
 	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
@@ -62,7 +62,7 @@ accuracy: $(if $(PEERS),$(VENV)/peers-installed)
 
 # The study, then all of it at full cost beside it (results/NAME_full), then the two compared.
 check-accuracy: study
-	@$(BIN)/python workflow/run.py "$$STUDY" --full $(OPTIONS) -- atlas
+	@$(RUN) --full $(OPTIONS) -- atlas
 	@$(BIN)/python benchmarks/check_accuracy.py "$$STUDY"
 
 cost: study
@@ -96,6 +96,7 @@ format: $(VENV)/tests-installed
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit(f"fractalcontact needs Python 3.11 or later, {sys.executable} is {sys.version.split()[0]}: make PYTHON=python3.12")'
+	@$(PYTHON) -c 'import os, re, sys; here = os.getcwd(); re.search(r"[\s\x22\x27\\$$`&;|<>()*?\[\]#!{}]", here) and sys.exit(f"{here}: Snakemake cannot start scripts from a folder whose name has spaces or quotes in it; move the checkout to one without")'
 	$(PYTHON) -m venv $(VENV)
 
 # Bytecode is compiled now: without it every job pays the imports three times over.

@@ -18,6 +18,14 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy.smk"
 
 
+onsuccess:
+    checksums.write_manifest(RESULTS)
+
+
+onerror:
+    checksums.write_manifest(RESULTS)
+
+
 rule all:
     default_target: True
     input:

@@ -1,12 +1,21 @@
 """Every file that is not as it was made is noticed; what is, is read."""
 
 import os
+import shutil
 import subprocess
 import time
 
 import pytest
 
-from fractalcontact.checksums import Digests, check, lines_of, record, require_intact, sha256
+from fractalcontact.checksums import (
+    Digests,
+    check,
+    lines_of,
+    record,
+    require_intact,
+    set_aside,
+    sha256,
+)
 from fractalcontact.errors import InputError
 from fractalcontact.verify import main as verify
 
@@ -81,7 +90,31 @@ def test_a_file_without_a_record_is_not_read(results):
     stray.write_bytes(b"from elsewhere")
     with pytest.raises(InputError, match=r"stray\.nc: nothing says how it was made"):
         require_intact(results, stray)
-    assert stray not in check(results).damaged
+    assert check(results).unrecorded == [stray]
+    assert verify([str(results)]) == 1
+
+
+def test_without_any_record_nothing_passes_for_intact(results, capsys):
+    shutil.rmtree(results / "checksums")
+    assert verify([str(results)]) == 1
+    checked = check(results)
+    assert checked.intact == []
+    assert {path.name for path in checked.unrecorded} == {"a.nc", "a.b.nc", "a.npy", "atlas.nc"}
+
+
+def test_files_of_others_are_left_alone_and_damaged_ones_kept(results):
+    """A record that is damaged says nothing of a user's own file beside those of the study."""
+    own = results / "atlas.xlsx"
+    own.write_text("my table")
+    (results / "checksums/atlas.sha256").write_text("")
+    damaged = check(results).damaged
+    assert results / "atlas.nc" in damaged
+    assert own not in damaged
+    content = (results / "atlas.nc").read_bytes()
+    aside = set_aside(results, results / "atlas.nc")
+    assert aside == results / "damaged/atlas.nc"
+    assert aside.read_bytes() == content
+    assert aside not in check(results).unrecorded
 
 
 def test_a_record_cannot_lead_out_of_the_results(results, tmp_path):
@@ -129,7 +162,14 @@ def test_a_file_changed_a_moment_ago_is_not_taken_from_the_cache(tmp_path):
 def test_a_damaged_cache_is_made_anew(tmp_path):
     path, cache = tmp_path / "x", tmp_path / "cache.json"
     path.write_bytes(b"a")
-    for content in ("", "[1]", '{"half', "null"):
+    time.sleep(2.1)
+    digests = Digests(cache)
+    digests.of(path)
+    digests.save()
+    kept = cache.read_text()
+    wrong = kept.replace(sha256(path), sha256(path)[::-1])
+    assert wrong != kept
+    for content in ("", "[1]", '{"half', "null", wrong, kept[:-4]):
         cache.write_text(content)
         assert Digests(cache).of(path) == sha256(path)
 
@@ -142,4 +182,4 @@ def test_verify_tells_what_is_damaged_and_missing(results, capsys):
     said = capsys.readouterr().out
     assert f"damaged: {results}/atlas.nc" in said
     assert f"missing: {results}/figures/a/fig1.csv" in said
-    assert "5 intact, 1 damaged, 1 missing" in said
+    assert "5 intact, 1 damaged, 0 unrecorded, 1 missing" in said

@@ -4,12 +4,13 @@ python workflow/run.py STUDY [--profile NAME] [--drop] [--full] [--dry-run] -- o
 
 The study is read as plain data first: Snakemake itself runs Python that stands in a study which
 says `__use_yte__: true`. A lock that a killed run left is taken away, that of a living run never.
-Files that were damaged since they were made are removed, so that Snakemake makes them again. Told
+Files that were damaged since they were made are set aside, so that Snakemake makes them again. Told
 to end, it ends all jobs.
 """
 
 import argparse
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -24,13 +25,15 @@ sys.path.append(str(ROOT / "workflow/scripts"))
 import _running
 
 from fractalcontact import checksums
-from fractalcontact.atomic import atomic_write, sweep
-from fractalcontact.errors import InputError, OutputError
+from fractalcontact.atomic import sweep
+from fractalcontact.errors import InputError
 from fractalcontact.study import read_study, study_name
 
 #: Seconds that another run is waited for, which may only be reading the workflow; and that jobs get
 #: to end when they are told to.
-WAIT, GRACE = 3, 20
+WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
+#: What a shell does not take as it is.
+SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
 #: Bytes free below which a study is not begun: the default one makes some 100 MB.
 LEAST_ROOM = 50 * 2**20
 
@@ -39,25 +42,29 @@ def main():
     """Run the study of the command line; what is wrong with it is said in one sentence."""
     options, passed = _options()
     try:
+        _require_plain_path()
         name = study_name(read_study(options.study), options.study)
         results = Path("results") / (f"{name}_full" if options.full else name)
         if options.dry_run:
-            sys.exit(_ended(subprocess.Popen([*_command(options, name), "--dry-run", *passed])))
+            _name_damage(results)
+            sys.exit(_run([*_command(options, name), "--dry-run", *passed], options))
         _require_room(results)
-        guard = _running.alone(WAIT)
+        guard, known = _running.alone(WAIT)
         if guard is None:
             raise InputError(
                 "another run is at work in this folder (or jobs that a killed one left, which end "
                 "by themselves); wait for it, or end it first"
             )
-        _unlock(options)
-        _clean(results)
+        if known:
+            _unlock(_command(options, name), options)
+            _clean(results)
+        else:
+            print("no file locks here: left of killed runs, if any, is everything", file=sys.stderr)
         _running.share(guard)
-        status = _run([*_command(options, name), *passed])
+        status = _run([*_command(options, name), *passed], options)
         if status == 0:
-            _write_manifest(results)
             _name_leftovers(results)
-    except (InputError, OutputError) as error:
+    except (InputError, OSError) as error:  # a result, the guard or a folder that cannot be used
         sys.exit(f"error: {error}")
     if status:
         print(
@@ -86,10 +93,16 @@ def _snakemake():
 def _command(options, name):
     command = [*_snakemake(), "--workflow-profile", f"workflow/profiles/{options.profile}"]
     command += ["--configfile", str(options.study)]
-    changes = ["drop_specimens=true"] if options.drop else []
-    if options.full:
-        changes += [f"study={name}_full", "accuracy=full"]
-    return command + (["--config", *changes] if changes else [])
+    return command + (["--config", f"study={name}_full", "accuracy=full"] if options.full else [])
+
+
+def _require_plain_path():
+    """Snakemake puts the path of the interpreter into a shell as it is."""
+    if re.search(SPLITS, sys.executable):
+        raise InputError(
+            f"{sys.executable}: Snakemake cannot start scripts from a folder whose name has spaces "
+            "or quotes in it; move the checkout to one without (nothing is made again for that)"
+        )
 
 
 def _require_room(results):
@@ -107,49 +120,70 @@ def _require_room(results):
         )
 
 
-def _unlock(options):
+def _unlock(command, options):
     """Take away what a killed run left of Snakemake's lock: nothing lives here now."""
     locks = Path(".snakemake/locks")
     if locks.is_dir() and any(locks.iterdir()):
         # What is wrong with the study is said by the run itself.
-        command = [*_snakemake(), "--configfile", str(options.study), "--unlock", "--quiet", "all"]
-        environment = os.environ | {"FRACTALCONTACT_ALONE": "1", "FRACTALCONTACT_CHECKED": "1"}
-        subprocess.run(command, env=environment, capture_output=True)
+        environment = _environment(options) | {"FRACTALCONTACT_ALONE": "1"}
+        subprocess.run([*command, "--unlock"], env=environment, capture_output=True)
+
+
+def _environment(options):
+    """What the workflow is told: that results were looked at here, and whether some may go."""
+    told = {"FRACTALCONTACT_CHECKED": "1"} | ({"FRACTALCONTACT_DROP": "1"} if options.drop else {})
+    return os.environ | told
+
+
+def _spoilt(results):
+    """Files that are not any more as their jobs left them, or of which nothing says what they are.
+
+    Yields
+    ------
+    path : pathlib.Path
+    why : str
+    """
+    digests = checksums.Digests(".snakemake/fractalcontact-digests.json")
+    checked = checksums.check(results, digests.of)
+    digests.save()
+    for path in checked.damaged:
+        yield path, "damaged or replaced after it was made"
+    for path in checked.unrecorded:
+        yield path, "without a checksum"
 
 
 def _clean(results):
-    """Remove what is half written, and what is not any more as its job left it."""
-    if not results.is_dir():
-        return
+    """Remove what is half written; set aside what must not be read."""
     for path in sweep(results):
         print(f"removed {path}, which a killed run left unfinished", file=sys.stderr)
-    digests = checksums.Digests(".snakemake/fractalcontact-digests.json")
-    checked = checksums.check(results, digests.of)
-    for path in checked.damaged:
-        path.unlink(missing_ok=True)
-        print(
-            f"removed {path}: damaged or replaced after it was made; it is made again",
-            file=sys.stderr,
-        )
-    digests.save()
+    for path, why in list(_spoilt(results)):
+        aside = checksums.set_aside(results, path)
+        print(f"{path}: {why}; moved to {aside}, and made again if needed", file=sys.stderr)
 
 
-def _run(command):
+def _name_damage(results):
+    for path, why in _spoilt(results):
+        print(f"{path}: {why}; a run sets it aside, and makes it again if needed", file=sys.stderr)
+
+
+def _run(command, options):
     """Exit code of a command whose whole family of processes ends with this one."""
-    environment = os.environ | {"FRACTALCONTACT_CHECKED": "1"}
-    signals, child = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP), None
+    signals, child = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT), None
     try:
         for number in signals:
             signal.signal(number, _stop)
-        child = subprocess.Popen(command, env=environment, start_new_session=True)
-        return _ended(child)
+        child = subprocess.Popen(command, env=_environment(options), start_new_session=True)
+        status = child.wait()
     except _Stopped as stopped:
         for number in signals:
             signal.signal(number, signal.SIG_IGN)
         print("make: told to stop; jobs end, and 'make' goes on from there.", file=sys.stderr)
         if child is not None:
-            _end(child)
+            _end(child, cluster=options.profile != "default")
         sys.exit(128 + stopped.args[0])
+    for number in signals:
+        signal.signal(number, signal.SIG_DFL)
+    return status if status >= 0 else 128 - status
 
 
 class _Stopped(Exception):
@@ -160,15 +194,17 @@ def _stop(number, frame):
     raise _Stopped(number)
 
 
-def _ended(child):
-    status = child.wait()
-    return status if status >= 0 else 128 - status
+def _end(child, *, cluster):
+    """Tell all processes of the run to end; those that do not are ended.
 
-
-def _end(child):
-    """Tell all processes of the run to end; those that do not are ended."""
-    deadline = time.monotonic() + GRACE
-    left = _tell(child, signal.SIGTERM)
+    Jobs on a cluster are taken back by Snakemake alone, and only where it is interrupted.
+    """
+    deadline = time.monotonic() + (CLUSTER_GRACE if cluster else GRACE)
+    if cluster:
+        child.send_signal(signal.SIGINT)
+        left = True
+    else:
+        left = _tell(child, signal.SIGTERM)
     while left and time.monotonic() < deadline:
         time.sleep(0.05)
         child.poll()  # one that has ended counts until somebody has asked
@@ -185,14 +221,6 @@ def _tell(child, number):
     except ProcessLookupError:
         return False
     return True
-
-
-def _write_manifest(results):
-    """All checksums in one file beside the atlas, as `sha256sum -c` takes them."""
-    if results.is_dir():
-        lines = checksums.lines_of(results)
-        with atomic_write(results / "manifest.sha256") as path:
-            path.write_text("".join(lines), encoding="utf-8")
 
 
 def _name_leftovers(results):

@@ -87,7 +87,7 @@ def sweep(folder):
     list of pathlib.Path
         What was removed.
     """
-    left = sorted(Path(folder).rglob(f"{UNFINISHED}*"))
+    left = sorted(path for path in Path(folder).rglob(f"{UNFINISHED}*") if path.is_file())
     for path in left:
         path.unlink(missing_ok=True)
     return left

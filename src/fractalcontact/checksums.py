@@ -18,6 +18,13 @@ from .atomic import atomic_write, reach_disk
 from .errors import InputError
 
 FOLDER, ENDING = "checksums", ".sha256"
+#: Endings of what jobs make: nothing else in the folder of a study is ours.
+MADE = (".csv", ".nc", ".npy", ".png", ".svg", ".txt", ".yaml")
+#: Of these, those that later jobs read.
+_READ = (".nc", ".npy")
+MANIFEST = "manifest.sha256"
+#: Folder of a study to which damaged files are moved.
+ASIDE = "damaged"
 #: Within so many nanoseconds after a change a file may change again without its times showing it.
 _SAME_TICK = 2_000_000_000
 
@@ -41,13 +48,11 @@ class Digests:
     """
 
     def __init__(self, cache):
-        self._cache, self._new = Path(cache), False
-        try:
-            self._known = json.loads(self._cache.read_text(encoding="utf-8"))
-            if not isinstance(self._known, dict):
-                self._known = {}
-        except (OSError, ValueError):  # only a cache
-            self._known = {}
+        self._cache, self._new, self._known = Path(cache), False, {}
+        with contextlib.suppress(OSError, UnicodeDecodeError):  # only a cache
+            checksum, _, text = self._cache.read_text(encoding="utf-8").partition("\n")
+            if hashlib.sha256(text.encode()).hexdigest() == checksum:
+                self._known = json.loads(text)
 
     def of(self, path):
         """SHA-256 of a file.
@@ -71,8 +76,10 @@ class Digests:
     def save(self):
         """Keep what was computed; without a place for it, it is computed again next time."""
         if self._new:
+            text = json.dumps(self._known)
+            checksum = hashlib.sha256(text.encode()).hexdigest()
             with contextlib.suppress(OSError), atomic_write(self._cache) as path:
-                path.write_text(json.dumps(self._known), encoding="utf-8")
+                path.write_text(f"{checksum}\n{text}", encoding="utf-8")
 
 
 def _identity(path):
@@ -112,11 +119,14 @@ def require_intact(results, file):
     results, file = Path(results), Path(file)
     path = _record_of(results, file)
     if not path.is_file():
-        raise InputError(f"{file}: nothing says how it was made (no {path}); remove it, run again")
+        raise InputError(
+            f"{file}: nothing says how it was made (no {path}); 'make' sets it aside and makes it "
+            "again"
+        )
     if sha256(file) != _lines(path).get(file.relative_to(results).as_posix()):
         raise InputError(
             f"{file}: damaged or replaced after it was made (its checksum is not that in {path}); "
-            "'make' removes it and makes it again"
+            "'make' sets it aside and makes it again"
         )
 
 
@@ -128,11 +138,14 @@ class Checked:
     ----------
     intact, damaged, missing : list of pathlib.Path
         Files of which a checksum is known. Where the record is damaged, it and all its files are.
+    unrecorded : list of pathlib.Path
+        Files that later jobs would read, of which none is known.
     """
 
     intact: list
     damaged: list
     missing: list
+    unrecorded: list
 
 
 def check(results, digest=sha256):
@@ -149,7 +162,7 @@ def check(results, digest=sha256):
     Checked
     """
     results = Path(results)
-    checked = Checked([], [], [])
+    checked = Checked([], [], [], [])
     for path in sorted((results / FOLDER).rglob(f"*{ENDING}")):
         lines = _lines(path)
         if not lines:
@@ -158,11 +171,41 @@ def check(results, digest=sha256):
             file = results / name
             if not file.is_file():
                 checked.missing.append(file)
-            elif digest(file) == known:
+            # Once more in full, before anything is done about it.
+            elif known == digest(file) or known == sha256(file):
                 checked.intact.append(file)
             else:
                 checked.damaged.append(file)
+    known = {*checked.intact, *checked.damaged}
+    made = (path for path in results.rglob("*") if path.suffix in _READ and path.is_file())
+    checked.unrecorded.extend(
+        path
+        for path in sorted(made)
+        if path not in known and not {ASIDE, FOLDER} & set(path.relative_to(results).parts)
+    )
     return checked
+
+
+def set_aside(results, file):
+    """Move a damaged file out of the way, where nothing reads it: it may be its owner's work.
+
+    Returns
+    -------
+    pathlib.Path
+        Where it is now.
+    """
+    target = Path(results) / ASIDE / Path(file).relative_to(results)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    os.replace(file, target)
+    return target
+
+
+def write_manifest(results):
+    """All checksums in one file beside the atlas, as ``sha256sum -c`` takes them there."""
+    results = Path(results)
+    if results.is_dir():
+        with atomic_write(results / MANIFEST) as path:
+            path.write_text("".join(lines_of(results)), encoding="utf-8")
 
 
 def lines_of(results):
@@ -183,7 +226,8 @@ def _recorded_in(results, path):
     """The files whose checksums a record holds, told by their names: those that are there."""
     folder = (results / path.relative_to(results / FOLDER)).parent
     stem = path.name.removesuffix(ENDING)
-    return sorted(f for f in folder.glob("*") if f.is_file() and f.stem == stem)
+    found = (f for f in folder.glob("*") if f.stem == stem and f.suffix in MADE)
+    return sorted(f for f in found if f.is_file())
 
 
 def _lines(path):

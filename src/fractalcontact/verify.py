@@ -12,7 +12,7 @@ from .study import read_study, study_name
 
 
 def main(arguments=None):
-    """Print what is damaged or missing; 1 if anything is, else 0."""
+    """Print what is damaged or missing; 1 if anything is, or nothing is known, else 0."""
     (given,) = sys.argv[1:] if arguments is None else arguments
     try:
         results = results_of(given)
@@ -22,12 +22,13 @@ def main(arguments=None):
     except InputError as error:
         sys.stderr.write(f"error: {error}\n")
         return 1
-    for word in ("damaged", "missing"):
+    for word in ("damaged", "unrecorded", "missing"):
         for path in getattr(checked, word):
             sys.stdout.write(f"{word}: {path}\n")
-    counts = [f"{len(getattr(checked, word))} {word}" for word in ("intact", "damaged", "missing")]
-    wrong = bool(checked.damaged or checked.missing)
-    advice = "; 'make' makes them again" if wrong else ""
+    words = ("intact", "damaged", "unrecorded", "missing")
+    counts = [f"{len(getattr(checked, word))} {word}" for word in words]
+    wrong = not checked.intact or any(getattr(checked, word) for word in words[1:])
+    advice = "; 'make' makes again what the study still asks for" if wrong else ""
     sys.stdout.write(f"{results}: {', '.join(counts)}{advice}\n")
     return int(wrong)
 

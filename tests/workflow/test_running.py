@@ -161,6 +161,18 @@ def test_a_full_disk_is_said_in_one_sentence(project, megabytes):
         subprocess.run(["umount", results], check=True)
 
 
+@pytest.mark.parametrize("name", ["a b", "it's", "$(touch pwned)"])
+def test_an_environment_that_scripts_cannot_be_started_from_is_said_first(project, name):
+    (project / name).mkdir()
+    (project / name / ".venv").symlink_to(sys.prefix)
+    command = [f"{name}/.venv/bin/python", "workflow/run.py", "config/smoke.yaml", "--"]
+    done = subprocess.run(command, cwd=project, capture_output=True, text=True)
+    assert done.returncode != 0
+    (line,) = done.stderr.strip().splitlines()
+    assert "Snakemake cannot start scripts from a folder whose name has spaces or quotes" in line
+    assert not (project / "results").exists()
+
+
 def test_results_that_cannot_be_written_to_are_said_before_anything_runs(project):
     (project / "results").write_text("a file")
     done = made(project, "config/smoke.yaml")

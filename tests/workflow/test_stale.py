@@ -152,11 +152,26 @@ def test_a_missing_folder_of_scans_keeps_the_atlas(project):
         assert "make DROP=yes" in said
         assert "scans: no scan files there" in said
     assert atlas_of(project) == atlas
+    # Nor does a list that was damaged, which is set aside, forget them.
+    listed = project / "results/test/specimens.txt"
+    listed.write_bytes(b"\xff\xfe")
+    assert "no longer has: rock" in made(project, STUDY).stderr
+    # A lock that a killed run left is in nobody's way then either.
+    (project / ".snakemake/locks").mkdir(exist_ok=True)
+    (project / ".snakemake/locks/0.output.lock").write_text("results/test/atlas.nc\n")
     told = made(project, STUDY, "--drop", targets=ATLAS)
     assert told.returncode == 0, told.stderr[-3000:]
     assert "results/test keeps files of rock, which the study no longer has" in told.stderr
     assert list(read_atlas(project / ATLAS[0])["specimens"].children) == ["own"]
     assert planned(project, *ATLAS) == {}
+
+
+def test_results_of_which_nothing_says_what_they_were_made_from_are_refused(project):
+    shutil.rmtree(project / ".snakemake")
+    np.save(project / "scans/rock.npy", rough_heights(seed=1))
+    for done in (run(project, STUDY, "--dry-run"), made(project, STUDY)):
+        assert done.returncode != 0
+        assert "since .snakemake is not with them; bring it back" in done.stdout + done.stderr
 
 
 # -- code, versions, settings ----------------------------------------------------------------------
@@ -251,7 +266,8 @@ def test_what_was_damaged_or_removed_is_made_again_by_the_same_command(project):
     done = made(project, STUDY)
     assert done.returncode == 0, done.stderr[-3000:]
     for name in KINDS:
-        assert f"removed results/test/{name}: damaged" in done.stderr
+        said = f"results/test/{name}: damaged or replaced after it was made; moved to results/test"
+        assert f"{said}/damaged/{name}, and made again" in done.stderr
     assert f"removed {leftover.relative_to(project)}, which a killed run left" in done.stderr
     assert not leftover.exists()
     assert {name: (results / name).read_bytes() for name in before} == before
@@ -275,8 +291,8 @@ def test_a_file_damaged_while_the_study_runs_is_not_read(project):
     errors = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
     assert set(errors) == {
         "error: results/test/specimens/rock.nc: damaged or replaced after it was made (its "
-        "checksum is not that in results/test/checksums/specimens/rock.sha256); 'make' removes it "
-        "and makes it again"
+        "checksum is not that in results/test/checksums/specimens/rock.sha256); 'make' sets it "
+        "aside and makes it again"
     }
     assert "HDF error" not in done.stderr
     again = made(project, STUDY, targets=[target])

@@ -221,7 +221,13 @@ def accuracy_pictures(wildcards):
             f"{SOURCE}: no key 'speed', 'convergence' or 'stability', so nothing to measure; "
             "give --configfile config/accuracy.yaml"
         )
-    return expand(f"{RESULTS}/figures/{{name}}.png", name=ACCURACY_FIGURES)
+    parts = expand(rules.stability_part.output[0], part=PARTS)
+    return [
+        *rules.accuracy_figures.output,
+        *rules.accuracy_atlas.output,
+        *rules.accuracy_atlas.input,
+        *parts,
+    ]
 
 
 rule accuracy:

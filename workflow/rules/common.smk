@@ -38,8 +38,8 @@ from fractalcontact.study import (
 
 SCHEMA = yaml.safe_load((Path(workflow.basedir) / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
-# Of whoever runs it, not of the study: `--config drop_specimens=true`.
-MAY_DROP = str(config.pop("drop_specimens", False)).lower() == "true"
+# Said by whoever runs it, never by a study.
+MAY_DROP = "FRACTALCONTACT_DROP" in os.environ
 if workflow.is_main_process and "FRACTALCONTACT_ALONE" not in os.environ:
     # Held as long as this process lives; jobs hold their own. workflow/run.py alone lets nobody
     # else work while it looks at what killed runs left.
@@ -78,26 +78,46 @@ def refuse_loss(results, names):
 
     A folder that is not mounted, or half copied, looks like one from which scans were removed.
     """
-    listed = Path(results) / "specimens.txt"
-    had = listed.read_text(encoding="utf-8").split() if listed.is_file() else []
-    lost = sorted(set(had) - set(names))
-    if lost and not MAY_DROP:
+    results = Path(results)
+    atlases = [results / "atlas.nc", results / checksums.ASIDE / "atlas.nc"]
+    if MAY_DROP or not any(path.exists() for path in atlases):
+        return
+    listed = results / "specimens.txt"
+    if listed.is_file():
+        had = set(listed.read_text(encoding="utf-8").split())
+    else:  # of an earlier version, or damaged: those of which anything is there
+        kinds = ("specimens", "contact_maps")
+        had = {path.stem for kind in kinds for path in results.glob(f"{kind}/*.nc")}
+    lost = sorted(had - set(names))
+    if lost:
         raise InputError(
             f"{results}/atlas.nc has specimens that the study no longer has: {', '.join(lost)}; "
             "put their scans back or, if they are to go, run 'make DROP=yes' (with snakemake: "
-            "--config drop_specimens=true). Nothing was changed"
+            "set FRACTALCONTACT_DROP=yes in the environment). The atlas was not changed"
+        )
+
+
+def refuse_unknown_origin(results):
+    """Snakemake knows in its own folder alone what its files were made from."""
+    made = any(Path(results, checksums.FOLDER).rglob(f"*{checksums.ENDING}"))
+    known = any(Path(".snakemake/metadata").glob("*")) or any(Path(".snakemake").glob("*.db"))
+    if made and not known:
+        raise InputError(
+            f"{results}: nothing says from which scans, settings and code these results were made, "
+            "since .snakemake is not with them; bring it back, or remove the results"
         )
 
 
 def refuse_damage(results):
     """Stop before a damaged file is read, or what is good is removed to be made from it again."""
     if "FRACTALCONTACT_CHECKED" not in os.environ:  # workflow/run.py has looked, and removed them
-        damaged = checksums.check(results, DIGESTS.of).damaged
+        checked = checksums.check(results, DIGESTS.of)
+        damaged = checked.damaged + checked.unrecorded
         if damaged:
             raise InputError(
                 f"{damaged[0]}: damaged or replaced after it was made"
                 + (f", and {len(damaged) - 1} more files" if len(damaged) > 1 else "")
-                + "; run 'make', which removes and makes it again, or remove it yourself"
+                + "; run 'make', which sets it aside and makes it again, or remove it yourself"
             )
 
 
@@ -106,8 +126,9 @@ try:
     SCANS, SETTINGS, OPTIONS, LABELS, SOLVER = read_study()
     RESULTS = f"results/{config['study']}"
     if workflow.is_main_process:
-        refuse_loss(RESULTS, [*SETTINGS, *LABELS])
+        refuse_unknown_origin(RESULTS)
         refuse_damage(RESULTS)
+        refuse_loss(RESULTS, [*SETTINGS, *LABELS])
 except InputError as error:
     raise WorkflowError(str(error))
 

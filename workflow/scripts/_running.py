@@ -3,7 +3,7 @@
 Snakemake's own lock is a file that a killed run leaves behind, and does not say whose it is. So
 every process that works here, the runs and each of their jobs, holds a shared lock of the system on
 one file for as long as it lives, however it ends. Who gets that file for itself alone knows that
-nothing lives.
+nothing is at work here. (A job that still waits in a cluster's queue is not.)
 """
 
 import contextlib
@@ -61,23 +61,34 @@ def marked():
 
 
 def alone(seconds):
-    """The file for this process alone, as a file descriptor; None if others are at work.
+    """Keep everybody else from working.
 
     Parameters
     ----------
     seconds : float
         How long to wait for others: to read the workflow takes a moment, too.
+
+    Returns
+    -------
+    handle : int or None
+        For :func:`share`; None if others are at work.
+    known : bool
+        Whether the file system can tell. Where it cannot, others may be at work.
     """
     handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
     end = time.monotonic() + seconds
-    while _locked(handle, fcntl.LOCK_EX if fcntl else 0) is False:
+    while (locked := _locked(handle, fcntl.LOCK_EX if fcntl else 0)) is False:
         if time.monotonic() > end:
             os.close(handle)
-            return None
+            return None, True
         time.sleep(0.1)
-    return handle
+    return handle, locked is not None
 
 
 def share(handle):
-    """Let others work again; this process still counts as one that does."""
+    """Let others work again; this process still counts as one that does.
+
+    For a moment nobody holds the file. Another run may take it then, which finds what this one has
+    just left behind: nothing that it could harm.
+    """
     _locked(handle, fcntl.LOCK_SH if fcntl else 0)
