@@ -59,7 +59,10 @@ def main():
             _unlock(_command(options, name), options)
             _clean(results)
         else:
-            print("no file locks here: left of killed runs, if any, is everything", file=sys.stderr)
+            print(
+                "this file system knows no locks: what a killed run may have left stays",
+                file=sys.stderr,
+            )
         _running.share(guard)
         status = _run([*_command(options, name), *passed], options)
         if status == 0:

@@ -79,15 +79,15 @@ def refuse_loss(results, names):
     A folder that is not mounted, or half copied, looks like one from which scans were removed.
     """
     results = Path(results)
-    atlases = [results / "atlas.nc", results / checksums.ASIDE / "atlas.nc"]
-    if MAY_DROP or not any(path.exists() for path in atlases):
+    places = [results, results / checksums.ASIDE]
+    if MAY_DROP or not any((place / "atlas.nc").exists() for place in places):
         return
     listed = results / "specimens.txt"
     if listed.is_file():
         had = set(listed.read_text(encoding="utf-8").split())
     else:  # of an earlier version, or damaged: those of which anything is there
-        kinds = ("specimens", "contact_maps")
-        had = {path.stem for kind in kinds for path in results.glob(f"{kind}/*.nc")}
+        stages = [place / stage for place in places for stage in ("specimens", "contact_maps")]
+        had = {path.stem for stage in stages for path in stage.glob("*.nc")}
     lost = sorted(had - set(names))
     if lost:
         raise InputError(
@@ -110,7 +110,7 @@ def refuse_unknown_origin(results):
 
 def refuse_damage(results):
     """Stop before a damaged file is read, or what is good is removed to be made from it again."""
-    if "FRACTALCONTACT_CHECKED" not in os.environ:  # workflow/run.py has looked, and removed them
+    if "FRACTALCONTACT_CHECKED" not in os.environ:  # workflow/run.py has set them aside
         checked = checksums.check(results, DIGESTS.of)
         damaged = checked.damaged + checked.unrecorded
         if damaged:
