@@ -89,13 +89,9 @@ def _options():
     return parser.parse_args(own[: own.index("--")] if "--" in own else own), passed
 
 
-def _snakemake():
-    return [sys.executable, "-m", "snakemake"]
-
-
 def _command(options, name):
-    command = [*_snakemake(), "--workflow-profile", f"workflow/profiles/{options.profile}"]
-    command += ["--configfile", str(options.study)]
+    command = [sys.executable, "-m", "snakemake", "--configfile", str(options.study)]
+    command += ["--workflow-profile", f"workflow/profiles/{options.profile}"]
     return command + (["--config", f"study={name}_full", "accuracy=full"] if options.full else [])
 
 

@@ -25,7 +25,7 @@ _READ = (".nc", ".npy")
 MANIFEST = "manifest.sha256"
 #: Folder of a study to which damaged files are moved.
 ASIDE = "damaged"
-#: Within so many nanoseconds after a change a file may change again without its times showing it.
+#: Nanoseconds after a change within which a file may change again without its times showing it.
 _SAME_TICK = 2_000_000_000
 
 

@@ -150,7 +150,7 @@ def digest_of(path):
 def digests_of(scan):
     """SHA-256 of the scan files of a specimen, by path: parameters of the rules that read them.
 
-    Times tell nothing of a file that was moved, copied or unpacked over another.
+    Times say nothing of a file that was moved, copied or unpacked over another.
     """
     return {str(path): DIGEST_OF_SCAN[path] for path in (scan.lower, scan.upper) if path}
 

@@ -28,7 +28,7 @@ rule embedded:
 
 
 def scan_files(wildcards):
-    """The faces of a specimen, wherever they come from. Their digests tell whether they changed."""
+    """The faces of a specimen, wherever they come from. Their digests show changes."""
     scan = SCANS.get(wildcards.specimen)
     if scan is None:
         return {"lower": rules.embedded.output.scan}

@@ -93,7 +93,7 @@ def require_unchanged(digests):
     Raises
     ------
     InputError
-        If one is another by now: the results would not belong to it, and nothing would tell.
+        If one is another by now: the results would not belong to it, and nothing would show it.
     """
     for path, digest in digests.items():
         if digest and (not Path(path).is_file() or checksums.sha256(path) != digest):

@@ -73,7 +73,7 @@ def alone(seconds):
     handle : int or None
         For :func:`share`; None if others are at work.
     known : bool
-        Whether the file system can tell. Where it cannot, others may be at work.
+        Whether the file system has locks. Where it has none, others may be at work.
     """
     handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
     end = time.monotonic() + seconds
