@@ -46,14 +46,14 @@ slurm: $(VENV)/slurm-installed
 	@$(RUN) --profile slurm -- -- $(TARGET)
 
 verify: $(VENV)/installed
-	@$(BIN)/python -m fractalcontact.verify "$$STUDY" || { rm -f .snakemake/fractalcontact-digests.json; exit 1; }
+	@$(BIN)/python -m fractalcontact.commands.verify "$$STUDY" || { rm -f .snakemake/fractalcontact-digests.json; exit 1; }
 
 smoke:
 	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
 
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
-	@$(BIN)/python -m fractalcontact.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
+	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
 
 # Times are compared: let nothing else run meanwhile.
 accuracy: $(if $(PEERS),$(VENV)/peers-installed)
@@ -77,12 +77,12 @@ bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 
 SCENES ?= 3000
 scenes: $(VENV)/tests-installed
-	SCENES=$(SCENES) $(BIN)/python -m pytest -q tests/test_scenes.py -k every_state
+	SCENES=$(SCENES) $(BIN)/python -m pytest -q tests/accuracy/test_random_problems.py -k every_state
 
 # What failed is kept in results/fuzzing; FUZZ='--only 1234' judges one file again.
 FILES ?= 5000
 fuzz: $(VENV)/tests-installed
-	$(BIN)/python tests/fuzzing.py --files $(FILES) $(FUZZ)
+	$(BIN)/python tests/support/fuzzing.py --files $(FILES) $(FUZZ)
 
 lint: $(VENV)/tests-installed
 	$(BIN)/python -m ruff check .
@@ -104,7 +104,7 @@ $(VENV)/installed: requirements.lock pyproject.toml | $(VENV)/bin/python
 	$(PIP) install --require-hashes --compile -r requirements.lock
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
 # Compiled now too: else the first jobs of the first study would all do it.
-	$(BIN)/python -m fractalcontact.compile_kernels
+	$(BIN)/python -m fractalcontact.commands.compile_kernels
 	@touch $@
 
 $(VENV)/tests-installed: requirements-test.lock $(VENV)/installed

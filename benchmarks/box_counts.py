@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 
-from fractalcontact.box_counts import box_count, box_sizes, mean_count, whole_sizes
-from fractalcontact.synthesis import self_affine
+from fractalcontact.domain.box_counts import box_count, box_sizes, mean_count, whole_sizes
+from fractalcontact.surface.synthesis import self_affine
 
 #: Share of the window in contact.
 SHARE = 0.1

@@ -16,9 +16,9 @@ from collections import Counter
 import numpy as np
 from study_cost import stages_of
 
-from fractalcontact.store import read_atlas
-from fractalcontact.study import solver_settings
-from fractalcontact.verify import results_of
+from fractalcontact.commands.verify import results_of
+from fractalcontact.study.atlas import read_atlas
+from fractalcontact.study.configuration import solver_settings
 
 #: Stages that rest on contact solves.
 _STAGES = (

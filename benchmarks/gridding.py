@@ -65,7 +65,7 @@ class ReaderPeak(logging.Handler):
 
 def read_cloud(path, grid):
     """Read the file as a study would and print what it took; meant for a process of its own."""
-    from fractalcontact.scan import read_scan
+    from fractalcontact.scan.read import read_scan
 
     reader = ReaderPeak()
     log = logging.getLogger("fractalcontact.scan.confined")

@@ -13,7 +13,7 @@ import numpy as np
 from solvers import Failed, counted_convolutions, forget
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.reference_scenes import LOADS, RoughScene, closure_at_fraction
+from fractalcontact.accuracy.reference import LOADS, RoughScene, closure_at_fraction
 
 # Force error every solver has to reach.
 ERROR = 1e-6

@@ -36,7 +36,7 @@ def main():
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     from measure import measure_huge, measure_scaling
 
-    from fractalcontact.reference_scenes import RoughScene
+    from fractalcontact.accuracy.reference import RoughScene
 
     rows, remarks, scaling, huge = [], [], [], []
     for size in options.sizes:
@@ -126,7 +126,7 @@ def _write(folder, rows, remarks, scaling, huge):
 
 
 def _versions():
-    from fractalcontact.threads import count
+    from fractalcontact.core.threads import count
 
     packages = ["fractalcontact", "numpy", "scipy", "numba", "ContactMechanics", "muGrid", "tamaas"]
     named = []

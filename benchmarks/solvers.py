@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.methods import METHODS, peers
-from fractalcontact.screening import forget_preconditioner
+from fractalcontact.contact.preconditioner import forget_preconditioner
+from fractalcontact.methods import peers
+from fractalcontact.methods.registry import METHODS
 
 
 class Failed(RuntimeError):

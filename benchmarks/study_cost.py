@@ -11,7 +11,7 @@ import csv
 import re
 from collections import defaultdict
 
-from fractalcontact.verify import results_of
+from fractalcontact.commands.verify import results_of
 
 WORKED = re.compile(r"worked ([\d.]+) s, of which ([\d.]+) s on (\d+) contact problems")
 

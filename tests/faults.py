@@ -25,10 +25,10 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "tests/workflow"), str(ROOT / "src")]
+sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "src")]
 from projects import copy_project, made, rough_heights, small_study, write_scan
 
-from fractalcontact.checksums import check
+from fractalcontact.core.checksums import check
 
 #: In a full run; `--quick` takes the second number.
 TIMES = {

@@ -24,10 +24,10 @@ sys.path.insert(0, str(ROOT / "src"))
 sys.path.append(str(ROOT / "workflow/scripts"))
 import _running
 
-from fractalcontact import checksums
-from fractalcontact.atomic import sweep
-from fractalcontact.errors import InputError
-from fractalcontact.study import read_study, study_name
+from fractalcontact.core import checksums
+from fractalcontact.core.atomic import sweep
+from fractalcontact.core.errors import InputError
+from fractalcontact.study.configuration import read_study, study_name
 
 #: Seconds that another run is waited for, which may only be reading the workflow; and that jobs get
 #: to end when they are told to.

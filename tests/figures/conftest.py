@@ -4,28 +4,28 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact import store
-from fractalcontact.analysis import analyse_domains, scaling_over_resolutions
-from fractalcontact.area import area_laws, joint_statistics
-from fractalcontact.area_slope import area_slope
-from fractalcontact.closure import closure_curves, elastic_dilatancy
-from fractalcontact.dimension_test import dimension_test
-from fractalcontact.domain_measures import measures_of_map_states
-from fractalcontact.estimator_bias import estimator_bias
-from fractalcontact.joint import describe_joint
-from fractalcontact.needs import choices
-from fractalcontact.quality import scan_quality
-from fractalcontact.roll_off import roll_off_effect
-from fractalcontact.roughness import best_dimension, surface_dimension
-from fractalcontact.size_laws import joint_by_size
-from fractalcontact.size_test import size_test
-from fractalcontact.specimen import make_specimen, window_sides
-from fractalcontact.statements import judge
-from fractalcontact.states import combine, domains_of, force_range, map_states
-from fractalcontact.strength import joint_strength
-from fractalcontact.study import resolve_settings, solver_settings, window_arguments
-from fractalcontact.sweep import joint_states
-from fractalcontact.synthesis import self_affine
+from fractalcontact.domain.analysis import analyse_domains, scaling_over_resolutions
+from fractalcontact.domain.measures import measures_of_map_states
+from fractalcontact.experiments.area_slope import area_slope
+from fractalcontact.experiments.delta_g import estimator_bias
+from fractalcontact.experiments.delta_sigma import dimension_test
+from fractalcontact.experiments.roll_off import roll_off_effect
+from fractalcontact.mechanics.area import area_laws, joint_statistics
+from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
+from fractalcontact.mechanics.joint import describe_joint
+from fractalcontact.mechanics.plan import choices
+from fractalcontact.mechanics.states import combine, domains_of, force_range, map_states
+from fractalcontact.mechanics.strength import joint_strength
+from fractalcontact.mechanics.sweep import joint_states
+from fractalcontact.roughness.dimension import best_dimension, surface_dimension
+from fractalcontact.roughness.quality import scan_quality
+from fractalcontact.size_effect.eq6 import size_test
+from fractalcontact.size_effect.laws import joint_by_size
+from fractalcontact.statements.judge import judge
+from fractalcontact.study.atlas import STAGES, read_atlas, write_atlas
+from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
+from fractalcontact.surface.specimen import make_specimen, window_sides
+from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
 SOLVER = solver_settings({}, "tiny")
@@ -123,7 +123,7 @@ def _scans():
 @pytest.fixture(scope="session")
 def atlas_file(tmp_path_factory):
     """Path of an atlas with the specimens sliding, flat and pair."""
-    parts = {stage: {} for stage in store.STAGES}
+    parts = {stage: {} for stage in STAGES}
     settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
     for name, (lower, upper) in _scans().items():
         chosen = settings[name]
@@ -189,12 +189,10 @@ def atlas_file(tmp_path_factory):
     parts["estimator_bias"]["surfaces"] = estimator_bias(ESTIMATOR_BIAS)
     parts["roll_off"]["surfaces"] = roll_off_effect(ROLL_OFF, 4.8, [1, 2])
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
-    store.write_atlas(
-        parts, path, study="tiny", configuration={"study": STUDY, "settings": settings}
-    )
+    write_atlas(parts, path, study="tiny", configuration={"study": STUDY, "settings": settings})
     return path
 
 
 @pytest.fixture(scope="session")
 def atlas(atlas_file):
-    return store.read_atlas(atlas_file)
+    return read_atlas(atlas_file)

@@ -1,21 +1,24 @@
 """Figures of accuracy and speed: labels, numbers beside them, and captions that say who leads."""
 
-import importlib
 import re
 
 import numpy as np
 import pytest
 
-from fractalcontact import store
-from fractalcontact.accuracy import hertz_convergence, punch_convergence, richardson_trials
-from fractalcontact.elimination import elimination
-from fractalcontact.figure_names import ACCURACY, accuracy_figures_of
-from fractalcontact.figures import draw_study_figures
-from fractalcontact.figures.common import print_style
-from fractalcontact.reference_scenes import scenes_of
-from fractalcontact.speed import OURS, error_against_time
-from fractalcontact.speed_growth import growth
-from fractalcontact.stability import HONEST, SILENT, stability
+from fractalcontact.accuracy.convergence import (
+    hertz_convergence,
+    punch_convergence,
+    richardson_trials,
+)
+from fractalcontact.accuracy.elimination import elimination
+from fractalcontact.accuracy.growth import growth
+from fractalcontact.accuracy.reference import scenes_of
+from fractalcontact.accuracy.speed import OURS, error_against_time
+from fractalcontact.accuracy.stability import HONEST, SILENT, stability
+from fractalcontact.figures.draw import draw_study_figures, drawer_of
+from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.study.atlas import read_atlas, write_atlas
+from fractalcontact.study.figure_list import ACCURACY, accuracy_figures_of
 
 RECIPE = {
     "sizes": [16, 24, 32],
@@ -45,19 +48,18 @@ def atlas_file(tmp_path_factory):
         "elimination": {"scenes": elimination(4)},
     }
     path = tmp_path_factory.mktemp("atlas") / "accuracy.nc"
-    store.write_atlas(parts, path, study="tiny", configuration={"study": {}, "settings": {}})
+    write_atlas(parts, path, study="tiny", configuration={"study": {}, "settings": {}})
     return path
 
 
 @pytest.fixture(scope="module")
 def atlas(atlas_file):
-    return store.read_atlas(atlas_file)
+    return read_atlas(atlas_file)
 
 
 def drawn(atlas, name):
-    module = importlib.import_module(f"fractalcontact.figures.{name}")
     with print_style():
-        return module.draw(atlas, [])
+        return drawer_of(name)(atlas, [])
 
 
 @pytest.mark.parametrize("name", FIGURES)

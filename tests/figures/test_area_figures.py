@@ -7,11 +7,11 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from fractalcontact.area import FULL_CONTACT, area_laws, joint_statistics
-from fractalcontact.area_slope import area_slope
-from fractalcontact.figures import area_slope as slope_figure
-from fractalcontact.figures import area_theories
-from fractalcontact.figures.common import print_style, save, settings_of
+from fractalcontact.experiments.area_slope import area_slope
+from fractalcontact.figures.experiments import area_slope as slope_figure
+from fractalcontact.figures.joint import area_theories
+from fractalcontact.figures.kit.drawing import print_style, save, settings_of
+from fractalcontact.mechanics.area import FULL_CONTACT, area_laws, joint_statistics
 
 SPECIMENS = ("sliding", "flat", "pair")
 RECIPE = {

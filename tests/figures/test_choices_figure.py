@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fractalcontact.figures import choices
-from fractalcontact.store import read_atlas
+from fractalcontact.figures.joint import choices
+from fractalcontact.study.atlas import read_atlas
 
 
 @pytest.fixture(scope="module")

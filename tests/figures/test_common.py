@@ -1,6 +1,5 @@
 """What all figures share: their titles, the ticks of their axes, and how they are laid out."""
 
-import importlib
 import json
 import xml.etree.ElementTree as ElementTree
 
@@ -11,10 +10,11 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
-from fractalcontact.figure_names import figures_of
-from fractalcontact.figures import plateau
-from fractalcontact.figures._words import percent
-from fractalcontact.figures.common import WIDTH, Drawing, headline, letter, print_style, save
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.experiments import plateau
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing, headline, letter, print_style, save
+from fractalcontact.figures.kit.words import percent
+from fractalcontact.study.figure_list import figures_of
 
 #: 200 letters, with dollar signs that begin no formula.
 LONG = ("Sandstein aus der Grube 7, Kluft 3a, geborgen für $5 $ und \\frac vermessen, " * 3)[:200]
@@ -70,11 +70,7 @@ def labelled(atlas):
 @pytest.mark.parametrize("name", [n for n in figures_of("match") if n != "domain_measures"])
 def test_a_long_label_stays_within_every_figure(labelled, name):
     with print_style():
-        figure = (
-            importlib.import_module(f"fractalcontact.figures.{name}")
-            .draw(labelled, "sliding")
-            .figure
-        )
+        figure = drawer_of(name)(labelled, "sliding").figure
         titles = [text for text in figure.findobj(Text) if text.get_text().startswith("Sandstein")]
         assert titles
         for title in titles:

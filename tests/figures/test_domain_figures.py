@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.domain_measures import measures_of_states
-from fractalcontact.figures.common import print_style, save
-from fractalcontact.figures.domain_measures import draw
+from fractalcontact.domain.measures import measures_of_states
+from fractalcontact.figures.joint.domain_measures import draw
+from fractalcontact.figures.kit.drawing import print_style, save
 
 
 def with_measures(atlas, name, factor=1.0):

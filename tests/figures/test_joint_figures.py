@@ -1,6 +1,5 @@
 """Figures of clusters, conductance, compliance and of the plateau of rigid dilatancy."""
 
-import importlib
 import json
 import re
 from dataclasses import replace
@@ -10,11 +9,12 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-from fractalcontact.clusters import cluster_sizes, cluster_statistics
-from fractalcontact.figures import plateau
-from fractalcontact.figures.common import offset_axis, print_style, save
-from fractalcontact.figures.plateau import Slide
-from fractalcontact.fitting import fit_line
+from fractalcontact.core.fitting import fit_line
+from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.experiments import plateau
+from fractalcontact.figures.experiments.plateau import Slide
+from fractalcontact.figures.kit.drawing import offset_axis, print_style, save
 
 SLIDING = ("sliding", "pair")
 DRAWN = [
@@ -27,7 +27,7 @@ DRAWN = [
 
 def drawn(atlas, figure, what):
     with print_style():
-        return importlib.import_module(f"fractalcontact.figures.{figure}").draw(atlas, what)
+        return drawer_of(figure)(atlas, what)
 
 
 def with_changes(atlas, group, **change):

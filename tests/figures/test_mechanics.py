@@ -1,7 +1,6 @@
 """Figures of relief, composite topography, closure and dilatancy (Figs. 2 to 7 of the paper)."""
 
 import base64
-import importlib
 import re
 
 import numpy as np
@@ -10,15 +9,15 @@ import pytest
 import xarray as xr
 from matplotlib.colors import to_rgb
 
-from fractalcontact.figure_names import figures_of
-from fractalcontact.figures import ENDINGS, draw_figures
-from fractalcontact.figures._maps import MISSING
-from fractalcontact.figures._words import force_label, force_unit, length_unit
-from fractalcontact.figures.common import DPI, print_style, spread
-from fractalcontact.figures.fig02_relief import _shaded
-from fractalcontact.figures.fig03_composite import Slid
-from fractalcontact.fitting import fit_line
-from fractalcontact.joint import composite_topography
+from fractalcontact.core.fitting import fit_line
+from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
+from fractalcontact.figures.kit.drawing import DPI, print_style, spread
+from fractalcontact.figures.kit.maps import MISSING
+from fractalcontact.figures.kit.words import force_label, force_unit, length_unit
+from fractalcontact.figures.paper.fig02_relief import _shaded
+from fractalcontact.figures.paper.fig03_composite import Slid
+from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.study.figure_list import figures_of
 
 FIGURES = ("fig02_relief", "fig03_composite", "fig04_05_closure", "fig06_07_dilatancy")
 DRAWN = [
@@ -31,8 +30,7 @@ DRAWN = [
 
 def drawn(atlas, specimen, figure):
     with print_style():
-        module = importlib.import_module(f"fractalcontact.figures.{figure}")
-        return module.draw(atlas, specimen)
+        return drawer_of(figure)(atlas, specimen)
 
 
 def with_changes(atlas, group, **variables):

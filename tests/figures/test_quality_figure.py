@@ -8,10 +8,10 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
-from fractalcontact.figures import draw_figures
-from fractalcontact.figures.common import print_style, save
-from fractalcontact.figures.quality import draw
-from fractalcontact.labels import printable
+from fractalcontact.core.labels import printable
+from fractalcontact.figures.draw import draw_figures
+from fractalcontact.figures.joint.quality import draw
+from fractalcontact.figures.kit.drawing import print_style, save
 
 SPECIMENS = ("sliding", "flat", "pair")
 REGISTRATION = {

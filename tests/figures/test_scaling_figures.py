@@ -1,6 +1,5 @@
 """Figures of contact domains and their scaling: 8, 9, 10, 12 and 13."""
 
-import importlib
 import re
 from itertools import pairwise
 
@@ -10,13 +9,15 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-from fractalcontact import figures
-from fractalcontact.figures import _words, common
-from fractalcontact.figures._domains import Loading, trend
-from fractalcontact.figures._size_effect import fractal_pressure, size_effect
-from fractalcontact.fitting import fit_line
-from fractalcontact.scaling import renormalisation
-from fractalcontact.states import chosen_offset
+from fractalcontact.core.fitting import fit_line
+from fractalcontact.domain.renormalisation import renormalisation
+from fractalcontact.figures import draw as figures
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.kit import drawing as common
+from fractalcontact.figures.kit import words as _words
+from fractalcontact.figures.kit.domains import Loading, trend
+from fractalcontact.figures.paper._size_effect import fractal_pressure, size_effect
+from fractalcontact.mechanics.states import chosen_offset
 
 NAMES = (
     "fig08_prefractals",
@@ -31,7 +32,7 @@ UNITS = ("(mm)", "(mm$^2$)", "(MPa)", "(N)", "(1)")
 
 def draw(atlas, figure, specimen):
     with common.print_style():
-        return importlib.import_module(f"fractalcontact.figures.{figure}").draw(atlas, specimen)
+        return drawer_of(figure)(atlas, specimen)
 
 
 def finest(atlas, stage, specimen):

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.figures import dimension_test, fig11_slope_angle, size_test
-from fractalcontact.figures.common import print_style, save, settings_of
+from fractalcontact.figures.experiments import dimension_test
+from fractalcontact.figures.joint import size_test
+from fractalcontact.figures.kit.drawing import print_style, save, settings_of
+from fractalcontact.figures.paper import fig11_slope_angle
 
 SPECIMENS = ("sliding", "flat", "pair")
 

@@ -2,9 +2,10 @@
 
 import pytest
 
-from fractalcontact.figure_names import EXPERIMENTS, study_figures_of
-from fractalcontact.figures import draw_study_figures, statements
-from fractalcontact.figures.common import print_style
+from fractalcontact.figures.draw import draw_study_figures
+from fractalcontact.figures.joint import statements
+from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.study.figure_list import EXPERIMENTS, study_figures_of
 
 
 @pytest.mark.parametrize("name", ["sliding", "pair", "flat"])

@@ -1,15 +1,15 @@
 """Figures of strength and of size (Fig. 1b, sects. 3 and 5 of the paper)."""
 
-import importlib
 import json
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.figures._sizes import apart, plain_decades
-from fractalcontact.figures.common import print_style, save
-from fractalcontact.theory import LARGEST_FRICTION_ANGLE
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.kit.drawing import print_style, save
+from fractalcontact.figures.kit.sizes import apart, plain_decades
+from fractalcontact.mechanics.theory import LARGEST_FRICTION_ANGLE
 
 DRAWN = [
     ("sliding", "strength"),
@@ -24,7 +24,7 @@ DRAWN = [
 
 def drawn(atlas, specimen, figure):
     with print_style():
-        return importlib.import_module(f"fractalcontact.figures.{figure}").draw(atlas, specimen)
+        return drawer_of(figure)(atlas, specimen)
 
 
 def unstated(atlas):

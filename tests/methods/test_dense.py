@@ -6,7 +6,7 @@ import pytest
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.methods import dense
 from fractalcontact.methods.common import sum_displacement
-from fractalcontact.synthesis import self_affine
+from fractalcontact.surface.synthesis import self_affine
 
 SIDE = 20.0
 # One line a scene: seed, H, rms height and closure in mm. Contact from a few nodes to most.

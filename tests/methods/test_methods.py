@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, NotConverged
-from fractalcontact.methods import METHODS, common, gauss_seidel, nnls, polonsky_keer
+from fractalcontact.methods import common, gauss_seidel, nnls, polonsky_keer
 from fractalcontact.methods.common import checked_state
-from fractalcontact.synthesis import self_affine
+from fractalcontact.methods.registry import METHODS
+from fractalcontact.surface.synthesis import self_affine
 
 ITERATIVE = ["paper", "polonsky-keer", "gauss-seidel", "nnls"]
 BY_FORCE = ["dense", "polonsky-keer"]

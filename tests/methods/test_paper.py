@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.halfspace import RIGID_PLATE_SELF_TERMS
+from fractalcontact.elastic.halfspace import RIGID_PLATE_SELF_TERMS
 from fractalcontact.methods import dense, paper
-from fractalcontact.synthesis import self_affine
+from fractalcontact.surface.synthesis import self_affine
 
 
 def rough_scene(seed, n=40, hurst=0.8, kernel="love"):

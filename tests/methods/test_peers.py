@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.child_process import ChildFailed
-from fractalcontact.hard_scenes import hard_scene
+from fractalcontact.accuracy.hard_problems import hard_scene
+from fractalcontact.accuracy.reference import RoughScene
+from fractalcontact.core.child_process import ChildFailed
 from fractalcontact.methods import peers
-from fractalcontact.reference_scenes import RoughScene
 
 PEERS = peers.peer_methods()
 CCG = "ContactMechanics ccg"

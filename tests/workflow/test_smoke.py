@@ -13,9 +13,9 @@ import pytest
 import yaml
 from projects import ROOT, command, project, run, small_study, write_scan
 
-from fractalcontact.catalogue import find_scans
-from fractalcontact.figure_names import EXPERIMENTS, accuracy_figures_of, figures_of
-from fractalcontact.store import read_atlas
+from fractalcontact.study.atlas import read_atlas
+from fractalcontact.study.figure_list import EXPERIMENTS, accuracy_figures_of, figures_of
+from fractalcontact.study.scan_files import find_scans
 
 __all__ = ["project"]  # a fixture
 SCANS = ROOT.parent / "shared" / "scans"
@@ -101,7 +101,7 @@ def test_accuracy_says_which_study_has_something_to_measure(project):
 def test_reading_the_workflow_imports_nothing_heavy():
     rules = (ROOT / "workflow/rules/common.smk").read_text()
     modules = re.findall(r"^from (fractalcontact\S*) import", rules, re.MULTILINE)
-    assert "fractalcontact.study" in modules
+    assert "fractalcontact.study.configuration" in modules
     names = "import sys; print(sorted({'xarray', 'numba', 'matplotlib'} & set(sys.modules)))"
     code = f"import {', '.join(modules)}; {names}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

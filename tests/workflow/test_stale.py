@@ -12,9 +12,10 @@ import yaml
 from projects import command, copy_project, jobs_of, made, rough_heights, run, small_study
 from projects import write_scan as write_scan_in
 
-from fractalcontact.atomic import UNFINISHED
-from fractalcontact.checksums import sha256
-from fractalcontact.store import read, read_atlas
+from fractalcontact.core.atomic import UNFINISHED
+from fractalcontact.core.checksums import sha256
+from fractalcontact.core.netcdf import read
+from fractalcontact.study.atlas import read_atlas
 
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"

@@ -2,12 +2,12 @@
 # study of its own (config/accuracy.yaml), no part of `all`.
 from importlib.util import find_spec
 
-from fractalcontact.figure_names import accuracy_figures_of
+from fractalcontact.study.figure_list import accuracy_figures_of
 
 SCENES = []
 if "speed" in config:
     # Imported here, because no other study needs the solver to know its jobs.
-    from fractalcontact.reference_scenes import scenes_of
+    from fractalcontact.accuracy.reference import scenes_of
 
     SCENES = list(scenes_of(config["speed"]))
 
@@ -23,7 +23,7 @@ PEERS = [name for name in ("ContactMechanics", "tamaas") if find_spec(name)]
 KINDS_A_JOB = 14
 KINDS = []
 if "stability" in config:
-    from fractalcontact.hard_scenes import KINDS
+    from fractalcontact.accuracy.hard_problems import KINDS
 PARTS = list(range(0, len(KINDS), KINDS_A_JOB))
 ACCURACY_FIGURES = accuracy_figures_of(config)
 ACCURACY_FILES = {}
@@ -212,7 +212,7 @@ use rule study_figures as accuracy_figures with:
     params:
         specimens=[],
         names=ACCURACY_FIGURES,
-        code=code("study_figures", *(f"figures/{name}" for name in ACCURACY_FIGURES)),
+        code=code("study_figures", *figure_modules(ACCURACY_FIGURES)),
 
 
 def accuracy_pictures(wildcards):

@@ -20,13 +20,13 @@ os.environ["PYTHONPATH"] = os.pathsep.join(
 import _running
 
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
-from fractalcontact import checksums, sources
-from fractalcontact.catalogue import find_scans
-from fractalcontact.directions import AUTOMATIC_OFFSETS
-from fractalcontact.errors import InputError
-from fractalcontact.figure_names import EXPERIMENTS, figures_of, study_figures_of
-from fractalcontact.sidecar import is_contact_map, sidecar_of_matrix
-from fractalcontact.study import (
+from fractalcontact.core import checksums, sources
+from fractalcontact.study.scan_files import find_scans
+from fractalcontact.core.directions import AUTOMATIC_OFFSETS
+from fractalcontact.core.errors import InputError
+from fractalcontact.study.figure_list import EXPERIMENTS, figures_of, study_figures_of
+from fractalcontact.study.sidecar import is_contact_map, sidecar_of_matrix
+from fractalcontact.study.configuration import (
     check_names,
     check_study,
     read_sidecar,
@@ -193,8 +193,10 @@ FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and n
 SLIDING = [name for name in SPECIMENS if name not in FLAT]
 
 
-def figure_modules(opposite):
-    return [f"figures/{name}" for name in figures_of(opposite)]
+def figure_modules(names):
+    """Modules that draw figures, for `code`: they are imported by name when they are called."""
+    paths = [path for name in names for path in PACKAGE.glob(f"figures/*/{name}.py")]
+    return [str(path.relative_to(PACKAGE).with_suffix("")) for path in paths]
 
 
 def grain(key, n):

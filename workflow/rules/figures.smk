@@ -55,7 +55,7 @@ rule figures:
     params:
         names=figures_of("match"),
         configuration=configuration_of,
-        code=code("figures", *figure_modules("match")),
+        code=code("figures", *figure_modules(figures_of("match"))),
     script:
         "../scripts/figures.py"
 
@@ -75,7 +75,7 @@ use rule figures as figures_against_plane with:
     params:
         names=figures_of("flat"),
         configuration=configuration_of,
-        code=code("figures", *figure_modules("flat")),
+        code=code("figures", *figure_modules(figures_of("flat"))),
 
 
 # What only the whole study shows.
@@ -109,7 +109,7 @@ rule study_figures:
     params:
         specimens=SPECIMENS,
         names=STUDY_FIGURES,
-        code=code("study_figures", *(f"figures/{name}" for name in STUDY_FIGURES)),
+        code=code("study_figures", *figure_modules(STUDY_FIGURES)),
     script:
         "../scripts/study_figures.py"
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import _running
 
-from fractalcontact import checksums
-from fractalcontact.effort import SOLVING
-from fractalcontact.errors import InputError, NotConverged, OutputError
+from fractalcontact.contact.effort import SOLVING
+from fractalcontact.core import checksums
+from fractalcontact.core.errors import InputError, NotConverged, OutputError
 
 #: What a job says, and exits with, that is told to end.
 STOPPED, STOPPED_CODE = "stopped before it was done", 143

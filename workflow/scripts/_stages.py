@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from fractalcontact import store
-from fractalcontact.statements import judge
+from fractalcontact.core import netcdf
+from fractalcontact.statements.judge import judge
+from fractalcontact.study.atlas import write_atlas
 
 
 def read_stages(files):
@@ -12,13 +13,13 @@ def read_stages(files):
     for stage, paths in files.items():
         paths = [paths] if isinstance(paths, str) else paths
         # Every stage keeps a specimen in a file of its name.
-        read = {Path(path).stem: store.read_with_versions(path) for path in paths}
+        read = {Path(path).stem: netcdf.read_with_versions(path) for path in paths}
         stages[stage] = {name: dataset for name, (dataset, _) in read.items()}
         made_with[stage] = {name: versions for name, (_, versions) in read.items()}
     return stages, made_with
 
 
-def write_atlas(stages, made_with, path, configuration, log):
+def join_stages(stages, made_with, path, configuration, log):
     """One file of all of them, with the configuration and the versions that they were made by.
 
     And with the paper's statements, judged for every specimen of the configuration.
@@ -33,7 +34,7 @@ def write_atlas(stages, made_with, path, configuration, log):
         judged[name] = judge(of_joint, settings)
     everything = stages | ({"statements": judged} if judged else {})
     study = configuration["study"]["study"]
-    differing = store.write_atlas(
+    differing = write_atlas(
         everything, path, study=study, configuration=configuration, made_with=made_with
     )
     for versions, parts in differing.items():

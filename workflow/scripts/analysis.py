@@ -2,21 +2,21 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.analysis import analyse_domains, scaling_over_resolutions
-from fractalcontact.area import area_laws, joint_statistics
-from fractalcontact.closure import closure_curves, elastic_dilatancy
-from fractalcontact.domain_measures import measures_of_map_states
-from fractalcontact.needs import choices
-from fractalcontact.roughness import best_dimension
-from fractalcontact.specimen import cell_side, window_sides
-from fractalcontact.states import combine, domains_of, force_range, map_states
-from fractalcontact.strength import joint_strength
+from fractalcontact.core import netcdf
+from fractalcontact.domain.analysis import analyse_domains, scaling_over_resolutions
+from fractalcontact.domain.measures import measures_of_map_states
+from fractalcontact.mechanics.area import area_laws, joint_statistics
+from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
+from fractalcontact.mechanics.plan import choices
+from fractalcontact.mechanics.states import combine, domains_of, force_range, map_states
+from fractalcontact.mechanics.strength import joint_strength
+from fractalcontact.roughness.dimension import best_dimension
+from fractalcontact.surface.specimen import cell_side, window_sides
 
 with job(snakemake) as log:
-    specimen = store.read(snakemake.input.specimen)
-    joint = store.read(snakemake.input.joint)
-    parts = [store.read(path) for path in snakemake.input.contact]
+    specimen = netcdf.read(snakemake.input.specimen)
+    joint = netcdf.read(snakemake.input.joint)
+    parts = [netcdf.read(path) for path in snakemake.input.contact]
     states, settings, spacing = combine(parts), snakemake.params.settings, cell_side(specimen)
     e_star = settings["material"]["e_star"]
     curves = closure_curves(
@@ -30,7 +30,7 @@ with job(snakemake) as log:
         curves,
         joint_statistics(specimen, joint),
         e_star,
-        best_dimension(store.read(snakemake.input.surface_dimension))[0],
+        best_dimension(netcdf.read(snakemake.input.surface_dimension))[0],
     )
     fields = domains_of(states)
     domains = analyse_domains(fields, spacing, fit_range=settings["box_range"])
@@ -49,5 +49,5 @@ with job(snakemake) as log:
     if snakemake.output.get("strength"):
         made["strength"] = joint_strength(dilatancy, joint, specimen, settings)
     for stage, dataset in made.items():
-        store.write(dataset, snakemake.output[stage])
+        netcdf.write(dataset, snakemake.output[stage])
         log.info("%s", dataset)

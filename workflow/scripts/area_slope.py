@@ -2,10 +2,10 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.area_slope import area_slope
+from fractalcontact.core import netcdf
+from fractalcontact.experiments.area_slope import area_slope
 
 with job(snakemake) as log:
     slopes = area_slope(snakemake.params.recipe, snakemake.params.rtol)
-    store.write(slopes, snakemake.output[0])
+    netcdf.write(slopes, snakemake.output[0])
     log.info("%s", slopes)

@@ -1,13 +1,13 @@
 """Put what was made of all specimens into one file."""
 
 from _job import job
-from _stages import read_stages, write_atlas
+from _stages import join_stages, read_stages
 
-from fractalcontact.atomic import atomic_write
+from fractalcontact.core.atomic import atomic_write
 
 with job(snakemake) as log:
     stages, made_with = read_stages(snakemake.input)
-    write_atlas(stages, made_with, snakemake.output[0], snakemake.params.configuration, log)
+    join_stages(stages, made_with, snakemake.output[0], snakemake.params.configuration, log)
     if snakemake.output.get("names"):
         names = sorted([*stages.get("specimens", {}), *stages.get("contact_maps", {})])
         with atomic_write(snakemake.output.names) as path:

@@ -2,19 +2,19 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.sweep import joint_states
+from fractalcontact.core import netcdf
+from fractalcontact.mechanics.sweep import joint_states
 
 with job(snakemake) as log:
     params = snakemake.params
     states = joint_states(
-        store.read(snakemake.input.specimen),
-        store.read(snakemake.input.joint),
+        netcdf.read(snakemake.input.specimen),
+        netcdf.read(snakemake.input.joint),
         params.directions,
         slice(*params.offsets),
         params.settings,
         params.resolutions,
         params.solver,
     )
-    store.write(states, snakemake.output[0])
+    netcdf.write(states, snakemake.output[0])
     log.info("%d states, largest residual %s", states.solved.sum(), states.residual.max().item())

@@ -2,12 +2,12 @@
 
 from _job import job, require_unchanged
 
-from fractalcontact import store
-from fractalcontact.contact_map import read_contact_map
+from fractalcontact.core import netcdf
+from fractalcontact.domain.measured_map import read_contact_map
 
 with job(snakemake) as log:
     params = snakemake.params
     result = read_contact_map(snakemake.input.scan, params.options, label=params.label)
     require_unchanged(params.digests)
-    store.write(result, snakemake.output[0])
+    netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

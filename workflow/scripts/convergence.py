@@ -2,8 +2,12 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.accuracy import hertz_convergence, punch_convergence, richardson_trials
+from fractalcontact.accuracy.convergence import (
+    hertz_convergence,
+    punch_convergence,
+    richardson_trials,
+)
+from fractalcontact.core import netcdf
 
 with job(snakemake) as log:
     recipe, problem = snakemake.params.recipe, snakemake.wildcards.problem
@@ -12,5 +16,5 @@ with job(snakemake) as log:
     else:
         converge = {"hertz": hertz_convergence, "punch": punch_convergence}[problem]
         result = converge(recipe["cells"], placements=recipe["placements"])
-    store.write(result, snakemake.output[0])
+    netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

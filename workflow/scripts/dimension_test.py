@@ -2,10 +2,10 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.dimension_test import dimension_test
+from fractalcontact.core import netcdf
+from fractalcontact.experiments.delta_sigma import dimension_test
 
 with job(snakemake) as log:
     result = dimension_test(snakemake.params.recipe, snakemake.params.rtol)
-    store.write(result, snakemake.output[0])
+    netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

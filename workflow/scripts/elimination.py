@@ -2,10 +2,10 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.elimination import elimination
+from fractalcontact.accuracy.elimination import elimination
+from fractalcontact.core import netcdf
 
 with job(snakemake) as log:
     result = elimination(snakemake.params.draws)
-    store.write(result, snakemake.output[0])
+    netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

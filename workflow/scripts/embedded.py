@@ -4,7 +4,7 @@ from pathlib import Path
 
 from _job import job
 
-from fractalcontact.synthesis import embedded_surface, write_scan
+from fractalcontact.study.embedded import embedded_surface, write_scan
 
 with job(snakemake) as log:
     recipe = snakemake.params.recipe

@@ -2,10 +2,10 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.estimator_bias import estimator_bias
+from fractalcontact.core import netcdf
+from fractalcontact.experiments.delta_g import estimator_bias
 
 with job(snakemake) as log:
     result = estimator_bias(snakemake.params.recipe)
-    store.write(result, snakemake.output[0])
+    netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 from _job import job
-from _stages import read_stages, write_atlas
+from _stages import join_stages, read_stages
 
-from fractalcontact.figures import draw_figures
+from fractalcontact.figures.draw import draw_figures
 
 with job(snakemake) as log:
     stages, made_with = read_stages(snakemake.input)
     atlas = snakemake.output.atlas
-    write_atlas(stages, made_with, atlas, snakemake.params.configuration, log)
+    join_stages(stages, made_with, atlas, snakemake.params.configuration, log)
     captions = draw_figures(
         atlas,
         snakemake.wildcards.specimen,

@@ -2,10 +2,10 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.roll_off import roll_off_effect
+from fractalcontact.core import netcdf
+from fractalcontact.experiments.roll_off import roll_off_effect
 
 with job(snakemake) as log:
     effect = roll_off_effect(**snakemake.params.joints)
-    store.write(effect, snakemake.output[0])
+    netcdf.write(effect, snakemake.output[0])
     log.info("%s", effect)

@@ -4,13 +4,13 @@ import json
 
 from _job import job, require_unchanged
 
-from fractalcontact import store
-from fractalcontact.errors import InputError
-from fractalcontact.joint import describe_joint
-from fractalcontact.preparation import prepare_specimen
-from fractalcontact.quality import scan_quality
-from fractalcontact.quality_words import noise_words, range_words
-from fractalcontact.roughness import surface_dimension
+from fractalcontact.core import netcdf
+from fractalcontact.core.errors import InputError
+from fractalcontact.mechanics.joint import describe_joint
+from fractalcontact.roughness.dimension import surface_dimension
+from fractalcontact.roughness.quality import scan_quality
+from fractalcontact.roughness.quality_words import noise_words, range_words
+from fractalcontact.study.preparation import prepare_specimen
 
 with job(snakemake) as log:
     files, params, name = snakemake.input, snakemake.params, snakemake.wildcards.specimen
@@ -33,7 +33,7 @@ with job(snakemake) as log:
         if json.loads(specimen.attrs[f"{face}_scan"])["sha256"] != digest:
             raise InputError(f"{files[face]}: changed while it was read; run the study again")
     for stage, dataset in made.items():
-        store.write(dataset, snakemake.output[stage])
+        netcdf.write(dataset, snakemake.output[stage])
     for key, value in specimen.attrs.items():
         log.info("%s: %s", key, value)
     log.info("%s\n%s", made["joint"], made["surface_dimension"])

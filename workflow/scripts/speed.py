@@ -8,13 +8,13 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.reference_scenes import scenes_of
-from fractalcontact.speed import error_against_time
+from fractalcontact.accuracy.reference import scenes_of
+from fractalcontact.accuracy.speed import error_against_time
+from fractalcontact.core import netcdf
 
 with job(snakemake) as log:
     recipe = snakemake.params.recipe
     scene = scenes_of(recipe)[snakemake.wildcards.scene]
     points = error_against_time(scene, recipe)
-    store.write(points, snakemake.output[0])
+    netcdf.write(points, snakemake.output[0])
     log.info("%s", points)

@@ -2,11 +2,11 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.speed_growth import growth
+from fractalcontact.accuracy.growth import growth
+from fractalcontact.core import netcdf
 
 with job(snakemake) as log:
-    scenes = [store.read(path) for path in snakemake.input]
+    scenes = [netcdf.read(path) for path in snakemake.input]
     result = growth(scenes, snakemake.params.error)
-    store.write(result, snakemake.output[0])
+    netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

@@ -2,10 +2,10 @@
 
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.stability import join
+from fractalcontact.accuracy.stability import join
+from fractalcontact.core import netcdf
 
 with job(snakemake) as log:
-    result = join([store.read(path) for path in snakemake.input])
-    store.write(result, snakemake.output[0])
+    result = join([netcdf.read(path) for path in snakemake.input])
+    netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from _job import job
 
-from fractalcontact.figures import draw_study_figures
+from fractalcontact.figures.draw import draw_study_figures
 
 with job(snakemake) as log:
     captions = draw_study_figures(

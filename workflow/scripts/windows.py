@@ -3,23 +3,23 @@
 import numpy as np
 from _job import job
 
-from fractalcontact import store
-from fractalcontact.roughness import best_dimension
-from fractalcontact.size_laws import joint_by_size
-from fractalcontact.size_test import size_test
+from fractalcontact.core import netcdf
+from fractalcontact.roughness.dimension import best_dimension
+from fractalcontact.size_effect.eq6 import size_test
+from fractalcontact.size_effect.laws import joint_by_size
 
 with job(snakemake) as log:
     settings = snakemake.params.settings
     pressing = (
-        store.read(snakemake.input.specimen),
+        netcdf.read(snakemake.input.specimen),
         settings["contact_directions"][0],
-        np.sort(store.read(snakemake.input.joint)["offset_cells"][0].values),
+        np.sort(netcdf.read(snakemake.input.joint)["offset_cells"][0].values),
         settings,
         snakemake.params.solver,
     )
-    dimension = best_dimension(store.read(snakemake.input.surface_dimension))
+    dimension = best_dimension(netcdf.read(snakemake.input.surface_dimension))
     laws = joint_by_size(*pressing, dimension)
     tested = size_test(*pressing, laws)
-    store.write(laws, snakemake.output.windows)
-    store.write(tested, snakemake.output.size_test)
+    netcdf.write(laws, snakemake.output.windows)
+    netcdf.write(tested, snakemake.output.size_test)
     log.info("%s\n%s", laws, tested)

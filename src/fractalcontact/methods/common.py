@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..contact import ContactState
-from ..errors import NotConverged
+from ..contact.solve import ContactState
+from ..core.errors import NotConverged
 
 # Up to this many products (10 ms) the final check sums directly, which shares nothing with the FFT.
 # The FFT is always the faster way: 400 loads on 512 x 512 take 0.5 s against 0.015 s.

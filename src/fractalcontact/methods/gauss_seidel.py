@@ -6,8 +6,8 @@ the number of interpenetrating points. A pressure capped at a hardness is projec
 
 import numpy as np
 
-from ..contact import checked_hardness, checked_problem, unloaded_state
-from ..kernel_cache import njit
+from ..contact.solve import checked_hardness, checked_problem, unloaded_state
+from ..core.kernel_cache import njit
 from .common import checked_state, in_stress, refuse_force
 
 # Sweeps before giving up: the number needed grows with the width of the contact patches in cells.

@@ -9,8 +9,8 @@ With ``HalfSpace(..., kernel=...)`` the influence terms are Love's or a rigid pl
 
 import numpy as np
 
-from ..contact import checked_problem, unloaded_state
-from ..kernel_cache import njit
+from ..contact.solve import checked_problem, unloaded_state
+from ..core.kernel_cache import njit
 from .common import checked_state, refuse_force, refuse_hardness
 from .gauss_seidel import relieve
 

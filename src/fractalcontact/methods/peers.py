@@ -12,8 +12,8 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from ..child_process import in_child
-from ..errors import NotConverged
+from ..core.child_process import in_child
+from ..core.errors import NotConverged
 from .common import in_stress, measured_state, refuse_closure, refuse_force, refuse_hardness
 
 #: Limit of iterations where a peer is set up for large grids.

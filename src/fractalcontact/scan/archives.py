@@ -10,7 +10,7 @@ import zipfile
 from pathlib import Path, PurePosixPath
 from xml.parsers import expat
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .raw import reading, refuse_larger
 
 MOST_MEMBERS = 10_000

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from . import density as dense
 from . import levelling, overhangs
 from . import points as pts

@@ -16,7 +16,7 @@ import threading
 from dataclasses import asdict
 from pathlib import Path
 
-from ..errors import InputError
+from ..core.errors import InputError
 from . import reader_process
 from .options import ScanOptions
 from .raw import RawScan

@@ -2,7 +2,7 @@
 
 import math
 
-from ..kernel_cache import njit
+from ..core.kernel_cache import njit
 
 #: A node on an edge belongs to both triangles, whatever rounding says. As a share of the triangle.
 _SLACK = 1e-9

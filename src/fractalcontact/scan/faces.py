@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
 from .density import points_per_cell
 from .pairs import MIRRORS, register

@@ -6,7 +6,7 @@ import stat
 import zipfile
 from pathlib import Path
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .raw import reading, refuse_larger
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .instruments import refuse_unknown_channel
 from .options import ScanOptions
 from .raw import RawScan, reading, refuse_larger, stated_unit

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .options import ScanOptions
 from .raw import RawScan, stated_unit
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
-from ..units import length_factor
+from ..core.errors import InputError
+from ..core.units import length_factor
 from .options import ScanOptions
 from .raw import RawScan, reading, stated_unit, table_to_raw
 from .variables import MASK, Variable, choose_variable, open_variables

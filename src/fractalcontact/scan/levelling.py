@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..specimen import STEEP_TILT
+from ..surface.specimen import STEEP_TILT
 
 #: Points this many quartile distances beyond the quartiles do not decide where the plane lies
 #: (Tukey's far-out fence): spikes and unmarked missing heights.

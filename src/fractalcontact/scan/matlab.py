@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .arrays import choose_array
 from .options import ScanOptions
 from .raw import RawScan, reading, refuse_larger, table_to_raw

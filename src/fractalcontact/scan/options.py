@@ -4,9 +4,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
-from ..errors import InputError
-from ..registration import MODES
-from ..units import length_factor, quantity
+from ..core.errors import InputError
+from ..core.units import length_factor, quantity
+from .registration import MODES
 
 
 @dataclass(frozen=True)

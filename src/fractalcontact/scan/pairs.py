@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from ..errors import InputError
-from ..face_match import LARGEST_ROTATION, for_comparison, mirror_images
-from ..fitting import without_mean_plane
-from ..registration import find_motion
-from ..surface_motion import Motion, Surface, correlation, grid_nodes
+from ..core.errors import InputError
+from ..core.mean_plane import without_mean_plane
+from .face_match import LARGEST_ROTATION, for_comparison, mirror_images
 from .raw import SMALLEST_SIDE
+from .registration import find_motion
+from .surface_motion import Motion, Surface, correlation, grid_nodes
 
 #: A motion that lowers the gap's spread by less than this share is not made: interpolating between
 #: cells costs roughness, and the spread is not known better.

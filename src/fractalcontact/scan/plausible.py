@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 
 LARGEST_FIELD = 1e4  # mm: no profilometer sees 10 m
 SMALLEST_FIELD = 1e-6  # mm: nor less than 1 nm

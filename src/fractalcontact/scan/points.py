@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 
 #: Coordinates may stray this fraction of the pitch from a lattice (rounding in the export).
 LATTICE_TOLERANCE = 0.1

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import InputError
-from ..units import length_factor
+from ..core.errors import InputError
+from ..core.units import length_factor
 
 LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to or a header promises
 #: A matrix or grid needs at least this many cells along each side to hold any roughness.

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from ..errors import InputError
-from ..labels import printable
+from ..core.errors import InputError
+from ..core.labels import printable
 from .files import inflated_size, regular_file
 from .options import ScanOptions
 from .raw import RawScan
@@ -126,7 +126,7 @@ def _read_and_exit(request: dict, writable: int) -> None:
 
 
 def _read(request: dict, stream) -> None:
-    from . import _read_raw
+    from .formats import read_raw
 
     def allow(size: int) -> None:
         limits = limits_for(size)
@@ -140,7 +140,7 @@ def _read(request: dict, stream) -> None:
         os.chdir(request["folder"])
         allow(regular_file(path).st_size)
         allow(inflated_size(path))
-        raw = _read_raw(path, ScanOptions(**request["options"]))
+        raw = read_raw(path, ScanOptions(**request["options"]))
         _require_table(raw, path)
         send_scan(raw, stream)
     except BrokenPipeError:

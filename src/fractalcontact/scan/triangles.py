@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.spatial import Delaunay, QhullError
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .points import MOST_CELLS, Lattice
 
 #: Points triangulated at once: a few tens of thousands stay in the processor's cache.

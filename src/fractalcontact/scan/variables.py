@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .arrays import choose_array, is_table
 from .raw import refuse_larger
 

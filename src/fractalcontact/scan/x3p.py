@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .arrays import choose_array
 from .options import ScanOptions
 from .raw import RawScan, reading

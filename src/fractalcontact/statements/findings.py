@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..fitting import fit_line
-from ..specimen import nominal_area
-from ..states import chosen_offset, forces_of
+from ..core.fitting import fit_line
+from ..mechanics.states import chosen_offset, forces_of
+from ..surface.specimen import nominal_area
 
 HOLDS, PARTLY, FAILS, UNKNOWN = "holds", "holds in part", "does not hold", "cannot be told"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..fitting import fit_line
+from ..core.fitting import fit_line
 from .findings import (
     FAILS,
     HOLDS,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..fitting import fit_line
+from ..core.fitting import fit_line
 from .findings import FAILS, HOLDS, LOOSELY, NEARLY, PARTLY, UNKNOWN, Finding, share
 
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.

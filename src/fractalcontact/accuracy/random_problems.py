@@ -1,0 +1,159 @@
+"""Random contact problems of every size, shape and unit, and a judge of their states."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import fftconvolve
+
+from ..elastic.halfspace import HalfSpace, love_displacement
+from ..surface.synthesis import self_affine
+
+#: What a scene's topography is made of.
+KINDS = (
+    "rough",
+    "spikes",
+    "plateau",
+    "ties",
+    "single peak",
+    "raised",
+    "noise",
+    "checkerboard",
+    "comb",
+    "step",
+)
+#: How hard it is pressed: the share of nodes wanted within reach of the plane.
+PRESSED = ("first touch", "light", "half", "heavy", "full")
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A contact problem.
+
+    Attributes
+    ----------
+    name : str
+        What it is made of and how hard it is pressed.
+    height : (ny, nx) ndarray
+        Composite topography, mm.
+    space : HalfSpace
+    load : dict
+        ``closure`` in mm or ``force`` in N.
+    """
+
+    name: str
+    height: np.ndarray
+    space: HalfSpace
+    load: dict
+
+
+def random_scene(seed, *, largest=400):
+    """A scene that is the same for the same seed.
+
+    Parameters
+    ----------
+    seed : int
+        Also runs through the kinds, loads and shapes, so that successive seeds cover them all.
+    largest : int
+        Cells along the longer side, at most; at least 33.
+
+    Returns
+    -------
+    Scene
+    """
+    generator = np.random.default_rng(seed)
+    kind, pressed = KINDS[seed % len(KINDS)], PRESSED[seed // len(KINDS) % len(PRESSED)]
+    shape = _shape(generator, seed, largest)
+    height = _topography(generator, kind, shape, seed)
+    cell = 10 ** generator.uniform(-6, 3)  # from nm to m, in mm
+    stretch = 1.0 if generator.random() < 0.5 else 10 ** generator.uniform(-0.9, 0.9)
+    space = HalfSpace(shape, (cell * stretch, cell), 10 ** generator.uniform(-3, 9))
+    slope = 10 ** generator.uniform(-4, 1)
+    height = height * (slope * cell / max(np.abs(np.diff(height, axis=1)).mean(), 1e-300))
+    span = np.ptp(height)
+    if kind == "raised":
+        height = height + 1e6 * span
+    closure = _closure(generator, height, pressed)
+    # A rough guess at the force for that closure: any force has its state.
+    force = space.modulus * np.sqrt(height.size) * space.cell * closure
+    load = {"closure": closure} if generator.random() < 0.5 else {"force": force}
+    return Scene(f"{kind}, {pressed}", height, space, load)
+
+
+def _shape(generator, seed, largest):
+    """Squares, oblongs, primes among them, and strips eight times as long as wide."""
+    long = int(generator.integers(33, largest + 1))
+    if seed % 7 == 0:
+        return (max(1, long // 8), long) if seed % 2 else (long, max(1, long // 8))
+    if seed % 7 in (1, 2):
+        primes = [n for n in range(33, largest + 1) if all(n % d for d in range(2, 21))]
+        return tuple(int(n) for n in generator.choice(primes, 2))
+    return (long, int(generator.integers(33, largest + 1)))
+
+
+def _topography(generator, kind, shape, seed):
+    """Heights of about unit size."""
+    n = max(shape)
+    height = self_affine((n, n), 1.0, generator.uniform(0.1, 0.99), rms=1.0, seed=seed)
+    height = height[: shape[0], : shape[1]]
+    if kind == "spikes":
+        height.flat[generator.integers(height.size, size=8)] += generator.uniform(1, 20, size=8)
+    elif kind == "plateau":
+        height = np.minimum(height, np.quantile(height, generator.uniform(0.3, 0.99)))
+    elif kind == "ties":
+        height = np.round(4 * height) / 4
+    elif kind == "single peak":
+        height.flat[generator.integers(height.size)] = height.max() + 3
+    elif kind == "noise":
+        height = generator.standard_normal(shape)
+    elif kind == "checkerboard":
+        height = (np.indices(shape).sum(axis=0) % 2).astype(float)
+    elif kind == "comb":
+        teeth = int(generator.integers(2, 9))
+        height = 0.1 * height + (np.indices(shape)[1] % teeth == 0)
+    elif kind == "step":
+        height = 0.1 * height + 3.0 * (np.indices(shape)[0] > shape[0] // 2)
+    return height
+
+
+def _closure(generator, height, pressed):
+    depth = np.sort(height.max() - height, axis=None)
+    if pressed == "first touch":
+        return max(depth[min(2, depth.size - 1)], 1e-6 * depth[-1]) * generator.uniform(0.2, 1)
+    if pressed == "full":
+        return depth[-1] * 10 ** generator.uniform(0.5, 2.5)
+    share = {"light": 0.05, "half": 0.5, "heavy": 0.9}[pressed] * generator.uniform(0.5, 1)
+    # Nodes are pushed down around those in contact, hence the factor.
+    return depth[int(share * (depth.size - 1))] * generator.uniform(1, 3) + 1e-6 * depth[-1]
+
+
+def violation(state, height):
+    """Largest violation of the contact conditions, judged by a convolution of its own.
+
+    Parameters
+    ----------
+    state : ContactState
+        Solved with Love's kernel.
+    height : (ny, nx) ndarray
+        mm.
+
+    Returns
+    -------
+    violation, rounding : float
+        Shares of the closure: how far gaps and pressures are from a state of contact, and how much
+        of it the rounding of the heights themselves explains.
+    """
+    (ny, nx), (dy, dx) = state.space.shape, state.space.spacing
+    y, x = np.arange(1 - ny, ny)[:, None] * dy, np.arange(1 - nx, nx)[None, :] * dx
+    kernel = love_displacement(x, y, dx, dy) / state.space.modulus
+    displacement = fftconvolve(state.pressure, kernel, mode="full")[ny - 1 :, nx - 1 :][:ny, :nx]
+    gap = displacement + (height.max() - height) - state.closure
+    pressure, cap = state.pressure, state.hardness
+    between = (pressure > 0) & (pressure < cap)
+    worst = max(
+        np.abs(gap[between]).max(initial=0.0),
+        -gap[pressure < cap].min(initial=0.0),
+        gap[pressure >= cap].max(initial=0.0),
+    )
+    if pressure.min() < 0 or pressure.max() > cap:
+        worst = np.inf
+    return worst / state.closure, 4 * np.spacing(np.abs(height).max()) / state.closure

@@ -1,0 +1,1 @@
+"""Commands: check scans, verify results, compile kernels."""

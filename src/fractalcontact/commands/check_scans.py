@@ -1,0 +1,321 @@
+"""Read every scan of a folder, as a study would, and say what it holds; nothing is solved.
+
+python -m fractalcontact.commands.check_scans [FOLDER] [--study config/paper.yaml]
+"""
+
+import argparse
+import json
+import math
+import sys
+import textwrap
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..core.errors import InputError
+from ..core.labels import printable
+from ..domain.measured_map import read_contact_map
+from ..roughness.quality import scan_quality
+from ..roughness.quality_words import length_words
+from ..study.configuration import check_study, read_sidecar, read_study, resolve_settings
+from ..study.preparation import prepare_specimen
+from ..study.scan_files import list_scans
+from ..study.sidecar import is_contact_map
+from ..surface.specimen import STEEP_TILT, window_sides
+
+#: Columns of the table: heading and width.
+COLUMNS = {
+    "specimen": 16,
+    "faces": 5,
+    "cells": 11,
+    "spacing": 10,
+    "field (mm)": 13,
+    "relief": 8,
+    "missing": 7,
+    "outl.": 5,
+    "tilt": 5,
+    "window (mm)": 13,
+    "noise": 8,
+    "shortest": 8,
+}
+WIDTH = 120
+LEGEND = (
+    "cells, field, window: x, y. relief: highest less lowest. missing: of the face with more. "
+    "outl.: cells flagged as outliers. noise: standard deviation of independent errors of the "
+    "cells (< where none is seen). shortest: wavelength below which the relief is the "
+    "instrument's; a spacing s shows waves from 2 s on."
+)
+INDENT = "    "
+
+
+@dataclass
+class Checked:
+    """What is known of one specimen, or of a file that makes none.
+
+    Attributes
+    ----------
+    name : str
+    cells : dict
+        Text by column of the table; empty if it was refused.
+    lines : list of str
+        Sentences below it.
+    warnings : list of str
+    refusal : str
+        Why it cannot be read; "" if it can.
+    """
+
+    name: str
+    cells: dict = field(default_factory=dict)
+    lines: list = field(default_factory=list)
+    warnings: list = field(default_factory=list)
+    refusal: str = ""
+
+
+def check_scans(folder, study, schema, source):
+    """Go through all scans of a folder, one after the other.
+
+    Parameters
+    ----------
+    folder : path-like
+    study : mapping
+        A study that passed its schema.
+    schema : mapping
+    source : str
+        The file the study came from, for errors.
+
+    Yields
+    ------
+    Checked
+        Sorted by name; what is wrong with one does not keep the others from being read.
+    """
+    scans, refused = list_scans(folder)
+    for name in sorted(scans.keys() | refused.keys()):
+        if name in refused:
+            yield Checked(name, refusal=str(refused[name]))
+            continue
+        try:
+            yield _check(scans[name], study, schema, source)
+        except InputError as error:
+            yield Checked(
+                name, lines=[_file_names(scans[name])], refusal=_shown(error, scans[name])
+            )
+
+
+def _check(scan, study, schema, source):
+    """Read one specimen as the rules of the study do."""
+    if scan.name in study.get("embedded", {}):
+        raise InputError(f"'{scan.name}' is also an embedded specimen of {source}; rename one")
+    options, own = read_sidecar(scan.sidecar, schema)
+    if is_contact_map(options):
+        return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
+    settings = resolve_settings(study, scan.name, own, source)
+    specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
+    return _specimen_row(scan, specimen, scan_quality(specimen, settings["resolutions"]))
+
+
+def _specimen_row(scan, specimen, quality):
+    """Numbers, sentences and warnings of a specimen."""
+    attrs, faces = specimen.attrs, [str(face) for face in quality["face"].values]
+    files = [json.loads(attrs[f"{face}_scan"]) for face in faces]
+    end = quality["range_end"].item()
+    relief = float(quality["highest"].max() - quality["lowest"].min())
+    cells = {
+        **_grid_cells(specimen.sizes, attrs),
+        "specimen": scan.name,
+        "faces": str(len(faces)),
+        "relief": length_words(relief),
+        "missing": f"{100 * quality['missing_share'].values.max():.2g} %",
+        "outl.": str(attrs.get("outlier_count", "-")),
+        "tilt": f"{attrs['tilt_degrees']:.1f}°",
+        "window (mm)": _pair(window_sides(specimen)[::-1]),
+        "noise": _noise(quality),
+        "shortest": length_words(end) if math.isfinite(end) else "-",
+    }
+    lines = [_file_names(scan)]
+    for face, file in zip(faces, files, strict=True):
+        stated = f"{face} face: {file['reader']}, {file['layout']}, unit {file['file_unit']}"
+        lines.append("; ".join(filter(None, (stated, file["notes"]))))
+        if file.get("overrides"):
+            lines.append(f"{face} face, the sidecar overrides: {file['overrides']}")
+    if len(faces) == 2:
+        lines.append(_gap_words(specimen))
+    return Checked(scan.name, cells, lines, _warnings(attrs, quality))
+
+
+def _noise(quality):
+    """The largest noise floor seen, or below what it must be where none is seen."""
+    seen = quality["noise_rms"].max().item()
+    if math.isfinite(seen):
+        return length_words(seen)
+    limit = quality["noise_limit"].max().item()
+    return f"<{length_words(limit)}" if math.isfinite(limit) else "-"
+
+
+def _warnings(attrs, quality):
+    """What a user should look at before a study is run."""
+    warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
+    if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
+        warnings.append(
+            f"{attrs['outlier_count']} outliers are kept; 'outliers: mask' in the sidecar makes "
+            "them missing"
+        )
+    if attrs["tilt_degrees"] > STEEP_TILT:
+        warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
+    note = json.loads(attrs.get("registration", "{}")).get("note", "")
+    if "NOTE: " in note:
+        warnings.append(note.partition("NOTE: ")[2])
+    return warnings
+
+
+def _gap_words(specimen):
+    """Statistics of the gap, and whether the upper face was moved to the lower one."""
+    gap = (specimen["upper"] - specimen["lower"]).values
+    words = f"gap: mean {length_words(np.nanmean(gap))}, sd {length_words(np.nanstd(gap))}"
+    if "registration" not in specimen.attrs:
+        return words
+    found = json.loads(specimen.attrs["registration"])
+    words += f"; registration ({found['mode']}): {found['note']}"
+    if found["applied"]:
+        before = found["gap_sd_before_mm"]
+        known = "unknown" if before is None else length_words(before)
+        words += (
+            f", shift {found['shift_x_mm']:.3g}, {found['shift_y_mm']:.3g} mm (x, y), sd before "
+            f"{known}"
+        )
+    return words
+
+
+def _map_row(scan, contact):
+    """Numbers of a measured contact map."""
+    attrs = contact.attrs
+    cells = {
+        **_grid_cells(contact.sizes, attrs),
+        "specimen": scan.name,
+        "faces": "map",
+        "missing": f"{100 * (1 - float(contact['measured'].mean())):.2g} %",
+    }
+    share = 100 * float(contact["area_share"])
+    stated = (
+        f"contact map: {attrs['reader']}, {share:.3g} % in contact above {attrs['threshold']:g}"
+    )
+    return Checked(scan.name, cells, [_file_names(scan), stated])
+
+
+def _grid_cells(sizes, attrs):
+    """Cells, spacing and field, for the table."""
+    spacings = [attrs[f"spacing_{axis}"] for axis in "xy"]
+    square = f"{spacings[0]:.3g}" == f"{spacings[1]:.3g}"
+    return {
+        "cells": f"{sizes['x']} x {sizes['y']}",
+        "spacing": length_words(spacings[0]) if square else _pair(spacings),
+        "field (mm)": _pair([sizes[a] * s for a, s in zip("xy", spacings, strict=True)]),
+    }
+
+
+def _pair(lengths):
+    """Two lengths (x, y) in mm."""
+    return " x ".join(f"{float(f'{length:.3g}'):g}" for length in lengths)
+
+
+def _file_names(scan):
+    files = [path for path in (scan.lower, scan.upper, scan.sidecar) if path is not None]
+    return " + ".join(printable(path.name) for path in files)
+
+
+def _shown(error, scan):
+    """The message with file names that no terminal acts on."""
+    message = str(error)
+    for path in (scan.lower, scan.upper, scan.sidecar):
+        if path is not None:
+            message = message.replace(path.name, printable(path.name))
+    return message
+
+
+# -- the table -------------------------------------------------------------------------------------
+
+
+def table_lines(checked):
+    """Lines of the table for one specimen.
+
+    Parameters
+    ----------
+    checked : Checked
+
+    Returns
+    -------
+    list of str
+        None longer than `WIDTH`, if no word is.
+    """
+    name = printable(checked.name, COLUMNS["specimen"])
+    row = _row(checked.cells | {"specimen": name}) if checked.cells else name
+    sentences = [*checked.lines]
+    sentences += [f"WARNING: {warning}" for warning in checked.warnings]
+    if checked.refusal:
+        sentences.append(f"REFUSED: {checked.refusal}")
+    elif not checked.warnings:
+        sentences.append("ok")
+    wrapped = [line for sentence in sentences for line in _wrapped(sentence)]
+    return [row, *wrapped]
+
+
+def _row(cells):
+    return " ".join(f"{cells.get(key, ''):<{width}}" for key, width in COLUMNS.items()).rstrip()
+
+
+def _wrapped(sentence):
+    """A sentence in lines; those it has itself (what to write into a sidecar) stay."""
+    lines = []
+    for line in sentence.split("\n"):
+        lead = INDENT + " " * (len(line) - len(line.lstrip()))
+        lines += textwrap.wrap(
+            printable(line.strip()),
+            WIDTH,
+            initial_indent=lead,
+            subsequent_indent=lead + "  ",
+            break_on_hyphens=False,
+        )
+    return lines
+
+
+def main(arguments=None):
+    """Print the table; 1 if a file was refused or the study is wrong, else 0."""
+    parser = argparse.ArgumentParser(prog="check_scans", description=__doc__.split("\n")[0])
+    parser.add_argument("folder", nargs="?", help="default: the study's")
+    parser.add_argument("--study", default="config/paper.yaml")
+    parser.add_argument("--schema", default="config/schema/study.schema.yaml")
+    asked = parser.parse_args(arguments)
+    # Names may hold what a terminal's encoding does not.
+    sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        study, schema = read_study(asked.study), read_study(asked.schema)
+        check_study(study, schema, asked.study)
+        return _print_table(
+            Path(asked.folder or study.get("scans") or "scans"), study, schema, asked
+        )
+    except InputError as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 1
+
+
+def _print_table(folder, study, schema, asked):
+    """Print what each file of a folder holds; 1 if one was refused."""
+    counts = {"ok": 0, "with warnings": 0, "refused": 0}
+    _write([_row({key: key for key in COLUMNS}), "-" * WIDTH])
+    for checked in check_scans(folder, study, schema, asked.study):
+        state = "refused" if checked.refusal else "with warnings" if checked.warnings else "ok"
+        counts[state] += 1
+        _write(table_lines(checked))
+    _write(["-" * WIDTH, *_wrapped(LEGEND)])
+    words = ", ".join(f"{n} {state}" for state, n in counts.items())
+    _write([f"{printable(folder)}: {words}"])
+    return int(counts["refused"] > 0)
+
+
+def _write(lines):
+    sys.stdout.write("\n".join(lines) + "\n")
+    sys.stdout.flush()  # a large scan takes a while
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,48 @@
+"""Compile the kernels once, after the installation: else the first jobs of a study all would.
+
+python -m fractalcontact.commands.compile_kernels
+"""
+
+import numpy as np
+
+from ..contact.nested_iteration import pool_sum
+from ..contact.solve import solve_contact
+from ..domain.measures import measures_of_states
+from ..elastic.halfspace import HalfSpace
+from ..roughness.dimension import surface_dimension
+from ..surface.synthesis import self_affine
+
+#: Nodes a side: from here on the solver uses all of its parts.
+SIDE = 200
+
+
+def compile_kernels():
+    """Use every kernel that a study uses, on a small made joint: what is compiled stays on disk.
+
+    Returns
+    -------
+    list of float
+        Stiffnesses of the states pressed on the way, N/mm.
+    """
+    surface = self_affine((SIDE, SIDE), 1.0, 0.8, seed=1, rms=1.0)
+    surface_dimension(surface, 1.0)
+    surface[0, 0] = np.nan
+    surface_dimension(surface, 1.0)
+    surface[0, 0] = 0.0
+    space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
+    states = []
+    for hardness in (None, 1.0):
+        state = None
+        for force in (2.0, 2000.0):
+            state = solve_contact(surface, space, force=force, start=state, hardness=hardness)
+            states.append(state)
+    pool_sum(surface)  # else of larger grids alone, whose loads change on coarser ones
+    stiffness = [state.stiffness for state in states]
+    domains = np.array([state.in_contact for state in states])
+    pressures = np.array([state.pressure for state in states])
+    measures_of_states(domains, pressures, 1.0, np.arange(1.0, len(states) + 1))
+    return stiffness
+
+
+if __name__ == "__main__":
+    compile_kernels()

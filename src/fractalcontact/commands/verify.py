@@ -1,0 +1,43 @@
+"""Compare every file of a study with the checksum that the job which made it left.
+
+python -m fractalcontact.commands.verify STUDY_FILE_OR_RESULTS_FOLDER
+"""
+
+import sys
+from pathlib import Path
+
+from ..core.checksums import check
+from ..core.errors import InputError
+from ..study.configuration import read_study, study_name
+
+
+def main(arguments=None):
+    """Print what is damaged or missing; 1 if anything is, or nothing is known, else 0."""
+    (given,) = sys.argv[1:] if arguments is None else arguments
+    try:
+        results = results_of(given)
+        if not results.is_dir():
+            raise InputError(f"{results}: no such folder; run 'make' first")
+        checked = check(results)
+    except InputError as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 1
+    for word in ("damaged", "unrecorded", "missing"):
+        for path in getattr(checked, word):
+            sys.stdout.write(f"{word}: {path}\n")
+    words = ("intact", "damaged", "unrecorded", "missing")
+    counts = [f"{len(getattr(checked, word))} {word}" for word in words]
+    wrong = not checked.intact or any(getattr(checked, word) for word in words[1:])
+    advice = "; 'make' makes again what the study still asks for" if wrong else ""
+    sys.stdout.write(f"{results}: {', '.join(counts)}{advice}\n")
+    return int(wrong)
+
+
+def results_of(given):
+    """Folder of the results of a study: given itself, or by the study's file."""
+    path = Path(given)
+    return path if path.is_dir() else Path("results") / study_name(read_study(path), path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

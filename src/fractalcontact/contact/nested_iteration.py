@@ -1,0 +1,241 @@
+"""Where to start when no state is known: on a grid twice as coarse, and from there to the fine one.
+
+A coarse cell has the height of the highest of its four nodes, which need not all touch: the sum of
+its pressure is kept, and shared among them so that those which touch have even gaps. The nodes of
+the eight cells around act on them as they are, from further away the four are displaced alike.
+"""
+
+import numpy as np
+
+from ..core.kernel_cache import njit
+from .active_set import ActiveSet
+from .coarse_correction import inverted
+from .kkt import Problem
+from .preconditioner import forget_preconditioner
+
+# A coarser grid gives the start until its shorter side has fewer nodes than this.
+COARSEST = 24
+# The preconditioner on coarse grids of more cells is not kept: it takes memory, and there is
+# little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
+KEPT_CELLS = 10_000
+# The coarse solution is only a start. But on grids so fine that the next coarser one's already
+# meets this, a correction is made all the same: else errors add up from grid to grid.
+COARSE_RTOL, COARSE_CORRECTIONS = 2e-2, 1
+
+
+def coarse_start(problem):
+    """Pressure to start from: the solution on the topography pooled 2 x 2, spread out there.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    (n,) ndarray
+        Within its bounds; on grids too small to be pooled it is uniform.
+    """
+    space = problem.space
+    ny, nx = space.shape
+    if min(ny, nx) < COARSEST:
+        return np.full(ny * nx, min(1.0, problem.cap))
+    coarse_space = space.coarser(2)
+    pooled = pool_minimum(problem.clearance.reshape(ny, nx)).ravel()
+    # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
+    load = problem.load / 2 if problem.by_force else problem.load
+    coarse = Problem(coarse_space, pooled, load, problem.by_force, 2 * problem.cap)
+    search = ActiveSet(coarse, COARSE_RTOL)
+    found = search.solve(coarse_start(coarse), at_least=COARSE_CORRECTIONS)
+    if pooled.size > KEPT_CELLS:
+        forget_preconditioner(coarse_space)
+    pressure = found.pressure.reshape(coarse_space.shape) / 2
+    pressure = spread(pressure, problem.clearance.reshape(ny, nx), space.influence())
+    return np.minimum(pressure, problem.cap).ravel()
+
+
+# Compiled: numpy takes twenty times as long for axes of two.
+
+
+@njit(cache=True)
+def pool_minimum(values):
+    """The smallest of each 2 x 2 nodes, an odd last row or column standing alone."""
+    ny, nx = values.shape
+    pooled = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
+    for y in range(ny):
+        for x in range(nx):
+            pooled[y // 2, x // 2] = min(pooled[y // 2, x // 2], values[y, x])
+    return pooled
+
+
+@njit(cache=True)
+def pool_sum(values):
+    """The sum of each 2 x 2 nodes, an odd last row or column standing alone."""
+    ny, nx = values.shape
+    pooled = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
+    for y in range(ny):
+        for x in range(nx):
+            pooled[y // 2, x // 2] += values[y, x]
+    return pooled
+
+
+@njit(cache=True)
+def on_nodes(cells, shape):
+    """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
+    ny, nx = shape
+    if cells.shape[0] != (ny + 1) // 2 or cells.shape[1] != (nx + 1) // 2:
+        raise ValueError("expected a cell for each 2 x 2 nodes")
+    values = np.empty(shape)
+    for y in range(ny):
+        for x in range(nx):
+            values[y, x] = cells[y // 2, x // 2]
+    return values
+
+
+def spread(pressure, clearance, influence):
+    """Pressure of fine nodes, of which each coarse cell holds two by two.
+
+    Parameters
+    ----------
+    pressure : (my, mx) ndarray
+        On the coarse grid, no less than zero; m = (n + 1) // 2.
+    clearance : (ny, nx) ndarray
+        Opening at first touch on the fine grid.
+    influence : (ny, nx) ndarray
+        Displacement of nodes so far from one of unit pressure, in the unit of the clearance.
+
+    Returns
+    -------
+    (ny, nx) ndarray
+        Never negative. Of each cell it has the mean of the coarse one, or on an odd edge, where the
+        cell reaches beyond the grid, that on the nodes there are.
+
+    Raises
+    ------
+    ValueError
+        If these are not on two such grids of at least four nodes each way.
+    """
+    change = on_nodes(pressure, clearance.shape)
+    return shared_out(np.zeros(clearance.shape), change, clearance, influence)
+
+
+def shared_out(before, change, gap, influence):
+    """Pressure, (ny, nx), of which each 2 x 2 nodes have a given sum, and even gaps where it is.
+
+    Parameters
+    ----------
+    before, change : (ny, nx) ndarray
+        A pressure, and a first guess of its change, which tells the sums: positive or zero.
+    gap : (ny, nx) ndarray
+        What the pressure before leaves open.
+    influence : (ny, nx) ndarray
+        As for :func:`spread`.
+
+    Raises
+    ------
+    ValueError
+        If these are not on one grid of at least four nodes each way.
+    """
+    if not before.shape == change.shape == gap.shape == influence.shape or min(gap.shape) < 4:
+        shapes = ", ".join(str(values.shape) for values in (before, change, gap, influence))
+        raise ValueError(f"shapes {shapes}: expected one grid of 4 x 4 nodes or more")
+    # A cell's nodes and those of the eight around it lie in six rows and columns.
+    my, mx = ((n + 1) // 2 for n in gap.shape)
+    padded = np.zeros((2 * my + 4, 2 * mx + 4))
+    inside = padded[2 : gap.shape[0] + 2, 2 : gap.shape[1] + 2]
+    inside[:] = change
+    _share_out(before, padded, gap, influence[:4, :4].astype(float))
+    return before + inside
+
+
+@njit(cache=True)
+def _share_out(before, change, gap, influence):
+    """Share out a change, with two nodes more on each side; a cell sees what others have become."""
+    ny, nx = gap.shape
+    own, around = _influence_on(influence)
+    ways = _ways_to_share(own)
+    known, left, share = np.zeros(4), np.zeros(4), np.zeros(4)
+    for top in range(0, ny, 2):
+        for side in range(0, nx, 2):
+            total, those = 0.0, 0
+            for a in range(4):
+                y, x = top + a // 2, side + a % 2
+                known[a] = left[a] = 0.0
+                if y < ny and x < nx:
+                    known[a], left[a] = before[y, x], gap[y, x]
+                    total += known[a] + change[y + 2, x + 2]
+                    those |= 1 << a
+            if not total > 0:
+                continue
+            for i in range(6):
+                for j in range(6):
+                    value = change[top + i, side + j]
+                    for a in range(4):
+                        left[a] += around[i, j, a] * value
+            for a in range(4):
+                for b in range(4):
+                    left[a] -= own[a, b] * known[b]
+            _even_gaps(ways, left, total, those, share)
+            for a in range(4):
+                if those & (1 << a):
+                    change[top + a // 2 + 2, side + a % 2 + 2] = share[a] - known[a]
+
+
+@njit(cache=True)
+def _influence_on(influence):
+    """Of the four nodes of a cell on each other, and on each of those six by six about it.
+
+    The second leaves out what they have on each other.
+    """
+    own, around = np.empty((4, 4)), np.empty((6, 6, 4))
+    for a in range(4):
+        for b in range(4):
+            own[a, b] = influence[abs(a // 2 - b // 2), abs(a % 2 - b % 2)]
+        for i in range(6):
+            for j in range(6):
+                within = 2 <= i < 4 and 2 <= j < 4
+                away = abs(i - 2 - a // 2), abs(j - 2 - a % 2)
+                around[i, j, a] = 0.0 if within else influence[away]
+    return own, around
+
+
+@njit(cache=True)
+def _ways_to_share(own):
+    """For each set of a cell's nodes, given by its bits, how they share a sum: (16, 4, 5).
+
+    Of gaps g and a sum S pressures p = -M g + c S leave even gaps: own p + g is the same for all,
+    which gives M = W - W 1 1' W / (1' W 1) and c = W 1 / (1' W 1), with W the inverse of own.
+    """
+    ways = np.zeros((16, 4, 5))
+    for those in range(1, 16):
+        nodes = np.array([a for a in range(4) if those & (1 << a)])
+        inverse = inverted(own[nodes][:, nodes])
+        ones = inverse.sum(axis=1)
+        for i, a in enumerate(nodes):
+            ways[those, a, 4] = ones[i] / ones.sum()
+            for j, b in enumerate(nodes):
+                ways[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
+    return ways
+
+
+@njit(cache=True)
+def _even_gaps(ways, gap, total, those, share):
+    """Pressures of a given sum, 0 but on ``those`` nodes, that leave even gaps where positive.
+
+    Those in tension are dropped, the strongest first, until there is none. Only by how much gaps
+    differ counts: what they share may be huge, and would leave the sum to rounding.
+    """
+    while True:
+        nearest = np.inf
+        for a in range(4):
+            if those & (1 << a):
+                nearest = min(nearest, gap[a])
+        worst, least = 0, 0.0
+        for a in range(4):
+            share[a] = ways[those, a, 4] * total
+            for b in range(4):
+                share[a] += ways[those, a, b] * (gap[b] - nearest)
+            if share[a] < least:
+                worst, least = a, share[a]
+        if not least < 0:
+            break
+        those &= ~(1 << worst)

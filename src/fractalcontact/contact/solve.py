@@ -1,0 +1,330 @@
+"""Frictionless elastic contact of a composite topography with a rigid plane.
+
+A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
+where the force is given its sum of p is fixed and w is free. With a hardness H the pressure stops
+at H, and points there may be pressed in. How such a state is found is told in `active_set`; here
+loads become dimensionless, starts are chosen, and nothing returns unverified.
+"""
+
+import dataclasses
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..core.arguments import (
+    LEAST_INPUT,
+    LEAST_RESULT,
+    MOST_INPUT,
+    MOST_RESULT,
+    field,
+    number,
+    quoted,
+)
+from ..core.errors import NotConverged
+from ..core.threads import lazy
+from ..elastic.halfspace import HalfSpace
+from . import active_set
+from .active_set import ActiveSet
+from .effort import SOLVING
+from .full_approximation import coarse_change
+from .kkt import Problem, between_bounds
+from .nested_iteration import coarse_start
+from .projected_cg import Operator, stiffness
+
+# Earlier states are extrapolated by no more than this many of their own steps.
+FURTHEST = 2.0
+# Largest relative error of the stiffness.
+STIFFNESS_ERROR = 1e-6
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """A state of contact that satisfies the conditions to ``residual``.
+
+    Attributes
+    ----------
+    pressure : (ny, nx) ndarray
+        p, MPa, zero outside the contact domain.
+    displacement : (ny, nx) ndarray
+        Elastic displacement u = K p of the composite surface, mm.
+    gap : (ny, nx) ndarray
+        Remaining opening, mm; within ``residual`` of zero in contact.
+    closure : float
+        w from first touch, mm.
+    force : float
+        F, N.
+    residual : float
+        Largest violation of the contact conditions, as a share of the closure.
+    iterations : int
+        Applications of the elastic operator, whatever their precision. Those on coarser
+        grids, for a start, are not counted.
+    space : HalfSpace
+        The operator it was solved with.
+    hardness : float
+        Largest pressure, MPa; infinity for an elastic surface.
+    """
+
+    pressure: np.ndarray
+    displacement: np.ndarray
+    gap: np.ndarray
+    closure: float
+    force: float
+    residual: float
+    iterations: int
+    space: HalfSpace = dataclasses.field(repr=False)
+    hardness: float = np.inf
+    _before: "ContactState | None" = dataclasses.field(default=None, repr=False, compare=False)
+
+    @property
+    def in_contact(self):
+        """Contact domain, (ny, nx) bool: the nodes that carry pressure."""
+        return self.pressure > 0
+
+    @property
+    def area(self):
+        """A_r = N s^2, mm2."""
+        return float(np.count_nonzero(self.in_contact)) * self.space.cell_area
+
+    @property
+    def undecided(self):
+        """Nodes of which it is not certain whether they touch, as the conditions hold to residual.
+
+        Their pressure, or their gap, is no larger than what the violation of the conditions may
+        hide: a gap of ``residual`` times the closure, and the pressure that closes it on one cell.
+        """
+        hidden = self.residual * self.closure
+        weak = self.in_contact & (self.pressure <= hidden * self.space.modulus / self.space.cell)
+        near = ~self.in_contact & (self.gap <= hidden)
+        return int(np.count_nonzero(weak) + np.count_nonzero(near))
+
+    @lazy
+    def stiffness(self):
+        """Normal stiffness dF/dw, N/mm, from H q = 1 on the contact set; 0 without contact.
+
+        Raises
+        ------
+        NotConverged
+            If it is not known to 1e-6.
+        """
+        free = between_bounds(self.pressure.ravel(), self.hardness)
+        with SOLVING.counted(0):
+            value, error = stiffness(Operator(self.space), free)
+        if not error <= STIFFNESS_ERROR:
+            raise NotConverged("the stiffness equations on the contact set", self, error)
+        return value * self.space.modulus * self.space.cell
+
+
+def solve_contact(
+    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
+):
+    """Press a composite topography against a rigid plane.
+
+    Parameters
+    ----------
+    composite : (ny, nx) array_like
+        Composite topography h, mm; the largest h touches first.
+    space : HalfSpace
+        The elastic operator on the same grid.
+    closure : float, optional
+        w, mm, from first touch. Either this or ``force`` is given.
+    force : float, optional
+        F, N.
+    start : ContactState, optional
+        A state of the same grid to start from, such as the previous load step.
+    rtol : float
+        Largest violation allowed of gap and pressure conditions, as a share of the closure.
+    hardness : float, optional
+        H, MPa: the pressure at which the surface yields (elastic, then perfectly plastic).
+
+    Returns
+    -------
+    ContactState
+
+    Raises
+    ------
+    ValueError
+        If the topography has missing or masked cells or another shape, the start is none of this
+        grid, the load makes no sense or double precision ends before its state, or the force is
+        more than the hardness lets the whole window carry.
+    NotConverged
+        If the conditions are not met to ``rtol``.
+    """
+    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
+    if load == 0:
+        return unloaded_state(space, clearance)
+    units = _Units(space, load, force is not None)
+    problem = units.problem(clearance, checked_hardness(hardness, space, force))
+    with SOLVING.counted(1):
+        if start is None or not start.pressure.any():
+            pressure, displacement = coarse_start(problem), None
+        else:
+            pressure, displacement = units.extrapolated(start, load)
+            if displacement is not None:
+                changed = coarse_change(problem, pressure, displacement)
+                if changed is not None:
+                    pressure, displacement = changed, None
+        found = ActiveSet(problem, rtol).solve(pressure, displacement)
+    state = units.state(found, clearance, problem, start)
+    if not state.residual <= rtol:
+        reason = f"the contact set still changed after {active_set.MAX_CORRECTIONS} corrections"
+        raise NotConverged(reason, state, state.residual)
+    return state
+
+
+def checked_hardness(hardness, space, force):
+    """The hardness as a number, infinite if there is none, after it was found sound."""
+    if hardness is None:
+        return np.inf
+    hardness = number(hardness, "hardness", "MPa")
+    if not hardness >= LEAST_INPUT:
+        raise ValueError(f"hardness {hardness}: expected > 0 MPa, and at least {LEAST_INPUT:g}")
+    ny, nx = space.shape
+    most = hardness * space.cell_area * ny * nx
+    if force is not None and not force < most:
+        raise ValueError(
+            f"force {force:g} N: at hardness {hardness:g} MPa the window carries {most:g}"
+        )
+    return hardness
+
+
+def checked_problem(composite, space, closure, force, start, rtol):
+    """What `solve_contact` and the comparison methods are given, after it was found sound.
+
+    Returns
+    -------
+    load : float
+        The closure or the force.
+    clearance : (ny, nx) ndarray
+        Opening at first touch, mm.
+
+    Raises
+    ------
+    ValueError
+        As `solve_contact`.
+    """
+    if not isinstance(space, HalfSpace):
+        raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
+    height = field(composite, "composite topography", space.shape)
+    if not np.isfinite(height).all():
+        missing = np.count_nonzero(~np.isfinite(height))
+        raise ValueError(f"the composite topography has {missing} missing or infinite cells")
+    if (closure is None) == (force is None):
+        raise ValueError("give either closure= or force=")
+    name, unit = ("closure", "mm") if force is None else ("force", "N")
+    load = number(closure if force is None else force, name, unit)
+    if not math.isfinite(load) or load < 0:
+        raise ValueError(f"{name} {load}: expected a finite number >= 0, in {unit}")
+    if start is not None:
+        _check_start(start, space)
+    if not 0 < number(rtol, "rtol", "shares of the closure") < 1:
+        raise ValueError(f"rtol {rtol}: expected between 0 and 1")
+    depth = float(height.max()) - float(height.min())
+    if not depth <= MOST_INPUT:
+        raise ValueError(f"composite topography {depth:g} mm deep: expected {MOST_INPUT:g} at most")
+    if load > 0 and not _within_double_precision(space, load, force is not None, depth):
+        raise ValueError(
+            f"{name} {load:g} {unit}: too {'small' if load < 1 else 'large'} for double precision; "
+            "expected such that closures, pressures and forces on this grid are of "
+            f"{LEAST_RESULT:g} to {MOST_RESULT:g} mm, MPa and N"
+        )
+    return load, height.max() - height
+
+
+def _check_start(start, space):
+    """Refuse what is no state of this grid."""
+    if not isinstance(start, ContactState):
+        raise ValueError(f"start {quoted(start)}: expected a ContactState, as solve_contact gives")
+    for name in ("pressure", "displacement"):
+        values = field(getattr(start, name), f"{name} of the start", space.shape)
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name} of the start: expected finite numbers")
+    for name in ("closure", "force"):
+        if not math.isfinite(number(getattr(start, name), f"{name} of the start", "mm or N")):
+            raise ValueError(f"{name} of the start: expected a finite number")
+
+
+def _within_double_precision(space, load, by_force, depth):
+    """Whether the state of a load has numbers that keep all their digits."""
+    length, pressure = _load_units(space, load, by_force)
+    sizes = length, pressure, pressure * space.cell_area
+    if not LEAST_RESULT <= min(sizes) <= max(sizes) <= MOST_RESULT:
+        return False
+    return depth / length <= MOST_RESULT
+
+
+def _load_units(space, load, by_force):
+    """Units of length, mm, and of pressure, MPa, in which a load is near one."""
+    stress_per_length = space.modulus / space.cell
+    if not by_force:
+        return load, load * stress_per_length
+    ny, nx = space.shape
+    pressure = load / (space.cell_area * ny * nx)
+    return pressure / stress_per_length, pressure
+
+
+def unloaded_state(space, clearance):
+    """The state of first touch: no pressure, no closure."""
+    zero = np.zeros(space.shape)
+    return ContactState(zero, zero.copy(), clearance, 0.0, 0.0, 0.0, 0, space)
+
+
+class _Units:
+    """Units in which loads are near one: nothing depends on mm or MPa."""
+
+    def __init__(self, space, load, by_force):
+        self.space, self.by_force = space, by_force
+        self.length, self.pressure = _load_units(space, load, by_force)
+        self.load = float(space.shape[0] * space.shape[1]) if by_force else 1.0
+
+    def problem(self, clearance, hardness):
+        cap = hardness / self.pressure
+        if cap < LEAST_RESULT:
+            raise ValueError(
+                f"hardness {hardness:g}: too low for pressures of {self.pressure:g} MPa"
+            )
+        return Problem(self.space, clearance.ravel() / self.length, self.load, self.by_force, cap)
+
+    def extrapolated(self, start, load):
+        """Pressure at a load, and its displacement, along the line through two earlier states.
+
+        With one state only, both in proportion to the load.
+        """
+        known = start.space == self.space
+        before = start._before
+        at = start.force if self.by_force else start.closure
+        step = at - (before.force if self.by_force else before.closure) if before else 0.0
+        if step:
+            along = np.clip((load - at) / step, -1.0, FURTHEST)
+            fields = [
+                (1 + along) * getattr(start, name) - along * getattr(before, name)
+                for name in ("pressure", "displacement")
+            ]
+        else:
+            share = min(load / at, FURTHEST) if at > 0 else 1.0
+            fields = [share * start.pressure, share * start.displacement]
+        pressure, displacement = (np.asarray(values, float).ravel() for values in fields)
+        return pressure / self.pressure, displacement / self.length if known else None
+
+    def state(self, found, clearance, problem, start):
+        """The solution in mm, N and MPa."""
+        space = self.space
+        pressure = found.pressure.reshape(space.shape) * self.pressure
+        displacement = found.displacement.reshape(space.shape) * self.length
+        closure = found.closure * self.length if self.by_force else self.length
+        force = float(pressure.sum()) * space.cell_area
+        # Of the states before, one is enough, and it need not hold on to its own.
+        before = None if start is None or start.space != space else replace(start, _before=None)
+        return ContactState(
+            pressure=pressure,
+            displacement=displacement,
+            gap=displacement + clearance - closure,
+            closure=closure,
+            force=force,
+            # What is no number violates no condition, and must not pass for a state.
+            residual=found.residual if math.isfinite(force) else math.nan,
+            iterations=found.applications,
+            space=space,
+            hardness=problem.cap * self.pressure,
+            _before=before,
+        )

@@ -1,0 +1,50 @@
+"""Names of scan files: which specimen and which face a file is of, by its name alone."""
+
+import hashlib
+import re
+import unicodedata
+from pathlib import Path
+
+SIDECAR_SUFFIXES = (".yaml", ".yml")
+
+
+_UNSAFE = re.compile(r"[^A-Za-z0-9_.-]")
+
+
+#: Windows opens devices by these names, whatever the ending: no folder of results could be copied.
+_DEVICES = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\.|$)")
+
+
+#: Snakemake takes such an ending for a rule that feeds on its own output; long names in other
+#: alphabets end so, as a row of ``_``.
+_REPEATS = re.compile(r"(.+?)\1{19}$")
+
+
+def specimen_name(original_name: str) -> str:
+    """Make a name safe: letters, digits, ``_ . -``; neither dash nor dot in front.
+
+    Composed and decomposed accents, which look the same, give the same name. A name that Windows
+    keeps for a device gets ``_`` in front, one that ends in many repeats six letters behind.
+    """
+    composed = unicodedata.normalize("NFC", original_name)
+    name = _UNSAFE.sub("_", composed).lstrip("-.")
+    if _REPEATS.search(name):
+        name += f"-{hashlib.sha256(composed.encode(errors='surrogateescape')).hexdigest()[:6]}"
+    return f"_{name}" if _DEVICES.match(name) else name
+
+
+def split_file_name(file_name: str) -> tuple[str, str]:
+    """Split a scan's or sidecar's file name into the specimen's name and the role of the file.
+
+    Returns
+    -------
+    original_name : str
+    role : {"only", "lower", "upper", "sidecar"}
+    """
+    path = Path(file_name)
+    if path.suffix.lower() in SIDECAR_SUFFIXES:
+        return path.stem, "sidecar"
+    stem, _, face = path.stem.rpartition(".")
+    if stem and face.lower() in ("lower", "upper"):
+        return stem, face.lower()
+    return path.stem, "only"

@@ -1,0 +1,90 @@
+"""Confidence intervals: the t quantile, means, the jackknife, and how an interval is named."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+#: What follows the long name of an estimate at the ends of its interval, by ending of the name.
+INTERVAL = {
+    "": "",
+    "_low": ", lower end of the 95 % interval",
+    "_high": ", upper end of the 95 % interval",
+}
+
+#: Probability covered by every interval the package states.
+CONFIDENCE = 0.95
+
+
+def t_quantile(freedom):
+    """Half the width of a 95 % interval in standard errors, by Student's t.
+
+    Parameters
+    ----------
+    freedom : int or (...) array_like of int
+        Degrees of freedom.
+    """
+    # stdtrit is the quantile behind scipy.stats.t, whose import alone costs most of a second.
+    return special.stdtrit(freedom, (1 + CONFIDENCE) / 2)
+
+
+class Mean(NamedTuple):
+    """Mean of independent values, its 95 % interval and how many there were."""
+
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    n: np.ndarray
+
+
+def mean_interval(values, axis: int = 0) -> Mean:
+    """Mean of independent values and its Student-t interval.
+
+    Parameters
+    ----------
+    values : array_like
+        NaN where missing.
+    axis : int
+        Along which the mean is taken.
+
+    Returns
+    -------
+    Mean
+        NaN without a value; the interval needs two.
+    """
+    values = np.asarray(values, float)
+    n = np.isfinite(values).sum(axis=axis)
+    at_least_one, at_least_two = np.maximum(n, 1), np.maximum(n, 2)
+    mean = np.where(n > 0, np.nansum(values, axis=axis) / at_least_one, np.nan)
+    squares = np.nansum((values - np.expand_dims(mean, axis)) ** 2, axis=axis)
+    error = np.sqrt(squares / (at_least_two - 1) / at_least_two)
+    half = t_quantile(at_least_two - 1) * error
+    half = np.where(n > 1, half, np.nan)
+    return Mean(mean, mean - half, mean + half, n)
+
+
+def jackknife_error(*divisions: np.ndarray) -> float:
+    """Half the t-interval of a value from what is found with one part after another left out.
+
+    Parameters
+    ----------
+    *divisions : (n,) array_like
+        What is found without each part of a division of the window; NaN where nothing is. Where
+        the window is divided in more than one way, their variances are averaged and their degrees
+        of freedom added.
+
+    Returns
+    -------
+    float
+        A division in less than two parts says nothing; 0 if there is no other, infinite where only
+        one of its parts gives a value.
+    """
+    divisions = [np.asarray(found, float) for found in divisions]
+    divisions = [found[np.isfinite(found)] for found in divisions if found.size > 1]
+    if not divisions:
+        return 0.0
+    if min(found.size for found in divisions) < 2:
+        return np.inf
+    variance = np.mean([(found.size - 1) * np.var(found) for found in divisions])
+    freedom = sum(found.size - 1 for found in divisions)
+    return float(t_quantile(freedom) * np.sqrt(variance))

@@ -1,0 +1,268 @@
+"""Compiled kernels on disk, under a digest of all that they are compiled from.
+
+numba knows a kernel on disk by the file of that kernel alone: where a kernel it calls or a constant
+it uses changes in another module, the old machine code goes on, with wrong numbers or a crash. Here
+the kernels of a module lie in a folder named after the content of the module, of every file of the
+package that it imports, near or far, and the versions of what compiles them. A kernel reaches
+nothing else, so that no other change compiles it anew.
+
+Each kernel gets a cache of its own in place of numba's. To point ``numba.config.CACHE_DIR`` at such
+a folder would be shorter, but it holds for the kernels of other packages too, for all modules
+together, and leaves numba to unpickle whatever lies there: here a file that is not as it was
+written counts as missing, and so does one that somebody else may have written.
+"""
+
+import contextlib
+import hashlib
+import os
+import pickle
+import shutil
+import stat
+import sys
+import tempfile
+import uuid
+import warnings
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+
+import llvmlite
+import numba
+import numpy as np
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.serialize import dumps
+
+from . import sources
+
+PACKAGE = Path(__file__).absolute().parents[1]
+#: Kernels that come with the package; who can write there can write its code.
+OWN = PACKAGE / "__pycache__" / "kernels"
+#: Versions of a module's kernels that are kept: to change between branches compiles nothing.
+KEPT = 3
+#: Bytes of a file's SHA-256, with which it begins.
+_CHECKSUM = hashlib.sha256().digest_size
+
+_VERSIONS = {
+    "python": f"{sys.implementation.cache_tag}{sys.abiflags}",
+    "numba": numba.__version__,
+    "llvmlite": llvmlite.__version__,
+    "numpy": np.__version__,
+    # Kernels compiled to find an error are others, too.
+    "checks": f"{numba.config.BOUNDSCHECK} {numba.config.DEBUGINFO_DEFAULT} {numba.config.OPT}",
+}
+
+
+def njit(function=None, /, *, cache=False, **options):
+    """``numba.njit`` for the modules of this package, with a cache that no change outdates.
+
+    Parameters
+    ----------
+    function : callable, optional
+        The kernel. A signature cannot be given: it is compiled for what it is called with.
+    cache : bool, optional
+        Whether it is kept on disk.
+    **options
+        Of ``numba.njit``.
+    """
+    if function is None:
+        return lambda function: njit(function, cache=cache, **options)
+    kernel = numba.njit(function, **options)
+    # With NUMBA_DISABLE_JIT numba returns the function as it is.
+    if cache and kernel is not function:
+        name = _folder_name(function.__code__.co_filename)
+        if name is not None:
+            kernel._cache = KernelCache(function, name)
+    return kernel
+
+
+class KernelCache(FunctionCache):
+    """What one kernel was compiled to, a checked file for each set of types it is called with.
+
+    Parameters
+    ----------
+    function : callable
+    name : str
+        Of the folder with the kernels of its module, in each of :func:`_folders`.
+    """
+
+    _warned = False
+
+    def __init__(self, function, name):
+        qualified = function.__qualname__.replace("<", "").replace(">", "")
+        self._stem = f"{qualified}-{function.__code__.co_firstlineno}"
+        self._name = f"{name}/{self._stem}"
+        self._py_func = function
+        self._impl = _Serialised(function)
+        writable, readable = _folders()
+        self._cache_path = writable and writable / name
+        self._paths = [folder / name for folder in readable]
+        self.enable()
+
+    def flush(self):
+        """Forget what this kernel was compiled to."""
+        if self._cache_path is not None:
+            for path in self._cache_path.glob(f"{self._stem}-*"):
+                path.unlink(missing_ok=True)
+
+    def _load_overload(self, sig, target_context):
+        if not self._enabled:
+            return None
+        key = self._key(sig, target_context.codegen())
+        name = self._file_name(key)
+        for path in self._paths:
+            content = _intact(path / name)
+            if content is not None:
+                saved, compiled = pickle.loads(content)
+                # The name is only a digest of how the types are written.
+                if saved == key:
+                    return self._impl.rebuild(target_context, compiled)
+        return None
+
+    def _save_overload(self, sig, data):
+        if not self._enabled or not self._impl.check_cachable(data):
+            return
+        if self._cache_path is None:
+            places = " nor ".join(map(str, _places()))
+            self._warn(f"neither {places} is a folder that this user alone can write to")
+            return
+        key = self._key(sig, data.codegen)
+        content = dumps((key, self._impl.reduce(data)))
+        try:
+            _write(self._cache_path / self._file_name(key), content)
+        except FileNotFoundError:
+            pass  # another process has just removed this folder, the oldest
+        except OSError as error:
+            self._warn(f"{self._cache_path}: {error.strerror or error}")
+
+    def _key(self, sig, codegen):
+        """What tells a compiled kernel from all others, processors included."""
+        return self._name, *self._index_key(sig, codegen)
+
+    def _file_name(self, key):
+        return f"{self._stem}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.nbc"
+
+    @staticmethod
+    def _warn(why):
+        if not KernelCache._warned:
+            KernelCache._warned = True
+            warnings.warn(
+                f"compiled kernels cannot be kept ({why}), so every process compiles them again; "
+                "set NUMBA_CACHE_DIR to a folder of your own that has room",
+                stacklevel=2,
+            )
+
+
+class _Serialised(CompileResultCacheImpl):
+    """numba's own way to take a compiled kernel to pieces, without its choice of a folder."""
+
+    def __init__(self, function):
+        code = function.__code__
+        # Named where it warns that a kernel is none that can be kept.
+        self._lineno = code.co_firstlineno
+        self._locator = SimpleNamespace(_py_file=code.co_filename)
+
+
+def _stamp(path):
+    found = os.stat(path)
+    return found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+def _stamps():
+    found = {}
+    for folder, inner, names in os.walk(PACKAGE):
+        inner[:] = [name for name in inner if name != "__pycache__"]
+        paths = [f"{folder}/{name}" for name in names if name.endswith(".py")]
+        found |= {path: _stamp(path) for path in paths}
+    return found
+
+
+#: Sizes and times of all files before the first module with kernels was imported.
+_STAMPS = _stamps()
+
+
+@cache
+def _folder_name(file):
+    """Folder of a module's kernels, or None if its code changed while it was imported.
+
+    Then nothing says which of both is compiled here: it is neither kept nor looked for.
+    """
+    files = sources.source_files([file], package=PACKAGE)
+    digest = sources.digest(files, root=PACKAGE, versions=_VERSIONS)
+    if any(_STAMPS.get(str(path)) != _stamp(path) for path in files):
+        return None
+    module = Path(file).absolute().relative_to(PACKAGE).with_suffix("")
+    return f"{'.'.join(module.parts)}/{digest}"
+
+
+@cache
+def _folders():
+    """Where kernels are written, or None, and where they are looked for."""
+    writable = next(filter(_is_safe, _places()), None)
+    wanted = next(_places())
+    if numba.config.CACHE_DIR and writable not in (wanted, None):
+        warnings.warn(
+            f"{wanted}: not a folder that this user alone can use, so compiled kernels go to "
+            f"{writable}; set NUMBA_CACHE_DIR to another one, or remove this",
+            stacklevel=2,
+        )
+    # What was compiled with the installation serves those who may only read it.
+    readable = (writable,) if numba.config.CACHE_DIR else (writable, OWN)
+    return writable, [folder for folder in dict.fromkeys(readable) if folder is not None]
+
+
+def _places():
+    if numba.config.CACHE_DIR:
+        yield Path(numba.config.CACHE_DIR).absolute() / "fractalcontact-kernels"
+    yield OWN
+    users = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+    if users.is_absolute():
+        yield users / "fractalcontact"
+    with contextlib.suppress(FileNotFoundError):  # of a machine without any such folder
+        yield Path(tempfile.gettempdir()) / f"fractalcontact-{os.geteuid()}"
+
+
+def _is_safe(folder):
+    """Whether kernels can be kept in a folder, and nobody else can put any there."""
+    try:
+        os.makedirs(folder, mode=0o777 if folder == OWN else 0o700, exist_ok=True)
+    except OSError:
+        return False
+    if not os.access(folder, os.W_OK | os.X_OK):
+        return False
+    found = os.lstat(folder)
+    mine = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid()
+    return folder == OWN or (mine and not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO))
+
+
+def _intact(path):
+    """Content of a file as it was written, or None of one that is missing or damaged."""
+    try:
+        content = path.read_bytes()
+    except OSError:  # what cannot be read is compiled anew
+        return None
+    checksum, content = content[:_CHECKSUM], content[_CHECKSUM:]
+    return content if hashlib.sha256(content).digest() == checksum else None
+
+
+def _write(path, content):
+    """Write a file that appears whole or not at all, and make room for a new folder's."""
+    folder = path.parent
+    if not folder.is_dir():
+        folder.mkdir(parents=True, exist_ok=True)
+        _remove_old(folder)
+    temporary = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
+    try:
+        with open(temporary, "xb") as file:
+            file.write(hashlib.sha256(content).digest() + content)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _remove_old(folder):
+    """Keep the newest folders of a module's kernels: this one, and those last written to."""
+    with contextlib.suppress(FileNotFoundError):  # removed by another process at the same time
+        others = [other for other in folder.parent.glob("[0-9a-f]" * 16) if other != folder]
+        others.sort(key=lambda other: other.stat().st_mtime, reverse=True)
+        for other in others[KEPT - 1 :]:
+            shutil.rmtree(other, ignore_errors=True)

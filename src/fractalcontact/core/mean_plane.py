@@ -1,0 +1,61 @@
+"""Heights less their mean plane: what is left of a scan that was not mounted level."""
+
+import numpy as np
+
+
+def without_mean_plane(heights: np.ndarray) -> np.ndarray:
+    """Heights less the least-squares plane through the cells that were measured.
+
+    Parameters
+    ----------
+    heights : (ny, nx) array_like
+        NaN where missing.
+
+    Returns
+    -------
+    (ny, nx) float64
+        All NaN where the measured cells do not span a plane: fewer than three, or in one line.
+    """
+    heights = np.asarray(heights, float)
+    known = np.isfinite(heights)
+    if known.all() and min(heights.shape) > 1:
+        return without_mean_planes(heights)
+    if not known.any():
+        return np.full(heights.shape, np.nan)
+    y, x = np.indices(heights.shape, dtype=float)
+    y -= y[known].mean()
+    x -= x[known].mean()
+    mean = heights[known].mean()
+    # Sums, not a matrix product: the last bit must not depend on the number of cores.
+    dy, dx, dz = y[known], x[known], heights[known] - mean
+    yy, xx, xy = np.sum(dy * dy), np.sum(dx * dx), np.sum(dx * dy)
+    determinant = yy * xx - xy**2
+    if determinant <= 1e-12 * yy * xx or yy * xx == 0:
+        return np.full(heights.shape, np.nan)
+    zy, zx = np.sum(dz * dy), np.sum(dz * dx)
+    slope_y = (zy * xx - zx * xy) / determinant
+    slope_x = (zx * yy - zy * xy) / determinant
+    return heights - mean - slope_y * y - slope_x * x
+
+
+def without_mean_planes(heights):
+    """Complete grids, each less its own mean plane: their rows are orthogonal to their columns.
+
+    Parameters
+    ----------
+    heights : (..., ny, nx) array_like
+        Two cells or more along each side.
+
+    Returns
+    -------
+    (..., ny, nx) float64
+    """
+    heights = np.asarray(heights, float)
+    ny, nx = heights.shape[-2:]
+    y, x = np.arange(ny) - (ny - 1) / 2, np.arange(nx) - (nx - 1) / 2
+    left = heights - heights.mean(axis=(-2, -1), keepdims=True)
+    slope_y = np.sum(left.sum(axis=-1) * y, axis=-1) / (nx * np.sum(y * y))
+    slope_x = np.sum(left.sum(axis=-2) * x, axis=-1) / (ny * np.sum(x * x))
+    left -= slope_y[..., np.newaxis, np.newaxis] * y[:, np.newaxis]
+    left -= slope_x[..., np.newaxis, np.newaxis] * x
+    return left

@@ -1,0 +1,71 @@
+"""Datasets as netCDF-4 files, whole or not at all, with the versions they were made with.
+
+Nothing that differs between two runs of one study (times, host names, paths) is written, so that
+the same configuration, scans, versions and machine give the same bytes.
+"""
+
+import json
+from importlib import metadata
+
+import xarray as xr
+
+from .atomic import atomic_write
+
+#: Libraries whose version can change a number.
+_NUMBER_MAKERS = ("fractalcontact", "numpy", "scipy", "numba", "xarray")
+
+
+#: Attribute of every part that says with which versions it was made.
+_VERSIONS = "made_with"
+
+
+def write(dataset, path):
+    """Write a dataset as netCDF-4, compressed, whole or not at all, with the versions in use.
+
+    Parameters
+    ----------
+    dataset : xr.Dataset
+    path : path-like
+    """
+    marked = dataset.assign_attrs({_VERSIONS: json.dumps(versions())})
+    with atomic_write(path) as temporary:
+        marked.to_netcdf(temporary, engine="netcdf4", encoding=encoding(dataset))
+
+
+def read(path):
+    """A dataset written by :func:`write`, in memory.
+
+    How it was kept is forgotten: the length of its longest word would cut off those of others that
+    are put behind it.
+    """
+    return read_with_versions(path)[0]
+
+
+def read_with_versions(path):
+    """A dataset written by :func:`write`, and the versions it was made with by library."""
+    with xr.open_dataset(path, engine="netcdf4") as dataset:
+        dataset = dataset.load().dropencoding()
+    return dataset, json.loads(dataset.attrs.pop(_VERSIONS, "{}"))
+
+
+def versions():
+    """Versions of the libraries in use that can change a number, by name."""
+    return {name: metadata.version(name) for name in _NUMBER_MAKERS}
+
+
+def encoding(dataset):
+    """How the variables of a dataset are kept: compressed, if they are numbers.
+
+    Parameters
+    ----------
+    dataset : xr.Dataset
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        name: {"zlib": True, "complevel": 4, "shuffle": True}
+        for name, variable in dataset.variables.items()
+        if variable.ndim > 0 and variable.dtype.kind in "fiub"
+    }

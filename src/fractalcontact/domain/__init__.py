@@ -1,0 +1,1 @@
+"""The contact domain: box counts, dimension Delta_sigma, clusters, renormalisation."""

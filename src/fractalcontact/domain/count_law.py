@@ -1,0 +1,240 @@
+"""The power law that mean box counts follow: the set's resolution and its outline told apart.
+
+The places of a gliding box that meet a set of dimension D fill the area V(r) = r^2 N(r). For a set
+drawn on a grid and cut off by an outline
+
+    V = rho^(2-D) [a_0 + a_1 (rho / L) + a_2 (rho / L)^2],    rho = r - c,
+
+with all a >= 0. Of the two corrections
+
+- c is what a node stands for. A box of r cells spans r - 1 from the centre of its first cell to
+  that of its last: of points sampled at centres (contact solved at nodes), c = 1. If every cell is
+  marked that holds some point of the set, what counts is the whole box: c = 0.
+- the bracket is what hangs over the outline: Steiner's formula for a filled figure (D = 2, area,
+  half perimeter in the mean, 1), which boxes of a tenth of its side would take for a set of 1.8;
+  the outline of a set of dimension D is taken to have D - 1, and below D = 1 there is none. (No
+  factor being negative, what chance bends to an outline would raise D: by 0.03 at D = 0.8.)
+
+The thresholds below were chosen on carpets, dusts, percolation clusters and random cascades, where
+D is then found within 0.02. On other sets, drawn as whole cells, that they were not chosen on
+(Vicsek's, Sierpinski's triangle, dusts and carpets of ratios 4 and 5, upright and turned) the
+median error is 0.03 and the largest 0.07, mostly upwards, where whole cells pass for centres.
+Whoever drew a set knows which they are, and may say so.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..core.arguments import real_array
+from ..core.kernel_cache import njit
+
+#: Values of D that are tried first, and then about the best of them.
+_COARSE = np.linspace(0, 2, 101)
+_FINE = np.linspace(-0.02, 0.02, 41)
+
+#: An outline adds at most this times what the inside counts, at boxes as large as the extent.
+#: (A filled square has 2, one turned by 45 degrees 4.)
+MOST_OUTLINE = 4.0
+
+#: Sets of less than this dimension have no outline: a line of the plane misses them.
+LEAST_WITH_OUTLINE = 1.0
+
+#: A further term of the outline has to make the misfit smaller by this ratio.
+TERM_GAIN = 1.5
+
+#: Cells marked whole (c = 0) are believed where their law fits better by this ratio than that of
+#: centres, and to this share: without an outline (log-periodic sets wave by 2 %), and with one.
+WHOLE_GAIN = 1.6
+WHOLE_MISFIT = 0.026
+WHOLE_MISFIT_OUTLINE = 0.0015
+
+#: Other laws are almost as good where their misfit is at most this times as large.
+RIVAL = 2.0
+
+#: Smallest box, cells, by which forms of the law are told apart, and of the fit itself: the
+#: smaller the box, the more what a node stands for shows, which is wanted in the one only.
+SMALLEST_TOLD = 3
+SMALLEST = 4
+
+#: What a node can stand for: all of its cell, or its centre.
+_WHOLE, _CENTRE = 0, 1
+
+
+@dataclass(frozen=True)
+class Law:
+    """A fitted law: D, misfit (relative, root mean square), c, number of terms of the outline."""
+
+    dimension: float
+    misfit: float
+    c: int
+    outline: int
+
+
+def best_law(
+    sizes: np.ndarray, count: np.ndarray, side: float, whole_cells: bool | None = None
+) -> tuple[Law | None, list[Law]]:
+    """The law that mean box counts follow, and its rivals.
+
+    Parameters
+    ----------
+    sizes, count : (k,) float ndarray
+        Box sides in cells and the mean number of boxes over all origins.
+    side : float
+        Extent L of the set, cells.
+    whole_cells : bool, optional
+        What is known of the nodes: c = 0 if they are whole cells, c = 1 if centres.
+
+    Returns
+    -------
+    law : Law or None
+        Unless it is known, nodes are taken for centres (c = 1) where counts do not plainly follow
+        the law of whole cells.
+        None where no law with such terms fits.
+    rivals : list of Law
+        Those with other terms that fit almost as well.
+
+    Raises
+    ------
+    ValueError
+        If there is not one count for each size.
+    """
+    sizes, count = _checked(sizes, count)
+    stand_for = {None: (_WHOLE, _CENTRE), True: (_WHOLE,), False: (_CENTRE,)}[whole_cells]
+    forms = [Law(np.nan, np.inf, c, outline) for c in stand_for for outline in range(3)]
+    laws = [_fit(form, sizes, count, side) for form in forms]
+    laws = {(law.c, law.outline): law for law in laws if law is not None}
+    if not laws:
+        return None, []
+    law = _whole_cells(laws) if whole_cells is None else None
+    law = law or _simplest([law for law in laws.values() if law.c == _CENTRE])
+    law = law or _simplest(list(laws.values()))
+    kept = sizes >= SMALLEST
+    law = _fit(law, sizes[kept], count[kept], side) or law
+    rivals = [other for other in laws.values() if other.misfit <= RIVAL * law.misfit]
+    return law, rivals
+
+
+def _whole_cells(laws):
+    """The law of cells marked whole, where that of centres is plainly worse."""
+    centres = {law.outline: law.misfit for law in laws.values() if law.c == _CENTRE}
+    limits = ((2, WHOLE_MISFIT_OUTLINE), (1, WHOLE_MISFIT_OUTLINE), (0, WHOLE_MISFIT))
+    for outline, most in limits:
+        whole = laws.get((_WHOLE, outline))
+        if whole is None or whole.misfit > min([most, *centres.values()]):
+            continue
+        rivals = [misfit for terms, misfit in centres.items() if terms <= outline]
+        if min(rivals, default=np.inf) >= WHOLE_GAIN * whole.misfit:
+            return whole
+    return None
+
+
+def _simplest(laws):
+    """The law with the fewest terms that one more would not make much better."""
+    best = None
+    for law in laws:
+        if best is None or law.misfit < best.misfit / TERM_GAIN:
+            best = law
+    return best
+
+
+def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> float:
+    """D of a law of the same form fitted to other counts; NaN if none fits.
+
+    Parameters
+    ----------
+    law : Law
+    sizes, count : (k,) float ndarray
+    side : float
+        Extent L of the set, cells.
+
+    Raises
+    ------
+    ValueError
+        If there is not one count for each size.
+    """
+    sizes, count = _checked(sizes, count)
+    fitted = _fit(law, sizes, count, side)
+    return np.nan if fitted is None else fitted.dimension
+
+
+def _checked(sizes, count):
+    """Sizes and counts as (k,) float64."""
+    sizes, count = (
+        np.ascontiguousarray(real_array(values, name), float)
+        for values, name in ((sizes, "sizes"), (count, "counts"))
+    )
+    if sizes.ndim != 1 or sizes.shape != count.shape:
+        raise ValueError(f"sizes {sizes.shape} and counts {count.shape}: expected one for each")
+    return sizes, count
+
+
+def _fit(law, sizes, count, side):
+    """The law of this form with the least misfit; None if its factors cannot be."""
+    if sizes.size <= law.outline + 2:
+        return None
+    at = 0.0
+    for grid in (_COARSE, _FINE):
+        tried = np.clip(at + grid, 0, 2)
+        misfit = _misfits(sizes - law.c, count * sizes**2, side, law.outline + 1, tried)
+        i = int(np.argmin(misfit))
+        if np.isinf(misfit[i]):
+            return None
+        at = float(tried[i])
+    return replace(law, dimension=at, misfit=float(misfit[i]))
+
+
+@njit(cache=True)
+def _misfits(rho, areas, side, terms, dimensions):
+    """Relative misfit at each D, the factors a by least squares; infinite where they are none."""
+    misfits = np.full(dimensions.size, np.inf)
+    columns = np.empty((rho.size, terms))
+    for d in range(dimensions.size):
+        largest = 0.0
+        for k in range(rho.size):
+            columns[k, 0] = rho[k] ** (2 - dimensions[d]) / areas[k]
+            largest = max(largest, columns[k, 0])
+        for k in range(rho.size):
+            columns[k, 0] /= largest
+            for i in range(1, terms):
+                columns[k, i] = columns[k, i - 1] * (rho[k] / side)
+        a = _factors(columns)
+        possible = a[0] > 0 and (terms == 1 or dimensions[d] >= LEAST_WITH_OUTLINE)
+        for i in range(1, terms):
+            possible &= -1e-9 * a[0] <= a[i] <= MOST_OUTLINE * a[0]
+        if possible:
+            total = 0.0
+            for k in range(rho.size):
+                found = 0.0
+                for i in range(terms):
+                    found += columns[k, i] * a[i]
+                total += (found - 1) ** 2
+            misfits[d] = np.sqrt(total / rho.size)
+    return misfits
+
+
+@njit(cache=True)
+def _factors(columns):
+    """Least squares of columns a = 1, by the normal equations; zeros where they have none."""
+    n = columns.shape[1]
+    normal = np.zeros((n, n + 1))
+    for k in range(columns.shape[0]):
+        for i in range(n):
+            for j in range(n):
+                normal[i, j] += columns[k, i] * columns[k, j]
+            normal[i, n] += columns[k, i]
+    a = np.zeros(n)
+    for i in range(n):
+        # Positive definite: the diagonal is what is left of each column beside those before.
+        if not normal[i, i] > 0:
+            return a
+        for row in range(i + 1, n):
+            factor = normal[row, i] / normal[i, i]
+            for j in range(i, n + 1):
+                normal[row, j] -= factor * normal[i, j]
+    for i in range(n - 1, -1, -1):
+        a[i] = normal[i, n]
+        for j in range(i + 1, n):
+            a[i] -= normal[i, j] * a[j]
+        a[i] /= normal[i, i]
+    return a

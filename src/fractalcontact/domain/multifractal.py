@@ -1,0 +1,222 @@
+"""Masses of gliding boxes: lacunarity and generalised dimensions of a domain or its pressure.
+
+A box glides over all its places inside the window. Boxes of one size then are a fair sample of
+what goes on beyond the window too, and nothing depends on where a grid of boxes happens to lie.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.arguments import real_array, refuse_masked, whole_numbers
+from ..core.intervals import jackknife_error
+from ..core.kernel_cache import njit
+from ..core.slope_of_sums import BLOCKS, NO_SLOPE, Slope, slope_of_sums
+from .box_counts import whole_sizes
+
+#: Smallest and largest box of the fits: cells, and share of the window's shorter side.
+SMALLEST_BOX = 4
+LARGEST_BOX = 1 / 4
+
+#: Places of a box along its own side: more say nothing new, the boxes overlap by so much.
+PLACES = 16
+
+#: Orders q of the generalised dimensions.
+ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
+#: Of fewer nodes there is no D_q: each is a tenth of it. And gliding boxes meet those near a rim
+#: less often: a single one in a corner would have 1.8, and parts left out would not tell.
+FEWEST = 10
+
+
+class Curve(NamedTuple):
+    """A number at each box size, its interval, and the slope of its logarithm."""
+
+    r: np.ndarray
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    slope: Slope
+
+
+def gliding_moments(mass: np.ndarray, sizes: np.ndarray, orders) -> tuple[np.ndarray, np.ndarray]:
+    """Moments of the mass in gliding boxes inside the window, over parts of the window.
+
+    Parameters
+    ----------
+    mass : (ny, nx) array_like
+        Not negative: nodes in contact, or their pressure.
+    sizes : (k,) int array_like
+        Box sides in cells, none larger than the window.
+    orders : sequence of float
+        q.
+
+    Returns
+    -------
+    moments : (k, len(orders) + 1, BLOCKS**2) float64
+        Sums of p^q over boxes that are not empty, p their share of the window's mass; last those of
+        p ln p.
+    places : (k, BLOCKS**2) int64
+        Boxes, empty ones too, by the part of the window that holds their middle.
+
+    Raises
+    ------
+    ValueError
+        If the mass is not a (y, x) grid, negative or not finite, or a size not whole or below 1.
+    """
+    mass = _checked(mass)
+    sizes = whole_numbers(sizes, "sizes of boxes", least=1, most=max(1, *mass.shape))
+    orders = real_array(orders, "orders q").astype(float).ravel()
+    moments = np.zeros((sizes.size, orders.size + 1, BLOCKS**2))
+    places = np.zeros((sizes.size, BLOCKS**2), np.int64)
+    total = mass.sum()
+    if total > 0:
+        share = mass / total
+        for k, size in enumerate(sizes):
+            _glide(share, int(size), max(1, int(size) // PLACES), orders, moments[k], places[k])
+    return moments, places
+
+
+def _checked(mass):
+    """Masses as (ny, nx) float64, none of them negative."""
+    refuse_masked(mass, "masses")
+    mass = real_array(mass, "masses", "biuf").astype(float, copy=False)
+    if mass.ndim != 2:
+        raise ValueError(f"masses are a (y, x) grid, not of shape {mass.shape}")
+    if not np.isfinite(mass).all() or (mass < 0).any():
+        raise ValueError("masses must be finite and not negative")
+    return np.ascontiguousarray(mass)
+
+
+@njit(cache=True)
+def _glide(share, size, step, orders, moments, places):
+    """Add the moments of all boxes of one size; sums of columns move on with the box."""
+    ny, nx = share.shape
+    column = np.zeros(nx)
+    for y in range(0, ny - size + 1, step):
+        # Summed anew: differences of sums would leave a trace of mass where there is none.
+        column[:] = 0.0
+        for i in range(y, y + size):
+            column += share[i]
+        part_y = (2 * y + size) * BLOCKS // (2 * ny)
+        for x in range(0, nx - size + 1, step):
+            p = column[x : x + size].sum()
+            part = part_y * BLOCKS + (2 * x + size) * BLOCKS // (2 * nx)
+            places[part] += 1
+            if p > 0:
+                log_p = np.log(p)
+                moments[-1, part] += p * log_p
+                for j, q in enumerate(orders):
+                    if q == 0:
+                        moments[j, part] += 1.0
+                    elif q == 1:
+                        moments[j, part] += p
+                    elif q == 2:
+                        moments[j, part] += p * p
+                    else:
+                        moments[j, part] += np.exp(q * log_p)
+
+
+def fit_sizes(shape: tuple[int, int]) -> np.ndarray:
+    """Box sides of the fits in a window of this shape, cells."""
+    sizes = whole_sizes(LARGEST_BOX * min(shape))
+    return sizes[sizes >= SMALLEST_BOX]
+
+
+def lacunarity(mass: np.ndarray, spacing: float) -> Curve:
+    """Gliding-box lacunarity <M^2> / <M>^2 over box sizes (Allain & Cloitre 1991).
+
+    1 where all boxes hold the same; a translation invariant fractal of dimension D in a window has
+    a power law of slope D - 2.
+
+    Parameters
+    ----------
+    mass : (ny, nx) array_like
+    spacing : float
+        mm.
+
+    Returns
+    -------
+    Curve
+        `r` in mm from one cell to half of the window; interval by the jackknife over parts of the
+        window (on the logarithm); the slope over the boxes of `fit_sizes`. Empty window: NaN.
+    """
+    mass = _checked(mass)
+    sizes = whole_sizes(min(mass.shape) / 2)
+    moments, places = gliding_moments(mass, sizes, [1.0, 2.0])
+    sums = np.concatenate([moments[:, :2], places[:, np.newaxis]], axis=1)
+    value = _lacunarity(sums.sum(axis=2))
+    left = [np.log(_lacunarity(sums.sum(axis=2) - sums[:, :, i])) for i in range(sums.shape[2])]
+    error = np.array([jackknife_error(column) for column in np.transpose(left)])
+    error[~np.isfinite(value)] = np.nan
+    fitted = np.isin(sizes, fit_sizes(mass.shape))
+    slope = slope_of_sums(sizes[fitted] * float(spacing), sums[fitted], _lacunarity)
+    r = sizes * float(spacing)
+    return Curve(r, value, value * np.exp(-error), value * np.exp(error), slope)
+
+
+def _lacunarity(sums):
+    """<M^2> / <M>^2 from sums of M, M^2 and 1; NaN where all boxes are empty."""
+    mass, square, places = sums.T
+    return np.where(mass > 0, square * places, np.nan) / np.where(mass > 0, mass, 1) ** 2
+
+
+def generalised_dimensions(
+    mass: np.ndarray, spacing: float, orders: tuple[float, ...] = ORDERS
+) -> dict[float, Slope]:
+    """Generalised dimensions D_q of a mass, by the moments of gliding boxes.
+
+    D_q (q - 1) is the slope of log Z_q against log r, Z_q = r^(2q - 2) <p^q> / <p>^q, the sum of
+    p^q over the boxes of a grid in the mean over its origins; at q = 1 that of <p ln p> / <p>
+    - ln <p>, and 2 more. D_0 belongs to the domain itself, D_1 to its entropy, D_2 to pairs; a mass
+    spread evenly has 2 at all q, and D_q falls with q.
+
+    Parameters
+    ----------
+    mass : (ny, nx) array_like
+        Pressure, or nodes in contact.
+    spacing : float
+        mm.
+    orders : sequence of float
+        q. Negative ones weigh the emptiest boxes most: they tell how contact fades out at the rims
+        of its patches, and depend on the solver's tolerance.
+
+    Returns
+    -------
+    dict of float to Slope
+        D_q, its interval, and the smallest and largest box (mm) of the fit; none of fewer
+        than :data:`FEWEST` nodes.
+    """
+    mass = _checked(mass)
+    sizes = fit_sizes(mass.shape)
+    if sizes.size == 0 or np.count_nonzero(mass) < FEWEST:
+        return dict.fromkeys(orders, NO_SLOPE)
+    moments, places = gliding_moments(mass, sizes, [1.0, *orders])
+    first, entropy = moments[:, 0], moments[:, -1]
+    found = {}
+    for j, q in enumerate(orders):
+        column = entropy if q == 1 else moments[:, 1 + j]
+        sums = np.stack([first, column, places], axis=1)
+        slope = slope_of_sums(sizes * float(spacing), sums, _normalised(q))
+        found[q] = _dimension(slope, q)
+    return found
+
+
+def _normalised(q):
+    """The statistic whose slope gives D_q, of sums of p, of p^q (or p ln p), and of 1."""
+
+    def statistic(sums):
+        first, moment, places = sums.T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean = first / places
+            if q == 1:
+                return np.exp(moment / first - np.log(mean))
+            return moment / places / mean**q
+
+    return statistic
+
+
+def _dimension(slope, q):
+    """D_q from the slope of its statistic."""
+    factor = 1.0 if q == 1 else 1 / (q - 1)
+    ends = sorted((2 + factor * slope.low, 2 + factor * slope.high))
+    return slope._replace(value=2 + factor * slope.value, low=ends[0], high=ends[1])

@@ -1,0 +1,207 @@
+"""Renormalisation of the contact area over resolutions and the size effect (eqs. 5 and 6)."""
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from ..core.fitting import fit_line
+from ..core.intervals import CONFIDENCE
+from ..core.labels import about
+
+#: The dimension along which resolutions s, 2s, 4s ... are stored.
+RESOLUTION = "resolution"
+
+#: Nodes that a contact domain needs at a resolution for its number N_n to tell anything.
+FEWEST_NODES = 4
+
+
+def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) -> xr.Dataset:
+    """Dimension and fractal measure of the contact domain from its area over resolutions.
+
+    The real area of the pre-fractals follows A_n ~ s_n^(2 - Delta_sigma), so that
+    F = sigma_n A_n = sigma* H_D with H_D = N_n s_n^Delta_sigma the same at all of them (eq. 5).
+
+    Parameters
+    ----------
+    s : DataArray (resolution,)
+        Spacings, mm.
+    area : DataArray (resolution, ...)
+        Real contact area A_n, mm2. Areas of fewer than `FEWEST_NODES` nodes of s_n^2, and missing
+        ones, are left out.
+    force : DataArray (...)
+        Force F, N, on any of the other dimensions of `area`.
+
+    Returns
+    -------
+    xarray.Dataset
+        On the other dimensions of `area`: `delta_sigma` with `_low`, `_high` (95 %), `n`
+        resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta)
+        and `hausdorff_spread`, the geometric standard deviation about it (1 = no spread);
+        `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
+        resolutions that count. NaN where fewer than three resolutions can be.
+
+    Notes
+    -----
+    N_n = A_n / s_n^2 is a whole number. One node more or less of one, two or three would change the
+    slope over a doubling of s by 1, 0.6 or 0.4: such domains are too small to have a dimension (a
+    single node at every resolution would give exactly 0). From `FEWEST_NODES` = 4 on it is 0.3.
+
+    Few resolutions may lie on a line by chance. The interval is that of the regression, but never
+    narrower than what counting leaves open: N_n nodes vary at least as sqrt(N_n) with the place of
+    the grid (as Poisson's law has it for nodes that touch independently; clusters vary more).
+
+    Raises
+    ------
+    ValueError
+        If a spacing is not positive or an area is negative.
+    """
+    if not (s > 0).all():
+        raise ValueError(f"spacings must be positive, not {s.values}")
+    if (area < 0).any():
+        raise ValueError(f"a contact area cannot be negative: {float(area.min())} mm2")
+    touching = area.where(area >= (FEWEST_NODES - 1e-6) * s**2)
+    slope, low, high, n, r2 = xr.apply_ufunc(
+        _area_exponent,
+        np.log(s),
+        np.log(touching),
+        input_core_dims=[[RESOLUTION], [RESOLUTION]],
+        output_core_dims=[[]] * 5,
+        vectorize=True,
+    )
+    delta = 2 - slope
+    measure = hausdorff_measure(s, touching, delta)
+    mean_log, spread_log = (
+        np.log(measure).mean(RESOLUTION),
+        np.log(measure).std(RESOLUTION, ddof=1),
+    )
+    result = xr.Dataset(
+        {
+            "delta_sigma": delta,
+            "delta_sigma_low": 2 - high,
+            "delta_sigma_high": 2 - low,
+            "n": n.astype(int),
+            "r2": r2,
+            "hausdorff_measure": np.exp(mean_log),
+            "hausdorff_spread": np.exp(spread_log),
+            "sigma_star": force / np.exp(mean_log),
+            "sigma_n": force / touching,
+        }
+    )
+    units = {
+        "delta_sigma": ("1", "dimension of the contact domain from A_r ~ s^(2 - Delta_sigma)"),
+        "delta_sigma_low": ("1", "lower end of the 95 % interval of Delta_sigma"),
+        "delta_sigma_high": ("1", "upper end of the 95 % interval of Delta_sigma"),
+        "n": ("1", "resolutions fitted"),
+        "r2": ("1", "coefficient of determination of the fit"),
+        "hausdorff_measure": ("mm^delta_sigma", "fractal measure H_D of the contact domain"),
+        "hausdorff_spread": ("1", "geometric standard deviation of H_D over resolutions"),
+        "sigma_star": ("N mm^-delta_sigma", "fractal mean pressure sigma*"),
+        "sigma_n": ("MPa", "real mean pressure at each resolution"),
+    }
+    for name, (unit, words) in units.items():
+        result[name].attrs = about(unit, words)
+    return result
+
+
+def _area_exponent(log_s: np.ndarray, log_area: np.ndarray) -> tuple[float, ...]:
+    """Slope of log A over log s with its interval, resolutions fitted and r2."""
+    line = fit_line(log_s, log_area)
+    if np.isnan(line.slope):
+        return np.nan, np.nan, np.nan, float(line.n), np.nan
+    half = max(line.slope_high - line.slope, _counting_error(log_s, log_area))
+    return line.slope, line.slope - half, line.slope + half, float(line.n), line.r2
+
+
+def _counting_error(log_s: np.ndarray, log_area: np.ndarray) -> float:
+    """Half of the interval of the slope if each N varies as sqrt(N), hence log N as 1/sqrt(N)."""
+    counted = np.isfinite(log_area)
+    nodes = np.exp(log_area - 2 * log_s)[counted]
+    dx = log_s[counted] - log_s[counted].mean()
+    return special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(np.sum(dx**2 / nodes)) / np.sum(dx**2)
+
+
+def hausdorff_measure(s, area, delta_sigma):
+    """Fractal measure N_n s_n^Delta_sigma of each pre-fractal, with N_n = A_n / s_n^2 nodes.
+
+    Parameters
+    ----------
+    s : array_like
+        Spacing, mm.
+    area : array_like
+        Real contact area, mm2.
+    delta_sigma : array_like
+
+    Returns
+    -------
+    Of the arguments' common shape, in mm^Delta_sigma.
+    """
+    return area * s ** (delta_sigma - 2)
+
+
+def nominal_pressure(sigma_star, delta_sigma, b):
+    """Nominal pressure that brings about sigma* on a joint of side b (eq. 6).
+
+    Parameters
+    ----------
+    sigma_star : array_like
+        Fractal mean pressure, N mm^-Delta_sigma.
+    delta_sigma : array_like
+        Dimension of the contact domain.
+    b : array_like
+        Side of the joint, mm.
+
+    Returns
+    -------
+    Of the arguments' common shape, in MPa: sigma* b^(Delta_sigma - 2).
+    """
+    return sigma_star * b ** (delta_sigma - 2)
+
+
+def compare_dimensions(
+    area: xr.DataArray,
+    area_low: xr.DataArray,
+    area_high: xr.DataArray,
+    box: xr.DataArray,
+    box_low: xr.DataArray,
+    box_high: xr.DataArray,
+) -> xr.Dataset:
+    """Set two estimates of Delta_sigma side by side: from A_r(s) and from box counting.
+
+    Parameters
+    ----------
+    area, area_low, area_high : DataArray
+        Delta_sigma from `renormalisation` with its 95 % interval.
+    box, box_low, box_high : DataArray
+        Delta_sigma from box counting with its interval.
+
+    Returns
+    -------
+    xarray.Dataset
+        `delta_area`, `delta_box`, `difference` = area - box with `difference_low`, `_high`: the
+        ends of the two intervals combined as those of independent estimates (root of the sum of
+        squares); and whether they `disagree`: the interval of the difference leaves out zero.
+    """
+    difference = area - box
+    low = difference - np.hypot(area - area_low, box_high - box)
+    high = difference + np.hypot(area_high - area, box - box_low)
+    result = xr.Dataset(
+        {
+            "delta_area": area,
+            "delta_box": box,
+            "difference": difference,
+            "difference_low": low,
+            "difference_high": high,
+            "disagree": (low > 0) | (high < 0),
+        }
+    )
+    words = {
+        "delta_area": "Delta_sigma from the contact area over resolutions",
+        "delta_box": "Delta_sigma from box counting",
+        "difference": "Delta_sigma from area less that from box counting",
+        "difference_low": "lower end of the 95 % interval of the difference",
+        "difference_high": "upper end of the 95 % interval of the difference",
+        "disagree": "the two estimates of Delta_sigma differ by more than their intervals",
+    }
+    for name, text in words.items():
+        result[name].attrs = about("1", text)
+    return result

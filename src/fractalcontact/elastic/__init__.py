@@ -1,0 +1,1 @@
+"""The elastic half-space: normal displacement under a pressure, by fast Fourier transforms."""

@@ -1,0 +1,360 @@
+"""Zero-padded convolution of a real field with an even kernel, by Fourier transforms of its own.
+
+Sixteen transforms go on side by side, one in each lane of the processor's vectors (`lanes`), which
+libraries built for every processor do not use in full. What is known is left out: rows nobody wants
+are not transformed, and as the kernel's spectrum is put in the order in which the forward transform
+leaves its result and the inverse takes it, nothing is sorted.
+
+The transform along y comes first, of two real columns as one complex. Their spectra, for half the
+wave numbers, stand in blocks of sixteen wave numbers and are transformed along x, multiplied, and
+transformed back. (Decimation in frequency forward, in time back: Cooley and Tukey, Math. Comp. 19
+(1965) 297; Gentleman and Sande, AFIPS Proc. 29 (1966) 563.)
+"""
+
+import numpy as np
+
+from ..core import threads
+from ..core.kernel_cache import njit
+from .simd import WIDTH, load, store, transpose
+
+#: Numbers in a row of a buffer: real, then imaginary parts of one index of all the transforms.
+ROW = 2 * WIDTH
+#: On fewer cells than this a second thread costs more than it brings.
+THREADED_CELLS = 150_000
+
+
+def fast_length(least):
+    """The shortest length >= ``least`` and >= 2 without prime factors over 5."""
+    length = max(least, 2)
+    while _radices(length) is None:
+        length += 1
+    return length
+
+
+def _radices(n):
+    """Factors 4, 2, 3 and 5 of a length, or None if there are others."""
+    factors = []
+    for radix in (4, 2, 3, 5):
+        while n % radix == 0:
+            factors.append(radix)
+            n //= radix
+    return factors if n == 1 else None
+
+
+class Convolution:
+    """Convolution with one kernel in one precision.
+
+    Parameters
+    ----------
+    spectrum : (padded y // 2 + 1, padded x // 2 + 1) ndarray
+        Transform of the kernel in its circulant: real, as the kernel is even both ways.
+    shape : (int, int)
+        Of the fields, (ny, nx).
+    padded : (int, int)
+        Lengths of the transforms, each a :func:`fast_length`.
+    dtype : type
+        float32 or float64.
+
+    Raises
+    ------
+    ValueError
+        If these do not go together.
+    """
+
+    def __init__(self, spectrum, shape, padded, dtype):
+        if dtype not in (np.float32, np.float64):
+            raise ValueError(f"dtype {dtype}: expected float32 or float64")
+        for n, length in zip(shape, padded, strict=True):
+            if n < 1 or length < 2 * n - 1 or length != fast_length(length):
+                raise ValueError(
+                    f"padded {padded}: expected the fast_length of twice the shape {shape} or more"
+                )
+        half = padded[0] // 2 + 1, padded[1] // 2 + 1
+        if np.shape(spectrum) != half:
+            raise ValueError(f"spectrum {np.shape(spectrum)}: expected {half}")
+        self._shape, self._dtype = tuple(shape), np.dtype(dtype)
+        (radices_y, roots_y, frequency_y) = _plan(padded[0], dtype)
+        (radices_x, roots_x, frequency_x) = _plan(padded[1], dtype)
+        waves = padded[0] // 2 + 1
+        self._blocks, self._waves = -(-shape[1] // ROW), -(-waves // WIDTH)
+        lanes = np.zeros((self._waves * WIDTH, spectrum.shape[1]), dtype)
+        lanes[:waves] = spectrum
+        lanes[:waves] /= padded[0] * padded[1]
+        lanes = lanes.reshape(self._waves, WIDTH, -1).transpose(0, 2, 1)
+        mirrored = np.minimum(frequency_x, padded[1] - frequency_x)
+        self._along_y = radices_y, roots_y, np.argsort(frequency_y)
+        self._along_x = np.ascontiguousarray(lanes), mirrored, radices_x, roots_x
+
+    def __call__(self, field):
+        """The convolution of a field, (ny, nx), of this precision.
+
+        Raises
+        ------
+        ValueError
+            If it has another shape or type.
+        """
+        field = np.ascontiguousarray(field)
+        # Compiled code writes to memory whatever it is given.
+        if field.shape != self._shape or field.dtype != self._dtype:
+            raise ValueError(
+                f"field {field.shape} of {field.dtype}: expected {self._shape} of {self._dtype}"
+            )
+        result = np.empty_like(field)
+        spectra = np.empty((self._waves, self._blocks * ROW * ROW), self._dtype)
+        nx = self._shape[1]
+        _in_parts(
+            lambda *part: _forward_along_y(*part, field, spectra, *self._along_y),
+            self._blocks,
+            field.size,
+        )
+        _in_parts(
+            lambda *part: _multiply_along_x(*part, nx, spectra, *self._along_x),
+            self._waves,
+            field.size,
+        )
+        _in_parts(
+            lambda *part: _back_along_y(*part, spectra, result, *self._along_y),
+            self._blocks,
+            field.size,
+        )
+        return result
+
+
+def _in_parts(function, n, cells):
+    threads.in_parts(function, n, smallest=1 if cells >= THREADED_CELLS else n)
+
+
+def _plan(n, dtype):
+    """Radices, cos and -sin of the roots of unity, frequencies as the transform leaves them."""
+    radices = np.array(_radices(n), np.int64)
+    frequency = np.zeros(1, np.int64)
+    for radix in radices[::-1]:
+        frequency = (np.arange(radix)[:, None] + radix * frequency).ravel()
+    angle = 2 * np.pi * np.arange(n) / n
+    return radices, np.stack([np.cos(angle), -np.sin(angle)], axis=1).astype(dtype), frequency
+
+
+@njit(cache=True)
+def _turned(re, im, roots, k):
+    """(re + i im) times root k."""
+    if k == 0:
+        return re, im
+    c, s = roots[k, 0], roots[k, 1]
+    return c * re - s * im, c * im + s * re
+
+
+@njit(cache=True)
+def _take(x, row, real, imag, roots, k):
+    """Real and imaginary parts of a row, times root k."""
+    return _turned(load(x, row * ROW + real), load(x, row * ROW + imag), roots, k)
+
+
+@njit(cache=True)
+def _put(x, row, real, imag, value):
+    store(x, row * ROW + real, value[0])
+    store(x, row * ROW + imag, value[1])
+
+
+# One radix of n = radix m rows from ``first`` on. Rows are turned by multiples of a root that is
+# ``before`` or ``after`` times their place (one of the two is 0); all are read before any is put.
+
+
+@njit(cache=True)
+def _pass2(x, first, m, before, after, roots, real, imag):
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, roots, 0)
+        br, bi = _take(x, row + m, real, imag, roots, k)
+        second = _turned(ar - br, ai - bi, roots, q)
+        _put(x, row, real, imag, (ar + br, ai + bi))
+        _put(x, row + m, real, imag, second)
+
+
+@njit(cache=True)
+def _pass3(x, first, m, before, after, roots, real, imag):
+    half, height = x.dtype.type(0.5), x.dtype.type(np.sqrt(0.75))
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, roots, 0)
+        br, bi = _take(x, row + m, real, imag, roots, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, roots, 2 * k)
+        sr, si = br + cr, bi + ci
+        dr, di = height * (br - cr), height * (bi - ci)
+        er, ei = ar - half * sr, ai - half * si
+        second = _turned(er + di, ei - dr, roots, q)
+        third = _turned(er - di, ei + dr, roots, 2 * q)
+        _put(x, row, real, imag, (ar + sr, ai + si))
+        _put(x, row + m, real, imag, second)
+        _put(x, row + 2 * m, real, imag, third)
+
+
+@njit(cache=True)
+def _pass4(x, first, m, before, after, roots, real, imag):
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, roots, 0)
+        br, bi = _take(x, row + m, real, imag, roots, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, roots, 2 * k)
+        dr, di = _take(x, row + 3 * m, real, imag, roots, 3 * k)
+        er, ei, fr, fi = ar + cr, ai + ci, br + dr, bi + di
+        gr, gi, hr, hi = ar - cr, ai - ci, br - dr, bi - di
+        second = _turned(gr + hi, gi - hr, roots, q)
+        third = _turned(er - fr, ei - fi, roots, 2 * q)
+        fourth = _turned(gr - hi, gi + hr, roots, 3 * q)
+        _put(x, row, real, imag, (er + fr, ei + fi))
+        _put(x, row + m, real, imag, second)
+        _put(x, row + 2 * m, real, imag, third)
+        _put(x, row + 3 * m, real, imag, fourth)
+
+
+@njit(cache=True)
+def _pass5(x, first, m, before, after, roots, real, imag):
+    c1, s1 = x.dtype.type(np.cos(0.4 * np.pi)), x.dtype.type(np.sin(0.4 * np.pi))
+    c2, s2 = x.dtype.type(np.cos(0.8 * np.pi)), x.dtype.type(np.sin(0.8 * np.pi))
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, roots, 0)
+        br, bi = _take(x, row + m, real, imag, roots, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, roots, 2 * k)
+        dr, di = _take(x, row + 3 * m, real, imag, roots, 3 * k)
+        er, ei = _take(x, row + 4 * m, real, imag, roots, 4 * k)
+        fr, fi, gr, gi = br + er, bi + ei, cr + dr, ci + di
+        br, bi, cr, ci = br - er, bi - ei, cr - dr, ci - di
+        hr, hi = ar + c1 * fr + c2 * gr, ai + c1 * fi + c2 * gi
+        er, ei = ar + c2 * fr + c1 * gr, ai + c2 * fi + c1 * gi
+        ur, ui = s1 * br + s2 * cr, s1 * bi + s2 * ci
+        vr, vi = s2 * br - s1 * cr, s2 * bi - s1 * ci
+        second = _turned(hr + ui, hi - ur, roots, q)
+        third = _turned(er + vi, ei - vr, roots, 2 * q)
+        fourth = _turned(er - vi, ei + vr, roots, 3 * q)
+        fifth = _turned(hr - ui, hi + ur, roots, 4 * q)
+        _put(x, row, real, imag, (ar + fr + gr, ai + fi + gi))
+        _put(x, row + m, real, imag, second)
+        _put(x, row + 2 * m, real, imag, third)
+        _put(x, row + 3 * m, real, imag, fourth)
+        _put(x, row + 4 * m, real, imag, fifth)
+
+
+@njit(cache=True)
+def _transform(x, radices, roots, back):
+    """Transform the rows of x in place, leaving frequencies in the order of the plan; or ``back``.
+
+    Back, times n, is forward with real and imaginary parts exchanged, and the passes turned round.
+    """
+    n = roots.shape[0]
+    real, imag = (WIDTH, 0) if back else (0, WIDTH)
+    size = 1 if back else n
+    for number in range(radices.size):
+        radix = radices[radices.size - 1 - number] if back else radices[number]
+        m = size if back else size // radix
+        turn = n // (m * radix)
+        before, after = (turn, 0) if back else (0, turn)
+        for first in range(0, n, m * radix):
+            if radix == 4:
+                _pass4(x, first, m, before, after, roots, real, imag)
+            elif radix == 2:
+                _pass2(x, first, m, before, after, roots, real, imag)
+            elif radix == 3:
+                _pass3(x, first, m, before, after, roots, real, imag)
+            else:
+                _pass5(x, first, m, before, after, roots, real, imag)
+        size = m * radix if back else m
+
+
+@njit(cache=True, nogil=True)
+def _forward_along_y(start, stop, field, spectra, radices, roots, place):
+    """Spectra along y of some blocks of columns.
+
+    The left half of a block are the real, the right half the imaginary parts of what is
+    transformed: spectra a and b of the two are apart in even and odd part of the result.
+    """
+    ny, nx = field.shape
+    n = roots.shape[0]
+    numbers = field.reshape(-1)
+    x = np.empty(n * ROW, field.dtype)
+    tile = np.empty(2 * WIDTH * ROW, field.dtype)
+    half = field.dtype.type(0.5)
+    for block in range(start, stop):
+        left = block * ROW
+        if left + ROW <= nx:
+            for y in range(ny):
+                store(x, y * ROW, load(numbers, y * nx + left))
+                store(x, y * ROW + WIDTH, load(numbers, y * nx + left + WIDTH))
+        else:
+            for y in range(ny):
+                for lane in range(ROW):
+                    x[y * ROW + lane] = field[y, left + lane] if left + lane < nx else 0
+        x[ny * ROW :] = 0
+        _transform(x, radices, roots, False)
+        for waves in range(spectra.shape[0]):
+            for lane in range(WIDTH):
+                # Lanes past the last wave number hold it again.
+                k = min(waves * WIDTH + lane, n // 2)
+                here, there = place[k] * ROW, place[(n - k) % n] * ROW
+                zr, zi = half * load(x, here), half * load(x, here + WIDTH)
+                wr, wi = half * load(x, there), half * load(x, there + WIDTH)
+                store(tile, lane * ROW, zr + wr)
+                store(tile, lane * ROW + WIDTH, zi + wi)
+                store(tile, (WIDTH + lane) * ROW, zi - wi)
+                store(tile, (WIDTH + lane) * ROW + WIDTH, wr - zr)
+            # From wave numbers in rows to wave numbers in lanes.
+            for part in (0, 1):
+                for side in (0, WIDTH):
+                    corner = part * WIDTH * ROW + side
+                    at = (left + side) * ROW + part * WIDTH
+                    transpose(tile, corner, ROW, spectra[waves], at, ROW)
+
+
+@njit(cache=True, nogil=True)
+def _multiply_along_x(start, stop, nx, spectra, kernel, mirrored, radices, roots):
+    """Convolve along x, for some blocks of wave numbers along y, in place."""
+    n = roots.shape[0]
+    x = np.empty(n * ROW, spectra.dtype)
+    for waves in range(start, stop):
+        x[: nx * ROW] = spectra[waves, : nx * ROW]
+        x[nx * ROW :] = 0
+        _transform(x, radices, roots, False)
+        factors = kernel[waves].reshape(-1)
+        for k in range(n):
+            factor = load(factors, mirrored[k] * WIDTH)
+            store(x, k * ROW, factor * load(x, k * ROW))
+            store(x, k * ROW + WIDTH, factor * load(x, k * ROW + WIDTH))
+        _transform(x, radices, roots, True)
+        spectra[waves, : nx * ROW] = x[: nx * ROW]
+
+
+@njit(cache=True, nogil=True)
+def _back_along_y(start, stop, spectra, field, radices, roots, place):
+    """From spectra along y to some blocks of columns."""
+    ny, nx = field.shape
+    n = roots.shape[0]
+    numbers = field.reshape(-1)
+    x = np.empty(n * ROW, field.dtype)
+    tile = np.empty(2 * WIDTH * ROW, field.dtype)
+    for block in range(start, stop):
+        left = block * ROW
+        for waves in range(spectra.shape[0]):
+            for part in (0, 1):
+                for side in (0, WIDTH):
+                    corner = part * WIDTH * ROW + side
+                    at = (left + side) * ROW + part * WIDTH
+                    transpose(spectra[waves], at, ROW, tile, corner, ROW)
+            for lane in range(min(WIDTH, n // 2 + 1 - waves * WIDTH)):
+                k = waves * WIDTH + lane
+                here, there = place[k] * ROW, place[(n - k) % n] * ROW
+                ar, br = load(tile, lane * ROW), load(tile, lane * ROW + WIDTH)
+                ai = load(tile, (WIDTH + lane) * ROW)
+                bi = load(tile, (WIDTH + lane) * ROW + WIDTH)
+                store(x, there, ar + bi)
+                store(x, there + WIDTH, br - ai)
+                store(x, here, ar - bi)
+                store(x, here + WIDTH, ai + br)
+        _transform(x, radices, roots, True)
+        if left + ROW <= nx:
+            for y in range(ny):
+                store(numbers, y * nx + left, load(x, y * ROW))
+                store(numbers, y * nx + left + WIDTH, load(x, y * ROW + WIDTH))
+        else:
+            for y in range(ny):
+                for lane in range(nx - left):
+                    field[y, left + lane] = x[y * ROW + lane]

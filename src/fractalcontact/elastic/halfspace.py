@@ -1,0 +1,292 @@
+"""The elastic half-space: normal displacement of a free surface under a pressure, by FFT.
+
+Free space: the window stands alone on an infinite half-space, so the convolution is zero padded and
+there are no periodic images.
+"""
+
+from functools import partial
+
+import numpy as np
+from scipy import fft
+
+from ..core.arguments import (
+    LEAST_INPUT,
+    MOST_INPUT,
+    MOST_RESULT,
+    field,
+    number,
+    pair,
+    quoted,
+    real_array,
+    refuse_masked,
+    whole_number,
+)
+from ..core.threads import lazy
+from .convolution import Convolution, fast_length
+
+#: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
+#: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
+RIGID_PLATE_SELF_TERMS = {
+    "rigid square": 1 / 1.1523,
+    "equal-area disc": np.sqrt(np.pi) / 2,
+    "inscribed disc": 1.0,
+}
+#: Compiled code counts cells in four bytes.
+MOST_CELLS = 2**31 - 1
+
+
+def love_displacement(x, y, dx, dy):
+    """Displacement at (x, y) under uniform pressure on a rectangle centred at the origin.
+
+    Parameters
+    ----------
+    x, y : array_like
+        Where the displacement is wanted, mm.
+    dx, dy : float
+        Sides of the loaded rectangle, mm.
+
+    Returns
+    -------
+    ndarray
+        E* u / p in mm.
+
+    Notes
+    -----
+    A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377: pi E* u / p is the sum over the four
+    corners, signed, of X asinh(Y/|X|) + Y asinh(X/|Y|).
+    """
+    total = 0.0
+    for sign_x in (1, -1):
+        for sign_y in (1, -1):
+            corner = _love_corner(x + sign_x * dx / 2, y + sign_y * dy / 2)
+            total = total + sign_x * sign_y * corner
+    return total / np.pi
+
+
+def _love_corner(x, y):
+    """X asinh(Y/|X|) + Y asinh(X/|Y|), continued by its limit where X or Y vanishes."""
+    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+    first, second = np.zeros(x.shape), np.zeros(x.shape)
+    np.divide(y, np.abs(x), out=first, where=x != 0)
+    np.divide(x, np.abs(y), out=second, where=y != 0)
+    return x * np.arcsinh(first) + y * np.arcsinh(second)
+
+
+def rectangle_mean_displacement(a, b):
+    """Mean of E* u / p over a uniformly loaded rectangle a x b, in the unit of a and b.
+
+    Notes
+    -----
+    Love's displacement integrated over the rectangle itself. For a square of side b it is
+    b [4 ln(1 + sqrt 2) - (4/3)(sqrt 2 - 1)] / pi = 0.946402 b.
+    """
+    diagonal = np.hypot(a, b)
+    return (
+        2 * a**2 * b * np.arcsinh(b / a)
+        + 2 * a * b**2 * np.arcsinh(a / b)
+        + 2 / 3 * (a**3 + b**3 - diagonal**3)
+    ) / (np.pi * a * b)
+
+
+class HalfSpace:
+    """The elastic operator on a grid of rectangular cells.
+
+    It cannot be changed, and several threads may use one.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Cells (ny, nx).
+    spacing : (float, float)
+        Cell sides (dy, dx), mm.
+    modulus : float
+        E*, MPa: 1/E* = sum over both bodies of (1 - nu^2)/E.
+    kernel : str
+        ``"love"`` (default): uniform pressure on each cell, displacement at its centre. Or one of
+        the readings of the paper's rigid plate, ``"rigid square"``, ``"equal-area disc"``,
+        ``"inscribed disc"``: that self-term, and a point load on every other cell.
+
+    Raises
+    ------
+    ValueError
+        If the shape, spacing, modulus or kernel makes no sense.
+    """
+
+    _FIXED = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
+
+    def __init__(self, shape, spacing, modulus, *, kernel="love"):
+        ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MOST_CELLS))
+        if ny * nx > MOST_CELLS:
+            raise ValueError(f"shape {(ny, nx)}: expected no more than {MOST_CELLS} cells")
+        dy, dx = pair(spacing, "spacing", partial(_size, name="spacing", unit="mm"))
+        modulus = _size(modulus, "modulus", "MPa (10 GPa are 10e3)")
+        names = ["love", *RIGID_PLATE_SELF_TERMS]
+        if not isinstance(kernel, str) or kernel not in names:
+            raise ValueError(f"kernel {quoted(kernel)}: expected one of {', '.join(names)}")
+        if kernel != "love" and not np.isclose(dx, dy, rtol=1e-9, atol=0):
+            raise ValueError("the rigid-plate kernels are known for square cells only")
+        # Side of the square as large as a cell: the solver's unit of length in the plane.
+        cell = float(np.sqrt(dy * dx))
+        padded = fast_length(2 * ny - 1), fast_length(2 * nx - 1)
+        vars(self).update(shape=(ny, nx), spacing=(dy, dx), modulus=modulus, kernel=kernel)
+        vars(self).update(cell=cell, _padded=padded)
+
+    def __setattr__(self, name, value):
+        # What is kept of the old grid would be used, out of bounds, on the new one.
+        if name in self._FIXED:
+            raise AttributeError(f"{name} of a HalfSpace cannot be changed; make another HalfSpace")
+        super().__setattr__(name, value)
+
+    def __eq__(self, other):
+        if not isinstance(other, HalfSpace):
+            return NotImplemented
+        return self._key == other._key
+
+    def __hash__(self):
+        return hash(self._key)
+
+    @property
+    def _key(self):
+        return self.shape, self.spacing, self.modulus, self.kernel
+
+    def __getstate__(self):
+        return {name: vars(self)[name] for name in self._FIXED}
+
+    @property
+    def cell_area(self):
+        """Area of one cell, mm2."""
+        return self.spacing[0] * self.spacing[1]
+
+    def displacement(self, pressure):
+        """Normal displacement of the surface under a pressure.
+
+        Parameters
+        ----------
+        pressure : (ny, nx) array_like
+            MPa.
+
+        Returns
+        -------
+        (ny, nx) ndarray
+            mm.
+
+        Raises
+        ------
+        ValueError
+            If the pressure is on another grid, or is not finite and real.
+        """
+        pressure = field(pressure, "pressure", self.shape)
+        # Not so of a NaN either, which would be everywhere at once.
+        if not np.abs(pressure).max() <= MOST_RESULT:
+            raise ValueError(f"pressure: expected finite numbers, none over {MOST_RESULT:g} MPa")
+        return self.convolve(pressure) * (self.cell / self.modulus)
+
+    def influence(self):
+        """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only."""
+        return self._influence
+
+    @lazy
+    def _influence(self):
+        dy, dx = (d / self.cell for d in self.spacing)
+        y = np.arange(self.shape[0])[:, None] * dy
+        x = np.arange(self.shape[1])[None, :] * dx
+        if self.kernel == "love":
+            influence = love_displacement(x, y, dx, dy)
+        else:
+            distance = np.hypot(x, y)
+            distance[0, 0] = 1.0
+            influence = 1 / (np.pi * distance)
+            influence[0, 0] = RIGID_PLATE_SELF_TERMS[self.kernel]
+        influence.flags.writeable = False
+        return influence
+
+    def coarser(self, factor):
+        """The same half-space on cells ``factor`` times as long and as wide, covering the window.
+
+        Distances counted in cells are the same, and so is the influence. Made once and kept.
+
+        Parameters
+        ----------
+        factor : int
+            From 1.
+
+        Returns
+        -------
+        HalfSpace
+
+        Raises
+        ------
+        ValueError
+            If the factor is no such number.
+        """
+        factor = whole_number(factor, "factor", least=1, most=MOST_CELLS)
+        if factor in self._coarser:
+            return self._coarser[factor]
+        shape = tuple(-(-n // factor) for n in self.shape)
+        sides = tuple(factor * d for d in self.spacing)
+        coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
+        vars(coarse)["_influence"] = self.influence()[: shape[0], : shape[1]]
+        return self._coarser.setdefault(factor, coarse)
+
+    @lazy
+    def _coarser(self):
+        return {}
+
+    def convolve(self, values):
+        """The dimensionless operator K.
+
+        Parameters
+        ----------
+        values : (..., ny, nx) float32 or float64 ndarray
+            One field or several; NaN and infinities spread.
+
+        Returns
+        -------
+        ndarray
+            Of the same shape and precision.
+
+        Raises
+        ------
+        ValueError
+            If the fields are on another grid or of another type.
+        """
+        if type(values) is not np.ndarray:
+            refuse_masked(values, "values")
+            values = real_array(values, "values")
+        convolution = self._single if values.dtype.type is np.float32 else self._double
+        if values.ndim == 2:
+            return convolution(values)
+        if values.shape[-2:] != self.shape:
+            raise ValueError(f"values {values.shape}: expected (..., ny, nx) of {self.shape}")
+        images = np.empty(values.shape, values.dtype)
+        for index in np.ndindex(values.shape[:-2]):
+            images[index] = convolution(values[index])
+        return images
+
+    @lazy
+    def _double(self):
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
+
+    @lazy
+    def _single(self):
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
+
+    def _spectrum(self):
+        """Transform of the influence in its circulant: even both ways, and so real and even."""
+        spectrum = self.influence()
+        for axis in (1, 0):
+            n, padded = self.shape[axis], self._padded[axis]
+            distance = np.minimum(np.arange(padded), padded - np.arange(padded))
+            circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)
+            spectrum = fft.rfft(circulant, axis=axis).real
+        return spectrum
+
+
+def _size(value, name, unit):
+    """A size that is neither zero nor such that the product or ratio of two would be."""
+    size = number(value, name, unit)
+    if not LEAST_INPUT <= size <= MOST_INPUT:
+        raise ValueError(
+            f"{name} {size:g}: expected between {LEAST_INPUT:g} and {MOST_INPUT:g} {unit}"
+        )
+    return size

@@ -1,0 +1,1 @@
+"""Experiments on synthetic surfaces and joints, whose right answer is known."""

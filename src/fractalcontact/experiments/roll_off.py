@@ -1,0 +1,139 @@
+"""What a roll-off does to rigid dilatancy: many joints with one, and the same joints without.
+
+One joint decides nothing. The dilatancy is a largest height, which scatters from surface to
+surface by more than it grows over the second half of the offsets.
+"""
+
+import numpy as np
+import xarray as xr
+
+from ..core.directions import DIRECTIONS
+from ..core.fitting import fit_line
+from ..core.intervals import INTERVAL, mean_interval
+from ..core.labels import about
+from ..core.mean_plane import without_mean_plane
+from ..mechanics.joint import direction_spacing, face_correlation, rigid_dilatancy
+from ..roughness.dimension import slope_statistics
+from ..study.embedded import embedded_surface
+from ..surface.specimen import faces, largest_offset, make_specimen, window_slices
+
+SURFACES = ("with_roll_off", "without_roll_off")
+
+#: Offsets at which the joints are looked at.
+OFFSETS = 50
+
+
+def roll_off_effect(recipe, window, seeds):
+    """Rigid dilatancy of embedded joints with their roll-off, and without.
+
+    Parameters
+    ----------
+    recipe : mapping
+        Of an embedded specimen, from :func:`study.configuration.resolve_embedded`, with a
+        ``roll_off``. Its seed is not used.
+    window : float
+        Side of the window, mm; the joint slides as far as every direction allows.
+    seeds : sequence of int
+
+    Returns
+    -------
+    xr.Dataset
+        ``rigid_dilatancy``, ``composite_rms`` and ``face_correlation`` over (surface, seed,
+        direction, rigid_offset); ``face_rms`` and ``rms_slope`` over (surface, seed); ``slope`` of
+        the dilatancy over the second half of the offsets, mean over seeds, with its interval
+        (surface).
+
+    Notes
+    -----
+    Without the roll-off the spectrum goes on to the longest wave. Heights are scaled to the rms
+    slope that the same seed has with it, so that the short waves are as high.
+    """
+    made = {
+        surface: [_slide(heights, recipe["spacing"], window) for heights in surfaces]
+        for surface, surfaces in _surfaces(recipe, seeds).items()
+    }
+    reach = min(len(slid["rigid_offset"]) for slides in made.values() for slid in slides)
+    result = xr.concat(
+        [
+            xr.concat([slid.isel(rigid_offset=slice(reach)) for slid in made[surface]], "seed")
+            for surface in SURFACES
+        ],
+        "surface",
+    )
+    result = result.assign_coords(surface=list(SURFACES))
+    result["seed"] = ("seed", list(seeds), about("1", "seed of the surface"))
+    v = result["rigid_offset"].values
+    second = v >= v[-1] / 2
+    opened = result["rigid_dilatancy"].mean("direction").transpose("surface", "seed", ...).values
+    slopes = [[fit_line(v[second], row[second]).slope for row in rows] for rows in opened]
+    found = mean_interval(slopes, axis=1)
+    for (ending, end), values in zip(INTERVAL.items(), found[:3], strict=True):
+        words = f"slope of the rigid dilatancy over the second half of v, mean over seeds{end}"
+        result[f"slope{ending}"] = ("surface", values, about("1", words))
+    result.attrs = {"roll_off": recipe["roll_off"], "window": window, "label": recipe["label"]}
+    return result
+
+
+def _surfaces(recipe, seeds):
+    """Heights by surface, a list over the seeds."""
+    with_it = [embedded_surface({**recipe, "seed": seed}) for seed in seeds]
+    without = [embedded_surface({**recipe, "seed": seed, "roll_off": None}) for seed in seeds]
+
+    def slope(heights):
+        return float(slope_statistics(heights, recipe["spacing"])["rms_slope"])
+
+    scaled = [
+        longer * (slope(short) / slope(longer))
+        for short, longer in zip(with_it, without, strict=True)
+    ]
+    return dict(zip(SURFACES, (with_it, scaled), strict=True))
+
+
+def _slide(heights, spacing, window):
+    """One joint over its offsets."""
+    coords = [spacing * (np.arange(n) + 0.5) for n in heights.shape]
+    scan = xr.DataArray(
+        heights,
+        dims=("y", "x"),
+        coords=coords,
+        attrs={"spacing_x": spacing, "spacing_y": spacing, "source": "made"},
+    )
+    specimen = make_specimen(scan, window=window, name="made surface")
+    reach = min(largest_offset(specimen, direction) for direction in DIRECTIONS)
+    cells = np.unique(np.linspace(0, reach, OFFSETS).astype(int))
+    slid = {direction: rigid_dilatancy(specimen, direction, cells) for direction in DIRECTIONS}
+    of_slide = ("direction", "rigid_offset")
+    lower = without_mean_plane(faces(specimen)[0][window_slices(specimen)])
+    return xr.Dataset(
+        {
+            "rigid_dilatancy": (
+                of_slide,
+                [slid[d][0] for d in DIRECTIONS],
+                about("mm", "rigid dilatancy delta_r"),
+            ),
+            "composite_rms": (
+                of_slide,
+                [slid[d][1] for d in DIRECTIONS],
+                about("mm", "standard deviation of the composite topography"),
+            ),
+            "face_correlation": (
+                of_slide,
+                [face_correlation(specimen, d, cells) for d in DIRECTIONS],
+                about("1", "correlation of the two faces under the window"),
+            ),
+            "face_rms": ((), lower.std(), about("mm", "standard deviation of a face's heights")),
+            "rms_slope": (
+                (),
+                slope_statistics(heights, spacing)["rms_slope"].item(),
+                about("1", "rms slope of the surface"),
+            ),
+        },
+        coords={
+            "direction": list(DIRECTIONS),
+            "rigid_offset": (
+                "rigid_offset",
+                cells * direction_spacing(specimen, "E"),
+                about("mm", "shear offset v"),
+            ),
+        },
+    )

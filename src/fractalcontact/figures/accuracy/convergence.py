@@ -1,0 +1,133 @@
+"""Error against spacing for Hertz and the flat punch, and trials of Richardson's extrapolation."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...accuracy.convergence import QUANTITIES
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
+from ..kit.words import estimate
+
+_TITLES = {"hertz": "paraboloid (Hertz)", "punch": "flat circular punch"}
+
+
+def draw(atlas, names):
+    """Errors over s for both problems, with their orders, and Richardson's errors over their bars.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    names : list of str
+        Not used: the problems are the study's own.
+
+    Returns
+    -------
+    Drawing
+    """
+    figure = Figure(figsize=(WIDTH, 3.6))
+    panels = figure.subplots(1, 3)
+    panels[1].sharey(panels[0])
+    found = {problem: group(atlas, "convergence", problem) for problem in QUANTITIES}
+    for axes, which, (problem, result) in zip(panels, "ab", found.items(), strict=False):
+        _draw_errors(axes, result, QUANTITIES[problem])
+        letter(axes, which, _TITLES[problem])
+    panels[0].set_ylabel("relative error, rms over positions (1)")
+    trials = group(atlas, "convergence", "richardson")
+    _draw_trials(panels[2], trials)
+    letter(panels[2], "c", "Richardson's extrapolation")
+    for axes in panels:
+        label_short_span(axes.xaxis)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
+    return Drawing(figure, _table(found, trials), _caption(found, trials))
+
+
+def _draw_errors(axes, result, quantities):
+    spacing = 1 / result["cells_per_radius"].values
+    for i, name in enumerate(quantities):
+        order = [float(result[f"{name}_order{end}"]) for end in ("", "_low", "_high")]
+        label = f"{name.replace('_', ' ')}: order {estimate(*order)}"
+        style = {"color": colour_of(i), "marker": MARKERS[i]}
+        axes.plot(spacing, result[f"{name}_error"], ls="none", label=label, **style)
+        if np.isfinite(order[0]):
+            logs = np.log(spacing), np.log(result[f"{name}_error"].values)
+            middle = [np.mean(values) for values in logs]
+            line = np.exp(middle[1] + order[0] * (logs[0] - middle[0]))
+            axes.plot(spacing, line, color=colour_of(i), lw=0.8)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("spacing over contact radius $s/a$ (1)")
+
+
+def _draw_trials(axes, trials):
+    cases = trials.sizes["case"]
+    for i, name in enumerate(trials["quantity"].values):
+        one = trials.sel(quantity=name)
+        label = f"{name}: {int(one['within'])} of {cases}"
+        axes.plot(
+            one["bar"],
+            one["error"],
+            ls="none",
+            marker=MARKERS[i],
+            ms=2,
+            color=colour_of(i),
+            label=label,
+        )
+    ends = [float(trials["bar"].min()), float(trials["bar"].max())]
+    axes.plot(ends, ends, color="0.5", lw=0.8)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(bottom=1e-3 * ends[0])
+    axes.set_xlabel("its own error bar (1)")
+    axes.set_ylabel("error of the extrapolated value (1)")
+
+
+def _table(found, trials):
+    """One row a problem, quantity and spacing; then one a quantity and trial."""
+    rows = [
+        {
+            "problem": problem,
+            "quantity": name,
+            "cells_per_radius": float(cells),
+            "error": float(result[f"{name}_error"].sel(cells_per_radius=cells)),
+            **{f"order{end}": float(result[f"{name}_order{end}"]) for end in ("", "_low", "_high")},
+        }
+        for problem, result in found.items()
+        for name in QUANTITIES[problem]
+        for cells in result["cells_per_radius"].values
+    ]
+    tried = trials[["error", "bar", "finest"]].to_dataframe().reset_index()
+    tried = tried.rename(columns={"cells": "cells_per_radius", "finest": "error_at_finest"})
+    tried.insert(0, "problem", "richardson")
+    return pd.concat([pd.DataFrame(rows), tried], ignore_index=True)
+
+
+def _caption(found, trials):
+    orders = [
+        f"{problem} {name.replace('_', ' ')} "
+        + estimate(*(float(result[f"{name}_order{end}"]) for end in ("", "_low", "_high")))
+        for problem, result in found.items()
+        for name in QUANTITIES[problem]
+    ]
+    cases = trials.sizes["case"]
+    error, finest = (np.sqrt((trials[name] ** 2).mean("case")) for name in ("error", "finest"))
+    within = [
+        f"{name} {int(one['within'])} (order {one['order'].item():g} assumed; "
+        f"{'closer' if error.sel(quantity=name) < finest.sel(quantity=name) else 'no closer'} than "
+        "the finest value)"
+        for name in trials["quantity"].values
+        for one in [trials.sel(quantity=name)]
+    ]
+    short_of = [
+        str(name)
+        for name in trials["quantity"].values
+        if trials["within"].sel(quantity=name) < 0.9 * cases
+    ]
+    verdict = (
+        f"fewer than 9 of 10 for {', '.join(short_of)}" if short_of else "9 of 10 or more each"
+    )
+    return (
+        "In no figure of the paper: relative errors against the exact solutions as the spacing "
+        f"falls, with the order of each and its 95 % interval: {', '.join(orders)}. (c) Values "
+        "extrapolated from s, 2 s and 4 s at random places and ratios a/s: within their own bar of "
+        f"the exact value in, of {cases} cases, {', '.join(within)}; {verdict}."
+    )

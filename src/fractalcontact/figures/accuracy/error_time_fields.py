@@ -1,0 +1,60 @@
+"""Errors of area, Delta_sigma and pressure against time on the largest rough scenes."""
+
+from matplotlib.figure import Figure
+
+from ..kit.drawing import WIDTH, Drawing, letter
+from ._speed import (
+    AXES,
+    draw_points,
+    legend_of,
+    middle_contact,
+    pick,
+    rough,
+    scenes_of,
+    styles,
+    table_of,
+    values_of,
+)
+from .error_time import caption
+
+QUANTITIES = ("area_error", "delta_error", "pressure_error")
+
+
+def draw(atlas, names):
+    """Rows of quantities, a column for each H, at the largest size and the middle contact.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    names : list of str
+        Not used: the scenes are the study's own.
+
+    Returns
+    -------
+    Drawing
+    """
+    scenes = rough(scenes_of(atlas))
+    looks = styles(scenes)
+    size, contact = values_of(scenes, "size")[-1], middle_contact(scenes)
+    columns = values_of(scenes, "hurst")
+    figure = Figure(figsize=(WIDTH, 7.2))
+    panels = figure.subplots(
+        len(QUANTITIES), len(columns), sharex=True, sharey="row", squeeze=False
+    )
+    for j, hurst in enumerate(columns):
+        scene = pick(scenes, size=size, contact=contact, hurst=hurst)
+        for i, quantity in enumerate(QUANTITIES):
+            draw_points(panels[i, j], scene, quantity, looks)
+            title = rf"$H$ = {hurst:g}, {100 * contact:g} %, {size}$^2$"
+            letter(panels[i, j], "abcdefghijkl"[i * len(columns) + j], title)
+            panels[i, 0].set_ylabel(AXES[quantity])
+        panels[-1, j].set_xlabel("wall time (s)")
+    legend_of(figure, panels.flat)
+    words = (
+        f"Errors of the real contact area, of Delta_sigma from box counts and of the pressure, at "
+        f"{size} x {size} nodes and {100 * contact:g} % in contact; an error of zero, the domain "
+        "being that of the reference to the node, stands at the foot of the axis. "
+    )
+    return Drawing(
+        figure, table_of(scenes), words + caption(scenes, "pressure_error", "pressure field")
+    )

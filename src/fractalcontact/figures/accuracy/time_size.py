@@ -1,0 +1,115 @@
+"""Time and memory against the size of the grid, with exponents: one figure a study."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ...accuracy.speed import OURS
+from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
+from ..kit.words import estimate, short
+from ._speed import legend_of, middle_contact, rough, scenes_of, styles
+
+_ROWS = {"seconds": ("wall time (s)", 1.0), "memory": ("peak memory (MB)", 1e6)}
+
+
+def draw(atlas, names):
+    """Wall time over peak memory, a column for each H at the middle contact.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    names : list of str
+        Not used: the scenes are the study's own.
+
+    Returns
+    -------
+    Drawing
+    """
+    growth = group(atlas, "speed_growth", "surfaces")
+    scenes = rough(scenes_of(atlas))
+    looks = styles(scenes)
+    columns = _middle(scenes)
+    figure = Figure(figsize=(WIDTH, 6.4))
+    panels = figure.subplots(2, len(columns), sharex=True, sharey="row", squeeze=False)
+    for j, surface in enumerate(columns):
+        one = growth.sel(surface=surface)
+        for i, name in enumerate(_ROWS):
+            _draw_growth(panels[i, j], one, name, looks)
+            letter(panels[i, j], "abcdefgh"[i * len(columns) + j], surface)
+        _draw_bounds(panels[0, j], one)
+        panels[-1, j].set_xlabel("nodes a side (1)")
+    for i, (label, _) in enumerate(_ROWS.values()):
+        panels[i, 0].set_ylabel(label)
+        label_short_span(panels[i, 0].yaxis)
+    legend_of(figure, panels.flat, ncols=3)
+    return Drawing(figure, _table(growth), _caption(growth, columns))
+
+
+def _middle(scenes):
+    """Names of the surfaces at the middle contact, one for each H."""
+    middle = middle_contact(scenes)
+    names = [s.attrs["scene"] for s in scenes.values() if s.attrs["contact"] == middle]
+    return sorted({name.split(", ", 1)[1] for name in names})
+
+
+def _draw_growth(axes, one, name, looks):
+    sizes, scale = one["size"].values, _ROWS[name][1]
+    for solver in one["solver"].values:
+        values = one[name].sel(solver=solver).values / scale
+        if np.isfinite(values).any():
+            axes.plot(sizes, values, **looks[solver], label=solver)
+    axes.set_xscale("log", base=2)
+    axes.set_yscale("log")
+    axes.set_xticks(sizes, [str(size) for size in sizes])
+
+
+def _draw_bounds(axes, one):
+    """Our applications of the operator alone, and n log n through the first of their points."""
+    nodes, bound = np.square(one["size"].values, dtype=float), one["bound"].values
+    style = {"color": colour_of(0), "lw": 1.0}
+    axes.plot(one["size"], bound, ls="--", label=f"applications of K by {OURS}, alone", **style)
+    line, there = nodes * np.log(nodes), np.flatnonzero(np.isfinite(bound))
+    if there.size:
+        line *= bound[there[0]] / line[there[0]]
+        axes.add_line(Line2D(one["size"].values, line, ls=":", label="n log n, n nodes", **style))
+
+
+def _table(growth):
+    """One row a surface, solver and size."""
+    columns = ["seconds", "memory", "reached", "bound"]
+    columns += [name for name in growth.data_vars if "exponent" in name]
+    table = growth[columns].to_dataframe().reset_index()
+    units = {"seconds": "seconds_s", "memory": "memory_B", "bound": "bound_s"}
+    return table.rename(columns=units)
+
+
+def _caption(growth, columns):
+    error = growth.attrs["error"]
+    told = []
+    for surface in columns:
+        one = growth.sel(surface=surface)
+        ours = one.sel(solver=OURS)
+        exponents = [
+            f"{solver} {_exponent(one.sel(solver=solver), 'seconds')}"
+            for solver in one["solver"].values
+            if np.isfinite(one["seconds_exponent"].sel(solver=solver))
+        ]
+        share = ours["bound"] / ours["seconds"]
+        told.append(
+            f"{surface}: time grows with the number of nodes to the power "
+            f"{', '.join(exponents) or 'that two sizes cannot tell'}; our memory to "
+            f"{_exponent(ours, 'memory')}; the applications of the operator alone are "
+            f"{100 * float(share.min()):.0f} to {100 * float(share.max()):.0f} % of our time"
+        )
+    return (
+        "In no figure of the paper: wall time and peak memory of a cold solve against size, every "
+        f"solver at the tolerance that brings its force within {short(error)} of the reference "
+        "soonest; a solver stands only where it does. Dashed: the applications of the operator by "
+        "FFT that ours takes at this tolerance, in single precision, and nothing else. "
+        + ". ".join(told)
+        + "."
+    )
+
+
+def _exponent(one, name):
+    return estimate(*(float(one[f"{name}_exponent{end}"]) for end in ("", "_low", "_high")))

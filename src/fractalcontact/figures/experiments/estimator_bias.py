@@ -1,0 +1,145 @@
+"""What the estimators of Delta_g find on made surfaces of known H: one figure a study."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of, entries, group, letter
+from ..kit.words import number
+
+#: Bias that three estimators at least are to keep to where H is 0.5 or more.
+TOLERATED = 0.03
+#: Share of the intervals that are to hold H there.
+PROMISED = 0.9
+
+
+def draw(atlas, names):
+    """Bias with scatter, and coverage, by H, size and estimator.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    names : list of str
+        Specimens of the study; the surfaces here are the study's own and none of them.
+
+    Returns
+    -------
+    Drawing
+    """
+    bias = group(atlas, "estimator_bias", "surfaces")
+    sizes = bias["size"].values
+    figure = Figure(figsize=(WIDTH, 5.6))
+    panels = figure.subplots(
+        2, len(sizes), sharex=True, sharey="row", squeeze=False, height_ratios=[1.6, 1]
+    )
+    for column, size in enumerate(sizes):
+        chosen = bias.sel(size=size)
+        upper, lower = panels[:, column]
+        _draw_bias(upper, chosen)
+        _draw_coverage(lower, chosen)
+        places = np.arange(bias.sizes["hurst"])
+        lower.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
+        lower.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
+        letter(upper, "abcdefgh"[column], rf"bias, {size} $\times$ {size} nodes")
+        letter(lower, "abcdefgh"[len(sizes) + column], "intervals that hold $H$")
+    panels[0, 0].set_ylabel("$H$ found less $H$ (1)")
+    panels[1, 0].set_ylabel("share of surfaces (1)")
+    figure.legend(handles=entries(panels[0, 0]), loc="outside lower center", ncols=4)
+    figure.suptitle(
+        f"{bias.sizes['seed']} made surfaces each: mean, with the standard deviation between "
+        "surfaces\nhollow: before known bias is taken off",
+        fontsize=9,
+    )
+    return Drawing(figure, _table(bias), _caption(bias))
+
+
+def _beside(bias, n):
+    """Places of the n-th estimator's points, beside those of the others."""
+    step = 0.8 / bias.sizes["estimator"]
+    return np.arange(bias.sizes["hurst"]) + (n - (bias.sizes["estimator"] - 1) / 2) * step
+
+
+def _draw_bias(axes, bias):
+    axes.axhspan(-TOLERATED, TOLERATED, color="0.9", lw=0, label=f"within {TOLERATED:g}")
+    axes.axhline(0, color="0.5", lw=0.6)
+    for n, name in enumerate(bias["estimator"].values):
+        one, x = bias.sel(estimator=name), _beside(bias, n)
+        style = {"color": colour_of(n), "marker": MARKERS[n], "ls": "none"}
+        label = name.replace("_", " ")
+        axes.errorbar(x, one["bias"], one["scatter"], capsize=2, lw=0.8, label=label, **style)
+        moved = np.abs(one["slope_bias"] - one["bias"]) > 1e-9
+        axes.plot(x[moved], one["slope_bias"][moved], mfc="none", mew=0.7, alpha=0.8, **style)
+    _separate(axes, bias)
+
+
+def _draw_coverage(axes, bias):
+    axes.axhline(PROMISED, color="0.5", lw=0.8, ls=LINES[1])
+    for n, name in enumerate(bias["estimator"].values):
+        axes.plot(
+            _beside(bias, n),
+            bias["coverage"].sel(estimator=name),
+            color=colour_of(n),
+            marker=MARKERS[n],
+            ls="none",
+        )
+    axes.set_ylim(-0.05, 1.05)
+    _separate(axes, bias)
+
+
+def _separate(axes, bias):
+    """Lines between the values of H."""
+    for place in np.arange(1, bias.sizes["hurst"]) - 0.5:
+        axes.axvline(place, color="0.85", lw=0.6)
+    axes.set_xlim(-0.5, bias.sizes["hurst"] - 0.5)
+
+
+def _table(bias):
+    """One row an estimator, H and size."""
+    columns = [
+        "bias",
+        "bias_low",
+        "bias_high",
+        "slope_bias",
+        "scatter",
+        "half_width",
+        "coverage",
+    ]
+    return bias[columns].to_dataframe().reset_index()
+
+
+def _caption(bias):
+    start, first, part = (bias.attrs[key] for key in ("from_hurst", "first_cells", "last_part"))
+    opening = (
+        "In no figure of the paper: what the estimators of Delta_g = 3 - H find on "
+        f"{bias.sizes['seed']} made surfaces of each H and size, fitted over lags from {first:g} "
+        f"cells to {number(part, 3)} of the side."
+    )
+    known = bias.sel(estimator=bias["worst_bias"].notnull())
+    if not known.sizes["estimator"]:
+        return f"{opening} No H of {start:g} or more is among them."
+    worst = known["worst_bias"]
+    good = [str(name).replace("_", " ") for name in worst["estimator"][worst <= TOLERATED].values]
+    verdict = (
+        f"{len(good)} of {worst.size} keep their bias within {TOLERATED:g}: {', '.join(good)}"
+        if good
+        else f"none of {worst.size} keeps its bias within {TOLERATED:g}"
+    )
+    least = float(known["coverage"].where(bias["hurst"] >= start).min())
+    words = "all" if least >= PROMISED else "not all"
+    rough = bias["coverage"].where(bias["hurst"] < start)
+    below = ""
+    if bool(rough.notnull().any()):
+        lowest = rough.min(["hurst", "size"])
+        failing = [
+            str(name).replace("_", " ") for name in lowest["estimator"][lowest < PROMISED].values
+        ]
+        below = (
+            f" On rougher surfaces the intervals of {', '.join(failing)} hold H less often than "
+            f"that, down to {100 * float(rough.min()):.0f} %."
+            if failing
+            else " On rougher surfaces they do so too."
+        )
+    return (
+        f"{opening} For H of {start:g} or more {verdict}; of the 95 % intervals "
+        f"{100 * float(known['mean_coverage'].mean()):.0f} % hold H, and {words} estimators reach "
+        f"{100 * PROMISED:.0f} % for every H and size (least {100 * least:.0f} %).{below}"
+    )

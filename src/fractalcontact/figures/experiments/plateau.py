@@ -1,0 +1,369 @@
+"""Why rigid dilatancy has a plateau: joints made with and without a roll-off, and the study's."""
+
+import json
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ...core.fitting import fit_line
+from ...core.intervals import mean_interval
+from ...core.mean_plane import without_mean_plane
+from ...core.units import quantity
+from ...experiments.roll_off import SURFACES
+from ...surface.specimen import faces, window_slices
+from ..kit.drawing import (
+    LINES,
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    group,
+    heading,
+    label_in_lines,
+    legends_below,
+    letter,
+    settings_of,
+)
+from ..kit.words import PAPER, estimate, percent, short
+
+#: Specimens whose largest offsets differ by more than this are drawn in decades.
+WIDE = 5
+
+#: Inches that a label's lines are broken for, so that a column of the legend holds them.
+COLUMN = 4
+
+#: A change over the second half of v below this share of the mean is called level.
+LEVEL = 0.1
+
+#: How what explains the curves is drawn.
+_EXPECTED = {"lw": 3, "alpha": 0.35, "ls": "-"}
+_ROLL_OFF, _UNCORRELATED = "v", "o"
+_MARK = {"mfc": "white", "ms": 6, "zorder": 3}
+
+
+@dataclass(frozen=True)
+class Slide:
+    """What one specimen, or many made ones, do as they slide, mm.
+
+    Attributes
+    ----------
+    label : str
+    rows : list of str
+        Directions of the specimen, or seeds of the made joints: what means and bands are over.
+    v : (n,) ndarray
+        Offsets.
+    opened, spread : (rows, n) ndarray
+        Rigid dilatancy delta_r, and standard deviation sigma_z of the composite topography.
+    expected : (rows, n) ndarray
+        sigma_z from the heights of the faces and their correlation.
+    correlation : (rows, n) ndarray
+        Of the two faces.
+    face : float
+        Standard deviation sigma of a face in the window.
+    roll_off : float or None
+        Wavelength above which the spectrum is flat; NaN for a scan, None where there is none.
+    uncorrelated : float
+        Offset where the faces lose all correlation, mean of the directions; NaN if not reached.
+    matched : bool
+        Whether the upper face is the match of the lower one, so that sliding begins flush.
+    """
+
+    label: str
+    rows: list
+    v: np.ndarray
+    opened: np.ndarray
+    spread: np.ndarray
+    expected: np.ndarray
+    correlation: np.ndarray
+    face: float
+    roll_off: float | None
+    uncorrelated: float
+    matched: bool
+
+    @classmethod
+    def of(cls, atlas, name):
+        """The slide of a specimen of the atlas."""
+        joint = group(atlas, "joints", name)
+        specimen = group(atlas, "specimens", name)
+        window = window_slices(specimen)
+        lower, upper = (float(np.std(without_mean_plane(z[window]))) for z in faces(specimen))
+        rho = joint["face_correlation"].values
+        square = lower**2 + upper**2 - 2 * rho * lower * upper
+        lost = joint["uncorrelated_offset"].values
+        return cls(
+            label=settings_of(atlas, name)["label"],
+            rows=joint["direction"].values.tolist(),
+            v=joint["rigid_offset"].values,
+            opened=joint["rigid_dilatancy"].values,
+            spread=joint["composite_rms"].values,
+            expected=np.sqrt(np.maximum(square, 0)),
+            correlation=rho,
+            face=float(np.sqrt((lower**2 + upper**2) / 2)),
+            roll_off=_roll_off(atlas, name),
+            uncorrelated=float(lost[np.isfinite(lost)].mean())
+            if np.isfinite(lost).any()
+            else np.nan,
+            matched=specimen.attrs["opposite"] == "match",
+        )
+
+    @classmethod
+    def made(cls, atlas, surface):
+        """The slides of the joints made with, or without, a roll-off; means of their directions."""
+        joints = group(atlas, "roll_off", "surfaces")
+        joints = joints.sel(surface=surface).transpose("seed", "direction", "rigid_offset")
+        expected = joints["face_rms"] * np.sqrt(np.maximum(2 - 2 * joints["face_correlation"], 0))
+        roll_off = float(joints.attrs["roll_off"]) if surface == "with_roll_off" else None
+        words = f"with a roll-off at {short(roll_off)} mm" if roll_off else "without a roll-off"
+        mean = joints.mean("direction")
+        return cls(
+            label=f"{joints.sizes['seed']} made joints {words}",
+            rows=[f"seed {seed}" for seed in joints["seed"].values],
+            v=joints["rigid_offset"].values,
+            opened=mean["rigid_dilatancy"].values,
+            spread=mean["composite_rms"].values,
+            expected=expected.mean("direction").values,
+            correlation=mean["face_correlation"].values,
+            face=float(np.sqrt(np.mean(joints["face_rms"].values ** 2))),
+            roll_off=roll_off,
+            uncorrelated=np.nan,
+            matched=True,
+        )
+
+    @property
+    def ratio(self):
+        """delta_r / sigma_z; NaN where faces are flush."""
+        return np.divide(
+            self.opened, self.spread, out=np.full(self.spread.shape, np.nan), where=self.spread > 0
+        )
+
+    @property
+    def second_half(self):
+        """Which offsets are in the second half of those possible."""
+        return self.v >= self.v[-1] / 2
+
+
+def draw(atlas, names):
+    """Dilatancy, spread of the composite topography and their ratio for all that slides.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+        Of a study that makes joints with and without a roll-off.
+    names : sequence of str
+        Its specimens; those that do not slide are passed over.
+
+    Returns
+    -------
+    Drawing
+    """
+    made = [Slide.made(atlas, surface) for surface in SURFACES]
+    sliding = [name for name in names if settings_of(atlas, name)["opposite"] != "flat"]
+    slides = made + [Slide.of(atlas, name) for name in sliding]
+    figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
+    panels = figure.subplots(1, 3, sharex=True)
+    _prepare(panels, slides)
+    for n, slide in enumerate(slides):
+        _draw_slide(panels, n, slide)
+    _start_at_zero(panels)
+    legends_below(figure, entries(panels[0]), _marks())
+    table = pd.concat([_table(slide) for slide in slides], ignore_index=True)
+    return Drawing(figure, table, _caption(slides))
+
+
+def _roll_off(atlas, name):
+    """Roll-off of an embedded surface, mm: None if it has none, NaN for a scan."""
+    embedded = json.loads(atlas.attrs["configuration"])["study"].get("embedded", {})
+    if name not in embedded:
+        return np.nan
+    stated = embedded[name].get("roll_off")
+    return None if stated is None else quantity(stated, "length", f"embedded.{name}.roll_off")
+
+
+def _draw_slide(panels, n, slide):
+    colour = colour_of(n)
+    # In decades flush faces have no place, and what rounding leaves of their spread would be shown.
+    shown = slide.v > 0 if panels[1].get_xscale() == "log" else np.full(slide.v.shape, True)
+    v = slide.v[shown]
+    for axes, values in zip(panels, (slide.opened, slide.spread, slide.ratio), strict=True):
+        if axes is panels[2] and not slide.matched:
+            continue  # its dilatancy counts from faces that were apart already
+        values = values[:, shown]
+        mean, low, high = values.mean(axis=0), values.min(axis=0), values.max(axis=0)
+        if axes.get_yscale() == "log":
+            mean, low, high = (np.where(y > 0, y, np.nan) for y in (mean, low, high))
+        axes.fill_between(v, low, high, color=colour, alpha=0.15, lw=0)
+        axes.plot(
+            v,
+            mean,
+            color=colour,
+            ls=LINES[n % 4],
+            label=label_in_lines(slide.label, width=COLUMN),
+        )
+    panels[1].plot(v, slide.expected[:, shown].mean(axis=0), color=colour, **_EXPECTED)
+    for at, marker in ((slide.roll_off, _ROLL_OFF), (slide.uncorrelated, _UNCORRELATED)):
+        if at is not None and slide.v[0] <= at <= slide.v[-1]:
+            for axes, values in zip(panels[:2], (slide.opened, slide.spread), strict=True):
+                height = np.interp(at, slide.v, values.mean(axis=0))
+                axes.plot(at, height, marker, color=colour, **_MARK)
+
+
+def _marks():
+    """Entries of the legend for what is marked on every curve."""
+    return [
+        heading("bands: from the least to the most of the joints, or directions"),
+        Line2D([], [], color="0.3", label=r"(b) $\sqrt{2}\,\sigma\,\sqrt{1-\rho(v)}$", **_EXPECTED),
+        Line2D([], [], ls="none", marker=_ROLL_OFF, color="0.3", label="roll-off length", **_MARK),
+        Line2D(
+            [],
+            [],
+            ls="none",
+            marker=_UNCORRELATED,
+            color="0.3",
+            label="faces uncorrelated",
+            **_MARK,
+        ),
+    ]
+
+
+def _prepare(panels, slides):
+    """Scales, labels and letters; decades where one specimen slides much farther than another."""
+    opened, spread, ratio = panels
+    farthest = [slide.v[-1] for slide in slides]
+    decades = max(farthest) > WIDE * min(farthest)
+    for axes in panels:
+        axes.set_xlabel("offset $v$ (mm)")
+        if decades:
+            axes.set_xscale("log", nonpositive="mask")
+    if decades:
+        opened.set_yscale("log", nonpositive="mask")
+        spread.set_yscale("log", nonpositive="mask")
+    opened.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
+    spread.set_ylabel(r"spread of the composite $\sigma_z$ (mm)")
+    ratio.set_ylabel(r"$\delta_r/\sigma_z$ (–)")
+    for axes, which, title in zip(panels, "abc", ("dilatancy", "spread", "ratio"), strict=True):
+        letter(axes, which, title)
+
+
+def _start_at_zero(panels):
+    """Axes that are not in decades begin at zero, or below it where dilatancy does."""
+    for axes in panels:
+        if axes.get_xscale() == "linear":
+            axes.set_xlim(left=0)
+        if axes.get_yscale() == "linear":
+            lowest = axes.dataLim.y0
+            axes.set_ylim(bottom=1.1 * lowest if lowest < 0 else 0)
+
+
+def _table(slide):
+    """Every direction of one specimen, or every made joint."""
+    rows, n = slide.opened.shape
+    return pd.DataFrame(
+        {
+            "specimen": slide.label,
+            "direction_or_seed": np.repeat(slide.rows, n),
+            "offset_mm": np.tile(slide.v, rows),
+            "rigid_dilatancy_mm": slide.opened.ravel(),
+            "composite_rms_mm": slide.spread.ravel(),
+            "composite_rms_expected_mm": slide.expected.ravel(),
+            "dilatancy_over_rms": slide.ratio.ravel(),
+            "roll_off_mm": np.nan if slide.roll_off is None else slide.roll_off,
+            "uncorrelated_offset_mm": slide.uncorrelated,
+        }
+    )
+
+
+class Trend(NamedTuple):
+    """Slope over the second half of v with its 95 % interval, and the change over its mean."""
+
+    slope: float
+    low: float
+    high: float
+    change: float
+
+    @classmethod
+    def of(cls, slide, values):
+        """Trend of one quantity, (rows, n): the mean slope of the rows.
+
+        Its interval comes from how the rows differ; from the points of the line where there is but
+        one, which takes neighbouring offsets as independent.
+        """
+        half = slide.second_half
+        v = slide.v[half]
+        lines = [fit_line(v, row[half]) for row in values]
+        slope, low, high = (
+            mean_interval([line.slope for line in lines])[:3]
+            if len(lines) > 1
+            else (lines[0].slope, lines[0].slope_low, lines[0].slope_high)
+        )
+        return cls(slope, low, high, slope * np.ptp(v) / np.mean(values[:, half]))
+
+
+def _caption(slides):
+    return (
+        f"Why rigid dilatancy has a plateau (Figs. 6a and 7a of {PAPER}). "
+        f"(a) Rigid dilatancy, mean of the made joints or of a specimen's directions; (b) standard "
+        f"deviation of the composite topography, with sqrt(2) sigma sqrt(1 - rho(v)) from the "
+        f"heights sigma of the faces and their correlation rho; (c) their ratio. "
+        f"{_explanation(slides[: len(SURFACES)])} Over the second half of v, with intervals from "
+        f"how joints or directions differ: {'; '.join(_slope_words(slide) for slide in slides)}."
+    )
+
+
+def _slope_words(slide):
+    opened, spread = (Trend.of(slide, values) for values in (slide.opened, slide.spread))
+    roll_off = (
+        "no roll-off"
+        if slide.roll_off is None
+        else "roll-off not known"
+        if np.isnan(slide.roll_off)
+        else f"roll-off {short(slide.roll_off)} mm"
+    )
+    if not np.isfinite(opened.slope):
+        return f"{slide.label} ({roll_off}): too few offsets"
+    half = slide.spread[:, slide.second_half].mean()
+    return (
+        f"{slide.label} ({roll_off}): delta_r {estimate(opened.slope, opened.low, opened.high)} "
+        f"mm/mm, {percent(opened.change, '+')} of its mean, sigma_z "
+        f"{estimate(spread.slope, spread.low, spread.high)} mm/mm, {percent(spread.change, '+')}, "
+        f"there {half / (np.sqrt(2) * slide.face):.2g} of sqrt(2) sigma"
+    )
+
+
+def _explanation(made):
+    """Whether delta_r follows sigma_z, and what the roll-off does to both."""
+    with_it, without = made
+    ratios = [slide.ratio.mean(axis=0)[slide.v > 0] for slide in made]
+    grown = [slide.spread.mean(axis=0)[-1] / slide.spread.mean(axis=0)[1] for slide in made]
+    return (
+        f"delta_r follows sigma_z: while sigma_z grows {grown[0]:.3g} times with the roll-off and "
+        f"{grown[1]:.3g} times without, their ratio stays between "
+        f"{_span(np.concatenate(ratios), ' and ')}. With the roll-off the faces lose all "
+        f"correlation (rho {_span(with_it.correlation[:, with_it.second_half].mean(axis=1))} over "
+        f"the second half of v), sigma_z follows from it to {percent(_missed(with_it))} (rms) "
+        f"and stays at sqrt(2) sigma, and delta_r {_level(with_it)}. Without, waves as long as the "
+        f"window are left: sigma_z goes on growing, and delta_r {_level(without)}."
+    )
+
+
+def _missed(slide):
+    """Root mean square of what the correlation alone does not explain of sigma_z, as a part."""
+    return np.sqrt(np.mean((slide.expected - slide.spread) ** 2) / np.mean(slide.spread**2))
+
+
+def _level(slide):
+    """Whether the dilatancy levels off, by its change over the second half of v."""
+    trend = Trend.of(slide, slide.opened)
+    if abs(trend.change) <= LEVEL:
+        return "reaches a plateau"
+    if trend.low > 0:
+        return "keeps rising"
+    return "falls" if trend.high < 0 else "shows no trend beyond its interval"
+
+
+def _span(values, joint=" to "):
+    """The least and the most of some numbers, once if they read alike."""
+    return joint.join(dict.fromkeys((short(np.min(values)), short(np.max(values)))))

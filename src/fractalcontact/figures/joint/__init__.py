@@ -1,0 +1,1 @@
+"""Supplementary figures of a specimen or joint."""

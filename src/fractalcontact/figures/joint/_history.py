@@ -1,0 +1,94 @@
+"""What was done to the files of a specimen, in words."""
+
+import json
+
+from ...core.labels import printable
+from ...surface.specimen import STEEP_TILT, window_sides
+
+#: Longest file name and note that stand in a figure whole; of longer ones both ends are shown.
+LONGEST_NAME, LONGEST_NOTE = 60, 400
+
+
+def history(specimen, faces):
+    """One paragraph a face on its file, and one on what was done to the faces.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    faces : sequence of str
+
+    Returns
+    -------
+    list of str
+    """
+    paragraphs = [_file_words(specimen, face) for face in faces]
+    return [*paragraphs, _faces_words(specimen)]
+
+
+def _file_words(specimen, face):
+    """Name, reader, units, grid and every note of one face's file."""
+    attrs = json.loads(specimen.attrs[f"{face}_scan"])
+    spacing = " × ".join(f"{specimen.attrs[f'spacing_{axis}']:.5g}" for axis in "xy")
+    words = [
+        f"{face.capitalize()} face: {printable(attrs['source'], LONGEST_NAME)} "
+        f"(SHA-256 {attrs['sha256'][:12]}…), "
+        f"read by {attrs.get('reader', 'nothing stated')}, {attrs.get('layout', 'matrix')}, "
+        f"unit {attrs.get('file_unit', 'mm')}; "
+        f"{specimen.sizes['x']} × {specimen.sizes['y']} cells of {spacing} mm (x, y)"
+    ]
+    if "points" in attrs:
+        words.append(
+            f"{attrs['points']} points, {attrs.get('duplicated_points', 0)} of them repeated, "
+            f"{attrs.get('points_per_cell', float('nan')):.3g} in a measured cell"
+        )
+    if attrs.get("levelled_degrees"):
+        words.append(f"turned by {attrs['levelled_degrees']:.3g} degrees before gridding")
+    overrides = attrs.get("overrides", "")
+    words.append(f"the sidecar overrides: {overrides}" if overrides else "")
+    words += [attrs.get("gridding", ""), attrs.get("notes", "")]
+    return ". ".join(printable(_sentence(part), LONGEST_NOTE) for part in words if part) + "."
+
+
+def _sentence(words):
+    return words[0].upper() + words[1:]
+
+
+def _faces_words(specimen):
+    """Cleaning, registration, levelling and window."""
+    attrs = specimen.attrs
+    words = [attrs.get("cleaning", ""), _registration_words(attrs.get("registration"))]
+    steep = f" (above {STEEP_TILT:g} degrees heights are not normal to the plane)"
+    words.append(f"Levelled: {attrs['levelling'].split('. NOTE')[0]}")
+    words[-1] += steep if attrs["tilt_degrees"] > STEEP_TILT else ""
+    sides = window_sides(specimen)
+    note = f" ({attrs['window_note']})" if attrs["window_note"] else ""
+    words.append(f"Window {sides[1]:.4g} × {sides[0]:.4g} mm (x, y){note}")
+    return ". ".join(_sentence(part).rstrip(".") for part in words if part) + "."
+
+
+def _registration_words(text):
+    """What moved the upper face, and what became of the gap."""
+    if not text:
+        return ""
+    found = json.loads(text)
+    gap = ", ".join(
+        f"{name} {_known(found[f'{key}_before{unit}'])} → {_known(found[f'{key}_after{unit}'])}"
+        for name, key, unit in (
+            ("gap sd in mm", "gap_sd", "_mm"),
+            ("mean", "gap_mean", "_mm"),
+            ("correlation", "correlation", ""),
+        )
+    )
+    gap += "".join(f"; {part}" for part in found.get("note", "").split("; ") if "NOTE" in part)
+    if not found["applied"]:
+        return f"Registration ({found['mode']}): upper face not moved; {gap}"
+    return (
+        f"Registration ({found['mode']}): upper face moved by {found['shift_x_mm']:.4g} mm in x, "
+        f"{found['shift_y_mm']:.4g} mm in y, turned by {found['rotation_degrees']:.3g} degrees, "
+        f"tilted by {found['tilt_x_degrees']:.3g} and {found['tilt_y_degrees']:.3g} degrees; {gap}"
+    )
+
+
+def _known(value):
+    """A number before the faces had a common frame is not known."""
+    return "unknown" if value is None else f"{value:.4g}"

@@ -1,0 +1,283 @@
+"""Real contact area and its slope kappa beside the classical theories of the same surface."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...mechanics.area import FEWEST_NODES, LIGHT_LOAD
+from ...mechanics.states import chosen_offset
+from ..experiments.area_slope import kappa_lines
+from ..kit.drawing import (
+    COLOURS,
+    WIDTH,
+    Drawing,
+    entries,
+    finest_curves,
+    group,
+    heading,
+    headline,
+    label_short_span,
+    legends_below,
+    letter,
+    settings_of,
+)
+from ..kit.words import estimate, number, opening, percent, place, short
+
+#: Theories of panel (a): variable, name, colour, line; the full line first, lest it hide others.
+THEORIES = (
+    ("greenwood_williamson_share", "Greenwood and Williamson", COLOURS[3], "-"),
+    ("bush_gibson_thomas_share", "Bush, Gibson and Thomas", COLOURS[1], "--"),
+    ("persson_share", "Persson", COLOURS[2], "-."),
+    ("majumdar_bhushan_share", "Majumdar and Bhushan", COLOURS[4], (0, (5, 1, 1, 1, 1, 1))),
+)
+
+#: Where the fan of Archard's slopes lies, in parts of the axes: left and right end, lower end.
+_FAN = 0.52, 0.9, 0.05
+
+_GREY = "0.45"
+
+
+def draw(atlas, name):
+    """Area against pressure with every theory, and kappa against reduced pressure.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+    """
+    settings = settings_of(atlas, name)
+    curves = finest_curves(atlas, name)
+    direction = str(curves["direction"].values)
+    laws = group(atlas, "area", name).sel(direction=direction)
+    offset = _drawn_offset(settings, laws)
+    law, curve = laws.sel(offset=offset), curves.sel(offset=offset)
+    where = place(direction) if direction == "none" else place(direction, offset)
+
+    figure = Figure(figsize=(WIDTH, 4.6))
+    left, right = figure.subplots(1, 2)
+    _draw_area(left, curve, law)
+    _draw_kappa(right, laws, law)
+    letter(left, "a", "real contact area (filled: corrected, hollow: raw)")
+    letter(right, "b", r"area slope $\kappa$")
+    legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
+    headline(figure, settings["label"], where)
+    return Drawing(figure, _table(curve, law), _caption(settings["label"], where, curve, law))
+
+
+def _drawn_offset(settings, laws):
+    """The offset of the maps, unless the faces are flush there and have slid elsewhere."""
+    offsets = laws["offset"].values
+    rough = offsets[np.isfinite(laws["reduced_pressure"]).all("load").values]
+    return chosen_offset(settings["map_offset"], rough if rough.size else offsets)
+
+
+def _draw_area(axes, curve, law):
+    pressure = curve["nominal_pressure"].values
+    points = {"ls": "none", "marker": "o", "color": COLOURS[0], "zorder": 3}
+    corrected = _share_corrected(curve)
+    axes.plot(pressure, 100 * corrected, label="computed, corrected", **points)
+    axes.plot(pressure, 100 * curve["area_share"], mfc="none", label="computed, raw", **points)
+    for variable, words, colour, line in THEORIES:
+        share = law[variable].values
+        drawn = share <= 1  # nothing but Persson's saturates, and beyond A_0 there is no area
+        if not drawn.any():
+            words = f"{words}: not defined here"
+        axes.plot(pressure[drawn], 100 * share[drawn], color=colour, ls=line, lw=1, label=words)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    _draw_slopes(axes, law["archard_exponent"].values, law["archard_level"].values)
+    for axis in (axes.xaxis, axes.yaxis):
+        label_short_span(axis)
+    axes.set_xlabel("nominal pressure $p$ (MPa)")
+    axes.set_ylabel("real contact area $A_r/A_0$ (%)")
+
+
+def _share_corrected(curve):
+    return (curve["area_corrected"] / curve["area"] * curve["area_share"]).values
+
+
+def _draw_slopes(axes, exponents, levels):
+    """Archard's exponents as slopes, from one point below the curves."""
+    (x_low, x_high), (y_low, y_high) = np.log10(axes.get_xlim()), np.log10(axes.get_ylim())
+    left, right, bottom = _FAN
+    start, end = (x_low + part * (x_high - x_low) for part in (left, right))
+    base = y_low + bottom * (y_high - y_low)
+    for exponent, level in zip(exponents, levels, strict=True):
+        top = base + exponent * (end - start)
+        label = "Archard, levels 1, 2, 3: slopes 2/3, 8/9, 26/27" if level == levels[0] else None
+        axes.plot(
+            10 ** np.array([start, end]),
+            10 ** np.array([base, top]),
+            ":",
+            color=_GREY,
+            label=label,
+            lw=1,
+        )
+        last = level == levels[-1]
+        axes.annotate(
+            f"{level}",
+            (10**end, 10**top),
+            xytext=(3, 2 if last else -2),
+            textcoords="offset points",
+            va="bottom" if last else "top" if level == levels[0] else "center",
+            fontsize=6,
+            color=_GREY,
+        )
+    axes.set_xlim(10**x_low, 10**x_high)
+    axes.set_ylim(10**y_low, 10**y_high)
+
+
+def _draw_kappa(axes, laws, law):
+    """Loads of enough nodes: raw and corrected here, corrected at the other offsets."""
+    others = laws.sel(offset=laws["offset"] != law["offset"])
+    for i in range(others.sizes["offset"]):
+        other = others.isel(offset=i)
+        axes.plot(
+            *_touching(other, "corrected_kappa"),
+            color="0.75",
+            lw=0.6,
+            zorder=1,
+            label="corrected, other offsets" if i == 0 else None,
+        )
+    style = {"color": COLOURS[0], "marker": "o", "lw": 0.7, "zorder": 3}
+    axes.plot(*_touching(law, "corrected_kappa"), **style)
+    axes.plot(*_touching(law, "kappa"), mfc="none", ls=":", **style)
+    reduced = laws["reduced_pressure"].where(laws["fitted"]).values
+    reduced = reduced[np.isfinite(reduced)]
+    if reduced.size:
+        kappa_lines(axes, reduced, law.attrs)
+        label_short_span(axes.xaxis)
+    if reduced.max(initial=0) > LIGHT_LOAD:
+        axes.axvline(LIGHT_LOAD, color=_GREY, ls=":", lw=0.8, label="end of light load")
+    if not law["fitted"].any():
+        axes.text(0.5, 0.5, _no_points(law), transform=axes.transAxes, ha="center", fontsize=7)
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
+    axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/p$ (1)")
+
+
+def _touching(law, name):
+    """Reduced pressure and one kappa at the loads whose contact has enough nodes."""
+    fitted = law["fitted"].values
+    return law["reduced_pressure"].values[fitted], law[name].values[fitted]
+
+
+def _no_points(law):
+    return str(law["no_mean_kappa"].values) or "no load with enough nodes in contact"
+
+
+def _kappa_words(law):
+    """Entries of the legend that state the mean kappas."""
+    if str(law["no_mean_kappa"].values):
+        return [heading("no mean at light load")]
+    return [
+        heading(f"mean at light load, {words}: {_mean(law, prefix)}")
+        for prefix, words in (("corrected_", "corrected"), ("", "raw"))
+    ]
+
+
+def _mean(law, prefix):
+    value, low, high = (float(law[f"{prefix}mean_kappa{end}"]) for end in ("", "_low", "_high"))
+    return estimate(value, low, high) if np.isfinite(low) else f"{short(value)} (one load)"
+
+
+def _table(curve, law):
+    """One row a load."""
+    columns = {
+        "offset_mm": float(law["offset"]),
+        "force_N": law["load"].values,
+        "nominal_pressure_MPa": curve["nominal_pressure"].values,
+        "reduced_pressure": law["reduced_pressure"].values,
+        "area_share": curve["area_share"].values,
+        "corrected_share": _share_corrected(curve),
+        "kappa": law["kappa"].values,
+        "corrected_kappa": law["corrected_kappa"].values,
+        "fitted": law["fitted"].values,
+        "light": law["light"].values,
+    }
+    return pd.DataFrame(columns | {name: law[name].values for name, *_ in THEORIES})
+
+
+def _caption(label, where, curve, law):
+    return " ".join(
+        [
+            f"{opening('Fig. 5', label, where)} (a) Real contact area, raw (hollow) and corrected "
+            "for the perimeter of the discretised contact (filled), and what the classical "
+            "theories make of the same composite topography at the scan's spacing. (b) Its slope "
+            f"kappa where {FEWEST_NODES} nodes or more touch.",
+            _law_words(law),
+            _between_words(law),
+            _theory_words(curve, law),
+        ]
+    )
+
+
+def _law_words(law):
+    reason = str(law["no_law"].values)
+    if reason:
+        return f"No power law could be fitted ({reason})."
+    low, high = float(law["exponent_low"]), float(law["exponent_high"])
+    fit = estimate(float(law["exponent"]), low, high)
+    held = [
+        f"{level}"
+        for level, exponent in zip(
+            law["archard_level"].values, law["archard_exponent"].values, strict=True
+        )
+        if low <= exponent <= high
+    ]
+    levels = "level" if len(held) == 1 else "levels"
+    archard = (
+        f"agrees with Archard's {levels} {', '.join(held)}"
+        if held
+        else "agrees with none of Archard's levels 1 to 3"
+    )
+    linear = (
+        "includes 1, the paper's linear law,"
+        if low <= 1 <= high
+        else "leaves out 1, the paper's linear law,"
+    )
+    return (
+        f"A_r grows as F to the power {fit} over {int(law['n'])} loads, which {linear} and "
+        f"{archard}; A_r/F departs from its mean by up to {percent(law['departure'])}."
+    )
+
+
+def _between_words(law):
+    reason = str(law["no_mean_kappa"].values)
+    if reason:
+        return f"There is no kappa at light load: {reason}."
+    value = float(law["corrected_mean_kappa"])
+    low, high = law.attrs["persson_kappa"], law.attrs["bush_gibson_thomas_kappa"]
+    side = (
+        "between Persson's"
+        if low <= value <= high
+        else "below both Persson's"
+        if value < low
+        else "above both Persson's"
+    )
+    return (
+        f"At light load the mean kappa is {_mean(law, 'corrected_')} corrected and "
+        f"{_mean(law, '')} raw (over the loads of this one surface); the corrected one "
+        f"lies {side} {number(low, 3)} and Bush, Gibson and Thomas' {number(high, 3)}."
+    )
+
+
+def _theory_words(curve, law):
+    """How far the theories are from the corrected area under the largest load."""
+    computed = _share_corrected(curve)[-1]
+    ratios = [
+        f"{words} {short(float(law[variable][-1]) / computed)}"
+        for variable, words, *_ in THEORIES
+        if np.isfinite(law[variable][-1])
+    ]
+    if not ratios:
+        return "None of the theories has an area for it."
+    return (
+        "Under the largest load the theories give, as parts of the corrected area: "
+        f"{', '.join(ratios)}."
+    )

@@ -1,0 +1,133 @@
+"""What was solved and how exactly, why, and the errors that are stated for it."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..kit.drawing import (
+    COLOURS,
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    entries,
+    group,
+    headline,
+    legends_below,
+    letter,
+    settings_of,
+)
+from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
+from ..kit.words import opening, percent, place, short
+
+#: Columns of the table: where they begin, as shares of the width, and how many letters they hold.
+COLUMNS = {"choice": (0.0, 18), "value": (0.16, 34), "reason": (0.45, 62), "error": (0.93, 9)}
+HEADS = {"choice": "What", "value": "Chosen", "reason": "Because", "error": "Error"}
+
+#: Errors drawn: stage, variable, its error, whether as a share of it, and the words of the legend.
+ERRORS = (
+    ("closure", "interface_closure", "interface_closure_error", True, "interface closure"),
+    ("closure", "area", "area_error", True, "real contact area"),
+    ("closure", "interface_stiffness", "interface_stiffness_error", True, "interface stiffness"),
+    ("domains", "delta_sigma", "delta_sigma_error", False, "$\\Delta_\\sigma$ (absolute)"),
+    ("closure", "interface_closure", "closure_spacing_error", True, "closure, by the spacing"),
+)
+#: What is stated to be exact is drawn here.
+LEAST = 1e-8
+
+
+def draw(atlas, name):
+    """The choices as a table, and the errors stated for the states over the load.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+        Its data are the rows of the table ("choice") and the errors drawn ("error").
+    """
+    settings = settings_of(atlas, name)
+    made = group(atlas, "choices", name)
+    direction = settings["contact_directions"][0]
+    table = _table(made)
+    errors = _errors(atlas, name, direction)
+    texts, lines = wrap_rows(table, COLUMNS)
+    height = LINE_HEIGHT * (sum(lines) + 2.5)
+    figure = Figure(figsize=(WIDTH, height + 3.4))
+    above, below = figure.subplots(2, 1, height_ratios=(height, 3.0))
+    above.set_ylim(height / LINE_HEIGHT, 0)
+    letter(above, "a", "what was chosen")
+    draw_rows(above, texts, lines, COLUMNS, HEADS, 0.4)
+    _draw_errors(below, errors)
+    legends_below(figure, entries(below)[::2], entries(below)[1::2])
+    headline(figure, settings["label"], place(direction))
+    data = pd.concat(
+        [pd.DataFrame(table).assign(kind="choice"), errors.assign(kind="error")], ignore_index=True
+    )
+    return Drawing(figure, data, _caption(settings["label"], made, errors, direction))
+
+
+def _table(made):
+    """Rows of the table, all as text."""
+    rows = []
+    for i, choice in enumerate(made["choice"].values):
+        error = float(made["error"][i])
+        rows.append(
+            {
+                "choice": str(choice),
+                "value": str(made["value"].values[i]),
+                "reason": str(made["reason"].values[i]),
+                "error": f"{float(f'{error:.1g}'):g}" if np.isfinite(error) else "–",
+            }
+        )
+    return rows
+
+
+def _errors(atlas, name, direction):
+    """Median and largest error over the offsets under each load, at the finest resolution."""
+    rows = []
+    for stage, variable, key, as_share, words in ERRORS:
+        found = group(atlas, stage, name)[[variable, key]].sel(direction=direction)
+        found = found.sel(resolution=found["resolution"].min())
+        errors = found[key] / abs(found[variable]) if as_share else found[key]
+        for load in errors["load"].values:
+            here = errors.sel(load=load).values
+            known = here[np.isfinite(here)]
+            if known.size:
+                row = {"quantity": words, "force_N": load, "offsets": known.size}
+                rows.append(row | {"median": np.median(known), "largest": known.max()})
+    return pd.DataFrame(rows)
+
+
+def _draw_errors(axes, errors):
+    for i, (words, rows) in enumerate(errors.groupby("quantity", sort=False)):
+        style = {"color": COLOURS[i], "marker": MARKERS[i], "ls": LINES[i % len(LINES)]}
+        drawn = np.maximum(rows["largest"], LEAST)
+        axes.plot(rows["force_N"], drawn, label=words, **style)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("normal force $F$ (N)")
+    axes.set_ylabel("largest error stated,\nas a share (1)")
+    letter(axes, "b", f"errors stated in the atlas (those of {LEAST:g} and less at the bottom)")
+
+
+def _caption(label, made, errors, direction):
+    by_solver = errors[errors["quantity"] != ERRORS[-1][-1]]
+    worst = by_solver.loc[by_solver["largest"].idxmax()]
+    spacing = errors[errors["quantity"] == ERRORS[-1][-1]]["largest"]
+    by_spacing = ""
+    if len(spacing):
+        least, most = percent(spacing.min()), percent(spacing.max())
+        by_spacing = f"; twice the spacing changes the closure by {least} to {most}"
+    return (
+        f"{opening('no figure', label, place(direction))} Asked for: {made.attrs['asked']}. "
+        f"{made.attrs['states_solved']} of {made.attrs['states']} states were solved; the others "
+        "are shown nowhere and missing in the atlas. (a) What was chosen, and the largest error it "
+        "makes as a share, where there is one. (b) Largest error stated at the finest resolution: "
+        f"the largest by the solver is {worst['largest']:.2g}, of the {worst['quantity']} at "
+        f"F = {short(worst['force_N'])} N{by_spacing}."
+    )

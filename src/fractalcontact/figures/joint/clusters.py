@@ -1,0 +1,258 @@
+"""Clusters of the contact domain against the offset: number, size and localisation."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...core.fitting import FEWEST_POINTS, fit_line
+from ...domain.clusters import QUADRATS, follows_law
+from ...mechanics.area import FEWEST_NODES
+from ...surface.specimen import cell_side
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    dilatancy_loads,
+    entries,
+    finest_curves,
+    group,
+    heading,
+    headline,
+    label_short_span,
+    legends_below,
+    letter,
+    nearest_load,
+    offset_axis,
+    settings_of,
+    spread,
+)
+from ..kit.words import estimate, force_label, opening, percent, place, short, slope_text
+
+#: Offsets whose size distribution is drawn: the first, the middle and the last.
+DISTRIBUTIONS = 3
+
+#: Numbers of a domain that are drawn and kept, with the names of their columns.
+COLUMNS = {
+    "clusters": "clusters",
+    "largest_share": "largest_share",
+    "cluster_area_mean": "cluster_area_mean_mm2",
+    "morisita": "morisita",
+    "morisita_scatter": "morisita_scatter",
+    "half_share": "half_share",
+    "half_share_random": "half_share_random",
+}
+EXPONENTS = {
+    "cluster_exponent": "exponent",
+    "cluster_exponent_low": "exponent_low",
+    "cluster_exponent_high": "exponent_high",
+    "cluster_fit_min": "fit_min_mm2",
+    "cluster_fit_max": "fit_max_mm2",
+    "cluster_fit_n": "fit_clusters",
+    "cluster_fit_distance": "fit_distance",
+}
+
+
+def draw(atlas, name):
+    """Number of clusters, largest one, localisation and sizes, at the finest resolution.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas that slides.
+
+    Returns
+    -------
+    Drawing
+        Its data are the numbers of every domain ("domain") and, for the map load, how many
+        clusters have some area or more ("sizes").
+    """
+    settings = settings_of(atlas, name)
+    specimen = group(atlas, "specimens", name)
+    curves = finest_curves(atlas, name)
+    direction, finest = str(curves["direction"].values), int(curves["resolution"])
+    domains = group(atlas, "domains", name).sel(direction=direction, resolution=finest)
+    cell = (finest * cell_side(specimen)) ** 2
+    loads = curves["load"].values
+    shown = dilatancy_loads(loads, settings, specimen)
+    mapped = nearest_load(loads, settings["map_load"], specimen)
+    table = _domain_table(domains, curves["area"] / cell, shown)
+    sizes = _size_table(domains.isel(load=mapped), cell)
+
+    figure = Figure(figsize=(WIDTH, 6.0))
+    number, share, localised, distribution = figure.subplots(2, 2).ravel()
+    _draw_domains((number, share, localised), table)
+    _draw_sizes(distribution, sizes)
+    by_load = [heading("(a) to (c); hollow: few nodes, not fitted"), *entries(number)]
+    at = f"(d) $F$ = {force_label(loads[mapped])}; lines are fits"
+    legends_below(figure, by_load, [heading(at), *entries(distribution)])
+    headline(figure, settings["label"], place(direction))
+    caption = _caption(settings["label"], direction, table, sizes)
+    data = pd.concat([table.assign(kind="domain"), sizes.assign(kind="sizes")], ignore_index=True)
+    return Drawing(figure, data, caption)
+
+
+def _domain_table(domains, nodes, shown):
+    """A row for each domain drawn, offset by offset under each load."""
+    rows = []
+    for j in shown:
+        row = {
+            "force_N": float(domains["load"][j]),
+            "offset_mm": domains["offset"].values,
+            "nodes": np.round(nodes.isel(load=j).values),
+        }
+        row |= {column: domains[key].isel(load=j).values for key, column in COLUMNS.items()}
+        rows.append(pd.DataFrame(row))
+    table = pd.concat(rows, ignore_index=True)
+    return table.assign(in_trend=(table["nodes"] >= FEWEST_NODES) & (table["offset_mm"] > 0))
+
+
+def _size_table(domains, cell):
+    """Clusters of 2^k nodes or more at some offsets, with their law."""
+    rows = []
+    for i in spread(domains.sizes["offset"], DISTRIBUTIONS):
+        domain = domains.isel(offset=i)
+        counts = domain["cluster_octaves"].values
+        larger = np.cumsum(counts[::-1])[::-1]
+        row = {
+            "force_N": float(domain["load"]),
+            "offset_mm": float(domain["offset"]),
+            "cluster_area_mm2": 2.0 ** np.arange(len(counts)) * cell,
+            "clusters_at_least": larger,
+        }
+        row |= {column: float(domain[key]) for key, column in EXPONENTS.items()}
+        rows.append(pd.DataFrame(row)[larger > 0])
+    return pd.concat(rows, ignore_index=True)
+
+
+def _draw_domains(panels, table):
+    number, share, localised = panels
+    for n, (force, points) in enumerate(table.groupby("force_N")):
+        v, many = points["offset_mm"], (points["nodes"] >= FEWEST_NODES).values
+        style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)]}
+        for axes, column in (
+            (number, "clusters"),
+            (share, "largest_share"),
+            (localised, "morisita"),
+        ):
+            # No contact is no number, and an index of 0 has no place on a logarithmic axis.
+            y = points[column].where(points[column] > 0)
+            axes.plot(v, y, ls=LINES[n % 4], lw=0.8, color=colour_of(n))
+            axes.plot(v[many], y[many], ls="none", **style)
+            axes.plot(v[~many], y[~many], ls="none", mfc="white", **style)
+        name = f"$F$ = {force_label(force)}: $I$ as $v$ to {slope_text(_trend(points, 'morisita'))}"
+        number.plot([], [], ls=LINES[n % 4], lw=0.8, label=name, **style)
+        above = 1 + 1.96 * points["morisita_scatter"]
+        below = (1 - 1.96 * points["morisita_scatter"]).clip(lower=0.1)
+        localised.fill_between(v, below, above, color=colour_of(n), alpha=0.15, lw=0)
+    localised.axhline(1, color="0.4", lw=0.8)
+    for axes in panels:
+        offset_axis(axes, table["offset_mm"].values)
+    number.set_yscale("log")
+    number.set_ylabel("contact clusters (number)")
+    share.set_ylim(bottom=0)
+    share.set_ylabel("largest cluster / contact area (–)")
+    localised.set_yscale("log")
+    lowest = table["morisita"].where(table["morisita"] > 0).min()
+    localised.set_ylim(bottom=min(0.7, 0.8 * lowest))
+    localised.set_ylabel("Morisita's index $I$ (–)")
+    letter(number, "a", "number of clusters")
+    letter(share, "b", "largest cluster")
+    letter(localised, "c", "localisation (line and bands: random nodes)")
+
+
+def _draw_sizes(axes, sizes):
+    """Clusters of some area or more, with the laws fitted to them."""
+    for n, (offset, points) in enumerate(sizes.groupby("offset_mm")):
+        law = points.iloc[0]
+        exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+        area, at_least = points["cluster_area_mm2"], points["clusters_at_least"]
+        style = {"color": colour_of(n), "marker": MARKERS[n], "mfc": "white", "ls": "none"}
+        name = rf"$v$ = {short(offset)} mm: $\beta$ = {exponent}"
+        axes.plot(area, at_least, label=name, **style)
+        if np.isfinite(law["exponent"]):
+            # From the octave that holds the smallest cluster fitted.
+            first = area[area <= law["fit_min_mm2"] * (1 + 1e-9)].max()
+            ends = np.array([first, law["fit_max_mm2"]])
+            fitted = law["fit_clusters"] * (ends / first) ** -law["exponent"]
+            axes.plot(ends, fitted, color=colour_of(n), lw=0.8, ls=LINES[n % 4])
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(bottom=0.7)
+    axes.set_xlabel("cluster area $a$ (mm$^2$)")
+    axes.set_ylabel(r"clusters of area $\geq a$ (number)")
+    label_short_span(axes.xaxis)
+    letter(axes, "d", "sizes of clusters")
+
+
+def _trend(points, column):
+    """Line of a logarithm against that of the offset."""
+    used = points[points["in_trend"] & (points[column] > 0)]
+    return fit_line(np.log(used["offset_mm"]), np.log(used[column]))
+
+
+def _caption(label, direction, table, sizes):
+    return (
+        f"{opening('Figs. 6 and 7', label, place(direction))} Clusters of nodes in contact "
+        f"(neighbours by side or corner): (a) number, (b) largest, (c) localisation by Morisita's "
+        f"index over {QUADRATS} x {QUADRATS} parts of the window, 1 for nodes spread at random "
+        f"(bands: 95 % of as many random nodes), (d) sizes with the law a^-beta by maximum "
+        f"likelihood over octaves. {_localisation_words(table)} {_size_words(sizes)}"
+    )
+
+
+def _localisation_words(table):
+    """Whether the domains become less homogeneous with v, under every load drawn."""
+    lines = {
+        force: (_trend(points, "morisita"), points) for force, points in table.groupby("force_N")
+    }
+    known = {force: fit for force, fit in lines.items() if np.isfinite(fit[0].slope)}
+    if not known:
+        return (
+            f"Too few offsets with {FEWEST_NODES} nodes in contact ({FEWEST_POINTS} needed) to "
+            "tell whether the domains become less homogeneous with v."
+        )
+    grows = sum(line.slope_low > 0 for line, _ in known.values())
+    falls = sum(line.slope_high < 0 for line, _ in known.values())
+    verdict = (
+        "the domains become less homogeneous with v, as the paper says"
+        if grows == len(known)
+        else "the domains become more homogeneous with v, unlike the paper's"
+        if falls == len(known)
+        else f"they become less homogeneous with v under {grows} of {len(known)} loads only, "
+        "where the paper has it in general"
+        if grows
+        else "no trend beyond the intervals, where the paper has the domains become less "
+        "homogeneous with v"
+    )
+    powers = "; ".join(
+        f"{slope_text(line)} at {force_label(force)}" for force, (line, _) in known.items()
+    )
+    force, (_, points) = list(known.items())[-1]
+    used = points[points["in_trend"]]
+    first, last = used.iloc[0], used.iloc[-1]
+    return (
+        f"The index goes as v to the power {powers}: {verdict}. Under F = {force_label(force)} "
+        f"half of the contact lies in {percent(first['half_share'])} of the window at "
+        f"v = {short(first['offset_mm'])} mm and in {percent(last['half_share'])} at "
+        f"{short(last['offset_mm'])} mm (as many random nodes: "
+        f"{percent(first['half_share_random'])} and {percent(last['half_share_random'])})."
+    )
+
+
+def _size_words(sizes):
+    laws = sizes.drop_duplicates("offset_mm")
+    fitted = laws[np.isfinite(laws["exponent"])]
+    if fitted.empty:
+        return "Too few clusters, or over too few octaves, for a law of their sizes."
+    parts = []
+    for law in fitted.itertuples():
+        followed = follows_law(law.fit_clusters, law.fit_distance)
+        parts.append(
+            f"{estimate(law.exponent, law.exponent_low, law.exponent_high)} from "
+            f"{short(law.fit_min_mm2)} to {short(law.fit_max_mm2)} mm2 at v = "
+            f"{short(law.offset_mm)} mm" + ("" if followed else ", where sizes do not follow it")
+        )
+    return f"Beta is {'; '.join(parts)}."

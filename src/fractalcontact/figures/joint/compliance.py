@@ -1,0 +1,209 @@
+"""Correlation of the faces, and closure and compliance of the interface, against the offset."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    dilatancy_loads,
+    entries,
+    finest_curves,
+    group,
+    headline,
+    legends_below,
+    letter,
+    offset_axis,
+    settings_of,
+)
+from ..kit.words import TOWARDS, force_label, opening, place, short
+
+#: What the paper says of the stages of sliding (:mod:`statements.judge`).
+STAGES = ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again")
+
+
+def draw(atlas, name):
+    """Face correlation at every offset, closure and compliance at those whose contact was solved.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas that slides.
+
+    Returns
+    -------
+    Drawing
+        Its data are the points of (a) ("correlation") and of (b) and (c) ("closure").
+    """
+    settings = settings_of(atlas, name)
+    specimen = group(atlas, "specimens", name)
+    joint = group(atlas, "joints", name)
+    curves = finest_curves(atlas, name)
+    direction = str(curves["direction"].values)
+    shown = dilatancy_loads(curves["load"].values, settings, specimen)
+    closures = _closure_table(curves, shown)
+
+    figure = Figure(figsize=(WIDTH, 7.4))
+    correlation, closed, compliance = figure.subplots(
+        3, 1, sharex=True, height_ratios=[1.2, 1, 1.1]
+    )
+    _draw_correlation(correlation, joint)
+    _draw_closures(closed, compliance, closures)
+    _mark_offsets((closed, compliance), joint, direction)
+    # The scale suits the offsets solved; the correlation is known at more.
+    offset_axis(compliance, curves["offset"].values)
+    for upper in (correlation, closed):
+        upper.set_xlabel("")
+    legends_below(figure, entries(correlation), entries(closed))
+    headline(figure, settings["label"])
+    judged = group(atlas, "statements", name)
+    caption = _caption(settings["label"], direction, joint, judged)
+    table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
+    return Drawing(figure, table, caption)
+
+
+def _closure_table(curves, shown):
+    """Closure and compliance of the interface, load by load."""
+    rows = [
+        pd.DataFrame(
+            {
+                "curve": "closure",
+                "direction": str(curves["direction"].values),
+                "force_N": float(curves["load"][j]),
+                "offset_mm": curves["offset"].values,
+                "interface_closure_mm": curves["interface_closure"][:, j].values,
+                "interface_compliance_mm_per_MPa": 1 / curves["interface_stiffness"][:, j].values,
+            }
+        )
+        for j in shown
+    ]
+    return pd.concat(rows, ignore_index=True)
+
+
+def _correlation_table(joint):
+    rows = [
+        pd.DataFrame(
+            {
+                "curve": "correlation",
+                "direction": d,
+                "offset_mm": joint["rigid_offset"].values,
+                "face_correlation": joint["face_correlation"].sel(direction=d).values,
+                "correlation_length_mm": float(joint["correlation_length"].sel(direction=d)),
+                "uncorrelated_offset_mm": float(joint["uncorrelated_offset"].sel(direction=d)),
+            }
+        )
+        for d in joint["direction"].values
+    ]
+    return pd.concat(rows, ignore_index=True)
+
+
+def _draw_correlation(axes, joint):
+    for n, direction in enumerate(joint["direction"].values):
+        points = joint.sel(direction=direction)
+        uncorrelated = float(points["uncorrelated_offset"])
+        reached = (
+            f"uncorrelated from $v$ = {short(uncorrelated)} mm"
+            if np.isfinite(uncorrelated)
+            else "always correlated"
+            if np.isfinite(joint["correlation_limit"])
+            else "window too small to tell when lost"
+        )
+        v, rho = joint["rigid_offset"].values, points["face_correlation"].values
+        # The marks are for prints in grey; at every offset they would hide the line.
+        every = np.unique(np.geomspace(1, max(len(v) - 1, 1), 8).astype(int) % len(v)).tolist()
+        axes.plot(
+            v,
+            rho,
+            color=colour_of(n),
+            ls=LINES[n % 4],
+            marker=MARKERS[n % len(MARKERS)],
+            markevery=every,
+            label=f"{TOWARDS.get(direction, direction)}: {reached}",
+        )
+        if np.isfinite(uncorrelated):
+            axes.axvline(uncorrelated, color=colour_of(n), lw=0.8, ls=":")
+    axes.axhline(np.exp(-1), color="0.4", lw=0.8, ls="--", label="1/e")
+    limit = float(joint["correlation_limit"])
+    if np.isfinite(limit):
+        axes.axhspan(
+            -limit, limit, color="0.88", zorder=0, lw=0, label="what chance alone explains, 95 %"
+        )
+    axes.set_ylim(top=1.05)
+    axes.set_ylabel("correlation of the faces (–)")
+    letter(axes, "a", "correlation of the faces (dotted: uncorrelated offset)")
+
+
+def _draw_closures(closed, compliance, table):
+    for n, (force, points) in enumerate(table.groupby("force_N")):
+        style = {
+            "color": colour_of(n + 1),
+            "marker": MARKERS[n % len(MARKERS)],
+            "ls": LINES[n % 4],
+            "label": f"$F$ = {force_label(force)}",
+        }
+        closed.plot(points["offset_mm"], points["interface_closure_mm"], **style)
+        compliance.plot(points["offset_mm"], points["interface_compliance_mm_per_MPa"], **style)
+    closed.set_ylim(bottom=min(0, table["interface_closure_mm"].min()))
+    closed.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
+    compliance.set_yscale("log")
+    compliance.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma$ (mm/MPa)")
+    direction = place(table["direction"].iloc[0])
+    letter(closed, "b", f"closure of the interface, {direction}")
+    letter(compliance, "c", f"compliance of the interface, {direction}")
+
+
+def _mark_offsets(panels, joint, direction):
+    """Where the faces of the direction solved lose their correlation."""
+    marks = _ends_of_correlation(joint, direction)
+    for axes in panels:
+        for at, style, label in zip(
+            marks,
+            ("--", ":"),
+            ("correlation length (1/e)", "uncorrelated offset"),
+            strict=True,
+        ):
+            if np.isfinite(at):
+                axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
+
+
+def _ends_of_correlation(joint, direction):
+    """Correlation length and uncorrelated offset, mm, towards a direction; NaN if not reached."""
+    along = joint.sel(direction=direction)
+    return float(along["correlation_length"]), float(along["uncorrelated_offset"])
+
+
+def _caption(label, direction, joint, judged):
+    ends = _ends_of_correlation(joint, direction)
+    told = np.isfinite(float(joint["correlation_limit"]))
+    stages = [judged.sel(statement=name) for name in STAGES]
+    verdicts = [f"{stage['verdict'].item()} ({stage['numbers'].item()})" for stage in stages]
+    return (
+        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the two faces "
+        f"under the window, each less its mean plane; (b) closure and (c) compliance of the "
+        f"interface at the same offsets. {_correlation_words(direction, ends, told)} The paper "
+        f"has the joint more compliant with v at first, then curves that overlap, then a joint "
+        f"more compliant again once all correlation is lost. Under "
+        f"F = {force_label(judged.attrs['force'])} the first {'; the second '.join(verdicts[:2])}; "
+        f"the third {verdicts[2]}."
+    )
+
+
+def _correlation_words(direction, ends, told):
+    length, uncorrelated = ends
+    if not np.isfinite(length):
+        return f"Towards {TOWARDS[direction]} the correlation does not fall to 1/e."
+    lost = (
+        f"no longer differs from zero from {short(uncorrelated)} mm"
+        if np.isfinite(uncorrelated)
+        else "differs from zero at all offsets"
+        if told
+        else "where it vanishes a window of so few correlation lengths cannot tell"
+    )
+    return (
+        f"Towards {TOWARDS[direction]} the correlation is 1/e at v = {short(length)} mm and {lost}."
+    )

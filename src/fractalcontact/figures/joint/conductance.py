@@ -1,0 +1,182 @@
+"""Thermal or electrical conductance of the interface against pressure (Barber 2003)."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    finest_curves,
+    heading,
+    headline,
+    legends_below,
+    settings_of,
+    spread,
+)
+from ..kit.words import estimate, place, short
+
+CURVES = 5
+
+#: Exponents that theories and experiments give: Persson's and Greenwood and Williamson's are 1,
+#: Cooper, Mikic and Yovanovich (Int. J. Heat Mass Transf. 12 (1969) 279) and most tests 0.95.
+THEORY = (0.95, 1.0)
+
+
+def draw(atlas, name):
+    """Conductance at about five offsets, at the finest resolution.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+    """
+    settings = settings_of(atlas, name)
+    curves = finest_curves(atlas, name)
+    direction = str(curves["direction"].values)
+    e_star = settings["material"]["e_star"]
+    table = _table(curves)
+
+    figure = Figure(figsize=(WIDTH, 4.4))
+    axes = figure.subplots()
+    for n, (offset, points) in enumerate(table.groupby("offset_mm")):
+        _draw_curve(axes, n, _state(direction, offset), points)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    _draw_theory(axes, table)
+    axes.set_xlabel("nominal pressure $p$ (MPa)")
+    axes.set_ylabel("conductance per conductivity $h_c/k$ (mm$^{-1}$)")
+    functions = (lambda y: y * e_star, lambda y: y / e_star)
+    axes.secondary_yaxis("right", functions=functions).set_ylabel(
+        r"interface stiffness $\mathrm{d}\sigma/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
+    )
+    n = table["offset_mm"].nunique()
+    remarks = entries(axes)[n:]
+    if not table["fitted"].all():
+        remarks.append(heading("hollow: not fitted"))
+    legends_below(figure, entries(axes)[:n], remarks)
+    headline(figure, settings["label"], place(direction))
+    return Drawing(figure, table, _caption(settings["label"], direction, table))
+
+
+def _table(curves):
+    """Points drawn, with the exponent fitted to their curve."""
+    rows = []
+    for i in spread(curves.sizes["offset"], CURVES):
+        curve = curves.isel(offset=i)
+        pressure = curve["nominal_pressure"].values
+        low, high = (float(curve[f"conductance_pressure_{end}"]) for end in ("low", "high"))
+        conductance = curve["conductance"].values
+        inside = (pressure >= low * (1 - 1e-9)) & (pressure <= high * (1 + 1e-9))
+        rows.append(
+            pd.DataFrame(
+                {
+                    "offset_mm": float(curve["offset"]),
+                    "nominal_pressure_MPa": pressure,
+                    "conductance_per_mm": conductance,
+                    "interface_stiffness_MPa_per_mm": curve["interface_stiffness"].values,
+                    "fitted": inside & np.isfinite(conductance),
+                    "exponent": float(curve["conductance_exponent"]),
+                    "exponent_low": float(curve["conductance_exponent_low"]),
+                    "exponent_high": float(curve["conductance_exponent_high"]),
+                }
+            )
+        )
+    return pd.concat(rows, ignore_index=True)
+
+
+def _state(direction, offset):
+    return "against a plane" if direction == "none" else f"$v$ = {short(offset)} mm"
+
+
+def _draw_curve(axes, n, state, points):
+    law, fitted = points.iloc[0], points["fitted"]
+    exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+    words = (
+        f"exponent {exponent}"
+        if np.isfinite(points["conductance_per_mm"]).any()
+        else "no interface (faces flush, or contact full)"
+    )
+    style = {"color": colour_of(n), "marker": MARKERS[n], "ls": "none"}
+    for part, fill, label in (
+        (points[fitted], colour_of(n), f"{state}: {words}"),
+        (points[~fitted], "white", None),
+    ):
+        axes.plot(
+            part["nominal_pressure_MPa"], part["conductance_per_mm"], mfc=fill, label=label, **style
+        )
+    if np.isfinite(law["exponent"]):
+        # A least-squares line goes through the mean of its points.
+        p, h = (
+            np.log(points.loc[fitted, column])
+            for column in ("nominal_pressure_MPa", "conductance_per_mm")
+        )
+        ends = np.array([p.min(), p.max()])
+        line = np.exp(h.mean() + law["exponent"] * (ends - p.mean()))
+        axes.plot(np.exp(ends), line, color=colour_of(n), lw=0.8, ls=LINES[n % 4])
+
+
+def _draw_theory(axes, table):
+    """The slopes of the theories, through the middle of the points and behind them."""
+    known = table[np.isfinite(table["conductance_per_mm"])]
+    if known.empty:
+        return
+    p, h = (np.log(known[key]) for key in ("nominal_pressure_MPa", "conductance_per_mm"))
+    ends = np.array([p.min(), p.mean(), p.max()])
+    for slope, name in zip(
+        THEORY, (f"slopes {THEORY[0]:g} and {THEORY[1]:g} of theory", None), strict=True
+    ):
+        height = np.exp(h.mean() + slope * (ends - p.mean()))
+        axes.plot(np.exp(ends), height, color="0.6", lw=1, ls=":", zorder=0, label=name)
+
+
+def _caption(label, direction, table):
+    return (
+        f"{label}, {place(direction)}: conductance of the interface h_c, thermal or electrical, "
+        f"for two blocks of one conductivity k, from the normal stiffness of the interface (Barber "
+        f"2003); k/h_c is the thickness of solid material with the same resistance. "
+        f"{_exponent_words(table)}"
+    )
+
+
+def _exponent_words(table):
+    laws = table.drop_duplicates("offset_mm")
+    fitted = laws[np.isfinite(laws["exponent"])]
+    if fitted.empty:
+        return "Too few pressures for an exponent."
+    low, high = THEORY
+    reached = int(((fitted["exponent_low"] <= high) & (fitted["exponent_high"] >= low)).sum())
+    below = int((fitted["exponent_high"] < low).sum())
+    above = len(fitted) - reached - below
+    ranged = table[table["fitted"]]["nominal_pressure_MPa"]
+    law = fitted.iloc[0]
+    values = (
+        f"a power {estimate(law['exponent'], law['exponent_low'], law['exponent_high'])}"
+        if len(fitted) == 1
+        else f"powers from {fitted['exponent'].min():.3g} to {fitted['exponent'].max():.3g}"
+    )
+    verdict = (
+        f"as the theories have it, which give {low:g} to {high:g}"
+        if reached == len(fitted)
+        else f"the intervals of {reached} of {len(fitted)} reach the {low:g} to {high:g} of the "
+        f"theories, those of {below} lie below and of {above} above"
+    )
+    finite_size = (
+        " Powers below come with windows that hold few hills, a finite-size effect (Pastewka et "
+        "al., Phys. Rev. E 87 (2013) 062809)."
+        if below
+        else ""
+    )
+    return (
+        f"It grows as {values} of the pressure (fitted from {short(ranged.min())} to "
+        f"{short(ranged.max())} MPa): {verdict}.{finite_size}"
+    )

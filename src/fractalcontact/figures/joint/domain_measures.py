@@ -1,0 +1,185 @@
+"""Measures of the contact domain beside its box dimension: local slopes, lacunarity and D_q."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    group,
+    headline,
+    label_short_span,
+    letter,
+    nearest_load,
+    settings_of,
+    spread,
+)
+from ..kit.words import force_label, interval, opening, place, short
+
+#: Loads drawn, the map load among them.
+MOST_LOADS = 4
+
+
+def draw(atlas, name):
+    """Local slopes of the box counts, lacunarity and the spectrum D_q of the pressure.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the stage ``domain_measures``.
+
+    Returns
+    -------
+    Drawing
+        Its data are the points drawn, ``kind`` "slope", "lacunarity" or "spectrum".
+    """
+    settings = settings_of(atlas, name)
+    measures = group(atlas, "domain_measures", name)
+    forces = measures["load"].values
+    mapped = nearest_load(forces, settings["map_load"], group(atlas, "specimens", name))
+    table = _table(measures, _shown(measures, mapped))
+
+    figure = Figure(figsize=(WIDTH, 3.1))
+    slopes, lacunarity, spectrum = figure.subplots(1, 3)
+    _draw_slopes(slopes, table)
+    _draw_lacunarity(lacunarity, table, forces[mapped])
+    _draw_spectrum(spectrum, table, forces[mapped])
+    handles, _ = lacunarity.get_legend_handles_labels()
+    figure.legend(handles=handles, loc="outside lower center", ncols=MOST_LOADS)
+    where = place(str(measures["direction"].item()), float(measures["offset"]))
+    headline(figure, settings["label"], where)
+    start = opening("section 6", settings["label"], where)
+    return Drawing(figure, table, f"{start} {_caption(measures.isel(load=mapped), table)}")
+
+
+def _shown(measures, mapped):
+    """Indices of the loads drawn: with a domain that has a lacunarity, and the map load."""
+    some = np.flatnonzero(np.isfinite(measures["lacunarity"]).any("gliding_side").values)
+    chosen = some[spread(some.size, MOST_LOADS)] if some.size else some
+    if mapped in some:
+        chosen[np.argmin(np.abs(chosen - mapped))] = mapped
+    return np.unique(chosen)
+
+
+def _table(measures, shown):
+    """One row a point drawn."""
+    curves = {
+        "slope": ("slope_side", "local_slope", False),
+        "lacunarity": ("gliding_side", "lacunarity", True),
+        "spectrum": ("order", "generalised_dimension", True),
+    }
+    x_names = {"slope": "box_side_mm", "lacunarity": "box_side_mm", "spectrum": "order_q"}
+    rows = [pd.DataFrame({"kind": [], "force_N": [], "value": [], "low": [], "high": []})]
+    for i in shown:
+        state = measures.isel(load=i)
+        for kind, (axis, key, bounded) in curves.items():
+            row = {"kind": kind, "force_N": float(state["load"]), x_names[kind]: state[axis].values}
+            row["value"] = state[key].values
+            if bounded:
+                row |= {end: state[f"{key}_{end}"].values for end in ("low", "high")}
+            rows.append(pd.DataFrame(row))
+    table = pd.concat([row for row in rows if len(row)] or rows, ignore_index=True)
+    return table[np.isfinite(table["value"])].reset_index(drop=True)
+
+
+def _styles(table, kind):
+    """Points of one kind under each load, with the load's style; the same in all panels."""
+    for n, force in enumerate(sorted(table["force_N"].unique())):
+        points = table[(table["kind"] == kind) & (table["force_N"] == force)]
+        style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "ls": LINES[n % 4]}
+        yield force, points, style
+
+
+def _draw_slopes(axes, table):
+    for _, points, style in _styles(table, "slope"):
+        axes.semilogx(points["box_side_mm"], points["value"], ms=3, lw=0.8, **style)
+    for slope, line in ((1, ":"), (2, "-.")):
+        axes.axhline(slope, color="0.6", ls=line, lw=0.8, zorder=0)
+    axes.set_ylim(-0.1, max(2.2, axes.get_ylim()[1]))
+    axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
+    label_short_span(axes.xaxis)
+    letter(axes, "a", "box counts")
+
+
+def _draw_lacunarity(axes, table, mapped):
+    for force, points, style in _styles(table, "lacunarity"):
+        r = points["box_side_mm"]
+        label = f"$F$ = {force_label(force)}"
+        axes.loglog(r, points["value"], ms=3, lw=0.8, label=label, **style)
+        if force == mapped:
+            low, high = points["low"].clip(lower=1), points["high"]
+            axes.fill_between(r, low, high, color=style["color"], alpha=0.15, lw=0)
+    axes.axhline(1, color="0.6", lw=0.8, zorder=0)
+    most = table.loc[table["kind"] == "lacunarity", "value"].max()
+    if np.isfinite(most):
+        # Bands may be open upwards where one part of the window holds nearly all contact.
+        axes.set_ylim(0.8, 3 * max(most, 1.5))
+    axes.set(
+        xlabel="side of the gliding box $r$ (mm)",
+        ylabel=r"lacunarity $\langle M^2\rangle/\langle M\rangle^2$ (1)",
+    )
+    label_short_span(axes.xaxis)
+    letter(axes, "b", "lacunarity")
+
+
+def _draw_spectrum(axes, table, mapped):
+    for force, points, style in _styles(table, "spectrum"):
+        axes.plot(points["order_q"], points["value"], ms=3, lw=0.8, **style)
+        if force == mapped:
+            low, high = points["low"], points["high"]
+            axes.fill_between(points["order_q"], low, high, color=style["color"], alpha=0.15, lw=0)
+    axes.axhline(2, color="0.6", ls="-.", lw=0.8, zorder=0)
+    axes.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")
+    letter(axes, "c", "pressure")
+
+
+def _caption(state, table):
+    words = (
+        "(a) Local slope of the box counts over a doubling of r, under several loads. "
+        "(b) Lacunarity of gliding boxes; 1 where all boxes hold the same contact. (c) Generalised "
+        "dimensions of the pressure, of ten nodes or more; negative q weigh the rims of contact. "
+        "Shaded: 95 % intervals at the map load. "
+    )
+    at = f"At F = {force_label(float(state['load']))} "
+    found = [
+        f"{label} = {_interval(state, key)}"
+        for key, label in (
+            ("box_dimension", "Delta_sigma from boxes"),
+            ("correlation_dimension", "from pairs"),
+        )
+        if np.isfinite(state[key])
+    ]
+    if not found:
+        return f"{words}{at}the domain is too small for a dimension."
+    span = state["generalised_dimension"].sel(order=[0.0, 4.0]).values
+    spectrum = ""
+    if np.isfinite(span).all():
+        low = state["generalised_dimension_low"].sel(order=0.0).item()
+        high = state["generalised_dimension_high"].sel(order=4.0).item()
+        apart = "plainly more than one dimension" if high < low else "within their intervals"
+        spectrum = f"; D_0 = {span[0]:.2f} and D_4 = {span[1]:.2f}: {apart}"
+    return f"{words}{at}{', '.join(found)}{spectrum}. {_law(state, table)}"
+
+
+def _interval(state, key):
+    ends = (state[f"{key}{end}"].item() for end in ("", "_low", "_high"))
+    r = (short(state[f"{key}_r_{end}"].item()) for end in ("min", "max"))
+    return f"{interval(*ends)} ({' to '.join(r)} mm)"
+
+
+def _law(state, table):
+    """Whether local slopes under the map load are those of one power law."""
+    points = table[(table["kind"] == "slope") & (table["force_N"] == float(state["load"]))]
+    low, high = state["box_dimension_r_min"].item(), state["box_dimension_r_max"].item()
+    inside = points[(points["box_side_mm"] >= low) & (points["box_side_mm"] <= high)]["value"]
+    if inside.size < 2:
+        return "Too few local slopes lie in the range fitted to tell whether one law holds."
+    return (
+        f"Over that range local slopes go from {inside.min():.2f} to {inside.max():.2f}, where a "
+        "single power law would have one."
+    )

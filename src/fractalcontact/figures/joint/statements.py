@@ -1,0 +1,67 @@
+"""What the paper says, and whether it holds for this joint: a table."""
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...statements.judge import FAILS, HOLDS, PARTLY, UNKNOWN
+from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, group, label_in_lines, settings_of
+from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
+from ..kit.words import force_label, opening, place
+
+#: A sign for each verdict, so that the table can be read without its colours.
+SIGNS = {HOLDS: ("●", COLOURS[3]), PARTLY: ("◐", COLOURS[5])}
+SIGNS |= {FAILS: ("○", COLOURS[2]), UNKNOWN: ("–", "0.4")}
+
+#: Where the columns begin, as shares of the width, and how many letters they hold.
+COLUMNS = {"figure": (0.01, 8), "claim": (0.065, 46), "verdict": (0.44, 24), "numbers": (0.575, 60)}
+
+
+def draw(atlas, name):
+    """The statements, one row each.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+    """
+    label = settings_of(atlas, name)["label"]
+    found = group(atlas, "statements", name)
+    table = pd.DataFrame({key: found[key].values.astype(str) for key in COLUMNS})
+    texts, lines = wrap_rows(table.to_dict("records"), COLUMNS)
+    title = label_in_lines(label, width=WIDTH)
+    top = 1.3 * title.count("\n")
+    height = LINE_HEIGHT * (top + sum(lines) + 4.4)
+    figure = Figure(figsize=(WIDTH, height))
+    figure.set_layout_engine("none")
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_ylim(height / LINE_HEIGHT, 0)
+    axes.text(0.5, 0.8, title, ha="center", va="top", fontsize=TITLE_SIZE)
+    heads = {"figure": "Fig.", "claim": "The paper says", "verdict": "Here", "numbers": "Because"}
+    places = draw_rows(axes, texts, lines, COLUMNS, heads, top + 2.6)
+    for y, verdict in zip(places, table["verdict"], strict=True):
+        sign, colour = SIGNS[verdict]
+        axes.text(0.42, y, sign, va="top", color=colour, fontsize=8, family="DejaVu Sans")
+    return Drawing(figure, table, _caption(label, found, table))
+
+
+def _caption(label, found, table):
+    counts = table["verdict"].value_counts()
+    summary = ", ".join(
+        f"{counts[key]} {_noun(key, counts[key])}" for key in SIGNS if key in counts
+    )
+    return (
+        f"{opening('the statements', label, place(found.attrs['direction']))} Of {len(table)} "
+        f"statements {summary}. Judged by rules of our own, which the paper does not give, and "
+        f"where a load is needed at F = {force_label(found.attrs['force'])}."
+    )
+
+
+def _noun(verdict, count):
+    words = {HOLDS: "hold", PARTLY: "hold in part", FAILS: "do not hold", UNKNOWN: "cannot be told"}
+    single = {HOLDS: "holds", PARTLY: "holds in part", FAILS: "does not hold"}
+    return single.get(verdict, words[verdict]) if count == 1 else words[verdict]

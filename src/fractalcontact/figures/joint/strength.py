@@ -1,0 +1,256 @@
+"""Dilatancy angle, friction angle and shear strength over the offset, and Barton's law beside."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...mechanics.strength import JRC_SAMPLING
+from ...mechanics.theory import LARGEST_FRICTION_ANGLE
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    dilatancy_loads,
+    entries,
+    group,
+    headline,
+    letter,
+    offset_axis,
+    settings_of,
+)
+from ..kit.sizes import draw_bars, logarithmic, nothing_in, plain_decades
+from ..kit.words import PAPER, estimate, place, short
+
+
+def draw(atlas, name):
+    """Angles and strength against v, peak and residual strength against pressure.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen that slides.
+
+    Returns
+    -------
+    Drawing
+        Its data are the points of (a) and (b), then those of (c).
+    """
+    settings = settings_of(atlas, name)
+    specimen = group(atlas, "specimens", name)
+    direction = settings["contact_directions"][0]
+    strength = group(atlas, "strength", name).sel(contact_direction=direction)
+    shown = dilatancy_loads(strength["load"].values, settings, specimen)
+
+    figure = Figure(figsize=(WIDTH, 5.6))
+    (angles, curves), (summary, legends) = figure.subplots(2, 2)
+    _draw_angles(angles, strength, shown)
+    _draw_strength(curves, strength, shown)
+    _draw_summary(summary, strength)
+    legends.axis("off")
+    legends.add_artist(legends.legend(handles=entries(angles), loc="upper left", title="(a), (b)"))
+    if entries(summary):
+        legends.legend(handles=entries(summary), loc="lower left", title="(c)")
+    headline(figure, settings["label"], place(direction))
+    table = pd.concat([_table(strength, shown), _summary_table(strength)], ignore_index=True)
+    return Drawing(figure, table, _caption(settings, direction, strength, shown))
+
+
+def _draw_angles(axes, strength, shown):
+    v = strength["midpoint"]
+    rigid = strength["rigid_dilatancy_angle"]
+    axes.plot(v, rigid, color="0.6", lw=1, marker=".", label="rigid, $F$ = 0")
+    for n, j in enumerate(shown):
+        axes.plot(v, strength["dilatancy_angle"][:, j], **_style(n), label=_label(strength, j))
+    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+    basic = float(strength["basic_friction_angle"])
+    if np.isfinite(basic):
+        axes.axhline(LARGEST_FRICTION_ANGLE - basic, color="0.4", lw=0.8, ls=":", label=_held())
+        other = axes.secondary_yaxis(
+            "right", functions=(lambda i: i + basic, lambda angle: angle - basic)
+        )
+        other.set_ylabel(r"friction angle $\varphi_b + i$ (degrees)")
+    _offset_axis(axes, v)
+    axes.set_ylabel("dilatancy angle $i$ (degrees)")
+    letter(axes, "a", "angles")
+
+
+def _held():
+    return f"held above: $\\varphi_b + i$ = {LARGEST_FRICTION_ANGLE:g}°"
+
+
+def _draw_strength(axes, strength, shown):
+    axes.set_ylabel(r"shear strength $\tau$ (MPa)")
+    letter(axes, "b", "strength by nominal pressure")
+    v = strength["midpoint"]
+    if not np.isfinite(strength["shear_strength"]).any():
+        axes.set_xlabel(_OFFSET)
+        nothing_in(axes, _NO_STRENGTH)
+        return
+    for n, j in enumerate(shown):
+        axes.plot(v, strength["shear_strength"][:, j], **_style(n))
+    _offset_axis(axes, v)
+    logarithmic(axes, strength["shear_strength"].values[:, shown])
+
+
+def _draw_summary(axes, strength):
+    axes.set_xlabel(r"nominal pressure $\sigma_n$ (MPa)")
+    axes.set_ylabel(r"shear strength $\tau$ (MPa)")
+    letter(axes, "c", "peak and residual")
+    sigma = strength["nominal_pressure"].values
+    known = {key: strength[key].values for key in _SUMMARY if np.isfinite(strength[key]).any()}
+    if not known:
+        nothing_in(axes, _NO_STRENGTH)
+        return
+    for n, (key, words) in enumerate(_SUMMARY.items()):
+        if key not in known:
+            continue
+        law = key.startswith("barton")
+        style = {"ls": LINES[n - 1]} if law else {"ls": "none", "marker": MARKERS[n]}
+        axes.plot(sigma, known[key], color=colour_of(n), label=words, **style)
+    residual = [strength[f"residual_strength{end}"].values for end in ("", "_low", "_high")]
+    draw_bars(axes, sigma, *residual, colour_of(1))
+    axes.set(xscale="log")
+    logarithmic(axes, np.array(list(known.values())))
+
+
+_NO_STRENGTH = "no strength: the study states no\nbasic friction angle, or one offset alone"
+
+#: What (c) shows: variable and words.
+_SUMMARY = {
+    "peak_strength": "peak over the offsets",
+    "residual_strength": "residual",
+    "barton_strength": "Barton, JRC of the scan",
+    "barton_scaled_strength": "Barton and Bandis, for this length",
+}
+
+
+_OFFSET = "offset $v$, middle of the interval (mm)"
+
+
+def _offset_axis(axes, v):
+    """Offsets along x; drawn last, because its ticks follow the range of what was drawn."""
+    offset_axis(axes, v.values)
+    if axes.get_xscale() == "log":
+        plain_decades(axes.xaxis)
+    axes.set_xlabel(_OFFSET)
+
+
+def _style(n):
+    return {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
+
+
+def _label(strength, j):
+    return rf"$\sigma_n$ = {short(strength['nominal_pressure'][j])} MPa"
+
+
+def _table(strength, shown):
+    rows = [
+        pd.DataFrame(
+            {
+                "curve": "over the offsets",
+                "nominal_pressure_MPa": float(strength["nominal_pressure"][j]),
+                "offset_mm": strength["midpoint"].values,
+                "rigid_dilatancy_angle_deg": strength["rigid_dilatancy_angle"].values,
+                "dilatancy_angle_deg": strength["dilatancy_angle"].values[:, j],
+                "friction_angle_deg": strength["friction_angle"].values[:, j],
+                "shear_strength_MPa": strength["shear_strength"].values[:, j],
+            }
+        )
+        for j in shown
+    ]
+    return pd.concat(rows, ignore_index=True)
+
+
+def _summary_table(strength):
+    columns = (*_SUMMARY, "residual_strength_low", "residual_strength_high")
+    return pd.DataFrame(
+        {
+            "curve": "peak and residual",
+            "nominal_pressure_MPa": strength["nominal_pressure"].values,
+            "peak_offset_mm": strength["peak_offset"].values,
+            **{f"{key}_MPa": strength[key].values for key in columns},
+        }
+    )
+
+
+# -- caption ---------------------------------------------------------------------------------------
+
+
+def _caption(settings, direction, strength, shown):
+    return (
+        f"{settings['label']}, {place(direction)}: shear strength as sect. 5 of {PAPER} has it. "
+        "(a) Dilatancy angle between successive offsets, rigid and by pressure; right axis, with "
+        "the basic angle added. (b) Strength sigma_n tan(phi_b + i), the angle held between 0 and "
+        f"{LARGEST_FRICTION_ANGLE:g} degrees. (c) Its peak and residual value, with Barton's law. "
+        f"{_strength_words(strength, shown)} {_barton_words(strength)}"
+    )
+
+
+def _strength_words(strength, shown):
+    if not strength.sizes["interval"]:
+        return "One offset alone: there is no angle."
+    if not np.isfinite(float(strength["basic_friction_angle"])):
+        peaks = [short(a) for a in strength["peak_dilatancy_angle"].values[shown]]
+        return (
+            "The study states no basic friction angle, so there is no strength; the largest "
+            f"dilatancy angles are {', '.join(peaks)} degrees."
+        )
+    held = strength["held_high"].values[shown].astype(int)
+    n = strength.sizes["interval"]
+    words = []
+    if (held > 0).any():
+        words.append(
+            f"Nothing breaks in the model: {_counts(held)} of {n} intervals were held at "
+            f"{LARGEST_FRICTION_ANGLE:g} degrees, "
+            + (
+                "so that every peak is the bound and no result"
+                if (held > 0).all()
+                else "where the peak is the bound and no result"
+            )
+        )
+    else:
+        words.append("No interval had to be held")
+    j = shown[-1]
+    ends = [float(strength[f"residual_angle{end}"][j]) for end in ("", "_low", "_high")]
+    count = int(strength["residual_n"][j])
+    if count > 1:
+        residual = f"{estimate(*ends)} degrees over {count} intervals"
+    elif count == 1:
+        residual = f"{short(ends[0])} degrees over one interval, whose scatter is not known"
+    else:
+        residual = "not known, no interval lies there"
+    pressure = short(strength["nominal_pressure"][j])
+    words.append(
+        f"the dilatancy angle beyond half of the largest offset at {pressure} MPa is {residual}"
+    )
+    return "; ".join(words) + "."
+
+
+def _counts(held):
+    low, high = held.min(), held.max()
+    return f"{low}" if low == high else f"{low} to {high}"
+
+
+def _barton_words(strength):
+    jrc = strength["jrc"].sel(sampling=JRC_SAMPLING)
+    step = float(strength["step"].sel(sampling=JRC_SAMPLING))
+    fine = float(strength["jrc"].sel(sampling="0.508 mm"))
+    words = f"JRC is {short(jrc)} from Z2 over steps of {short(step)} mm"
+    if float(strength["step"].sel(sampling="0.508 mm")) != step:
+        words += f" ({short(fine)} from the step nearest to 0.508 mm)"
+    if float(strength["jrc_used"]) != float(jrc):
+        words += f", {short(strength['jrc_used'])} used"
+    note = str(strength["jrc_note"].values)
+    if note:
+        words += f"; {note}"
+    ratio = (strength["peak_strength"] / strength["barton_strength"]).values
+    ratio = ratio[np.isfinite(ratio)]
+    if not ratio.size:
+        return f"{words}; no Barton's law without a basic friction angle and a wall strength."
+    return (
+        f"{words}. The computed peaks, bounds included, are {short(ratio.min())} to "
+        f"{short(ratio.max())} times those of Barton's law, in which asperities break."
+    )

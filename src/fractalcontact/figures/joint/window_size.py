@@ -1,0 +1,241 @@
+"""Roughness (eq. 2) and closure (sect. 5) against the size of the window."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...mechanics.states import chosen_offset
+from ..kit.drawing import (
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    group,
+    headline,
+    legends_below,
+    letter,
+    settings_of,
+    spread,
+)
+from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
+from ..kit.words import PAPER, estimate, place, short
+
+#: Offsets whose composite topography is shown in (a).
+_OFFSETS = 3
+
+
+def draw(atlas, name):
+    """sigma_z and interface closure against the side b of sub-windows.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+
+    Returns
+    -------
+    Drawing
+        Its data are the means over sub-windows with their intervals.
+    """
+    settings = settings_of(atlas, name)
+    laws = group(atlas, "windows", name)
+    offsets = laws["offset"].values
+    flat = str(laws["direction"].values) == "none"
+    mapped = int(np.argmin(np.abs(offsets - chosen_offset(settings["map_offset"], offsets))))
+    shown = [] if flat else [int(i) for i in spread(len(offsets), _OFFSETS)]
+
+    figure = Figure(figsize=(WIDTH, 4.6))
+    roughness, closure = figure.subplots(1, 2)
+    _draw_roughness(roughness, laws, shown)
+    _draw_closure(closure, laws, mapped)
+    legends_below(figure, entries(roughness), entries(closure))
+    headline(figure, settings["label"])
+    table = pd.concat(
+        [_roughness_table(laws, shown), _closure_table(laws)],
+        ignore_index=True,
+    )
+    return Drawing(figure, table, _caption(settings, laws, mapped, flat))
+
+
+def _draw_roughness(axes, laws, shown):
+    b = laws["scale_side"].values
+    face = laws["face_sigma_z"].values
+    hurst = interval_text(laws, "face_hurst")
+    _with_intervals(axes, b, laws, "face_sigma_z", (), color="k", marker="o", ls="none")
+    axes.plot([], [], "ko", label=f"the face: H = {hurst}")
+    for n, i in enumerate(shown):
+        style = {"color": colour_of(n + 1), "marker": MARKERS[n + 1]}
+        _with_intervals(axes, b, laws, "sigma_z_all", (i,), **style, ls="-", lw=0.6)
+        label = (
+            f"composite, $v$ = {short(laws['offset'][i])} mm: H = {interval_text(laws, 'hurst', i)}"
+        )
+        axes.plot([], [], **style, lw=0.6, label=label)
+    expected = float(laws["expected_hurst"])
+    used = laws["scale_used"].values & np.isfinite(face)
+    if np.isfinite(expected) and used.any():
+        ends = b[used][[0, -1]]
+        middle = np.exp(np.mean(np.log(b[used])))
+        level = np.exp(np.mean(np.log(face[used])))
+        label = rf"eq. 2, $H = 3-\Delta_g$ = {interval_text(laws, 'expected_hurst')}"
+        axes.plot(ends, level * (ends / middle) ** expected, color="0.5", ls="--", label=label)
+    size_axis(axes, b, "sub-windows")
+    if (face > 0).any():
+        drawn = [face, *laws["sigma_z_all"].values[shown]]
+        logarithmic(axes, np.concatenate(drawn))
+    axes.set_ylabel(r"$\sigma_z$ about the own plane (mm)")
+    letter(axes, "a", "roughness")
+
+
+def _draw_closure(axes, laws, mapped):
+    b = laws["side"].values
+    for j, pressure in enumerate(laws["nominal_pressure"].values):
+        style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
+        _with_intervals(axes, b, laws, "interface_closure", (mapped, j), **style, ls="none")
+        exponent = interval_text(laws, "closure_exponent", (mapped, j))
+        label = rf"$\sigma_n$ = {short(pressure)} MPa: $w_{{int}} \sim b^x$, $x$ = {exponent}"
+        axes.plot([], [], **style, ls="-", lw=0.8, label=label)
+        slope = float(laws["closure_exponent"][mapped, j])
+        closure = laws["interface_closure"].values[:, mapped, j]
+        if np.isfinite(slope):
+            fitted = closure > 0
+            level = np.exp(np.mean(np.log(closure[fitted]) - slope * np.log(b[fitted])))
+            axes.plot(b, level * b**slope, color=style["color"], lw=0.8)
+    size_axis(axes, b, "sub-windows")
+    closures = laws["interface_closure"].values[:, mapped]
+    if (closures > 0).any():
+        logarithmic(axes, closures)
+    axes.set_ylabel(r"interface closure $w_{int}$ (mm)")
+    where = place(str(laws["direction"].values), float(laws["offset"][mapped]))
+    letter(axes, "b", f"closure, {where}")
+
+
+def _with_intervals(axes, b, laws, name, index, **style):
+    """Means over sub-windows and their 95 % intervals; ``index`` follows the dimension of b."""
+    mean, low, high = along_size(laws, name, index)
+    axes.plot(b, mean, **style)
+    draw_bars(axes, b, mean, low, high, style["color"])
+
+
+def _roughness_table(laws, shown):
+    def rows(surface, offset, name, index):
+        mean, low, high = along_size(laws, name, index)
+        return pd.DataFrame(
+            {
+                "quantity": "sigma_z",
+                "surface": surface,
+                "offset_mm": offset,
+                "b_mm": laws["scale_side"].values,
+                "windows": laws["scale_n"].values,
+                "fitted": laws["scale_used"].values,
+                "mean_mm": mean,
+                "low_mm": low,
+                "high_mm": high,
+            }
+        )
+
+    tables = [rows("face", np.nan, "face_sigma_z", ())]
+    tables += [rows("composite", float(laws["offset"][i]), "sigma_z_all", (i,)) for i in shown]
+    return pd.concat(tables, ignore_index=True)
+
+
+def _closure_table(laws):
+    tables = [
+        pd.DataFrame(
+            {
+                "quantity": "interface_closure",
+                "offset_mm": float(laws["offset"][i]),
+                "nominal_pressure_MPa": float(laws["nominal_pressure"][j]),
+                "b_mm": laws["side"].values,
+                "windows": laws["windows"].values,
+                "mean_mm": laws["interface_closure"].values[:, i, j],
+                "low_mm": laws["interface_closure_low"].values[:, i, j],
+                "high_mm": laws["interface_closure_high"].values[:, i, j],
+                "exponent": float(laws["closure_exponent"][i, j]),
+                "exponent_low": float(laws["closure_exponent_low"][i, j]),
+                "exponent_high": float(laws["closure_exponent_high"][i, j]),
+            }
+        )
+        for i in range(laws.sizes["offset"])
+        for j in range(laws.sizes["load"])
+    ]
+    return pd.concat(tables, ignore_index=True)
+
+
+# -- caption ---------------------------------------------------------------------------------------
+
+
+def _caption(settings, laws, mapped, flat):
+    counts = ", ".join(str(n) for n in laws["windows"].values)
+    return (
+        f"{settings['label']}: eq. 2 and the size effect on closure of {PAPER}, sects. 3 and 5. "
+        "(a) Standard deviation of the heights in sub-windows of side b, each about its own mean "
+        f"plane; bars are 95 % intervals of the mean. {_hurst_words(laws, flat)} (b) Closure "
+        f"of the interface in sub-windows pressed on their own ({counts} of them, from the "
+        "largest down), their composite topography left as it lies in the whole window. "
+        f"{_closure_words(laws, mapped, flat)}"
+    )
+
+
+def _hurst_words(laws, flat):
+    hurst = [float(laws[f"face_hurst{end}"]) for end in ("", "_low", "_high")]
+    expected = [float(laws[f"expected_hurst{end}"]) for end in ("", "_low", "_high")]
+    if not np.isfinite(hurst[0]):
+        return "No fit of eq. 2: fewer than three sizes lie in its range."
+    low, high = (short(laws[f"face_hurst_b_{end}"]) for end in ("min", "max"))
+    words = f"From {low} to {high} mm the face has H = {estimate(*hurst)}, "
+    if np.isfinite(expected[0]):
+        agree = hurst[1] <= expected[2] and expected[1] <= hurst[2]
+        verdict = "the intervals overlap" if agree else "the intervals do not overlap"
+        words += f"and Delta_g lets expect {estimate(*expected)}: {verdict}."
+    else:
+        words += "and there is no Delta_g to compare with."
+    if flat or not np.isfinite(laws["hurst"]).any():
+        return words
+    first, last = (float(laws["hurst"][i]) for i in (0, -1))
+    v = laws["offset"].values
+    return words + (
+        f" The composite topography has {short(first)} at v = {short(v[0])} mm and {short(last)} "
+        f"at v = {short(v[-1])} mm: faces slid by v still match in waves longer than v, and eq. 2 "
+        "is that of their difference only in windows smaller than that."
+        if first < last
+        else f" The composite topography has {short(first)} at v = {short(v[0])} mm and "
+        f"{short(last)} at v = {short(v[-1])} mm."
+    )
+
+
+def _closure_words(laws, mapped, flat):
+    exponent = laws["closure_exponent"]
+    known = np.isfinite(exponent)
+    if not known.any():
+        return "No exponent: fewer than three sizes have closure."
+    larger = int((laws["closure_exponent_low"] > 0).sum())
+    smaller = int((laws["closure_exponent_high"] < 0).sum())
+    total = int(known.sum())
+    over = "loads" if flat else "offsets and loads"
+    here = exponent.values[mapped]
+    words = (
+        f"The paper says that larger samples close more: w_int grows with b beyond the interval in "
+        f"{larger} of {total} cases over the {over}"
+    )
+    words += f", and falls in {smaller}" if smaller else ""
+    verdict = (
+        "the claim holds"
+        if larger == total
+        else "the claim holds in part"
+        if larger
+        else "the claim does not hold"
+    )
+    return (
+        f"{words}: {verdict}. With the exponents shown, {_range(here)}, doubling b multiplies "
+        f"w_int by {_range(2**here)}; similarity (sect. 3) would need 2 and sigma_z ~ b."
+    )
+
+
+def _range(values):
+    """The smallest to the largest of some values."""
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return "none"
+    low, high = short(known.min()), short(known.max())
+    return low if low == high else f"{low} to {high}"

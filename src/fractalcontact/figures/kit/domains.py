@@ -1,0 +1,250 @@
+"""States of the contact that the figures of domains draw, and both estimates of Delta_sigma."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from ...core.fitting import FEWEST_POINTS
+from ...domain.renormalisation import RESOLUTION
+from ...mechanics.states import chosen_offset
+from ...surface.specimen import window_sides
+from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
+from .words import force_label, interval, number, opening, place, short
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One estimator's Delta_sigma under every load, with its 95 % interval.
+
+    Attributes
+    ----------
+    key : str
+        "area" or "box".
+    label, symbol : str
+        What it is estimated from, for captions and for legends.
+    value, low, high : (n_load,) ndarray
+        NaN where there is none.
+    reason : list of str
+        Why there is none, else "".
+    """
+
+    key: str
+    label: str
+    symbol: str
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    reason: list
+
+    def text(self, i):
+        """Delta_sigma under the i-th load in words."""
+        return self.reason[i] or interval(self.value[i], self.low[i], self.high[i])
+
+    def entry(self, i):
+        """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
+        if self.reason[i]:
+            return self.reason[i].split(":")[0]
+        return rf"$\Delta_\sigma$ = {self.text(i)}"
+
+    @property
+    def style(self):
+        """Colour, marker and line that stand for the estimator in every figure."""
+        first = self.key == "area"
+        return {
+            "color": COLOURS[1 if first else 2],
+            "marker": MARKERS[0 if first else 1],
+            "linestyle": "-" if first else "--",
+            "markerfacecolor": COLOURS[1] if first else "white",
+        }
+
+
+@dataclass(frozen=True)
+class Loading:
+    """One joint at the offset whose contact domains are drawn, under every load.
+
+    Attributes
+    ----------
+    settings : dict
+    specimen : xr.Dataset
+    direction : str
+    offset : float
+        mm.
+    contact, domains, scaling : xr.Dataset
+        Of the atlas, at this direction and offset.
+    """
+
+    settings: dict
+    specimen: xr.Dataset
+    direction: str
+    offset: float
+    contact: xr.Dataset
+    domains: xr.Dataset
+    scaling: xr.Dataset
+
+    @classmethod
+    def of(cls, atlas, name):
+        """The states of a specimen that the study wants drawn."""
+        settings = settings_of(atlas, name)
+        direction = settings["contact_directions"][0]
+        stages = {stage: group(atlas, stage, name) for stage in ("contact", "domains", "scaling")}
+        offset = chosen_offset(settings["map_offset"], stages["scaling"]["offset"].values)
+        chosen = {
+            stage: data.sel(direction=direction).sel(offset=offset, method="nearest")
+            for stage, data in stages.items()
+        }
+        return cls(settings, group(atlas, "specimens", name), direction, offset, **chosen)
+
+    @property
+    def forces(self):
+        """F of every load, N, ascending."""
+        return self.scaling["load"].values
+
+    @property
+    def sides(self):
+        """Sides (y, x) of the window, mm."""
+        return window_sides(self.specimen)
+
+    @property
+    def side(self):
+        """b, mm: side of the square that has the window's area."""
+        return float(np.sqrt(np.prod(self.sides)))
+
+    @property
+    def finest(self):
+        """Multiple k of the scan's spacing at the finest resolution."""
+        return int(self.scaling[RESOLUTION].min())
+
+    @property
+    def place(self):
+        """Where the contact is, in words."""
+        return place(self.direction, self.offset)
+
+    @property
+    def title(self):
+        """Which specimen, and where its contact is: parts of a headline."""
+        return self.settings["label"], self.place
+
+    def opening(self, figure):
+        """First words of the caption of a figure of the paper."""
+        return opening(figure, self.settings["label"], self.place)
+
+    @property
+    def map_load(self):
+        """Index of the load whose contact domains the study wants drawn."""
+        return nearest_load(self.forces, self.settings["map_load"], self.specimen)
+
+    @property
+    def counts(self):
+        """Box counts at the finest resolution, under every load."""
+        return self.domains.sel(resolution=self.finest)
+
+    @property
+    def estimates(self):
+        """Both estimates of Delta_sigma; that of the box counts at the finest resolution."""
+        area, box = self.scaling, self.counts
+        too_few = [
+            ""
+            if np.isfinite(value)
+            else f"no fit: A_r large enough at {n} of the {FEWEST_POINTS} resolutions needed"
+            for value, n in zip(area["delta_sigma"].values, area["n"].values, strict=True)
+        ]
+        no_dimension = [f"no dimension: {text}" if text else "" for text in box["reason"].values]
+        return tuple(
+            Estimate(
+                key,
+                label,
+                symbol,
+                *(data[f"delta_sigma{end}"].values for end in ("", "_low", "_high")),
+                reason,
+            )
+            for key, label, symbol, data, reason in (
+                ("area", "A_r(s)", "$A_r(s)$", area, too_few),
+                ("box", "box counting", "box counting", box, no_dimension),
+            )
+        )
+
+    def fit_ranges(self, load=None):
+        """In words: what the estimates are fitted over, under one load, or the widest of all."""
+        which = slice(None) if load is None else [load]
+        scaling = self.scaling.isel(load=which)
+        box = self.counts.isel(load=which)
+        used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")
+        spacing = scaling["spacing"].where(used)
+        spans = (
+            ("A_r(s) over s", spacing, spacing),
+            ("box counts over r", box.fit_min, box.fit_max),
+        )
+        words = [
+            f"{what} = {short(low.min())} to {short(high.max())} mm"
+            for what, low, high in spans
+            if np.isfinite(low).any()
+        ]
+        widest = ", at most" if load is None else ""
+        return f"fitted{widest}: {' and '.join(words)}" if words else "no fits"
+
+    def domain(self, factor, load):
+        """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""
+        return self.contact[f"in_contact_{factor}"].isel(load=load).values
+
+    @property
+    def finest_spacing(self):
+        """s at the finest resolution, mm."""
+        return float(self.scaling["spacing"].min())
+
+    def spread_loads(self, most, including=None):
+        """Indices of up to ``most`` loads: first and last, evenly between, and a given one."""
+        chosen = spread(len(self.forces), most)
+        if including is not None:
+            chosen[np.argmin(np.abs(chosen - including))] = including
+        return np.unique(chosen)
+
+
+def trend(forces, value, low, high, *, rising):
+    """In words: whether a value rises, or falls, with the load as the paper claims.
+
+    Parameters
+    ----------
+    forces, value, low, high : (n,) array_like
+        F in N; the value and its interval, NaN where there is none.
+    rising : bool
+        The paper's claim.
+
+    Returns
+    -------
+    str
+        Holds, or does not, if the value moves by more than the intervals at both ends.
+    """
+    known = np.flatnonzero(np.isfinite(value))
+    if len(known) < 2:
+        return "this cannot be told, as fewer than two loads have a value"
+    first, last = known[0], known[-1]
+    steps = np.diff(np.asarray(value)[known]) * (1 if rising else -1)
+    ends = " to ".join(
+        f"{interval(value[i], low[i], high[i])} at {force_label(forces[i])}" for i in (first, last)
+    )
+    up, down = low[last] > high[first], high[last] < low[first]
+    verdict = "this is not established, the intervals overlap"
+    if up or down:
+        verdict = "this holds" if up == rising else "this does not hold"
+    every = "every step" if (steps > 0).all() else f"{(steps > 0).sum()} of {len(steps)} steps"
+    return f"{verdict} ({ends}; {'up' if rising else 'down'} at {every})"
+
+
+def disagreement(scaling):
+    """In words: how far the two estimates of Delta_sigma are apart, under one load or several."""
+    compared = scaling.where(np.isfinite(scaling["difference"]))
+    difference = np.atleast_1d(compared["difference"].values)
+    n = int(np.isfinite(difference).sum())
+    if n == 0:
+        return "The two estimates cannot be compared, one of them is missing."
+    disagree = int(np.sum(compared["disagree"].values == 1))
+    if difference.size == 1:
+        ends = (compared[f"difference{end}"].item() for end in ("", "_low", "_high"))
+        verdict = "they disagree" if disagree else "their intervals do not tell them apart"
+        return f"A_r(s) less box counting is {interval(*ends)}: {verdict}."
+    return (
+        f"A_r(s) less box counting is {number(np.nanmin(difference))} to "
+        f"{number(np.nanmax(difference))}; the two disagree, beyond their intervals, at {disagree} "
+        f"of the {n} loads where both exist."
+    )

@@ -1,0 +1,281 @@
+"""What the figures share: style, what a drawing is, how it is written, what the study asked for."""
+
+import contextlib
+import gc
+import json
+import textwrap
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pandas as pd
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
+
+from ...core.atomic import atomic_write
+from ...core.labels import printable
+from ...mechanics.states import forces_of
+from ...surface.specimen import nominal_area
+from .ticks import keep_labels, plain_ticks
+
+#: Okabe and Ito's colours, told apart by colour-blind readers; black first.
+COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
+#: Markers go with the colours, so that a print in grey can be read too.
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+LINES = ("-", "--", "-.", ":")
+
+#: Width of a figure across two columns of a journal, inches.
+WIDTH = 7.2
+#: Pixels of an inch, in the PNG and of the maps inside the SVG.
+DPI = 200
+#: Of the PNG: a third less time than by default, for files larger by a fiftieth.
+COMPRESSION = 3
+#: Points of the letters of a figure's title, how many stand in an inch, and inches a line is high.
+TITLE_SIZE, LETTERS_AN_INCH, LINE = 9, 14, 0.15
+#: Letters of a specimen's label that are shown.
+LONGEST_LABEL = 300
+_DOLLAR = "\ue000"
+
+_STYLE = {
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 4,
+    "axes.prop_cycle": matplotlib.cycler(color=COLOURS),
+    "image.origin": "lower",
+    "figure.constrained_layout.use": True,
+    # Titles stand on their axes. To find out what may be in their way, every tick would be measured
+    # each time; `_lay_out` knows the one thing that can be.
+    "axes.titley": 1.0,
+    # The same figure twice is the same file twice.
+    "svg.hashsalt": "fractalcontact",
+    "svg.fonttype": "none",
+}
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure, the numbers drawn in it, and its caption.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+    data : pd.DataFrame
+        One row a point drawn; column names carry the units.
+    caption : str
+        With the paper's figure number, and plain words where a claim of the paper does not hold.
+    """
+
+    figure: Figure
+    data: pd.DataFrame
+    caption: str
+
+
+@contextlib.contextmanager
+def print_style():
+    """Style of every figure."""
+    with matplotlib.rc_context(_STYLE):
+        yield
+
+
+@contextlib.contextmanager
+def uncollected():
+    """No search for garbage meanwhile.
+
+    A figure is some 100 000 objects that live as long as it does: to go through them while it is
+    drawn finds nothing and takes a tenth of the time.
+    """
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def save(drawing, folder, name):
+    """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
+    folder = Path(folder)
+    figure = drawing.figure
+    figure.set_dpi(DPI)
+    # The layout is found once and each file drawn once. `savefig` draws everything once more for
+    # either file, to find the layout; and what the layout has measured, this canvas remembers.
+    canvas = FigureCanvasAgg(figure)
+    plain_ticks(figure)
+    _lay_out(figure)
+    with atomic_write(folder / f"{name}.png") as path:
+        canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
+    keep_labels(figure)
+    with atomic_write(folder / f"{name}.svg") as path:
+        FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
+    with atomic_write(folder / f"{name}.txt") as path:
+        path.write_text(drawing.caption + "\n", encoding="utf-8")
+    with atomic_write(folder / f"{name}.csv") as path:
+        drawing.data.to_csv(path, index=False, float_format="%.8g", lineterminator="\n")
+
+
+def _lay_out(figure):
+    """Find the layout, and keep it."""
+    layout = figure.get_layout_engine()
+    if layout is None:
+        return
+    layout.execute(figure)
+    # A common factor of the numbers along y stands where a title does, which then moves up.
+    crowded = [axes for axes in figure.axes if axes.yaxis.get_offset_text().get_text()]
+    for axes in crowded:
+        top = axes.yaxis.get_offset_text().get_window_extent().ymax
+        y = axes.transAxes.inverted().transform((0, top))[1]
+        for loc in ("left", "center"):
+            axes.set_title(axes.get_title(loc), loc=loc, y=y)
+    if crowded:
+        layout.execute(figure)
+    figure.set_layout_engine("none")
+
+
+def settings_of(atlas, specimen):
+    """Settings of a specimen as the study stated them, numbers in mm, N and MPa."""
+    return json.loads(atlas.attrs["configuration"])["settings"][specimen]
+
+
+def group(atlas, stage, specimen):
+    """Dataset of one stage of a specimen, in memory."""
+    return atlas[f"{stage}/{specimen}"].to_dataset().load()
+
+
+def finest_curves(atlas, specimen):
+    """Closure curves (offset, load) in the first contact direction, at the finest resolution."""
+    closure = group(atlas, "closure", specimen)
+    direction = settings_of(atlas, specimen)["contact_directions"][0]
+    return closure.sel(direction=direction, resolution=closure["resolution"].min())
+
+
+def nearest_load(loads, wanted, specimen):
+    """Index of the force in N nearest to a load of the settings, (value, kind)."""
+    (force,) = forces_of([wanted], nominal_area(specimen))
+    return int(np.argmin(np.abs(loads - force)))
+
+
+def dilatancy_loads(loads, settings, specimen):
+    """Indices of the forces in N that a study's dilatancy is asked for, ascending."""
+    return sorted({nearest_load(loads, wanted, specimen) for wanted in settings["dilatancy_loads"]})
+
+
+def offset_axis(axes, offsets):
+    """Offsets v along x: in decades where they span one, with v = 0 at their left if it is there.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    offsets : (n,) ndarray
+        mm, those drawn.
+    """
+    slid = offsets[offsets > 0]
+    if slid.size > 1 and slid.max() > 10 * slid.min():
+        first, last = np.ceil(np.log10(slid.min())), np.floor(np.log10(slid.max()))
+        ticks = list(10 ** np.arange(first, last + 1))
+        if slid.size < len(offsets):
+            axes.set_xscale("symlog", linthresh=slid.min(), linscale=0.3)
+            axes.set_xlim(-0.15 * slid.min(), 1.2 * slid.max())
+            axes.xaxis.set_minor_locator(NullLocator())
+            ticks.insert(0, 0.0)
+        else:
+            axes.set_xscale("log", nonpositive="mask")
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xlabel("offset $v$ (mm)")
+
+
+def label_short_span(axis):
+    """Plain labels at 1, 2 and 5 on a logarithmic axis that spans less than two decades.
+
+    Powers of ten would be one there, or none. Labels between those lie over each other on any axis
+    and are left out.
+    To be called once everything is drawn.
+    """
+    low, high = axis.get_view_interval()
+    axis.set_minor_formatter(NullFormatter())
+    if high < 100 * low:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+
+
+def spread(n, most):
+    """Indices of up to ``most`` of n things, the first and the last among them."""
+    return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))
+
+
+def colour_of(i):
+    """The i-th colour that can be seen as a line on white: all but the yellow."""
+    return COLOURS[i % (len(COLOURS) - 1)]
+
+
+def letter(axes, which, title):
+    """Letter of a panel as the paper has it, at its upper left, before a title."""
+    axes.set_title(f"({which}) {title}", loc="left")
+
+
+def headline(figure, label, *where, below=""):
+    """Title of a figure, in lines that fit its width.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.FigureBase
+    label : str
+        Of the specimen, as its user wrote it.
+    *where : str
+        What follows, after commas; formulas stand in dollar signs.
+    below : str
+        What stands in a line of its own.
+    """
+    text = label_in_lines(label, *where, width=figure.bbox.width / figure.dpi)
+    if isinstance(figure, Figure):
+        # What is below loses no height to a long label.
+        figure.set_figheight(figure.get_figheight() + LINE * text.count("\n"))
+    figure.suptitle("\n".join(filter(None, (text, below))), fontsize=TITLE_SIZE)
+
+
+def label_in_lines(label, *where, width):
+    """A label and what follows it, as :func:`headline` has it, in lines of ``width`` inches."""
+    # Dollar signs of a label make no formula. What stands in for them is in no printable text.
+    label = printable(label, LONGEST_LABEL).replace("$", _DOLLAR)
+    text = textwrap.fill(", ".join((label, *where)), int(LETTERS_AN_INCH * width))
+    return text.replace(_DOLLAR, r"\$")
+
+
+def entries(axes):
+    """What stands in a legend of the axes."""
+    return axes.get_legend_handles_labels()[0]
+
+
+def legends_below(figure, *columns):
+    """Legends side by side under a figure, where they hide nothing.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.FigureBase
+    *columns : list of matplotlib.artist.Artist
+        Entries of each legend.
+    """
+    rows = max(len(column) for column in columns)
+    # One legend fills its columns one by one: the shorter ones need filling up.
+    handles = [
+        handle for column in columns for handle in column + [heading(" ")] * (rows - len(column))
+    ]
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=len(columns),
+        columnspacing=6,
+        handlelength=3,
+    )
+
+
+def heading(text):
+    """Entry of a legend that is words alone."""
+    return Line2D([], [], linestyle="none", label=text)

@@ -1,0 +1,123 @@
+"""Maps of scans and of contact domains, true to scale."""
+
+import numpy as np
+from matplotlib.patches import Patch, Rectangle
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
+
+from ...surface.specimen import window_slices
+from .drawing import COLOURS
+from .words import length_unit
+
+#: Grey of cells that were not measured.
+MISSING = "0.7"
+
+#: Lets a line or a word be seen on light and on dark ground.
+HALO = [withStroke(linewidth=2.5, foreground="white")]
+
+#: Domains of fewer nodes than this get rings where the nodes are too small to be seen in print:
+#: more than so many along a side of the map.
+FEW_NODES = 100
+FINE_NODES = 100
+
+
+def scan_extent(specimen):
+    """Sides (y, x) of the whole scan, mm."""
+    return tuple(specimen.sizes[axis] * specimen.attrs[f"spacing_{axis}"] for axis in "yx")
+
+
+def window_outline(specimen, unit_mm, slid=(0.0, 0.0), **style):
+    """The window as a rectangle, in units from the corner of the scan.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    unit_mm : float
+        mm in a unit of the axes.
+    slid : (float, float)
+        How far (y, x) the window has slid, mm.
+    **style
+        Of the rectangle.
+    """
+    corner, sides = [], []
+    for cells, axis, moved in zip(window_slices(specimen), "yx", slid, strict=True):
+        spacing = specimen.attrs[f"spacing_{axis}"]
+        corner.append((cells.start * spacing + moved) / unit_mm)
+        sides.append((cells.stop - cells.start) * spacing / unit_mm)
+    return Rectangle(corner[::-1], sides[1], sides[0], fill=False, path_effects=HALO, **style)
+
+
+def draw_map(axes, image, sides, *, ticks=5, interpolation="nearest", **options):
+    """An image true to scale, with distances from its corner in the unit that suits them.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    image : (ny, nx) or (ny, nx, 3) ndarray
+        Values (NaN is drawn grey) or colours.
+    sides : (float, float)
+        (y, x) in mm.
+    ticks : int
+        About so many along each side.
+    interpolation : str
+        By default none, so that no missing cell is filled.
+    **options
+        Of ``imshow``.
+
+    Returns
+    -------
+    matplotlib.image.AxesImage
+    """
+    name, size = length_unit(max(sides))
+    extent = (0, sides[1] / size, 0, sides[0] / size)
+    axes.set_facecolor(MISSING)
+    drawn = axes.imshow(image, extent=extent, interpolation=interpolation, **options)
+    for axis, letter in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+        axis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 5, 10]))
+        axis.set_label_text(f"${letter}$ ({name})")
+    return drawn
+
+
+def draw_domain(axes, domain, sides, *, ticks=5):
+    """A contact domain in black; rings where its nodes are too few and too small to be seen.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    domain : (ny, nx) bool ndarray
+    sides : (float, float)
+        Of the window (y, x), mm.
+    ticks : int
+        About so many along each side.
+    """
+    # No cell is missing in a window, and a node smaller than a pixel must not vanish.
+    grey = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
+    draw_map(axes, domain, sides, ticks=ticks, **grey)
+    nodes = np.argwhere(domain)
+    if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
+        y, x = node_position(nodes.T, domain.shape, sides)
+        axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7, clip_on=False)
+
+
+def node_position(node, shape, sides):
+    """Centres (y, x) of nodes of a window on its map, in the map's unit.
+
+    Parameters
+    ----------
+    node : (2, ...) array_like
+        Row and column.
+    shape : (int, int)
+        Nodes (y, x) of the window.
+    sides : (float, float)
+        Of the window (y, x), mm.
+    """
+    _, size = length_unit(max(sides))
+    return [
+        (np.asarray(at) + 0.5) * side / n / size
+        for at, n, side in zip(node, shape, sides, strict=True)
+    ]
+
+
+def missing_patch():
+    """Entry of a legend for cells that were not measured."""
+    return Patch(facecolor=MISSING, edgecolor="none", label="not measured")

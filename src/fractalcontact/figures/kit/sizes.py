@@ -1,0 +1,95 @@
+"""What the figures of strength and of the size b share: axes, bars of intervals, exponents."""
+
+import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+from .words import estimate, length_unit, short
+
+#: Where more than this share of the sub-windows had their angle held, a marker is left open.
+MOSTLY = 0.5
+#: Why no strength is drawn.
+NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
+#: Over more decades than this, 1, 2 and 5 would crowd.
+_FEW_DECADES = 2.5
+#: The frame ends at this part of the smallest mean; a bar as much shorter leaves it for certain.
+_MARGIN, _OUT_OF_FRAME = 3.0, 1e-3
+#: Pressures at one b are set apart by this part of b, so that their bars can be told apart.
+_APART = 0.03
+
+
+def plain_decades(axis):
+    """Ticks of a logarithmic axis as plain numbers: 1, 2, 5, 10 ... where it is short."""
+    low, high = axis.get_view_interval()
+    short = 0 < low < high < low * 10**_FEW_DECADES
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if short else (1,)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def size_axis(axes, b, of):
+    """Logarithmic axis of the side b, mm, "of" something, in the unit that suits it."""
+    axes.set_xscale("log")
+    if len(b):
+        axes.set_xlim(b.min() / 1.3, b.max() * 1.3)
+    name, size = length_unit(b.max(initial=1.0))
+    plain_decades(axes.xaxis)
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value / size:g}")
+    axes.set_xlabel(f"side $b$ of the {of} ({name})")
+
+
+def share_shown(laws, name):
+    """Index of the smallest v/b at which all sizes have a value, else most of them."""
+    known = np.isfinite(laws[name].values).all(axis=2).sum(axis=1)
+    return int(np.argmax(known))
+
+
+def share_words(laws, share):
+    """A v/b in per cent."""
+    return f"{short(100 * float(laws['share'][share]))} %"
+
+
+def draw_means(axes, b, mean, held, colour, marker):
+    """Means over sub-windows against b; open where most of the sub-windows had their angle held."""
+    mostly = held > MOSTLY
+    for chosen, face in ((mostly, "white"), (~mostly, colour)):
+        axes.plot(b[chosen], mean[chosen], ls="none", marker=marker, mec=colour, mfc=face)
+
+
+def nothing_in(axes, why):
+    """Say why axes are empty, without ticks that would number nothing."""
+    axes.set(xticks=[], yticks=[])
+    axes.text(0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", color="0.4")
+
+
+def apart(b, j, n):
+    """The sides b, moved a little sideways for the j-th of n series."""
+    return b * (1 + _APART * (j - (n - 1) / 2))
+
+
+def draw_bars(axes, b, mean, low, high, colour):
+    """Intervals of means on a logarithmic axis; one that reaches zero runs out of the frame."""
+    known = np.isfinite(low) & (mean > 0)
+    bottom = np.maximum(low[known], _OUT_OF_FRAME * mean[known])
+    axes.vlines(b[known], bottom, high[known], color=colour, lw=0.8)
+
+
+def logarithmic(axes, values):
+    """Logarithmic axis along y, which ends below the smallest of the positive values drawn."""
+    axes.set_yscale("log")
+    smallest = np.min(values, where=values > 0, initial=np.inf)
+    axes.set_ylim(bottom=max(axes.get_ylim()[0], smallest / _MARGIN))
+    plain_decades(axes.yaxis)
+
+
+def along_size(laws, name, index):
+    """Mean, low and high of a quantity along b, at an index of its other dimensions."""
+    size = "scale" if "scale" in laws[name].dims else "part"
+    return [
+        laws[f"{name}{end}"].transpose(size, ...).values[(slice(None), *index)]
+        for end in ("", "_low", "_high")
+    ]
+
+
+def interval_text(laws, name, index=()):
+    """A fitted number with its interval, at an index."""
+    return estimate(*(float(laws[f"{name}{end}"].values[index]) for end in ("", "_low", "_high")))

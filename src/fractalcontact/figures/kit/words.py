@@ -1,0 +1,82 @@
+"""How the figures put numbers, units and places into words."""
+
+import textwrap
+
+import numpy as np
+
+PAPER = "Borri-Brunetto, Carpinteri and Chiaia (1999)"
+
+TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
+
+#: Units of force and how many N they are, the largest first.
+_FORCE_UNITS = (("GN", 1e9), ("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
+
+
+def opening(figures, label, where=""):
+    """First words of a caption: "Fig. 2", a specimen's label, the place of its contact."""
+    return f"After {figures} of {PAPER}: {', '.join(filter(None, (label, where)))}."
+
+
+def place(direction, offset=None):
+    """Where the contact is, at one ``offset`` in mm or at any."""
+    if direction == "none":
+        return "against a rigid plane"
+    if offset is None:
+        return f"sliding towards {TOWARDS[direction]}"
+    return f"slid {short(offset)} mm towards {TOWARDS[direction]}"
+
+
+def number(value, digits=2):
+    """A number to some decimals, never a negative zero."""
+    return f"{round(float(value), digits) + 0.0:.{digits}f}"
+
+
+def short(value, digits=3, sign=""):
+    """Some digits of a number, without an exponent up to a million; "+" as ``sign`` shows that."""
+    return f"{float(f'{float(value):.{digits}g}'):{sign}g}"
+
+
+def percent(share, sign=""):
+    """A share in per cent: two digits, three of what is nearly all."""
+    return f"{short(100 * share, 3 if 0.99 < abs(share) < 1 else 2, sign)} %"
+
+
+def interval(value, low, high):
+    """A dimension, or a slope, with its 95 % interval: two decimals."""
+    return f"{number(value)} [{number(low)}, {number(high)}]"
+
+
+def estimate(value, low, high, unit=""):
+    """A quantity of any size with its 95 % interval: three digits; "no fit" if it is NaN."""
+    if not np.isfinite(value):
+        return "no fit"
+    return f"{value:.3g} [{low:.3g}, {high:.3g}] {unit}".rstrip()
+
+
+def slope_text(line, unit=""):
+    """Slope of a :class:`core.fitting.LineFit` with its interval."""
+    return estimate(line.slope, line.slope_low, line.slope_high, unit)
+
+
+def length_unit(span):
+    """Unit that suits lengths up to ``span`` mm: its name, and how many mm it is."""
+    if span >= 2000:
+        return "m", 1000.0
+    return ("mm", 1.0) if span >= 0.1 else ("µm", 1e-3)
+
+
+def force_unit(largest):
+    """Unit that suits forces up to ``largest`` N: its name, and how many N it is."""
+    rounded = float(f"{largest:.3g}")
+    return next((unit for unit in _FORCE_UNITS if rounded >= unit[1]), _FORCE_UNITS[-1])
+
+
+def force_label(force):
+    """A force in N in the unit that suits it: three digits, no exponent."""
+    name, size = force_unit(force)
+    return f"{short(force / size)} {name}"
+
+
+def wrapped(text):
+    """Text broken into lines that fit under one panel of three."""
+    return textwrap.fill(text, 34)

@@ -1,0 +1,248 @@
+"""Shear strength against the size of the joint, computed (Fig. 1b)."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...mechanics.theory import LARGEST_FRICTION_ANGLE
+from ..kit.drawing import (
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    group,
+    headline,
+    legends_below,
+    letter,
+    settings_of,
+)
+from ..kit.sizes import (
+    MOSTLY,
+    NO_STRENGTH,
+    along_size,
+    apart,
+    draw_bars,
+    draw_means,
+    interval_text,
+    logarithmic,
+    nothing_in,
+    share_shown,
+    share_words,
+    size_axis,
+)
+from ..kit.words import opening, place, short
+
+#: Joints that Bandis et al. (1981) sheared, mm.
+_MEASURED = (50.0, 400.0)
+#: Sizes a comparison needs.
+_FEWEST_SIZES = 3
+
+
+def draw(atlas, name):
+    """Strength and slope of the dilatancy curve against the side b, at one v/b.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen that slides.
+
+    Returns
+    -------
+    Drawing
+        Its data are the means over sub-windows at every v/b, and their peaks.
+    """
+    settings = settings_of(atlas, name)
+    laws = group(atlas, "windows", name)
+    share = share_shown(laws, "similar_slope")
+    figure = Figure(figsize=(WIDTH, 4.6))
+    strength, slope = figure.subplots(1, 2)
+    _draw_strength(strength, laws, share)
+    _draw_slope(slope, laws, share)
+    legends_below(figure, entries(strength), entries(slope))
+    direction = str(laws["direction"].values)
+    headline(figure, settings["label"], place(direction))
+    return Drawing(figure, _table(laws), _caption(settings, laws, share))
+
+
+def _draw_strength(axes, laws, share):
+    b, loads = laws["side"].values, laws.sizes["load"]
+    drawn = np.isfinite(laws["similar_strength"][share].values).any()
+    for j, pressure in enumerate(laws["nominal_pressure"].values):
+        colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
+        mean, low, high = along_size(laws.isel(share=share), "similar_strength", (j,))
+        beside = apart(b, j, loads)
+        draw_means(axes, beside, mean, laws["similar_held"].values[share, :, j], colour, marker)
+        draw_bars(axes, beside, mean, low, high, colour)
+        barton = laws["barton_strength"].values[:, j]
+        axes.plot(b, barton, color=colour, lw=0.8, ls="--")
+        if drawn:
+            style = {"color": colour, "marker": marker, "ls": "none"}
+            exponent = interval_text(laws, "similar_strength_exponent", (share, j))
+            label = rf"$\sigma_n$ = {short(pressure)} MPa: $\tau \sim b^x$, $x$ = {exponent}"
+            axes.plot([], [], **style, label=label)
+    size_axis(axes, b, "joint")
+    if drawn:
+        logarithmic(axes, laws["similar_strength"].values[share])
+        if (laws["similar_held"].values[share] > MOSTLY).any():
+            axes.plot([], [], "o", color="k", mfc="white", label=_held_label())
+    else:
+        nothing_in(axes, NO_STRENGTH)
+    if np.isfinite(laws["barton_strength"]).any():
+        axes.plot([], [], "k--", lw=0.8, label="Barton and Bandis' scale law")
+    axes.set_ylabel(r"shear strength $\tau$ (MPa)")
+    letter(axes, "a", f"strength at $v$ = {share_words(laws, share)} of $b$")
+
+
+def _held_label():
+    return f"most sub-windows held at {LARGEST_FRICTION_ANGLE:g}°"
+
+
+def _draw_slope(axes, laws, share):
+    b, loads = laws["side"].values, laws.sizes["load"]
+    drawn = False
+    for j, pressure in enumerate(laws["nominal_pressure"].values):
+        style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
+        mean, low, high = along_size(laws.isel(share=share), "similar_slope", (j,))
+        beside = apart(b, j, loads)
+        positive = mean > 0
+        drawn |= positive.any()
+        axes.plot(beside[positive], mean[positive], **style, ls="none")
+        draw_bars(axes, beside, mean, low, high, style["color"])
+        exponent = interval_text(laws, "similar_slope_exponent", (share, j))
+        label = rf"$\sigma_n$ = {short(pressure)} MPa: $d\delta/dv \sim b^x$, $x$ = {exponent}"
+        axes.plot([], [], **style, ls="none", label=label)
+    expected = float(laws["expected_hurst"]) - 1
+    slopes = laws["similar_slope"].values[share]
+    anchored = np.isfinite(slopes).all(axis=1) & (slopes > 0).all(axis=1)
+    if np.isfinite(expected) and anchored.sum() >= _FEWEST_SIZES:
+        side = b[anchored]
+        level = np.exp(np.mean(np.log(slopes[anchored])))
+        middle = np.exp(np.mean(np.log(side)))
+        label = rf"self-affine: $x = H - 1$ = {short(expected)}"
+        axes.plot(side, level * (side / middle) ** expected, color="0.5", ls=":", label=label)
+    size_axis(axes, b, "joint")
+    if drawn:
+        logarithmic(axes, laws["similar_slope"].values[share])
+    else:
+        nothing_in(axes, "no offset lies at one v/b of the sizes")
+    axes.set_ylabel(r"slope $d\delta/dv$ of the dilatancy curve (mm/mm)")
+    letter(axes, "b", f"dilatancy at $v$ = {share_words(laws, share)} of $b$")
+
+
+def _table(laws):
+    tables = []
+    for j, pressure in enumerate(laws["nominal_pressure"].values):
+        common = {
+            "nominal_pressure_MPa": pressure,
+            "b_mm": laws["side"].values,
+            "windows": laws["windows"].values,
+            "barton_strength_MPa": laws["barton_strength"].values[:, j],
+        }
+        for i, share in enumerate(laws["share"].values):
+            values = {
+                f"{column}{end}": laws[f"{name}{end}"].values[i, :, j]
+                for column, name in (
+                    ("strength_MPa", "similar_strength"),
+                    ("slope", "similar_slope"),
+                )
+                for end in ("", "_low", "_high")
+            }
+            held = laws["similar_held"].values[i, :, j]
+            row = {"at": "v/b", "v_over_b": share, **common, **values, "held_share": held}
+            tables.append(pd.DataFrame(row))
+        values = {
+            f"strength_MPa{end}": laws[f"peak_strength{end}"].values[:, j]
+            for end in ("", "_low", "_high")
+        }
+        held = laws["held_share"].values[:, j]
+        tables.append(pd.DataFrame({"at": "peak", **common, **values, "held_share": held}))
+    return pd.concat(tables, ignore_index=True)
+
+
+# -- caption ---------------------------------------------------------------------------------------
+
+
+def _caption(settings, laws, share):
+    where = place(str(laws["direction"].values))
+    return (
+        f"{opening('Fig. 1b', settings['label'], where)} Computed, without laboratory points. "
+        f"(a) Shear strength of sub-windows at v = {share_words(laws, share)} of their side, mean "
+        "with its 95 % interval; open markers: most of them held at "
+        f"{LARGEST_FRICTION_ANGLE:g} degrees. (b) Slope of their dilatancy curve there, which "
+        f"nothing holds. {_similar_words(laws, share)} {_same_offset_words(laws)} "
+        f"{_barton_words(laws)}"
+    ).replace("  ", " ")
+
+
+def _similar_words(laws, share):
+    slope = laws["similar_slope_exponent"][share]
+    strength = laws["similar_strength_exponent"][share]
+    known = np.isfinite(slope)
+    if not known.any():
+        return "Too few sizes can be compared at one v/b."
+    falls = int((laws["similar_slope_exponent_high"][share] < 0).sum())
+    total = int(known.sum())
+    words = f"At one v/b the slope falls with size beyond its interval under {falls} of {total}"
+    rises = int((laws["similar_slope_exponent_low"][share] > 0).sum())
+    words += f" pressures{f' (rises under {rises})' if rises else ''}"
+    decides = falls
+    if np.isfinite(strength).any():
+        decides = int((laws["similar_strength_exponent_high"][share] < 0).sum())
+        words += f" and the strength under {decides}"
+    verdict = (
+        "as in the paper's Fig. 1b"
+        if decides == total
+        else "so the paper's Fig. 1b is met in part"
+        if decides
+        else "so the paper's Fig. 1b is met by the slope alone"
+        if falls
+        else "so the paper's Fig. 1b is not met"
+    )
+    words += f", {verdict}"
+    if (laws["similar_held"].values[share] > 0).any():
+        words += "; what is held flattens (a)"
+    lost = int((laws["similar_slope"].values[share] <= 0).sum())
+    if lost:
+        words += f"; {lost} mean slopes that are not positive are left out of (b) and its fits"
+    return f"{words}."
+
+
+def _peak_words(laws):
+    held = float(np.nanmean(laws["held_share"]))
+    words = f"The peak over all offsets is held in {short(100 * held)} % of the sub-windows"
+    if held > MOSTLY:
+        return f"{words}, which says nothing of size"
+    low, high = (laws[f"strength_exponent_{end}"].values for end in ("low", "high"))
+    return (
+        f"{words}; it falls with size beyond its interval under {int((high < 0).sum())} of "
+        f"{len(low)} pressures and rises under {int((low > 0).sum())}"
+    )
+
+
+def _same_offset_words(laws):
+    words = [_peak_words(laws)] if np.isfinite(laws["held_share"]).any() else []
+    low, high = laws["shear_exponent_low"].values, laws["shear_exponent_high"].values
+    value = laws["shear_exponent"].values
+    # Strength that is held in all sizes is the same in all: no exponent.
+    told = np.isfinite(value) & (np.abs(value) > 1e-9)
+    if told.any():
+        rises, falls = int((low[told] > 0).sum()), int((high[told] < 0).sum())
+        words.append(
+            f"at one v, not one v/b, strength rises with size beyond its interval in {rises} of "
+            f"{int(told.sum())} cases and falls in {falls}"
+        )
+    return ("; ".join(words) + ".") if words else ""
+
+
+def _barton_words(laws):
+    if not np.isfinite(laws["barton_strength"]).any():
+        return "No Barton's law: it needs a basic friction angle and a wall strength."
+    low, high = (short(jrc) for jrc in np.sort(laws["barton_roughness"].values)[[0, -1]])
+    words = f"Barton and Bandis' law has JRC_n from {low} to {high} here"
+    first, last = _MEASURED
+    beyond = (laws["side"] < first) | (laws["side"] > last)
+    if beyond.any():
+        words += f"; it was measured on joints of {first:g} to {last:g} mm and is extrapolated"
+    return f"{words}."

@@ -1,0 +1,246 @@
+"""Shaded relief of the levelled faces, and their dimension (Fig. 2)."""
+
+import numpy as np
+import pandas as pd
+from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LightSource, Normalize, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from scipy.ndimage import distance_transform_edt
+
+from ...roughness.dimension import dimension_table
+from ...surface.specimen import window_sides
+from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
+from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
+from ..kit.words import interval, length_unit, opening, percent
+
+COLOUR_MAP = "cividis"
+#: Share of the heights beyond each end of the colours, so that a spike does not take them all.
+CLIPPED = 0.002
+#: Heights are stretched for the light so that their rms slope becomes this; not in the colours.
+LIT_SLOPE = 0.7
+
+
+def draw(atlas, name):
+    """Relief of each face under light from the North-West, and Delta_g by every estimator.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+        Its data are the estimates of Delta_g, of the lower face.
+    """
+    specimen = group(atlas, "specimens", name)
+    dimension = group(atlas, "surface_dimension", name)
+    label = settings_of(atlas, name)["label"]
+    faces = [face for face in ("lower", "upper") if face in specimen]
+    sides = scan_extent(specimen)
+    missing = [not np.isfinite(specimen[face].values).all() for face in faces]
+
+    columns = len(faces) + 1
+    width = WIDTH * (0.55 if len(faces) == 1 else 0.35)
+    height = min(max(width * sides[0] / sides[1], 1.6), 1.3 * width) + 1.2
+    figure = Figure(figsize=(WIDTH, height))
+    ratios = [1.6 if len(faces) == 1 else 1.2] * len(faces) + [1]
+    axes = figure.subplots(1, columns, width_ratios=ratios)
+    outline = draw_faces(figure, axes[:-1], specimen, faces, sides)
+    letters = "ab"[: len(faces)]
+    for panel, which, face in zip(axes, letters, faces, strict=False):
+        letter(panel, which, f"{face} face")
+    mean = _draw_dimensions(axes[-1], dimension)
+    letter(axes[-1], "abc"[len(faces)], r"$\Delta_g$ of the lower face")
+    handles = [outline, *([missing_patch()] if any(missing) else []), *mean]
+    figure.legend(handles=handles, loc="outside lower left", ncols=3)
+    headline(figure, label, below=_size_words(specimen, sides))
+    return Drawing(figure, _table(dimension), _caption(label, specimen, faces, sides, dimension))
+
+
+def draw_faces(figure, panels, specimen, faces, sides):
+    """Reliefs side by side with one scale of heights; the outline of the window."""
+    heights = np.concatenate([specimen[face].values.ravel() for face in faces])
+    low, high = np.nanquantile(heights, [CLIPPED, 1 - CLIPPED])
+    _, size = length_unit(max(sides))
+    unit_of_height = length_unit(high - low)
+    norm = Normalize(low / unit_of_height[1], high / unit_of_height[1])
+    spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
+    for panel, face in zip(panels, faces, strict=True):
+        image = _shaded(specimen[face].values, spacing, low, high)
+        draw_map(panel, image, sides)
+        outline = window_outline(specimen, size, lw=1, label="window of the contact")
+        panel.add_patch(outline)
+    figure.colorbar(
+        ScalarMappable(norm, COLOUR_MAP),
+        ax=list(panels),
+        location="bottom",
+        fraction=0.05,
+        aspect=40,
+        extend="both",
+        label=f"height above the mean plane ({unit_of_height[0]})",
+    )
+    return outline
+
+
+def _shaded(heights, spacing, low, high):
+    """Colours (ny, nx, 3) of a lit relief; cells not measured are grey."""
+    known = np.isfinite(heights)
+    # The light must not see a cliff at a hole; what is filled in here is painted over below.
+    nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    whole = heights[tuple(nearest)]
+    steepness = np.sqrt(np.mean(np.square(np.gradient(whole, *spacing))))
+    stretch = LIT_SLOPE / steepness if steepness > 0 else 1.0
+    colours = LightSource(azdeg=315, altdeg=45).shade(
+        # Rows of the image run to the North, the light's to the South: the step in y is negative.
+        whole,
+        colormaps[COLOUR_MAP],
+        vmin=low,
+        vmax=high,
+        vert_exag=stretch,
+        dx=spacing[1],
+        dy=-spacing[0],
+        blend_mode="soft",
+    )[..., :3]
+    colours[~known] = to_rgb(MISSING)
+    return colours
+
+
+def _draw_dimensions(axes, dimension):
+    """Estimates of Delta_g with their intervals, one below the other; the lines of a legend."""
+    values, low, high = (dimension[f"dimension{end}"].values for end in ("", "_low", "_high"))
+    rows = np.arange(len(values))
+    fitted = np.isfinite(values)
+    words = [
+        f"{estimator.replace('_', ' ')}\n"
+        + (interval(*numbers) if np.isfinite(numbers[0]) else "no fit")
+        for estimator, *numbers in zip(
+            dimension["estimator"].values, values, low, high, strict=True
+        )
+    ]
+    axes.set_yticks(rows, words, fontsize=7)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.set_xlabel(r"surface dimension $\Delta_g$ (1)")
+    axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+    if not fitted.any():
+        axes.text(
+            0.5,
+            0.5,
+            "no fit: the scan has\ntoo few scales",
+            ha="center",
+            va="center",
+            transform=axes.transAxes,
+        )
+        axes.set_xticks([])
+        return []
+    errors = np.stack([values - low, high - values])[:, fitted]
+    axes.errorbar(values[fitted], rows[fitted], xerr=errors, fmt="o", color=COLOURS[1], capsize=2)
+    found = dimension_table(dimension)
+    mean = axes.axvline(found["mean"], color=COLOURS[2], ls="--", lw=0.8)
+    mean.set_label(
+        rf"mean $\Delta_g$ {found['mean']:.2f}, "
+        f"range {found['lowest']:.2f} to {found['highest']:.2f}"
+    )
+    axes.grid(axis="x", color="0.9", lw=0.5)
+    return [mean]
+
+
+def _table(dimension):
+    """Estimates of Delta_g, one row each."""
+    return pd.DataFrame(
+        {
+            "face": "lower",
+            "estimator": dimension["estimator"].values,
+            "dimension": dimension["dimension"].values,
+            "dimension_low": dimension["dimension_low"].values,
+            "dimension_high": dimension["dimension_high"].values,
+            **{
+                f"hurst_{axis}{end}": dimension[f"hurst_{axis}{end}"].values
+                for axis in "xy"
+                for end in ("", "_low", "_high")
+            },
+            "fit_min_mm": dimension["fit_min"].values,
+            "fit_max_mm": dimension["fit_max"].values,
+            "points": dimension["n"].values,
+        }
+    )
+
+
+def _size_words(specimen, sides):
+    """Size and spacing of the scan; one number for the spacing where both agree."""
+    name, size = length_unit(max(sides))
+    spacings = {f"{specimen.attrs[f'spacing_{axis}']:.4g}" for axis in "xy"}
+    return (
+        f"{sides[1] / size:.4g} × {sides[0] / size:.4g} {name}, "
+        f"spacing {' and '.join(sorted(spacings))} mm"
+    )
+
+
+def _caption(label, specimen, faces, sides, dimension):
+    shape, window = specimen["lower"].shape, window_sides(specimen)
+    spacing = specimen.attrs["spacing_x"], specimen.attrs["spacing_y"]
+    ranges = {face: (float(specimen[face].min()), float(specimen[face].max())) for face in faces}
+    heights = "; ".join(
+        f"{face} face from {low:.3g} to {high:.3g} mm" for face, (low, high) in ranges.items()
+    )
+    absent = 1 - float(specimen["valid"].mean())
+    return (
+        f"{opening('Fig. 2', label)} Shaded relief about the mean plane, lit from the "
+        f"North-West: {shape[1]} x {shape[0]} cells of {spacing[0]:.4g} x {spacing[1]:.4g} mm, "
+        f"{sides[1]:.4g} x {sides[0]:.4g} mm (x, y), {percent(absent)} of them not measured; "
+        f"window {window[1]:.4g} x {window[0]:.4g} mm; {heights}. {_words(dimension)}"
+    )
+
+
+def _words(dimension):
+    """Range and mean of Delta_g, and whether the estimators agree."""
+    known = np.isfinite(dimension["dimension"].values)
+    if not known.any():
+        return "No dimension could be fitted: the scan has too few scales."
+    low, high, first, last = (
+        dimension[key].values[known]
+        for key in ("dimension_low", "dimension_high", "fit_min", "fit_max")
+    )
+    agree = (
+        "their 95 % intervals have a value in common"
+        if low.max() <= high.min()
+        else "their 95 % intervals have no value in common: they do not measure the same"
+    )
+    found = dimension_table(dimension)
+    return (
+        f"Delta_g of the lower face by {found['n']} estimators is {found['lowest']:.2f} to "
+        f"{found['highest']:.2f}, mean {found['mean']:.2f} (dashed), fitted over {first.min():.3g} "
+        f"to {last.max():.3g} mm; {agree}. {_self_affine_words(found, low, high)} "
+        f"{_axes_words(dimension)}"
+    )
+
+
+def _self_affine_words(found, low, high):
+    """Whether the estimates and their intervals lie where a self-affine surface's must."""
+    if not (found["lowest"] > 2 and found["highest"] < 3):
+        return "Not all lie between 2 and 3: not every estimator shows a self-affine surface."
+    if (low > 2).all() and (high < 3).all():
+        return "All lie between 2 and 3 with their intervals, as a self-affine surface's must."
+    return "All lie between 2 and 3, as a self-affine surface's must, but not all their intervals."
+
+
+def _axes_words(dimension):
+    """Whether profiles along x and along y have the same Hurst exponent."""
+    along = [dimension[f"hurst_{axis}"].values for axis in "xy"]
+    both = np.isfinite(along).all(axis=0)
+    if not both.any():
+        return "No estimator could tell the axes apart."
+    mean_x, mean_y = (values[both].mean() for values in along)
+    apart = (dimension["hurst_x_low"] > dimension["hurst_y_high"]) | (
+        dimension["hurst_y_low"] > dimension["hurst_x_high"]
+    )
+    apart = int(apart.values[both].sum())
+    verdict = (
+        f"{apart} of {both.sum()} estimators tell them apart by their 95 % intervals"
+        if apart
+        else "no estimator tells them apart by its 95 % intervals"
+    )
+    return f"H of profiles is {mean_x:.2f} along x and {mean_y:.2f} along y (means): {verdict}."

@@ -1,0 +1,246 @@
+"""The joint slid: window, profile with dilatancy, composite topography (Fig. 3)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ...mechanics.joint import STEPS
+from ...surface.specimen import faces, window_sides, window_slices
+from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
+from ..kit.maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
+from ..kit.words import length_unit, opening, place
+
+_TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
+
+
+@dataclass(frozen=True)
+class Slid:
+    """The joint at its largest offset in the first direction whose contact is solved.
+
+    Attributes
+    ----------
+    specimen : xr.Dataset
+    direction : str
+    offset : float
+        v, mm.
+    dilatancy : float
+        delta_r, mm.
+    composite : (ny, nx) ndarray
+        h, mm.
+    correlation : float
+        Of the two faces under the window.
+    chance : float
+        The correlation that chance alone gives; NaN where the window is too small to say.
+    """
+
+    specimen: xr.Dataset
+    direction: str
+    offset: float
+    dilatancy: float
+    composite: np.ndarray
+    correlation: float
+    chance: float
+
+    @classmethod
+    def of(cls, atlas, name):
+        """The slid joint of a specimen."""
+        joint = group(atlas, "joints", name)
+        direction = str(joint["contact_direction"].values[0])
+        last = int(joint["offset"].values.argmax())
+        cells = int(joint["offset_cells"].values[0, last])
+        # The n-th rigid offset is n cells along the first contact direction.
+        slid = joint.sel(direction=direction).isel(rigid_offset=cells)
+        return cls(
+            group(atlas, "specimens", name),
+            direction,
+            float(joint["offset"].values[last]),
+            float(slid["rigid_dilatancy"]),
+            joint["composite"].values[last],
+            float(slid["face_correlation"]),
+            float(joint["correlation_limit"]),
+        )
+
+    @property
+    def touch(self):
+        """Node (y, x) of the window that touches first."""
+        return np.unravel_index(self.composite.argmax(), self.composite.shape)
+
+    @property
+    def slid(self):
+        """How far (y, x) the upper block has slid, mm."""
+        return tuple(self.offset * step for step in STEPS[self.direction])
+
+    @property
+    def axis(self):
+        """Axis along which it slides."""
+        return "y" if STEPS[self.direction][0] else "x"
+
+    def profiles(self):
+        """Both faces along the line of sliding through the point of first touch.
+
+        Returns
+        -------
+        pd.DataFrame
+            Heights at distances from the corner of the scan, over the windows before and after
+            and a little beyond.
+        """
+        lower, upper = faces(self.specimen)
+        window = window_slices(self.specimen)
+        across, along = (1, 0) if self.axis == "y" else (0, 1)
+        line = window[across].start + self.touch[across]
+        lower, upper = (np.take(face, line, axis=across) for face in (lower, upper))
+        spacing = self.specimen.attrs[f"spacing_{self.axis}"]
+        cells = window[along]
+        moved = round(self.slid[along] / spacing)
+        lift = self.composite.max()
+        table = pd.DataFrame({f"{self.axis}_mm": (np.arange(lower.size) + 0.5) * spacing})
+        table["lower_mm"] = lower
+        table["upper_before_mm"] = np.nan
+        table["upper_after_mm"] = np.nan
+        before, after = cells, slice(cells.start + moved, cells.stop + moved)
+        table.loc[table.index[before], "upper_before_mm"] = upper[cells] + lift - self.dilatancy
+        table.loc[table.index[after], "upper_after_mm"] = upper[cells] + lift
+        first, last = min(before.start, after.start), max(before.stop, after.stop)
+        margin = (last - first) // 20
+        return table.iloc[max(first - margin, 0) : last + margin].reset_index(drop=True)
+
+
+def draw(atlas, name):
+    """Plan, profile and composite topography at the largest offset.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+        Its data are the profiles.
+    """
+    slid = Slid.of(atlas, name)
+    label = settings_of(atlas, name)["label"]
+    profiles = slid.profiles()
+    figure = Figure(figsize=(WIDTH, 5.6))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[1.3, 1])
+    plan, composite = top.subplots(1, 2)
+    profile = bottom.subplots()
+    handles = _draw_plan(top, plan, slid) + _draw_profile(profile, slid, profiles)
+    bottom.legend(handles=handles, loc="outside lower center", ncols=4)
+    _draw_composite(top, composite, slid)
+    letter(plan, "a", "lower face and window")
+    letter(profile, "b", "profile through the point of first touch")
+    letter(composite, "c", "composite topography $h$")
+    headline(figure, label, place(slid.direction, slid.offset))
+    return Drawing(figure, profiles, _caption(label, slid))
+
+
+def _draw_plan(figure, axes, slid):
+    """The scan and the window twice; entries of a legend."""
+    specimen = slid.specimen
+    sides = scan_extent(specimen)
+    _, size = length_unit(max(sides))
+    heights = specimen["lower"].values
+    height_unit = length_unit(np.nanmax(heights) - np.nanmin(heights))
+    image = draw_map(axes, heights / height_unit[1], sides, cmap="Greys_r")
+    figure.colorbar(image, ax=axes, shrink=0.8, label=f"height ({height_unit[0]})")
+    outlines = [
+        window_outline(
+            specimen, size, edgecolor=COLOURS[1], lw=1.5, ls="--", label="window before"
+        ),
+        window_outline(
+            specimen, size, slid.slid, edgecolor=COLOURS[2], lw=1.5, label="window after"
+        ),
+    ]
+    for outline in outlines:
+        axes.add_patch(outline)
+    return outlines + ([missing_patch()] if np.isnan(heights).any() else [])
+
+
+def _draw_profile(axes, slid, profiles):
+    """Both faces, offset and dilatancy; entries of a legend."""
+    along = profiles[f"{slid.axis}_mm"].values
+    unit, size = length_unit(along[-1])
+    height_unit, height_size = length_unit(
+        np.nanmax(profiles.iloc[:, 1:]) - profiles["lower_mm"].min()
+    )
+    lower, before, after = (
+        profiles[f"{key}_mm"] / height_size for key in ("lower", "upper_before", "upper_after")
+    )
+    x = along / size
+    axes.plot(x, lower, color=COLOURS[0], lw=0.9, label="lower face")
+    if slid.specimen.attrs["opposite"] == "scanned":
+        axes.plot(
+            x, before, color=COLOURS[1], lw=0.7, ls="--", label="upper face at first touch, $v$ = 0"
+        )
+    axes.plot(
+        x,
+        after,
+        color=COLOURS[4],
+        lw=0.9,
+        label=r"upper face, slid by $v$ and lifted by $\delta_r$",
+    )
+
+    axis = "yx".index(slid.axis)
+    spacing = slid.specimen.attrs[f"spacing_{slid.axis}"]
+    start = (window_slices(slid.specimen)[axis].start + slid.touch[axis] + 0.5) * spacing
+    end = start + slid.slid[axis]
+    top = after[np.argmin(np.abs(along - end))]
+    bottom = top - slid.dilatancy / height_size
+    start, end = start / size, end / size
+    arrow = {"arrowstyle": "<->", "color": COLOURS[3], "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
+    for tip, tail in (((end, bottom), (start, bottom)), ((end, top), (end, bottom))):
+        axes.annotate("", tip, tail, arrowprops=arrow)
+    ground = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
+    words = {"color": COLOURS[3], "bbox": ground, "textcoords": "offset points"}
+    axes.annotate(
+        f"$v$ = {slid.offset:.3g} mm", ((start + end) / 2, bottom), (0, -10), ha="center", **words
+    )
+    side = 1 if end < x.mean() else -1  # towards the middle, where there is room
+    axes.annotate(
+        rf"$\delta_r$ = {slid.dilatancy:.3g} mm",
+        (end, (top + bottom) / 2),
+        (5 * side, 0),
+        ha="left" if side > 0 else "right",
+        va="center",
+        **words,
+    )
+    axes.plot(end, top, marker="o", label="first touch", **_TOUCH)
+    axes.set_xlabel(f"${slid.axis}$ ({unit})")
+    axes.set_ylabel(f"height ({height_unit})")
+    axes.margins(x=0, y=0.15)
+    floor, ceiling = axes.get_ylim()
+    axes.fill_between(x, lower, floor, color="0.9", lw=0, zorder=0)
+    axes.set_ylim(floor, ceiling)
+    return axes.get_legend_handles_labels()[0]
+
+
+def _draw_composite(figure, axes, slid):
+    sides = window_sides(slid.specimen)
+    height_unit, size = length_unit(np.ptp(slid.composite))
+    image = draw_map(axes, slid.composite / size, sides, cmap="cividis")
+    figure.colorbar(image, ax=axes, shrink=0.8, label=f"$h$ ({height_unit})")
+    y, x = node_position(slid.touch, slid.composite.shape, sides)
+    axes.plot(x, y, marker="o", path_effects=HALO, **_TOUCH)
+
+
+def _caption(label, slid):
+    if np.isnan(slid.chance):
+        verdict = "the window is too small to tell that from chance"
+    elif slid.correlation <= slid.chance:
+        verdict = "no more than chance gives, as the paper says of its largest offset"
+    else:
+        verdict = "some correlation is left, unlike in the paper at its largest offset"
+    return (
+        f"{opening('Fig. 3', label, place(slid.direction))} (a) Window before and after "
+        f"an offset v = {slid.offset:.3g} mm, the largest solved. (b) The faces along the line of "
+        f"sliding through the point of first touch, the upper one lifted by the rigid dilatancy "
+        f"delta_r = {slid.dilatancy:.3g} mm; heights are stretched. (c) Composite topography h "
+        f"over the window, its largest value touching first; standard deviation "
+        f"{slid.composite.std():.3g} mm. The heights of the two faces under the window correlate "
+        f"with r = {slid.correlation:.2f}: {verdict}."
+    )

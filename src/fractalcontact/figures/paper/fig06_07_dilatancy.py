@@ -1,0 +1,261 @@
+"""Rigid and elastic dilatancy, and the contact domains along the way (Figs. 6 and 7)."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from ...core.fitting import fit_line
+from ...surface.specimen import window_sides
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    finest_curves,
+    group,
+    headline,
+    legends_below,
+    letter,
+    nearest_load,
+    settings_of,
+    spread,
+)
+from ..kit.maps import HALO, draw_domain
+from ..kit.words import TOWARDS, force_label, opening, percent, place, short, slope_text
+
+DOMAINS, COLUMNS = 6, 3
+#: (b) shows the offsets up to this part of the largest, and at least so many, apart from the rest.
+INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
+#: A change over the second half below this share of the mean there is called nearly flat.
+NEARLY_FLAT = 0.1
+
+
+def draw(atlas, name):
+    """Dilatancy curves and contact domains at six offsets.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen of the atlas.
+
+    Returns
+    -------
+    Drawing
+        Its data are the points of both kinds of curves and, for the map load, the contact areas.
+    """
+    settings = settings_of(atlas, name)
+    specimen = group(atlas, "specimens", name)
+    dilatancy = group(atlas, "dilatancy", name)
+    curves = finest_curves(atlas, name)
+    direction, finest = str(curves["direction"].values), int(curves["resolution"])
+    share, loads = curves["area_share"], curves["load"].values
+    mapped = nearest_load(loads, settings["map_load"], specimen)
+    asked = [nearest_load(loads, load, specimen) for load in settings["dilatancy_loads"]]
+    shown = sorted({*asked, mapped})
+    points = spread(curves.sizes["offset"], DOMAINS)
+    plateaus = {str(d): _plateau(dilatancy, d) for d in dilatancy["direction"].values}
+
+    rows = -(-len(points) // COLUMNS)
+    figure = Figure(figsize=(WIDTH, 3.2 + 2.5 * rows))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])
+    ranges = _ranges(dilatancy["offset"].values)
+    rigid, *elastic = top.subplots(
+        1, 1 + len(ranges), width_ratios=[2.3, 1.5, 1][: 1 + len(ranges)]
+    )
+    _draw_rigid(rigid, dilatancy, plateaus)
+    _draw_elastic(elastic, ranges, dilatancy, direction, shown, mapped, points)
+    legends_below(top, entries(rigid), entries(elastic[0]))
+    domains = group(atlas, "contact", name)[f"in_contact_{finest}"].sel(direction=direction)
+    panels = bottom.subplots(rows, COLUMNS, squeeze=False)
+    _draw_domains(panels, domains[:, mapped], share[:, mapped], points, window_sides(specimen))
+    bottom.suptitle(
+        f"(c) contact domains at $F$ = {force_label(loads[mapped])}", x=0.01, ha="left", fontsize=8
+    )
+    headline(figure, settings["label"])
+    table = _table(dilatancy, direction, shown, share)
+    caption = _caption(settings["label"], direction, loads[mapped], share[:, mapped], plateaus)
+    return Drawing(figure, table, caption)
+
+
+def _plateau(dilatancy, direction):
+    """Line of delta_r over the second half of the offsets, and its change over its mean there."""
+    v = dilatancy["rigid_offset"].values
+    second = v >= v[-1] / 2
+    opened = dilatancy["rigid_dilatancy"].sel(direction=direction).values[second]
+    line = fit_line(v[second], opened)
+    return line, line.slope * (line.x_max - line.x_min) / opened.mean()
+
+
+def _draw_rigid(axes, dilatancy, plateaus):
+    v = dilatancy["rigid_offset"].values
+    for n, (direction, (line, _)) in enumerate(plateaus.items()):
+        opened = dilatancy["rigid_dilatancy"].sel(direction=direction)
+        slope = f"slope {slope_text(line, 'mm/mm')}" if np.isfinite(line.slope) else "no fit"
+        name = TOWARDS.get(direction, "plane")
+        axes.plot(v, opened, color=colour_of(n), ls=LINES[n % 4], label=f"{name}: {slope}")
+        if np.isfinite(line.slope):
+            ends = np.array([line.x_min, line.x_max])
+            axes.plot(ends, line.intercept + line.slope * ends, color=colour_of(n), lw=0.6)
+    axes.set_xlabel("offset $v$ (mm)")
+    axes.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
+    axes.set_ylim(bottom=min(0, float(dilatancy["rigid_dilatancy"].min())))
+    axes.set_xlim(left=0)
+    letter(axes, "a", "rigid dilatancy")
+
+
+def _ranges(offsets):
+    """The first offsets (from, to) and the others, which need another scale; mm."""
+    limit = max(INITIAL_PART * offsets[-1], offsets[min(INITIAL_OFFSETS, len(offsets)) - 1])
+    return [(0, limit)] + ([(limit, offsets[-1])] if limit < offsets[-1] else [])
+
+
+def _draw_elastic(panels, ranges, dilatancy, direction, shown, mapped, points):
+    """Elastic dilatancy, a panel a range of offsets."""
+    for panel in panels[1:]:
+        panel.sharey(panels[0])
+        panel.tick_params(labelleft=False)
+    for panel, (first, last) in zip(panels, ranges, strict=True):
+        _elastic_curves(panel, dilatancy, direction, shown)
+        _mark_points(panel, dilatancy, direction, mapped, points, (first, last))
+        panel.margins(y=0.12)
+        margin = 0.06 * (last - first) or None
+        panel.set_xlim(first, margin and last + margin)
+        panel.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        panel.set_xlabel("offset $v$ (mm)")
+    panels[0].set_ylabel(r"dilatancy $\delta$ (mm)")
+    letter(panels[0], "b", f"elastic dilatancy, {place(direction)}")
+
+
+def _elastic_curves(axes, dilatancy, direction, shown):
+    rigid = dilatancy["rigid_dilatancy"].sel(direction=direction)
+    axes.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=1, label="rigid, $F$ = 0")
+    elastic = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)
+    for n, j in enumerate(shown):
+        axes.plot(
+            elastic["offset"],
+            elastic[:, j],
+            marker=MARKERS[n % len(MARKERS)],
+            color=colour_of(n + 1),
+            label=f"$F$ = {force_label(float(elastic['load'][j]))}",
+        )
+
+
+def _mark_points(axes, dilatancy, direction, mapped, points, shown_range):
+    """Letters of the domains at their points of the curve, where these axes show them."""
+    curve = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)[:, mapped]
+    for k, i in enumerate(points):
+        v = float(curve["offset"][i])
+        if v <= shown_range[1] and (v > shown_range[0] or shown_range[0] == 0):
+            axes.annotate(
+                _domain_letter(k),
+                (v, float(curve[i])),
+                (0, -11),
+                textcoords="offset points",
+                ha="center",
+                path_effects=HALO,
+            )
+
+
+def _draw_domains(panels, domains, share, points, sides):
+    """Contact domains of one load at some offsets, row by row."""
+    for k, panel in enumerate(panels.ravel()):
+        if k >= len(points):
+            panel.remove()
+            continue
+        i = points[k]
+        draw_domain(panel, domains[i].values, sides)
+        panel.set_title(
+            f"{_domain_letter(k)}: $v$ = {short(share['offset'][i])} mm, "
+            f"$A_r/A_0$ = {percent(share[i])}"
+        )
+
+
+def _domain_letter(k):
+    return "ABCDEF"[k]
+
+
+def _table(dilatancy, direction, shown, share):
+    """Points of (a), then of (b); contact area goes with the latter."""
+    v = dilatancy["rigid_offset"].values
+    rows = [
+        pd.DataFrame(
+            {
+                "curve": "rigid",
+                "direction": d,
+                "force_N": 0.0,
+                "offset_mm": v,
+                "dilatancy_mm": dilatancy["rigid_dilatancy"].sel(direction=d).values,
+            }
+        )
+        for d in dilatancy["direction"].values
+    ]
+    for j in shown:
+        elastic = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)[:, j]
+        rows.append(
+            pd.DataFrame(
+                {
+                    "curve": "elastic",
+                    "direction": direction,
+                    "force_N": float(elastic["load"]),
+                    "offset_mm": elastic["offset"].values,
+                    "dilatancy_mm": elastic.values,
+                    "area_share": share[:, j].values,
+                }
+            )
+        )
+    return pd.concat(rows, ignore_index=True)
+
+
+def _caption(label, direction, force, share, plateaus):
+    return (
+        f"{opening('Figs. 6 and 7', label)} (a) Rigid dilatancy, with straight lines over "
+        f"the second half of the offsets. (b) Elastic dilatancy, {place(direction)}; letters stand "
+        f"at F = {force_label(force)}. (c) Contact domains there. {_plateau_words(plateaus)} "
+        f"{_area_words(share, force)}"
+    )
+
+
+def _plateau_words(plateaus):
+    fitted = {d: fit for d, fit in plateaus.items() if np.isfinite(fit[0].slope)}
+    if not fitted:
+        return "Too few offsets to tell whether there is a plateau."
+    parts = [
+        f"{TOWARDS[direction]} {slope_text(line)}, {percent(change, '+')} of the mean"
+        for direction, (line, change) in fitted.items()
+    ]
+    level = sum(line.slope_low <= 0 <= line.slope_high for line, _ in fitted.values())
+    flat = [TOWARDS[d] for d, (_, change) in fitted.items() if abs(change) <= NEARLY_FLAT]
+    rising = [TOWARDS[d] for d, (_, change) in fitted.items() if change > NEARLY_FLAT]
+    falling = [TOWARDS[d] for d, (_, change) in fitted.items() if change < -NEARLY_FLAT]
+    words = [f"{len(flat)} of {len(fitted)} directions stay within {100 * NEARLY_FLAT:g} %"]
+    words += [f"it keeps rising towards {' and '.join(rising)}"] if rising else []
+    words += [f"it falls towards {' and '.join(falling)}"] if falling else []
+    return (
+        f"Slopes there in mm/mm, and the change they make: {'; '.join(parts)}. By that measure a "
+        f"plateau: {', '.join(words)} (the paper: all four for its rock, two of four for its "
+        f"concrete). {level} of the {len(fitted)} intervals include zero; they take neighbouring "
+        "offsets as independent, which they are not, and are too narrow."
+    )
+
+
+def _area_words(share, force):
+    slid = share["offset"].values > 0
+    area = share.values[slid]
+    line = fit_line(np.log(share["offset"].values[slid]), np.log(area))
+    if not np.isfinite(line.slope):
+        return "Too few offsets to tell whether the contact area falls with v."
+    verdict = (
+        "it falls, as in the paper"
+        if line.slope_high < 0
+        else "it rises, unlike the paper's"
+        if line.slope_low > 0
+        else "no trend beyond the interval, where the paper has it fall"
+    )
+    return (
+        f"At F = {force_label(force)} A_r goes as v to the power {slope_text(line)} over "
+        f"{line.n} offsets from {percent(area[0])} to {percent(area[-1])}: {verdict}."
+    )

@@ -1,0 +1,136 @@
+"""Fig. 9: box counting on one contact domain."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ...core.fitting import fit_line
+from ...domain.box_dimension import local_slopes, spans
+from ..kit.domains import Loading, disagreement
+from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
+from ..kit.maps import draw_domain
+from ..kit.words import force_label, interval, short
+
+
+def draw(atlas, name):
+    """A contact domain, its box counts N(r) with the line fitted, and their local slopes.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        The specimen.
+
+    Returns
+    -------
+    Drawing
+    """
+    loading = Loading.of(atlas, name)
+    i = loading.map_load
+    counts = loading.counts.isel(load=i)
+    table = _table(counts)
+    figure = Figure(figsize=(WIDTH, 3.1))
+    left, middle, right = figure.subplots(1, 3)
+    draw_domain(left, loading.domain(loading.finest, i), loading.sides)
+    letter(left, "a", "contact domain")
+    _draw_counts(middle, table, loading.estimates[1], i)
+    _draw_slopes(right, table, counts)
+    # The marks of the counts are those of their slopes too: one legend.
+    handles, _ = middle.get_legend_handles_labels()
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
+    return Drawing(figure, table, _caption(loading, i, counts, table))
+
+
+def _table(counts):
+    """One row a box size, with the fitted N(r) and the local slope over a doubling."""
+    kept = np.isfinite(counts["box_side"].values) & np.isfinite(counts["box_count"].values)
+    r, n = counts["box_side"].values[kept], counts["box_count"].values[kept]
+    used = counts["box_used"].values[kept]
+    # Delta_sigma is that of the counts averaged over all origins; its line is drawn through these.
+    delta = counts["delta_sigma"].item()
+    level = np.mean(np.log(n[used]) + delta * np.log(r[used])) if used.any() else np.nan
+    to_side, slope = np.full((2, r.size), np.nan)
+    start, end = spans(r)
+    to_side[start] = r[end]
+    _, slope[start] = local_slopes(r, n)
+    return pd.DataFrame(
+        {
+            "box_side_mm": r,
+            "box_count": n,
+            "used": used,
+            "fitted_count": np.where(used, np.exp(level - delta * np.log(r)), np.nan),
+            "slope_to_mm": to_side,
+            "local_slope": slope,
+        }
+    )
+
+
+def _draw_counts(axes, table, estimate, i):
+    r, n, used = (table[key] for key in ("box_side_mm", "box_count", "used"))
+    axes.loglog(r[~used], n[~used], "o", mfc="white", mec=COLOURS[0], label="left out")
+    axes.loglog(r[used], n[used], "o", color=COLOURS[0], label="used")
+    axes.loglog(r, table["fitted_count"], color=COLOURS[2], label=estimate.entry(i), zorder=1)
+    # Guides go through the point that all lines share best: the largest box, where N is smallest.
+    r_last, n_last = r.iloc[-1], n.iloc[-1]
+    for slope, style in ((1, ":"), (2, "-.")):
+        guide = n_last * (r / r_last) ** -slope
+        axes.loglog(r, guide, style, color="0.6", lw=0.8, label=f"slope $-${slope}", zorder=0)
+    axes.set_ylim(0.7, n.max() ** 1.1 * 2)
+    axes.set(xlabel="box side $r$ (mm)", ylabel="boxes that meet it, $N(r)$ (1)")
+    label_short_span(axes.xaxis)
+    letter(axes, "b", "box counts")
+
+
+def _draw_slopes(axes, table, counts):
+    middle = np.sqrt(table["box_side_mm"] * table["slope_to_mm"])
+    fitted = table["used"] & table["slope_to_mm"].isin(table["box_side_mm"][table["used"]])
+    for mask, face in ((fitted, COLOURS[0]), (~fitted, "white")):
+        axes.semilogx(middle[mask], table["local_slope"][mask], "o", mfc=face, mec=COLOURS[0])
+    if not str(counts["reason"].item()):
+        ends = [counts["fit_min"].item(), counts["fit_max"].item()]
+        axes.plot(ends, [counts["delta_sigma"].item()] * 2, color=COLOURS[2])
+        low, high = counts["delta_sigma_low"].item(), counts["delta_sigma_high"].item()
+        axes.fill_between(ends, low, high, color=COLOURS[2], alpha=0.2, lw=0)
+    for slope, style in ((1, ":"), (2, "-.")):
+        axes.axhline(slope, color="0.6", ls=style, lw=0.8, zorder=0)
+    axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
+    axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
+    label_short_span(axes.xaxis)
+    letter(axes, "c", "local slopes")
+
+
+def _caption(loading, i, counts, table):
+    start = f"{loading.opening('Fig. 9')} (a) The contact domain under F = "
+    start += f"{force_label(loading.forces[i])}, s = {short(loading.finest_spacing)} mm. "
+    reason = str(counts["reason"].item())
+    if reason:
+        return f"{start}(b) Box counts; no dimension: {reason}. (c) Their local slopes."
+    return (
+        f"{start}(b) Box counts N(r), filled where used, with a line of the slope that the counts "
+        f"averaged over all origins have from r = {short(counts['fit_min'])} to "
+        f"{short(counts['fit_max'])} mm: Delta_sigma = {loading.estimates[1].text(i)}, the "
+        "interval spanning parts of the window and of the range; (c) slopes over a doubling of r. "
+        f"{_verdict(counts, table)} {disagreement(loading.scaling.isel(load=i))}"
+    )
+
+
+def _verdict(counts, table):
+    """Whether the counts are those of one lacunar fractal: below 2, one slope throughout."""
+    high = counts["delta_sigma_high"].item()
+    lacunar = "is below 2, as in the paper" if high < 2 else "cannot be told from 2"
+    used = table[table["used"]]
+    half = len(used) // 2
+    parts = [
+        fit_line(np.log(part["box_side_mm"]), np.log(part["box_count"]))
+        for part in (used[:half], used[half:])
+    ]
+    fine, coarse = (interval(-p.slope, -p.slope_high, -p.slope_low) for p in parts)
+    if not all(np.isfinite(p.slope) for p in parts):
+        return f"Delta_sigma {lacunar}; too few sizes to tell whether one power law holds."
+    apart = parts[0].slope_low > parts[1].slope_high or parts[1].slope_low > parts[0].slope_high
+    law = "no single power law fits both" if apart else "one power law fits both"
+    return (
+        f"Delta_sigma {lacunar}; the smaller half of the boxes used gives {fine}, the larger "
+        f"{coarse} (regression alone): {law}."
+    )

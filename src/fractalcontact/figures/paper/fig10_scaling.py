@@ -1,0 +1,145 @@
+"""Fig. 10: real contact area against resolution, and the nominal pressure it implies for size."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+
+from ...domain.renormalisation import RESOLUTION
+from ..kit.domains import Loading, disagreement
+from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, entries, headline, legends_below, letter
+from ..kit.words import force_label, number, short
+from ._size_effect import draw_axes, size_effect
+
+#: Loads in panel (a).
+_MOST_LOADS = 5
+
+
+def draw(atlas, name):
+    """A_r(s) with its power laws, and eq. 6 under the load of the maps.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        The specimen.
+
+    Returns
+    -------
+    Drawing
+    """
+    loading = Loading.of(atlas, name)
+    i = loading.map_load
+    figure = Figure(figsize=(WIDTH, 3.9))
+    left, right = figure.subplots(1, 2)
+    area = _area_table(loading)
+    _draw_areas(left, loading, i, area)
+    pressure = size_effect(loading, i)
+    _draw_pressures(right, loading, i, pressure)
+    legends_below(figure, entries(left), entries(right))
+    headline(figure, *loading.title)
+    table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
+    return Drawing(figure, table, _caption(loading, i, pressure))
+
+
+def _area_table(loading):
+    """One row a load and resolution; every load of the study, drawn or not."""
+    scaling = loading.scaling.sortby(RESOLUTION)
+    frame = scaling[["area", "sigma_n"]].to_dataframe().reset_index()
+    spacing = scaling["spacing"].to_series()
+    measure = scaling["hausdorff_measure"].to_series()
+    delta = scaling["delta_sigma"].to_series()
+    s = frame["resolution"].map(spacing)
+    exponent = 2 - frame["load"].map(delta)
+    return pd.DataFrame(
+        {
+            "panel": "a",
+            "load_N": frame["load"],
+            "spacing_mm": s,
+            "area_mm2": frame["area"],
+            "used": np.isfinite(frame["sigma_n"]) & np.isfinite(exponent),
+            "fitted_area_mm2": frame["load"].map(measure) * s**exponent,
+        }
+    ).sort_values(["load_N", "spacing_mm"], ignore_index=True)
+
+
+def _draw_areas(axes, loading, map_load, table):
+    by_area = loading.estimates[0]
+    for n, i in enumerate(loading.spread_loads(_MOST_LOADS, map_load)):
+        force = loading.forces[i]
+        rows = table[table["load_N"] == force]
+        style = {"color": COLOURS[n], "marker": MARKERS[n], "linestyle": "none"}
+        # Low loads may share their few nodes: the later marker lets the earlier one show.
+        style["markersize"] = 7.5 - n
+        label = f"{force_label(force)}: {by_area.entry(i)}"
+        used, left_out = rows[rows["used"]], rows[~rows["used"]]
+        full = axes.plot(used["spacing_mm"], used["area_mm2"], **style)
+        hollow = axes.plot(left_out["spacing_mm"], left_out["area_mm2"], **style, mfc="white")
+        (hollow if used.empty else full)[0].set_label(label)
+        axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=COLOURS[n])
+    spacings = loading.scaling["spacing"].sortby(RESOLUTION).values
+    axes.set(xscale="log", yscale="log")
+    axes.set_xticks(spacings, [short(s) for s in spacings])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel("spacing $s$ (mm)")
+    axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
+    letter(axes, "a", "contact area and resolution (hollow: not fitted)")
+
+
+def _draw_pressures(axes, loading, i, table):
+    for estimate in loading.estimates:
+        rows = table[table["estimator"] == estimate.label]
+        style = {"color": estimate.style["color"], "linestyle": estimate.style["linestyle"]}
+        label = f"{estimate.symbol}: {estimate.entry(i)}"
+        axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style, label=label)
+    own = table.iloc[0]
+    point = own["specimen_b_mm"], own["specimen_sigma_0_MPa"]
+    axes.plot(*point, "*k", ms=9, label="specimen: $F/b^2$")
+    draw_axes(axes)
+    # The bands come last and do not widen the axes: some intervals span many decades.
+    axes.set_ylim(axes.get_ylim())
+    for estimate in loading.estimates:
+        rows = table[table["estimator"] == estimate.label]
+        ends = rows["sigma_0_low_MPa"], rows["sigma_0_high_MPa"]
+        axes.fill_between(rows["b_mm"], *ends, color=estimate.style["color"], alpha=0.15, lw=0)
+    letter(axes, "b", f"eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
+
+
+def _caption(loading, i, pressure):
+    by_area, by_box = loading.estimates
+    return (
+        f"{loading.opening('Fig. 10')} (a) Real contact area at each resolution, filled where used "
+        f"for A_r ~ s^(2 - Delta_sigma): {_verdict(loading, i)}. (b) Extrapolation by eq. 6 to "
+        f"other sides b at that load, Delta_sigma from A_r(s) (solid): {by_area.text(i)}, and from "
+        f"box counting (dashed): {by_box.text(i)} ({loading.fit_ranges(i)}; bands: 95 % "
+        f"intervals). {disagreement(loading.scaling.isel(load=i))} {_own_size(loading, pressure)}"
+    )
+
+
+def _verdict(loading, i):
+    """Whether the area falls with refinement as a power law, in words."""
+    by_area = loading.estimates[0]
+    start = f"under F = {force_label(loading.forces[i])}"
+    if by_area.reason[i]:
+        return f"{start} there is {by_area.reason[i]}"
+    r2 = number(loading.scaling["r2"].values[i], 3)
+    if by_area.high[i] < 2:
+        return f"{start}, as in the paper, A_r falls with refinement as a power law (r2 = {r2})"
+    return (
+        f"{start}, unlike in the paper, a fall with refinement is not established, as the interval "
+        f"of Delta_sigma reaches 2 (r2 = {r2})"
+    )
+
+
+def _own_size(loading, pressure):
+    """How far eq. 6 is from the specimen it was fitted to."""
+    star = f"the specimen (star, b = {short(loading.side)} mm)"
+    own = pressure[np.isclose(pressure["b_mm"], loading.side)].dropna(subset="sigma_0_MPa")
+    if own.empty:
+        return f"There is no extrapolation to compare with {star}."
+    ratio = own["sigma_0_MPa"] / own["specimen_sigma_0_MPa"]
+    ratios = (f"{r:.2g} ({e})" for r, e in zip(ratio, own["estimator"], strict=True))
+    return (
+        f"On {star} it gives {' and '.join(ratios)} times the pressure applied, which it meets "
+        "only if H_D = b^Delta_sigma."
+    )

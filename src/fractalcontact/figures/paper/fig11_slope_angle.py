@@ -1,0 +1,206 @@
+"""Fig. 11: the limit slope angle against the size of the joint."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..kit.drawing import (
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    group,
+    headline,
+    legends_below,
+    letter,
+    settings_of,
+)
+from ..kit.sizes import (
+    NO_STRENGTH,
+    along_size,
+    apart,
+    draw_bars,
+    draw_means,
+    interval_text,
+    nothing_in,
+    plain_decades,
+    share_shown,
+    share_words,
+    size_axis,
+)
+from ..kit.words import opening, place, short
+
+#: Delta_sigma that later work of the paper's school takes from Bandis' shear tests.
+QUOTED_DELTA = 1.66
+
+
+def draw(atlas, name):
+    """Limit slope angle of parts of the window against their side b.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+    name : str
+        A specimen that slides.
+
+    Returns
+    -------
+    Drawing
+        Its data are the angles at every v/b.
+    """
+    settings = settings_of(atlas, name)
+    laws = group(atlas, "windows", name)
+    share = share_shown(laws, "similar_strength")
+    figure = Figure(figsize=(WIDTH, 4.4))
+    angle, strength = figure.subplots(1, 2)
+    drawn = bool(np.isfinite(laws["similar_strength"].values[share]).all(axis=1).any())
+    _draw_angle(angle, laws, share, drawn)
+    _draw_ratio(strength, laws, share, drawn)
+    headline(figure, settings["label"], place(str(laws["direction"].values)))
+    if drawn:
+        legends_below(figure, entries(angle), entries(strength))
+    return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn))
+
+
+def slope_angle(strength, pressure):
+    """Limit slope angle atan(tau / sigma_n), degrees: a block on a plane so steep just slides.
+
+    Parameters
+    ----------
+    strength, pressure : array_like
+        MPa.
+    """
+    return np.degrees(np.arctan(np.asarray(strength) / pressure))
+
+
+def _draw_angle(axes, laws, share, drawn):
+    b, pressures = laws["side"].values, laws["nominal_pressure"].values
+    for j, pressure in enumerate(pressures):
+        colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
+        ends = along_size(laws.isel(share=share), "similar_strength", (j,))
+        mean, low, high = (slope_angle(values, pressure) for values in ends)
+        beside = apart(b, j, len(pressures))
+        draw_means(axes, beside, mean, laws["similar_held"].values[share, :, j], colour, marker)
+        draw_bars(axes, beside, mean, np.maximum(low, 0), high, colour)
+        barton = slope_angle(laws["barton_strength"].values[:, j], pressure)
+        axes.plot(b, barton, color=colour, lw=0.8, ls="--")
+        label = rf"$\sigma_n$ = {short(pressure)} MPa"
+        axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
+    axes.plot([], [], "ko", mfc="white", label="most of them held")
+    if np.isfinite(laws["barton_strength"]).any():
+        axes.plot([], [], "k--", lw=0.8, label="Barton and Bandis' scale law")
+    size_axis(axes, b, "joint")
+    axes.set_ylim(0, 90)
+    axes.set_ylabel("limit slope angle (degrees)")
+    letter(axes, "a", f"angle at $v$ = {share_words(laws, share)} of $b$")
+    if not drawn:
+        nothing_in(axes, NO_STRENGTH)
+
+
+def _draw_ratio(axes, laws, share, drawn):
+    """tau / tau of the whole window, beside the exponent quoted for shear tests."""
+    b, pressures = laws["side"].values, laws["nominal_pressure"].values
+    for j, pressure in enumerate(pressures):
+        values = laws["similar_strength"].values[share, :, j]
+        style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)], "ls": "none"}
+        axes.plot(apart(b, j, len(pressures)), values / values[0], **style)
+        exponent = interval_text(laws, "similar_strength_exponent", (share, j))
+        label = rf"$\sigma_n$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
+        axes.plot([], [], **style, label=label)
+    slope = QUOTED_DELTA - 2
+    label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}: quoted by later work of the same school"
+    axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
+    size_axis(axes, b, "joint")
+    axes.set_yscale("log")
+    axes.set_ylabel(r"$\tau$ / $\tau$ of the whole window (1)")
+    letter(axes, "b", "strength over that of the largest")
+    if not drawn:
+        axes.set_yscale("linear")
+        nothing_in(axes, "no strength to compare")
+        return
+    ratio = laws["similar_strength"].values[share] / laws["similar_strength"].values[share, 0]
+    quoted = (b.min() / b[0]) ** slope
+    known = ratio[np.isfinite(ratio) & (ratio > 0)]
+    axes.set_ylim(0.7 * min(known.min(), 1), 1.4 * max(known.max(), quoted))
+    plain_decades(axes.yaxis)
+
+
+def _table(laws):
+    tables = []
+    for i, share in enumerate(laws["share"].values):
+        for j, pressure in enumerate(laws["nominal_pressure"].values):
+            tables.append(
+                pd.DataFrame(
+                    {
+                        "v_over_b": share,
+                        "nominal_pressure_MPa": pressure,
+                        "b_mm": laws["side"].values,
+                        "windows": laws["windows"].values,
+                        **{
+                            f"angle_deg{end}": slope_angle(
+                                laws[f"similar_strength{end}"].values[i, :, j], pressure
+                            )
+                            for end in ("", "_low", "_high")
+                        },
+                        "held_share": laws["similar_held"].values[i, :, j],
+                        "barton_angle_deg": slope_angle(
+                            laws["barton_strength"].values[:, j], pressure
+                        ),
+                        **{
+                            f"exponent{end}": float(
+                                laws[f"similar_strength_exponent{end}"].values[i, j]
+                            )
+                            for end in ("", "_low", "_high")
+                        },
+                    }
+                )
+            )
+    return pd.concat(tables, ignore_index=True)
+
+
+# -- caption ---------------------------------------------------------------------------------------
+
+
+def _caption(settings, laws, share, drawn):
+    where = place(str(laws["direction"].values))
+    first = opening("Fig. 11", settings["label"], where)
+    if not drawn:
+        return (
+            f"{first} No angle can be given: it needs a basic friction angle and fitting offsets."
+        )
+    counts = ", ".join(str(n) for n in laws["windows"].values)
+    return (
+        f"{first} Computed, not the paper's tilt tests. (a) Limit slope angle atan(tau/sigma_n) of "
+        f"{counts} sub-windows (from the largest down) at v = {share_words(laws, share)} of their "
+        "side, mean with its 95 % interval. (b) Their strength over that of the whole window; the "
+        f"dotted line has the exponent -(2 - {QUOTED_DELTA:g}) that later work of the same school "
+        "quotes for Bandis' shear tests on joints of 50 to 400 mm, and is no result of this model. "
+        f"{_verdict(laws, share)}"
+    )
+
+
+def _verdict(laws, share):
+    value, low, high = (
+        laws[f"similar_strength_exponent{end}"].values[share] for end in ("", "_low", "_high")
+    )
+    # What is held in all sizes is the same in all: no exponent.
+    told = np.isfinite(low) & (np.abs(value) > 1e-9)
+    if not told.any():
+        return "No exponent: too few sizes, or all of them held."
+    total, falls = int(told.sum()), int((high[told] < 0).sum())
+    rises, quoted = int((low[told] > 0).sum()), QUOTED_DELTA - 2
+    within = int(((low <= quoted) & (quoted <= high))[told].sum())
+    verdict = (
+        "the paper's fall of the angle with b holds"
+        if falls == total
+        else "the paper's fall of the angle with b holds in part"
+        if falls
+        else "the paper's fall of the angle with b is not established"
+    )
+    words = f"The strength falls with b beyond its interval under {falls} of {total} pressures"
+    words += f" and rises under {rises}" if rises else ""
+    words += f": {verdict}; the quoted exponent lies in {within} of the intervals."
+    if (laws["similar_held"].values[share] > 0).any():
+        words += " Angles held at their limit flatten the curves."
+    return words

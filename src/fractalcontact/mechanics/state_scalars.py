@@ -1,0 +1,78 @@
+"""Numbers kept of a state of contact, and how far off they may be."""
+
+import numpy as np
+
+from ..contact.solve import STIFFNESS_ERROR
+from .area import EDGE_EXCESS, contact_perimeter, corrected_area
+from .states import SCALARS
+
+
+def numbers_of(state):
+    """What is kept of a state but its fields.
+
+    Parameters
+    ----------
+    state : ContactState
+
+    Returns
+    -------
+    dict
+        :data:`mechanics.states.SCALARS` and :data:`mechanics.states.ERRORS`.
+
+    Raises
+    ------
+    NotConverged
+        As :attr:`contact.solve.ContactState.stiffness`.
+    """
+    spacing = state.space.spacing
+    of_domain = {
+        "nodes": np.count_nonzero(state.in_contact),
+        "extent": _extent(state.in_contact),
+        "perimeter": contact_perimeter(state.in_contact, spacing),
+        "area_corrected": corrected_area(state.in_contact, spacing),
+    }
+    of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
+    return of_domain | of_state | state_errors(state)
+
+
+def _extent(in_contact):
+    """Share of the cells within the smallest rectangle around those in contact."""
+    touched = [np.flatnonzero(in_contact.any(axis=axis)) for axis in (0, 1)]
+    sides = [np.ptp(along) + 1 if along.size else 0 for along in touched]
+    return float(np.prod(sides)) / in_contact.size
+
+
+def state_errors(state):
+    """How far off the scalars of a state may be because its conditions hold to a residual only.
+
+    Parameters
+    ----------
+    state : ContactState
+
+    Returns
+    -------
+    dict
+        :data:`mechanics.states.ERRORS`.
+
+    Notes
+    -----
+    A state that violates the conditions by a share r of its closure w is the exact one of a
+    topography that differs by up to r w, and heights raised by no more than that change the closure
+    by no more. Area and perimeter change by the nodes whose contact that leaves undecided, each
+    with all its edges; so does the stiffness, in proportion to the nodes between the bounds.
+    """
+    space, undecided = state.space, state.undecided
+    dy, dx = space.spacing
+    hidden = state.residual * state.closure * space.modulus / space.cell
+    below_cap = state.in_contact & (state.pressure < state.hardness)
+    near_cap = below_cap & (state.pressure >= state.hardness - hidden)
+    loose = undecided + np.count_nonzero(near_cap)
+    share = STIFFNESS_ERROR + loose / max(np.count_nonzero(below_cap), 1)
+    return {
+        "closure_error": state.residual * state.closure,
+        "area_error": undecided * space.cell_area,
+        "nodes_error": undecided,
+        "perimeter_error": undecided * 2 * (dy + dx),
+        "area_corrected_error": undecided * (1 + 4 * EDGE_EXCESS) * space.cell_area,
+        "stiffness_error": share * state.stiffness,
+    }

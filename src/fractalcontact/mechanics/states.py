@@ -1,0 +1,217 @@
+"""What is kept of contact states, under which loads they are, and how their parts are joined.
+
+Apart from the solving, which takes the solver: most jobs of a study only read states.
+"""
+
+import numpy as np
+import xarray as xr
+
+from ..core.errors import InputError
+from ..core.labels import about
+from ..surface.specimen import nominal_area
+
+#: Scalars kept of every state: name, unit, long name.
+SCALARS = {
+    "closure": ("mm", "closure w from first touch"),
+    "force": ("N", "normal force F"),
+    "area": ("mm2", "real contact area A_r"),
+    "nodes": ("1", "nodes in contact"),
+    "extent": ("1", "share of the window within the smallest rectangle around the contact"),
+    "perimeter": ("mm", "perimeter of the contact domain's cells inside the window"),
+    "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
+    "stiffness": ("N/mm", "normal stiffness dF/dw"),
+    "residual": ("1", "largest violation of the contact conditions, share of the closure"),
+    "iterations": ("1", "applications of the elastic operator"),
+}
+
+#: Scalars that the tolerance of the solver leaves uncertain. The force is given.
+UNCERTAIN = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffness")
+#: Their errors: name, unit, long name.
+ERRORS = {
+    f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, error by the solver")
+    for name in UNCERTAIN
+}
+
+#: All that is kept of a state but its contact domain.
+OF_STATES = [*SCALARS, *ERRORS, "solved"]
+
+#: Numbers kept of every offset: name, unit, long name.
+OFFSETS = {
+    "offset_made": ("mm", "shear offset v, in whole cells of this direction"),
+    "rigid_opening": ("mm", "rigid dilatancy delta_r at the offset made"),
+    "composite_spread": ("mm", "standard deviation of the composite topography"),
+}
+
+
+#: Pressures of the states that are looked at closely: those of the contact maps, in the first
+#: direction and at the finest resolution, under every load. They are in one part of several.
+MAP_PRESSURE = "map_pressure"
+
+
+def forces_of(loads, area):
+    """Loads as forces, N, ascending: pressures are nominal, on ``area`` in mm2.
+
+    Parameters
+    ----------
+    loads : sequence of (float, str)
+        Value and kind, "force" (N) or "pressure" (MPa).
+    area : float
+
+    Returns
+    -------
+    (n,) ndarray
+    """
+    return np.unique([value * area if kind == "pressure" else value for value, kind in loads])
+
+
+def force_range(loads, specimen):
+    """Smallest and largest force, N, of a range of loads; None for all."""
+    return None if loads is None else tuple(forces_of(loads, nominal_area(specimen))[[0, -1]])
+
+
+def chosen_offset(wanted, offsets):
+    """The offset whose contact domains are looked at: the study's, else the third; mm.
+
+    Parameters
+    ----------
+    wanted : float or None
+        ``map_offset`` of the settings.
+    offsets : (n,) array_like
+        Those solved.
+    """
+    if wanted is None:
+        return float(offsets[min(2, len(offsets) - 1)])
+    return float(min(offsets, key=lambda offset: abs(offset - wanted)))
+
+
+def hardness_of(settings, specimen):
+    """Largest pressure of the material, MPa, or infinity.
+
+    Raises
+    ------
+    InputError
+        If a load of the study is more than the whole window carries at that pressure.
+    """
+    hardness = settings["material"].get("hardness", np.inf)
+    area = nominal_area(specimen)
+    largest = forces_of(settings["loads"], area)[-1]
+    if largest >= hardness * area:
+        raise InputError(
+            f"specimen {specimen.attrs['name']}: load {largest:g} N is more than the window of "
+            f"{area:.4g} mm2 carries at a hardness of {hardness:g} MPa; write loads below "
+            f"{hardness * area:.4g} N"
+        )
+    return hardness
+
+
+def combine(parts):
+    """One dataset from the parts that several jobs solved.
+
+    Parameters
+    ----------
+    parts : sequence of xr.Dataset
+        From :func:`mechanics.sweep.contact_states` or from here; empty ones are passed over.
+
+    Returns
+    -------
+    xr.Dataset
+        Offsets, resolutions and loads ascending, directions in the order of ``parts``. Without
+        :data:`MAP_PRESSURE`: see :func:`map_states`.
+
+    Notes
+    -----
+    The n-th offsets of all directions belong together, but each is a whole number of cells of its
+    own direction. Where cells are not square they differ by less than a cell: ``offset`` is that
+    of the first direction, as in :func:`mechanics.joint.describe_joint`, and ``offset_made``
+    that of each.
+
+    Raises
+    ------
+    ValueError
+        If the directions do not have the same number of offsets.
+    """
+    groups = {}
+    for part in parts:
+        if part.sizes["offset"]:
+            states = part.drop_vars(MAP_PRESSURE, errors="ignore")
+            for i, direction in enumerate(part["direction"].values):
+                key = (direction, tuple(part["resolution"].values))
+                groups.setdefault(key, []).append(states.isel(direction=[i]))
+    by_direction = {}
+    for (direction, _), members in groups.items():
+        whole = xr.concat(members, "offset", data_vars="minimal").sortby("offset")
+        by_direction.setdefault(direction, []).append(whole)
+    return side_by_side([_join_resolutions(members) for members in by_direction.values()])
+
+
+def side_by_side(directions):
+    """One dataset of the states of several directions, at the offsets of the first."""
+    states = [part.drop_vars(MAP_PRESSURE, errors="ignore") for part in directions]
+    joined = xr.concat(states, "direction", data_vars="minimal", join="override")
+    for part in directions:
+        if MAP_PRESSURE in part:
+            joined[MAP_PRESSURE] = part[MAP_PRESSURE]
+    return joined
+
+
+def domains_of(states):
+    """The contact domains alone, with what says which of them are known, and how well."""
+    kept = ("solved", "nodes_error")
+    return states.drop_vars([name for name in (*OF_STATES, *OFFSETS) if name not in kept])
+
+
+def map_pressure(pressures, offset, direction, factor):
+    """The variable :data:`MAP_PRESSURE` of a dataset, from what it says of itself.
+
+    Parameters
+    ----------
+    pressures : (load, ny, nx) array_like
+        MPa.
+    offset : float
+        mm.
+    direction : str
+    factor : int
+        Resolution k.
+    """
+    of_place = {"offset": offset, "direction": direction, "resolution": factor}
+    labels = about("MPa", "pressure p at the offset of the contact maps") | of_place
+    return {MAP_PRESSURE: (("load", f"y_{factor}", f"x_{factor}"), np.array(pressures), labels)}
+
+
+def map_states(parts):
+    """Pressures of the states that are looked at closely, under every load.
+
+    Parameters
+    ----------
+    parts : sequence of xr.Dataset
+        From :func:`mechanics.sweep.contact_states`.
+
+    Returns
+    -------
+    xr.Dataset
+        ``pressure`` (load, y, x), MPa, with the scalars ``direction``, ``offset`` and
+        ``resolution``, the multiple k of the scan's spacing.
+    """
+    part = next(part for part in parts if MAP_PRESSURE in part)
+    pressure = part[MAP_PRESSURE]
+    place = pressure.attrs
+    return xr.Dataset(
+        {"pressure": (("load", "y", "x"), pressure.values, about("MPa", "pressure p"))},
+        coords={
+            "load": part["load"],
+            "direction": place["direction"],
+            "offset": ((), place["offset"], about("mm", "shear offset v")),
+            "resolution": (
+                (),
+                int(place["resolution"]),
+                about("1", "multiple k of the scan's spacing"),
+            ),
+        },
+    )
+
+
+def _join_resolutions(parts):
+    """Parts that differ in resolution alone: scalars side by side, fields each their own."""
+    scalars = xr.concat([part[OF_STATES] for part in parts], "resolution")
+    fields = [part.drop_vars([*OF_STATES, "resolution"]) for part in parts]
+    return xr.merge([scalars, *fields], compat="identical", join="exact").sortby("resolution")

@@ -1,0 +1,325 @@
+"""Where the self-affine range of a measured surface ends: noise floor, low-pass filter, roll-off.
+
+What an instrument adds shows in the spectrum of profiles at short wavelengths. Independent errors
+of the nodes make it flat, and with N the level of that floor their standard deviation is the root
+of N / spacing. A finite spot, smoothing or interpolation makes it steeper than the surface. At the
+long end a surface may roll off. A model with any of these is fitted to the spectrum, and one of
+them counts as seen where the spectrum cannot be told as well without it; the model is that of
+:mod:`roughness.spectrum_model`.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ..core.intervals import t_quantile
+from .curves import Curve, ratio
+from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, named
+
+#: A feature must lower the score (BIC) by this beyond its share: "strong" in Kass & Raftery,
+#: J. Am. Stat. Assoc. 90 (1995) 773.
+EVIDENCE = 6.0
+#: No bin of a spectrum is trusted better than this (relative): tapering and binning bend it.
+BIN_ERROR = 0.05
+#: Neighbouring strips of one surface share its long waves (`estimators.ESTIMATORS`).
+SPREAD = 1.2
+#: Slope 1 + 2H of a spectrum, between H = 0.2 and H = 1: flatter no rock is known, and what is
+#: flatter can hardly be told from noise.
+SLOPES = (1.4, 3.0)
+#: A filter must halve the spectrum at least at this many spacings, or it is the grid's own limit.
+SHORTEST_FILTER = 2.2
+#: A floor must meet the line at least at this many spacings, or it may be aliasing.
+SHORTEST_NOISE = 2.5
+#: Power that a taper leaks from the longest wave fitted, at w times its wave number (from 2 on) and
+#: in units of its own: at most this w^-6.
+LEAKAGE = 3.0
+#: Between roll-off and the end of the range must lie this ratio, or there is no range.
+SHORTEST_RANGE = 4.0
+#: A wavelength known less well than by this factor either way is not told.
+VAGUE = 2.5
+#: A spectrum farther than by this factor (rms) from every model follows no power law: nothing is
+#: said of its noise or filter.
+NO_POWER_LAW = 2.0
+#: Features that lie at a wavelength.
+LENGTHS = ("noise", "filter", "roll_off")
+#: A strip of profiles with so many times the median strip's power holds a spike or a step, which is
+#: no noise of the instrument: it is left out.
+SPIKY = 3.0
+#: Spectra of fewer bins are not fitted.
+FEWEST_BINS = 7
+
+
+class FractalRange(NamedTuple):
+    """What was found in one spectrum: (value, low, high) of a 95 % interval, NaN if not seen."""
+
+    form: Form | None
+    """Parts of the model; None where the spectrum has too few bins."""
+    hurst: tuple[float, float, float]
+    line: tuple[float, float]
+    """Level (mm3) at a wavelength of 1 mm and exponent of the self-affine line."""
+    noise_rms: tuple[float, float, float]
+    """Standard deviation of independent errors of the nodes, mm."""
+    noise_limit: float
+    """What it can be at most: the lowest level of the spectrum, mm."""
+    noise_wavelength: tuple[float, float, float]
+    """Where the self-affine line meets the noise floor, mm."""
+    filter_wavelength: tuple[float, float, float]
+    """Where a filter halves the spectrum, mm."""
+    roll_off_wavelength: tuple[float, float, float]
+    """Above which the spectrum is flat, mm."""
+    end: tuple[float, float, float]
+    """Shortest wavelength of the fractal range: the longer of noise and filter, mm."""
+    misfit: float
+    """Root mean square of the logarithm of measured over fitted spectrum."""
+    left_out: float
+    """Strips of profiles left out for spikes or steps, mean over the bins."""
+    level: np.ndarray
+    """The spectrum (k,) without them, mm3."""
+    fitted: np.ndarray
+    """The model (k,), mm3."""
+
+
+_UNSEEN = (np.nan,) * 3
+
+
+def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
+    """Fit the models to a spectrum and say what of them is seen.
+
+    Parameters
+    ----------
+    curve : Curve
+        Of :func:`roughness.curves.profile_spectra`, mm and mm3.
+    spacing : float
+        Between the nodes of the profiles, mm.
+
+    Returns
+    -------
+    FractalRange
+
+    Notes
+    -----
+    Strips of profiles that stand out from the others (`SPIKY`) are left out first. Least squares of
+    the logarithms, each bin weighted by its jackknife error over the strips and
+    `BIN_ERROR`. The form is the one with the lowest chi-square + (parameters) ln(bins) +
+    `EVIDENCE` (features), the chi-square in units of what the best form leaves, among those whose
+    features lie within the spectrum and at a wavelength told within `VAGUE`: a floor that meets the
+    line at `SHORTEST_NOISE` spacings or more (or stands out at the shortest wave behind a filter),
+    a filter at `SHORTEST_FILTER` spacings or more, a roll-off below the longest wave. Intervals are
+    the wider of the fit's and the jackknife's, and hold those of another sampling with a score as
+    good within `EVIDENCE`.
+    """
+    curve, left_out = _without_spiky_strips(curve)
+    level = curve.measure()
+    known = _above_leakage(curve.length, level)
+    limit = float(np.sqrt(level[known].min() / spacing)) if known.any() else np.nan
+    if known.sum() < FEWEST_BINS:
+        nothing = np.full(len(level), np.nan)
+        return FractalRange(
+            None,
+            _UNSEEN,
+            (np.nan,) * 2,
+            _UNSEEN,
+            limit,
+            *[_UNSEEN] * 4,
+            np.nan,
+            left_out,
+            level,
+            nothing,
+        )
+    x = 2 * spacing / curve.length[known]
+    parts = np.log(curve.without_each_part()[:, known])
+    logs = np.log(level[known])
+    error = np.hypot(_jackknife(parts), BIN_ERROR)
+
+    form, fit, values = _most_likely(x, logs, error, parts)
+    fitted = np.full(len(level), np.nan)
+    fitted[known] = np.exp(log_model(form, fit.x, x))
+    misfit = float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2)))
+    if misfit > np.log(NO_POWER_LAW):
+        values = {"hurst": values["hurst"]}
+    lengths = {  # logarithms of x become wavelengths
+        name: tuple(2 * spacing * np.exp(-np.array([value, high, low])))  # infinite if a bound
+        for name, (value, low, high) in values.items()
+        if name in LENGTHS
+    }
+    rms = np.exp(np.array(values.get("level", _UNSEEN)) / 2) / np.sqrt(spacing)
+    slope = fit.x[1]
+    return FractalRange(
+        form=form,
+        hurst=tuple(values["hurst"]),
+        line=(float(np.exp(fit.x[0]) * (2 * spacing) ** -slope), float(slope)),
+        noise_rms=tuple(rms),
+        noise_limit=limit,
+        noise_wavelength=lengths.get("noise", _UNSEEN),
+        filter_wavelength=lengths.get("filter", _UNSEEN),
+        roll_off_wavelength=lengths.get("roll_off", _UNSEEN),
+        end=max(
+            [lengths[name] for name in ("noise", "filter") if name in lengths], default=_UNSEEN
+        ),
+        misfit=misfit,
+        left_out=left_out,
+        level=level,
+        fitted=fitted,
+    )
+
+
+def _without_spiky_strips(curve: Curve) -> tuple[Curve, float]:
+    """The curve without strips far above the median of all, and how many those are in a bin."""
+    strips = ratio(curve.total, curve.weight)
+    if not np.isfinite(strips).any():
+        return curve, np.nan
+    spiky = strips > SPIKY * np.nanmedian(strips, axis=1, keepdims=True)
+    kept = Curve(curve.length, np.where(spiky, 0, curve.total), np.where(spiky, 0, curve.weight))
+    return kept, float(spiky.sum(axis=1).mean())
+
+
+def _above_leakage(length, level) -> np.ndarray:
+    """Bins that hold power, and more of it than the taper leaks from the longest wave."""
+    known = np.isfinite(level) & (level > 0)
+    if known.any():
+        longest = np.flatnonzero(known)[-1]
+        part = length / length[longest]
+        known &= (level > LEAKAGE * level[longest] * part**6) | (part > 0.5)
+    return known
+
+
+# -- fitting ---------------------------------------------------------------------------------------
+
+
+def _most_likely(x, logs, error, parts):
+    """The form with the lowest score that can be told, its fit and features with intervals."""
+    fits = {form: _fit(form, x, logs, error) for form in FORMS}
+    freedom = {form: max(len(x) - len(fit.x), 1) for form, fit in fits.items()}
+    left = max(1.0, min(2 * fit.cost / freedom[form] for form, fit in fits.items()))
+    score = {
+        form: 2 * fit.cost / left + len(fit.x) * np.log(len(x)) + EVIDENCE * form.features
+        for form, fit in fits.items()
+        if _is_sensible(form, fit.x, x)
+    }
+    for form in sorted(score, key=score.get):  # the line alone, without features, is always told
+        values = _with_intervals(form, fits[form], x, logs, parts, error)
+        for other in _rivals(form, score):
+            values = _joined(values, _with_intervals(other, fits[other], x, logs, parts, error))
+        if _is_told(values):
+            return form, fits[form], values
+
+
+def _rivals(form: Form, score) -> list[Form]:
+    """Forms with the same features that the grid may as well have made: nearly the same score."""
+    same = [form._replace(sampling=sampling) for sampling in SAMPLINGS if sampling != form.sampling]
+    return [other for other in same if score.get(other, np.inf) < score[form] + EVIDENCE]
+
+
+def _joined(values, others):
+    """Values with intervals that hold those of a rival too."""
+    return {
+        name: (value, min(low, others[name][1]), max(high, others[name][2]))
+        if name in others
+        else (value, low, high)
+        for name, (value, low, high) in values.items()
+    }
+
+
+def _is_told(values) -> bool:
+    """Whether all wavelengths, and the noise's standard deviation, are known within `VAGUE`."""
+    widths = {name: high - low for name, (_, low, high) in values.items() if np.isfinite(low)}
+    widths["level"] = widths.get("level", 0.0) / 2  # of a variance
+    return all(widths.get(name, 0.0) < 2 * np.log(VAGUE) for name in (*LENGTHS, "level"))
+
+
+def _is_sensible(form: Form, parameters: np.ndarray, x: np.ndarray) -> bool:
+    """Whether all features of a form lie where the spectrum shows them."""
+    own = named(form, parameters)
+    short_end = 0.0
+    if form.filtering:
+        if own["filter"] > np.log(2 / SHORTEST_FILTER):
+            return False
+        short_end = own["filter"]
+    if form.noisy:
+        meeting = (own["a"] - own["level"]) / own["slope"]
+        silent = log_model(form._replace(noisy=False), parameters[:-1], x[:1])
+        if silent[0] > own["level"] or not (form.filtering or meeting < np.log(2 / SHORTEST_NOISE)):
+            return False
+        short_end = min(short_end, meeting)
+    if form.rolls_off:
+        return np.log(x.min()) < own["roll_off"] < short_end - np.log(SHORTEST_RANGE)
+    return True
+
+
+def _fit(form: Form, x, logs, error):
+    """Weighted least squares of the logarithms from some starts, the best of them."""
+    low, high = _bounds(form, x, logs)
+
+    def residuals(parameters):
+        return (log_model(form, parameters, x) - logs) / error
+
+    fits = [
+        least_squares(
+            residuals, np.clip(p, low + 1e-6, high - 1e-6), bounds=(low, high), ftol=1e-6, xtol=1e-6
+        )
+        for p in _starts(form, x, logs)
+    ]
+    return min(fits, key=lambda fit: fit.cost)
+
+
+def _bounds(form: Form, x, logs):
+    ends = {
+        "a": (logs.min() - 60, logs.max() + 60),
+        "slope": SLOPES,
+        "roll_off": (np.log(x.min()) - 3, 0.0),
+        "filter": (np.log(x.min()), 3.0),
+        "level": (logs.min() - 20, logs.max() + 5),
+    }
+    names = named(form, np.zeros(2 + form.features))
+    return np.array([ends[name] for name in names], float).T
+
+
+def _starts(form: Form, x, logs):
+    """Starting points: filters at two places, everything else at one."""
+    middle = slice(len(x) // 4, -(len(x) // 4))
+    slope = np.clip(-np.polyfit(np.log(x[middle]), logs[middle], 1)[0], 1.2, 2.8)
+    a = np.mean(logs + slope * np.log(x))
+    begin = {"a": a, "slope": slope, "roll_off": np.log(2 * x.min()), "level": logs.min()}
+    places = (np.log(0.25), np.log(0.6)) if form.filtering else (0.0,)
+    names = named(form, np.zeros(2 + form.features))
+    return [np.array([(begin | {"filter": place})[name] for name in names]) for place in places]
+
+
+def _with_intervals(form: Form, fit, x, logs, parts, error) -> dict[str, tuple]:
+    """Features with their 95 % intervals: the wider of jackknife and fit.
+
+    Parameters without one strip follow from those of all by one step of Gauss and Newton.
+    """
+    inverse = np.linalg.pinv(fit.jac)
+    without = [features_of(form, fit.x + inverse @ ((part - logs) / error), x) for part in parts]
+    quantile = t_quantile(len(parts) - 1)
+    scatter = max(1.0, 2 * fit.cost / max(len(x) - len(fit.x), 1))
+    covariance = scatter * inverse @ inverse.T
+    intervals = {}
+    for name, value in features_of(form, fit.x, x).items():
+        values = np.array([[found.get(name, 0.0)] for found in without])
+        gradient = _gradient(form, fit.x, x, name, value)
+        of_fit = np.sqrt(gradient @ covariance @ gradient)
+        if name == "noise" and value <= np.log(x.min()):
+            # The floor lies above the surface at all wavelengths seen: a bound, not an estimate.
+            intervals[name] = (value, -np.inf, value)
+            continue
+        half = quantile * max(SPREAD * float(_jackknife(values)[0]), of_fit)
+        intervals[name] = (value, value - half, value + half)
+    return intervals
+
+
+def _gradient(form, parameters, x, name, value):
+    """Derivative of a feature by the parameters."""
+    step = 1e-6
+    steps = parameters + step * np.eye(len(parameters))
+    return np.array([features_of(form, p, x).get(name, value) - value for p in steps]) / step
+
+
+def _jackknife(without: np.ndarray) -> np.ndarray:
+    """Standard error of values of which those without each part are given, (parts, k)."""
+    parts = len(without)
+    if parts < 2:
+        return np.zeros(without.shape[1])
+    return np.sqrt((parts - 1) / parts * np.sum((without - without.mean(axis=0)) ** 2, axis=0))

@@ -1,0 +1,103 @@
+"""How good a scan is, in sentences: noise floor, filter, roll-off, steps."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from ..core.intervals import INTERVAL
+from .curves import STRIPS
+from .fractal_range import NO_POWER_LAW
+
+AXES = ("x", "y")
+#: Noise along one axis this many times that along the other belongs to the scan's lines.
+UNEQUAL = 2.0
+#: Below this exponent 1 + 2H no rock is known, and spikes and noise look alike.
+FLATTEST = 1.5
+
+
+def interval_words(found, name, unit=None) -> str:
+    """A scalar length with its 95 % interval, if it has one: three digits, in mm or what suits."""
+    value, low, high = (found[name + ending].item() for ending in INTERVAL)
+    unit, size = (unit, 1.0) if unit == "mm" else height_unit(value)
+    interval = f" [{low / size:.3g}, {high / size:.3g}]" if math.isfinite(low) else ""
+    return f"{value / size:.3g}{interval} {unit}"
+
+
+def length_words(length) -> str:
+    """A length in mm in the unit that suits it: three digits."""
+    unit, size = height_unit(length)
+    return f"{float(length) / size:.3g} {unit}"
+
+
+def height_unit(height) -> tuple[str, float]:
+    """Unit that suits a height in mm: its name, and how many mm it is."""
+    units = (("mm", 1.0), ("µm", 1e-3), ("nm", 1e-6))
+    return next((unit for unit in units if height >= 0.1 * unit[1]), units[-1])
+
+
+def noise_words(quality: xr.Dataset, face: str) -> str:
+    """The noise floor of a face in a sentence, with what it may come from.
+
+    Parameters
+    ----------
+    quality : Dataset
+        From `scan_quality`.
+    face : {"lower", "upper"}
+    """
+    found = quality.sel(face=face)
+    if not any(found["form"].values):
+        return "too small for a spectrum: nothing is known of its noise"
+    along = [_noise_along(axis, found.sel(axis=axis)) for axis in AXES]
+    words = f"noise floor {', '.join(along)}"
+    rms, limit = found["noise_rms"].values, found["noise_limit"].values
+    for axis, own, other in zip(AXES, rms, np.fmin(rms, limit)[::-1], strict=True):
+        if own > UNEQUAL * other:
+            across = AXES[1 - AXES.index(axis)]
+            words += f"; more along {axis}: scan lines along {across} are shifted in height"
+    return words
+
+
+def _noise_along(axis, of_axis) -> str:
+    """What is known of the noise along one axis."""
+    if of_axis["noise_rms"].notnull():
+        return f"{interval_words(of_axis, 'noise_rms')} rms along {axis}"
+    limit = f"(at most {length_words(of_axis['noise_limit'].item())})"
+    if of_axis["misfit"] > math.log(NO_POWER_LAW):
+        factor = math.exp(of_axis["misfit"].item())
+        return (
+            f"not to be told along {axis} {limit}, where the spectrum is no power law: off the "
+            f"model by a factor {factor:.2g}"
+        )
+    return f"none seen along {axis} {limit}"
+
+
+def range_words(quality: xr.Dataset, face: str) -> str:
+    """Filter, roll-off, steps and misfit of a face in a sentence; "" if there are none."""
+    found = quality.sel(face=face)
+    words = []
+    for axis in AXES:
+        of_axis = found.sel(axis=axis)
+        if np.isfinite(of_axis["filter_wavelength"]):
+            words.append(
+                f"low-pass filtered along {axis}, halved at a wavelength of "
+                f"{interval_words(of_axis, 'filter_wavelength', 'mm')}"
+            )
+        if np.isfinite(of_axis["roll_off_wavelength"]):
+            words.append(
+                f"rolls off along {axis} at {interval_words(of_axis, 'roll_off_wavelength', 'mm')}"
+            )
+        if of_axis["line_exponent"] < FLATTEST and np.isnan(of_axis["noise_rms"]):
+            words.append(f"so flat a spectrum along {axis} that noise cannot be told from relief")
+        if of_axis["strips_left_out"] >= 0.5:
+            words.append(
+                f"{of_axis['strips_left_out']:.0f} of {STRIPS} strips of profiles along {axis} "
+                "left out of the spectrum for spikes or steps"
+            )
+    step = found["height_step"].item()
+    if math.isfinite(step):
+        words.append(
+            f"heights are multiples of {length_words(step)}, by itself "
+            f"{length_words(step / math.sqrt(12))} rms of noise"
+        )
+    return "; ".join(words)

@@ -1,0 +1,1 @@
+"""A study: its configuration, scan files, list of figures, and the atlas."""

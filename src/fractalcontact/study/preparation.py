@@ -1,0 +1,32 @@
+"""From scan files to a specimen: what the study does and what `check_scans` tries."""
+
+from ..scan.read import read_faces
+from ..surface.specimen import make_specimen
+from .configuration import window_arguments
+
+
+def prepare_specimen(lower, upper, options, settings, name):
+    """Read the faces of a specimen, level them and place the window.
+
+    Parameters
+    ----------
+    lower, upper : path-like
+        ``upper`` is None if one face was scanned.
+    options : mapping
+        Scan keys of the sidecar.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    name : str
+
+    Returns
+    -------
+    Dataset
+        As :func:`surface.specimen.make_specimen` makes it.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or the window finds no place.
+    """
+    faces = read_faces(lower, upper, options)
+    return make_specimen(*faces, name=name, **window_arguments(settings))

@@ -1,0 +1,217 @@
+"""Which files of a folder make which specimen: by their names alone, nothing is opened."""
+
+import unicodedata
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..core.errors import InputError
+from ..core.file_names import specimen_name, split_file_name
+
+_IGNORED = ("README", "LICENSE")
+#: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
+LONGEST_NAME = 220
+#: Control characters, invisible and direction marks, undecodable bytes, line separators.
+_INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
+
+
+@dataclass(frozen=True)
+class ScanFiles:
+    """The files of one specimen.
+
+    Attributes
+    ----------
+    name : str
+        The specimen's name, safe for paths and Snakemake wildcards.
+    lower : Path
+        The scan of the lower face, or the only one.
+    upper : Path or None
+        The scan of the upper face, if there is one.
+    sidecar : Path or None
+        What the user says about the scan, for both faces.
+    original_name : str
+        The name as the files spell it.
+    """
+
+    name: str
+    lower: Path
+    upper: Path | None
+    sidecar: Path | None
+    original_name: str
+
+
+def find_scans(folder) -> dict[str, ScanFiles]:
+    """List the specimens of a folder.
+
+    ``NAME.ext`` is one face, ``NAME.lower.ext`` and ``NAME.upper.ext`` are two, ``NAME.yaml`` is
+    the sidecar of either. Hidden files, README*, LICENSE* and sub-folders are passed over.
+
+    Parameters
+    ----------
+    folder : path-like
+
+    Returns
+    -------
+    dict of str to ScanFiles
+        By specimen name, sorted.
+
+    Raises
+    ------
+    InputError
+        If the folder does not exist; two files claim one name, or names that differ in case alone;
+        a face lacks its counterpart, a sidecar has no scan; a name is too long, has no usable
+        character, invisible ones or braces; a link leads out of the folder; a file is a pipe or a
+        device, or a folder has the name of a scan file.
+    """
+    scans, refused = list_scans(folder)
+    for error in refused.values():
+        raise error
+    return scans
+
+
+def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
+    """List the specimens of a folder, and what is wrong with those that have none.
+
+    Parameters
+    ----------
+    folder : path-like
+
+    Returns
+    -------
+    scans : dict of str to ScanFiles
+        As `find_scans` gives them.
+    refused : dict of str to InputError
+        By specimen name, or by file name where it gives none: the first thing wrong with each.
+
+    Raises
+    ------
+    InputError
+        If the folder does not exist.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError(
+            f"{folder}: no such folder (not mounted?); make it, name another one under 'scans' in "
+            "the study, or write 'scans: null' if it has none"
+        )
+    roles: dict[str, dict[str, Path]] = {}
+    refused: dict[str, InputError] = {}
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or path.name.upper().startswith(_IGNORED):
+            continue
+        if path.is_dir():
+            if _is_named_like_a_scan(path):
+                refused[path.name] = InputError(
+                    f"{path}: a folder, not a file; put the scan file itself here, or rename it"
+                )
+            continue
+        original_name, role = split_file_name(path.name)
+        name = specimen_name(original_name)
+        try:
+            _refuse_misleading(path)
+            _refuse_outside_link(path, folder)
+            _refuse_unusable(name, path)
+            of_specimen = roles.setdefault(name, {})
+            if role in of_specimen:
+                raise _two_claims(name, of_specimen[role], path)
+            of_specimen[role] = path
+        except InputError as error:
+            refused.setdefault(name or path.name, error)
+    refused |= _case_alone(roles)
+    scans = {}
+    for name in sorted(roles.keys() - refused.keys()):
+        try:
+            scans[name] = _scan_files(name, roles[name])
+        except InputError as error:
+            refused[name] = error
+    return scans, refused
+
+
+def _is_named_like_a_scan(folder: Path) -> bool:
+    """Whether a folder is likely to be an archive that somebody unpacked."""
+    if not folder.suffix:
+        return False
+    from ..scan.formats import known_extensions  # takes a second, and is hardly ever needed
+
+    return folder.suffix.lower() in known_extensions()
+
+
+def _refuse_misleading(path: Path) -> None:
+    """Names that look like others, or do things to a terminal, are not repeated anywhere."""
+    if any(unicodedata.category(character) in _INVISIBLE for character in path.name):
+        raise InputError(
+            f"{path.parent}: the file name {path.name!a} has invisible characters (line "
+            "breaks, control or direction marks); rename the file"
+        )
+    if set("{}") & set(path.name):
+        raise InputError(f"{path}: a study fills in what stands in braces; rename the file")
+
+
+def _refuse_unusable(name: str, path: Path) -> None:
+    if not name:
+        raise InputError(f"{path}: give the file a name with letters or digits in it")
+    if len(name) > LONGEST_NAME:
+        raise InputError(
+            f"{path}: a specimen name of {len(name)} characters, more than the {LONGEST_NAME} that "
+            "leave room for the names of its results; shorten the file's name"
+        )
+
+
+def _case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
+    """On many discs Rock.nc and rock.nc are one file: one result would overwrite the other."""
+    spelled: dict[str, str] = {}
+    refused = {}
+    for name in roles:
+        other = spelled.setdefault(name.lower(), name)
+        if other != name:
+            first, second = (next(iter(roles[n].values())) for n in (other, name))
+            refused[name] = InputError(
+                f"{first.name} and {second.name} in {first.parent} differ in upper and lower case "
+                "alone; rename one, or spell both the same if they belong together"
+            )
+    return refused
+
+
+def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
+    """Check that the files of one specimen go together."""
+    only, lower, upper = roles.get("only"), roles.get("lower"), roles.get("upper")
+    sidecar = roles.get("sidecar")
+    if only and (lower or upper):
+        raise _two_claims(name, only, lower or upper)
+    if not (only or lower or upper):
+        folders = [p.name for p in sidecar.parent.glob("*/") if p.stem == sidecar.stem]
+        hint = f"; {folders[0]} is a folder, which is not looked into" if folders else ""
+        raise InputError(
+            f"{sidecar}: this sidecar has no scan; put {sidecar.stem}.<ext> (or "
+            f"{sidecar.stem}.lower.<ext> and {sidecar.stem}.upper.<ext>) beside it, or remove it"
+            f"{hint}"
+        )
+    if bool(lower) != bool(upper):
+        there, missing = (lower, "upper") if lower else (upper, "lower")
+        original_name, _ = split_file_name(there.name)
+        raise InputError(
+            f"{there}: the {missing} face is missing; add {original_name}.{missing}{there.suffix}, "
+            f"or rename this file {original_name}{there.suffix} if only one face was scanned"
+        )
+    lower = only or lower
+    return ScanFiles(name, lower, upper, sidecar, split_file_name(lower.name)[0])
+
+
+def _refuse_outside_link(path: Path, folder: Path) -> None:
+    """A folder handed over by a stranger must not make the program read other files."""
+    try:
+        target = path.resolve(strict=True)
+    except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python
+        raise InputError(
+            f"{path}: not a readable file (a broken link?); remove or replace it"
+        ) from error
+    if path.is_symlink() and not target.is_relative_to(folder.resolve()):
+        raise InputError(f"{path}: this link leads out of {folder}; copy the file itself here")
+    if not target.is_file():
+        raise InputError(f"{path}: a pipe, socket or device, not a file; remove it")
+
+
+def _two_claims(name: str, first: Path, second: Path) -> InputError:
+    return InputError(
+        f"{first.name} and {second.name} in {first.parent} both claim the specimen name {name!r}; "
+        "rename one of them"
+    )

@@ -1,0 +1,163 @@
+"""The text of a sidecar: YAML reduced to what a few keys need, since strangers write it.
+
+Words and numbers mean what they look like: ``1e-3`` is a number, ``no``, ``1:30`` and
+``2020-01-01`` are words, ``010`` is ten. Anchors, tags, keys written twice and nesting without end
+are refused; so is a file far longer than any sidecar.
+"""
+
+import re
+from typing import ClassVar
+
+import yaml
+
+from ..core.errors import InputError
+
+LARGEST_SIDECAR = 64 * 1024  # bytes
+DEEPEST_SIDECAR = 10  # lists within mappings within ...
+_LONGEST_INTEGER = 18  # digits; a longer one is a number like any other
+
+_STANDARD = "tag:yaml.org,2002:"
+#: The core schema of YAML 1.2; PyYAML's own is that of 1.1.
+_WORDS = (
+    ("null", r"~|null|Null|NULL|"),
+    ("bool", r"true|True|TRUE|false|False|FALSE"),
+    ("int", r"[-+]?[0-9]+"),
+    ("float", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan"),
+)
+
+
+def is_contact_map(scan_options):
+    """Whether a sidecar says that its file is a map of contact, not of heights."""
+    return scan_options.get("kind") == "contact-map"
+
+
+def sidecar_of_matrix(spacing):
+    """Scan keys of a matrix in mm.
+
+    Parameters
+    ----------
+    spacing : float
+        Distance of two cells, mm.
+    """
+    return {"unit": "mm", "spacing": f"{spacing:.12g} mm"}
+
+
+def read_yaml(path):
+    """Mapping in a YAML file.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    dict
+        Keys are texts; values texts, numbers, truth values, None, lists or such mappings.
+
+    Raises
+    ------
+    InputError
+        If the file is too long, no YAML, or not a mapping.
+    """
+    try:
+        with open(path, "rb") as stream:
+            content = stream.read(LARGEST_SIDECAR + 1)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+    if len(content) > LARGEST_SIDECAR:
+        raise InputError(
+            f"{path}: longer than the {LARGEST_SIDECAR // 1024} kB of a sidecar; write only the "
+            "keys listed in scans/README.md"
+        )
+    try:
+        document = yaml.load(content, _Loader)
+    except yaml.YAMLError as error:
+        raise unreadable(path, error) from error
+    if document is None:
+        return {}
+    if not isinstance(document, dict):
+        raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
+    return document
+
+
+def unreadable(path, error):
+    """One sentence for what a file has that is not YAML.
+
+    Parameters
+    ----------
+    path : path-like
+    error : yaml.YAMLError
+
+    Returns
+    -------
+    InputError
+    """
+    if isinstance(error, yaml.MarkedYAMLError):
+        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
+        problem = f"{line}{error.problem}"
+    else:
+        problem = f"{error.reason} at character {error.position}; save it as plain text in UTF-8"
+    return InputError(f"{path}: not readable as YAML: {problem}")
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML's safe loader without what a sidecar does not need."""
+
+    yaml_implicit_resolvers: ClassVar[dict] = {}
+    yaml_constructors: ClassVar[dict] = {}
+    depth = 0
+
+    def compose_node(self, parent, index):
+        event = self.peek_event()
+        if isinstance(event, yaml.AliasEvent) or event.anchor:
+            raise _refusal("anchors (&) and aliases (*) have no use here; write it out", event)
+        self.depth += 1
+        if self.depth > DEEPEST_SIDECAR:
+            raise _refusal(f"nested more than {DEEPEST_SIDECAR} deep", event)
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
+
+
+def _refusal(problem: str, where) -> yaml.MarkedYAMLError:
+    return yaml.constructor.ConstructorError(problem=problem, problem_mark=where.start_mark)
+
+
+def _mapping(loader, node):
+    found = {}
+    for key_node, value_node in node.value:
+        key = loader.construct_object(key_node, deep=True)
+        if not isinstance(key, str):
+            raise _refusal(f"the key {str(key)[:40]!r} is no word", key_node)
+        if key in found:
+            raise _refusal(f"the key {key[:40]!r} stands here a second time", key_node)
+        found[key] = loader.construct_object(value_node, deep=True)
+    return found
+
+
+def _sequence(loader, node):
+    return [loader.construct_object(item, deep=True) for item in node.value]
+
+
+def _integer(loader, node):
+    return int(node.value) if len(node.value) <= _LONGEST_INTEGER else float(node.value)
+
+
+def _float(loader, node):
+    return float(node.value.replace(".inf", "inf").replace(".nan", "nan"))
+
+
+def _unknown(loader, node):
+    raise _refusal(f"{node.tag[:40]!r} has no use here; write plain words and numbers", node)
+
+
+for _name, _pattern in _WORDS:
+    _Loader.add_implicit_resolver(_STANDARD + _name, re.compile(rf"(?:{_pattern})\Z"), None)
+_Loader.add_constructor(_STANDARD + "null", lambda loader, node: None)
+_Loader.add_constructor(_STANDARD + "bool", lambda loader, node: node.value.lower() == "true")
+_Loader.add_constructor(_STANDARD + "int", _integer)
+_Loader.add_constructor(_STANDARD + "float", _float)
+_Loader.add_constructor(_STANDARD + "str", lambda loader, node: node.value)
+_Loader.add_constructor(_STANDARD + "seq", _sequence)
+_Loader.add_constructor(_STANDARD + "map", _mapping)
+_Loader.add_constructor(None, _unknown)

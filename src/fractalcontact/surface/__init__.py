@@ -1,0 +1,1 @@
+"""Surfaces: measured specimens, their cleaning and window, and synthetic ones."""

@@ -1,0 +1,227 @@
+"""Spikes and holes of a scan: found by a stated rule, altered only when the study asks for it."""
+
+import numpy as np
+from scipy import ndimage
+
+from ..core.errors import InputError
+from ..core.mean_plane import without_mean_plane
+
+OUTLIERS = ("keep", "mask")
+#: A cell is compared with the 7 x 7 cells around it, of which a cluster of 3 x 3 spikes is a
+#: minority that can be set aside; so many must be present that some remain.
+_SIDE = 7
+_LARGEST_CLUSTER = 9
+_FEWEST = 25
+#: A spike stands out by more than this many times the typical deviation of a cell from the median
+#: of its surroundings. Self-affine surfaces with H from 0.3 to 1 do so in fewer than one of 10^5
+#: cells.
+_MANY_DEVIATIONS = 8.0
+#: ... and by more than this many times the relief of its own surroundings: rough rock has patches
+#: far rougher than the rest, with honest steps.
+_MANY_RELIEFS = 3.0
+_NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
+_BLOCK = 4_000_000  # numbers sorted at once, to bound memory
+
+
+def clean_faces(scans, *, outliers="keep", largest_hole=0, name="specimen"):
+    """Count or mask the outliers of the scanned faces, and fill their small holes.
+
+    Parameters
+    ----------
+    scans : list of DataArray (y, x)
+        Heights in mm on one grid, as `scan.read_faces` gives them.
+    outliers : {"keep", "mask"}
+        "keep" leaves outliers as they are, "mask" makes them missing.
+    largest_hole : int
+        Rows and columns of the largest hole that is filled; 0 fills none.
+    name : str
+        The specimen, for errors.
+
+    Returns
+    -------
+    faces : list of DataArray
+    cells : dict
+        ``outlier`` and ``filled``, (y, x) bool ndarrays: in any of the faces.
+    attrs : dict
+        ``outliers``, ``outlier_count``, ``filled_count`` and, in words, ``cleaning``.
+
+    Raises
+    ------
+    InputError
+        If a setting is none of those allowed, or every cell would be masked.
+    """
+    if outliers not in OUTLIERS:
+        raise InputError(f"{name}: key 'outliers' is {outliers!r}; expected 'keep' or 'mask'")
+    if isinstance(largest_hole, bool) or not isinstance(largest_hole, int) or largest_hole < 0:
+        raise InputError(
+            f"{name}: key 'fill_holes' is {largest_hole!r}; expected a number of cells, or 0"
+        )
+    cells = {key: np.zeros(scans[0].shape, dtype=bool) for key in ("outlier", "filled")}
+    faces = []
+    for scan in scans:
+        found = find_outliers(scan.values)
+        heights = np.where(found, np.nan, scan.values) if outliers == "mask" else scan.values
+        spacing = (scan.attrs["spacing_y"], scan.attrs["spacing_x"])
+        heights, filled = fill_holes(heights, spacing, largest_hole)
+        cells["outlier"] |= found
+        cells["filled"] |= filled
+        faces.append(scan.copy(data=heights))
+    attrs = {
+        "outliers": outliers,
+        "outlier_count": int(cells["outlier"].sum()),
+        "filled_count": int(cells["filled"].sum()),
+    }
+    missing = int(np.logical_or.reduce([np.isnan(face.values) for face in faces]).sum())
+    return faces, cells, attrs | {"cleaning": _in_words(attrs, largest_hole, missing)}
+
+
+def _in_words(attrs: dict, largest_hole: int, missing: int) -> str:
+    """What was done to the faces, and the key that would do otherwise."""
+    count = attrs["outlier_count"]
+    if count == 0:
+        words = "no outliers"
+    elif attrs["outliers"] == "mask":
+        words = f"{count} outlying cells made missing"
+    else:
+        words = f"{count} outlying cells kept as they are ('outliers: mask' makes them missing)"
+    if largest_hole:
+        words += f"; {attrs['filled_count']} cells filled harmonically, in holes of up to "
+        words += f"{largest_hole} x {largest_hole} cells; {missing} cells stay missing"
+    elif missing:
+        words += f"; {missing} cells missing, none filled ('fill_holes: 5' fills holes of up to 5)"
+    else:
+        words += "; no cells missing"
+    return words
+
+
+def find_outliers(heights: np.ndarray) -> np.ndarray:
+    """Find spikes of a scan: single cells and clusters of up to 3 x 3.
+
+    A cell's surroundings are the present cells of the 7 x 7 around it (at the rim of the scan, of
+    the nearest 7 x 7 inside), of the surface without its mean plane. The nine highest and the nine
+    lowest are set aside: a cluster of spikes is among them, while a step, a ridge or a slope has
+    more cells than that on either level. A cell is an outlier if it lies above or below all that
+    remain by more than 8 times the typical deviation of the scan (1.4826 times the median of
+    |height - median of the surroundings|, as in the rule of Hampel 1974, and at least the step in
+    which heights are recorded), and by more than 3 times the range of those that remain. A cell
+    with fewer than 25 present cells around it is not judged.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        NaN where missing; any unit.
+
+    Returns
+    -------
+    (ny, nx) bool ndarray
+        False where missing.
+    """
+    flagged = np.zeros(heights.shape, dtype=bool)
+    present = np.isfinite(heights)
+    if min(heights.shape) < _SIDE or present.sum() < _FEWEST or np.ptp(heights[present]) == 0:
+        return flagged
+    # Less the plane, because surroundings are one-sided at a rim.
+    z = without_mean_plane(heights)
+    deviation, margin, relief = _surroundings(z, present)
+    if not np.isfinite(deviation).any():
+        return flagged
+    recorded_step = np.median(np.diff(np.unique(heights[present])))
+    typical = max(_NORMAL * np.nanmedian(deviation), recorded_step)
+    # A comparison with NaN, for a cell that is not judged, is False.
+    flagged[present] = (margin > _MANY_DEVIATIONS * typical) & (margin > _MANY_RELIEFS * relief)
+    return flagged
+
+
+def _surroundings(z: np.ndarray, present: np.ndarray):
+    """For each present cell: how far it is from the median of its surroundings, how far it stands
+    out of all but the extreme cells, and the range of those; NaN where too few cells are present.
+    """
+    windows = np.lib.stride_tricks.sliding_window_view(z, (_SIDE, _SIDE))
+    rows, columns = np.nonzero(present)
+    first_row, first_column = (
+        np.clip(cells - _SIDE // 2, 0, n - _SIDE)
+        for cells, n in zip((rows, columns), z.shape, strict=True)
+    )
+    found = np.full((3, len(rows)), np.nan)
+    step = _BLOCK // _SIDE**2
+    for start in range(0, len(rows), step):
+        part = slice(start, start + step)
+        ordered = windows[first_row[part], first_column[part]].reshape(-1, _SIDE**2)
+        ordered = np.sort(ordered, axis=1)  # missing cells come last
+        count = np.isfinite(ordered).sum(axis=1)
+        judged = np.flatnonzero(count >= _FEWEST)
+        count = count[judged]
+        own = z[rows[part], columns[part]][judged]
+        low, high = ordered[judged, _LARGEST_CLUSTER], ordered[judged, count - 1 - _LARGEST_CLUSTER]
+        median = (ordered[judged, (count - 1) // 2] + ordered[judged, count // 2]) / 2
+        found[:, start + judged] = (
+            np.abs(own - median),
+            np.maximum(own - high, low - own),
+            high - low,
+        )
+    return found
+
+
+def fill_holes(heights: np.ndarray, spacing, largest: int) -> tuple[np.ndarray, np.ndarray]:
+    """Fill small holes with the harmonic surface that continues their rims.
+
+    A hole is a set of missing cells connected along rows and columns. It is filled if it does not
+    touch the rim of the array and has at most ``largest`` rows and columns; the other missing cells
+    stay missing. The surface solves the five-point Laplace equation with the cells around the hole
+    as its boundary values, so it has no extremum of its own.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        NaN where missing.
+    spacing : (float, float)
+        (dy, dx), in one unit.
+    largest : int
+        0 fills nothing.
+
+    Returns
+    -------
+    heights : (ny, nx) ndarray
+        A copy.
+    filled : (ny, nx) bool ndarray
+    """
+    fillable = _small_holes(~np.isfinite(heights), largest)
+    filled = heights.copy()
+    if fillable.any():
+        filled[fillable] = _harmonic(heights, fillable, spacing)
+    return filled, fillable
+
+
+def _small_holes(missing: np.ndarray, largest: int) -> np.ndarray:
+    """Missing cells of the holes that may be filled."""
+    labels, _ = ndimage.label(missing)
+    fillable = np.zeros(missing.shape, dtype=bool)
+    for label, box in enumerate(ndimage.find_objects(labels), 1):
+        inside = all(s.start > 0 and s.stop < n for s, n in zip(box, missing.shape, strict=True))
+        if inside and all(s.stop - s.start <= largest for s in box):
+            fillable[box] |= labels[box] == label
+    return fillable
+
+
+def _harmonic(heights: np.ndarray, unknown: np.ndarray, spacing) -> np.ndarray:
+    """Solve the discrete Laplace equation on the unknown cells, row by row of the array."""
+    from scipy import sparse
+    from scipy.sparse.linalg import spsolve
+
+    rows, columns = np.nonzero(unknown)
+    index = np.full(heights.shape, -1)
+    index[unknown] = np.arange(len(rows))
+    weights = [1 / step**2 for step in spacing]
+    level = heights[np.isfinite(heights)].mean()  # an offset must not cost digits
+    right = np.zeros(len(rows))
+    entries = [(np.full(len(rows), 2 * sum(weights)), index[unknown], index[unknown])]
+    for step_y, step_x in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+        weight = weights[0 if step_y else 1]
+        beside = (rows + step_y, columns + step_x)
+        known = ~unknown[beside]
+        right[known] += weight * (heights[beside][known] - level)
+        equation, neighbour = np.flatnonzero(~known), index[beside][~known]
+        entries.append((np.full(len(equation), -weight), equation, neighbour))
+    values, equation, neighbour = (np.concatenate(parts) for parts in zip(*entries, strict=True))
+    matrix = sparse.csc_array((values, (equation, neighbour)), shape=(len(rows), len(rows)))
+    return level + spsolve(matrix, right)

@@ -1,0 +1,173 @@
+"""Surfaces of known dimension made in other ways than from a spectrum, for controlled experiments.
+
+A sum of waves, a random iterated function, and the stepped profile of Borodich and Mosolov's punch,
+extruded. What holds on all of them, and on :func:`surface.synthesis.self_affine`, belongs to
+the dimension and not to the way a surface was made.
+"""
+
+import numpy as np
+
+from .synthesis import check_surface, levelled
+
+#: Ratio of neighbouring frequencies of the Weierstrass-Mandelbrot surface (Berry & Lewis).
+FREQUENCY_RATIO = 1.5
+
+#: Waves of each frequency, in as many directions.
+DIRECTIONS = 12
+
+
+def weierstrass_mandelbrot(shape, spacing, hurst, *, rms, seed):
+    """Make a Weierstrass-Mandelbrot surface: waves of frequencies in geometric series.
+
+    Parameters
+    ----------
+    shape : (ny, nx)
+    spacing : float
+        mm.
+    hurst : float
+        H = 3 - Delta_g, between 0 and 1.
+    rms : float
+        Root mean square height about the mean plane, mm.
+    seed : int
+
+    Returns
+    -------
+    (ny, nx) float64 ndarray
+        Heights in mm.
+
+    Raises
+    ------
+    ValueError
+        If H, a length or the shape is out of range.
+
+    Notes
+    -----
+    Ausloos & Berman, Proc. R. Soc. A 400 (1985) 331: amplitudes gamma^(-H n) at frequencies
+    gamma^n, from waves of twice the longer side to waves of two nodes, in evenly spread directions
+    with random phases. The whole fan of directions is turned at random from frequency to frequency.
+    """
+    check_surface(shape, hurst, spacing, rms)
+    generator = np.random.Generator(np.random.PCG64(seed))
+    y, x = (np.arange(n, dtype=float) for n in shape)
+    octaves = np.log(max(shape)) / np.log(FREQUENCY_RATIO)
+    heights = np.zeros(shape)
+    for n in range(int(octaves) + 1):
+        wave_number = np.pi / max(shape) * FREQUENCY_RATIO**n
+        turn = generator.uniform(0, np.pi / DIRECTIONS)
+        directions = turn + np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+        phases = generator.uniform(0, 2 * np.pi, DIRECTIONS)
+        for direction, phase in zip(directions, phases, strict=True):
+            along_y = wave_number * np.sin(direction) * y[:, np.newaxis]
+            along_x = wave_number * np.cos(direction) * x + phase
+            # cos(a + b) from one sine and cosine of each row and column.
+            wave = np.cos(along_y) * np.cos(along_x) - np.sin(along_y) * np.sin(along_x)
+            heights += FREQUENCY_RATIO ** (-hurst * n) * wave
+    return levelled(heights, rms)
+
+
+def random_midpoint(shape, spacing, hurst, *, rms, seed):
+    """Make a surface by a random iterated function: midpoints, and random additions everywhere.
+
+    Parameters, returns and errors as :func:`weierstrass_mandelbrot`.
+
+    Notes
+    -----
+    Voss' successive random additions (Saupe in Peitgen & Saupe (1988), The Science of Fractal
+    Images, sect. 2.3.2): each step halves the spacing, sets the new nodes to the mean of their
+    neighbours and adds to all nodes a number of standard deviation 2^(-H step). Displacing the new
+    nodes alone leaves creases along the old ones.
+    """
+    check_surface(shape, hurst, spacing, rms)
+    generator = np.random.Generator(np.random.PCG64(seed))
+    heights = generator.standard_normal((3, 3))
+    step = 0
+    while len(heights) < max(shape):
+        step += 1
+        for axis in (0, 1):
+            old = np.moveaxis(heights, axis, 0)
+            finer = np.empty((2 * len(old) - 1, old.shape[1]))
+            finer[::2], finer[1::2] = old, (old[1:] + old[:-1]) / 2
+            heights = np.moveaxis(finer, 0, axis)
+        heights = heights + 2.0 ** (-hurst * step) * generator.standard_normal(heights.shape)
+    return levelled(heights[: shape[0], : shape[1]], rms)
+
+
+def cantor_punch(generations, *, parts=2, narrowing=1.5, lowering=1.3):
+    """Make the profile of a Cantor punch: steps upon steps, each generation narrower and lower.
+
+    Each step of a generation carries ``parts`` equal steps of the next, evenly spread from one of
+    its ends to the other, ``narrowing`` times narrower together and ``lowering`` times lower.
+
+    Parameters
+    ----------
+    generations : int
+        From 1; the profile has ``(parts narrowing)^generations`` nodes.
+    parts : int
+        From 2.
+    narrowing : float
+        More than 1, with a whole ``parts narrowing``, so that all steps end at nodes.
+    lowering : float
+        More than 1.
+
+    Returns
+    -------
+    (n,) float64 ndarray
+        Heights; the profile's length is 1, as is the height of the first step.
+
+    Raises
+    ------
+    ValueError
+        If a step would not end at a node.
+
+    Notes
+    -----
+    Borodich & Mosolov, J. Appl. Math. Mech. 56 (1992) 681; its parts and ratios as in Warren &
+    Krajcinovic, Int. J. Solids Struct. 33 (1996) 1. Dimensions: :func:`punch_dimensions`.
+    """
+    ratio = round(parts * narrowing)
+    gap = (ratio - parts) / (parts - 1)
+    if generations < 1 or abs(ratio - parts * narrowing) > 1e-9 or gap <= 0 or gap != int(gap):
+        raise ValueError(
+            f"a Cantor punch of {parts} parts, {narrowing} times narrower, does not end at nodes: "
+            f"parts x narrowing must be a whole number, and so the gap between the parts"
+        )
+    first = np.zeros(ratio, bool)
+    first[:: 1 + int(gap)] = True
+    standing, heights = np.ones(1, bool), np.zeros(1)
+    for generation in range(generations):
+        standing = np.kron(standing, first)
+        heights = np.repeat(heights, ratio) + standing * float(lowering) ** -generation
+    return heights
+
+
+def punch_dimensions(parts=2, narrowing=1.5, lowering=1.3):
+    """Dimension of a Cantor punch's profile, and of the set at which it touches a plane.
+
+    Parameters
+    ----------
+    parts, narrowing, lowering
+        As :func:`cantor_punch`.
+
+    Returns
+    -------
+    profile, contact : float
+        One more each for the extruded punch. The profile counts with the flanks of its steps: of
+        generation n there are parts^n, lowering^-n high and (parts narrowing)^-n wide.
+    """
+    ratio = np.log(parts * narrowing)
+    return 1 + max(np.log(parts / lowering) / ratio, 0.0), np.log(parts) / ratio
+
+
+def extruded(profile, rows):
+    """A surface that is the same profile along every row: one dimension more than the profile.
+
+    Parameters
+    ----------
+    profile : (nx,) array_like
+    rows : int
+
+    Returns
+    -------
+    (rows, nx) ndarray
+    """
+    return np.tile(np.asarray(profile), (rows, 1))

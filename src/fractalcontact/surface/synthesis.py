@@ -1,0 +1,130 @@
+"""Self-affine surfaces made from a spectrum, and the scan files that carry them.
+
+The surfaces are Gaussian and isotropic, their statistics known beforehand: mathematical joints, and
+twins of specimens that are described but whose scans are not public. They are written as ordinary
+scan files and enter the program through the same door as a measured surface.
+"""
+
+import numpy as np
+import scipy.fft
+
+from ..core.mean_plane import without_mean_plane
+
+#: Sides of the grid a surface is made on, in sides of the patch cut from it. The Fourier series is
+#: periodic on that grid; with two, opposite edges of the patch are as far apart as they look.
+EMBEDDING = 2
+
+
+def self_affine(
+    shape: tuple[int, int],
+    spacing: float,
+    hurst: float,
+    *,
+    rms: float,
+    seed: int,
+    roll_off: float | None = None,
+) -> np.ndarray:
+    """Make an isotropic, Gaussian, self-affine surface that is not periodic.
+
+    White noise, drawn node by node with ``Generator(PCG64(seed)).standard_normal`` in (y, x) order
+    on a grid of `EMBEDDING` times the longer side, is filtered to the power spectral density
+    C(q) = q^(-2 (1 + H)) for q > q_r and C(q_r) below, with q_r = 2 pi / roll_off. A patch is cut
+    from it, its mean plane taken off (as every specimen's is before it is used) and its heights
+    scaled, so `rms` means the same before and after levelling.
+
+    Parameters
+    ----------
+    shape : (ny, nx)
+        Cells of the patch.
+    spacing : float
+        Distance between cells, mm.
+    hurst : float
+        H = 3 - Delta_g, between 0 and 1.
+    rms : float
+        Root mean square height of the patch about its mean plane, mm.
+    seed : int
+        The same seed gives the same bits.
+    roll_off : float, optional
+        Wavelength above which the spectrum is flat, mm. Without it the surface is self-affine at
+        every scale of the patch.
+
+    Returns
+    -------
+    (ny, nx) float64
+        Heights in mm.
+
+    Raises
+    ------
+    ValueError
+        If H, a length or the shape is out of range.
+
+    Notes
+    -----
+    Spectral synthesis: Saupe in Peitgen & Saupe (1988), The Science of Fractal Images; spectrum
+    with a roll-off: Persson et al., J. Phys. Condens. Matter 17 (2005) R1.
+    """
+    check_surface(shape, hurst, spacing, rms)
+    if roll_off is not None and roll_off <= 0:
+        raise ValueError(f"roll_off must be positive, not {roll_off}")
+
+    side = scipy.fft.next_fast_len(EMBEDDING * max(shape), real=True)
+    noise = np.random.Generator(np.random.PCG64(seed)).standard_normal((side, side))
+    # One worker: the result must not depend on how many cores there are.
+    spectrum = scipy.fft.rfft2(noise, workers=1)
+    spectrum *= np.sqrt(_power_spectral_density(side, spacing, hurst, roll_off))
+    surface = scipy.fft.irfft2(spectrum, s=(side, side), workers=1)
+
+    return levelled(surface[: shape[0], : shape[1]], rms)
+
+
+def check_surface(shape, hurst, spacing, rms):
+    """Refuse what no surface can be made of.
+
+    Raises
+    ------
+    ValueError
+        If H, a length or the shape is out of range.
+    """
+    if not 0 < hurst < 1:
+        raise ValueError(f"the Hurst exponent must lie between 0 and 1, not {hurst}")
+    if min(spacing, rms) <= 0:
+        raise ValueError(f"spacing and rms must be positive, not {spacing}, {rms}")
+    if min(shape) < 2:
+        raise ValueError(f"a surface needs at least 2 x 2 cells, not {shape}")
+
+
+def levelled(heights, rms):
+    """Heights about their mean plane, scaled to an rms."""
+    heights = without_mean_plane(heights)
+    return heights * (rms / np.sqrt(np.mean(heights**2)))
+
+
+def _power_spectral_density(
+    side: int, spacing: float, hurst: float, roll_off: float | None
+) -> np.ndarray:
+    """C(q) up to a factor, on the half plane of `scipy.fft.rfft2`; zero for the mean height."""
+    qy = 2 * np.pi * scipy.fft.fftfreq(side, spacing)[:, np.newaxis]
+    qx = 2 * np.pi * scipy.fft.rfftfreq(side, spacing)[np.newaxis, :]
+    q = np.hypot(qy, qx)
+    # In units of the roll-off (or of the longest wave), so that no power under- or overflows.
+    q /= 2 * np.pi / (roll_off if roll_off is not None else side * spacing)
+    q[0, 0] = np.inf
+    floor = 1.0 if roll_off is not None else 0.0
+    return np.maximum(q, floor) ** (-2 * (1 + hurst))
+
+
+def disc_outline(shape: tuple[int, int], spacing: float, diameter: float) -> np.ndarray:
+    """Mark the cells whose centres lie within a disc at the middle of the grid.
+
+    Parameters
+    ----------
+    shape : (ny, nx)
+    spacing, diameter : float
+        In mm.
+
+    Returns
+    -------
+    (ny, nx) bool
+    """
+    y, x = ((np.arange(n) - (n - 1) / 2) * spacing for n in shape)
+    return np.hypot(y[:, np.newaxis], x[np.newaxis, :]) <= diameter / 2

@@ -1,0 +1,70 @@
+"""Accuracy charts: their errors, orders and labels."""
+
+import numpy as np
+import pytest
+
+from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.accuracy.convergence import hertz_convergence, kernel_effect, punch_convergence
+from fractalcontact.elastic.halfspace import RIGID_PLATE_SELF_TERMS
+from fractalcontact.surface.synthesis import self_affine
+
+
+@pytest.fixture(scope="module")
+def hertz():
+    return hertz_convergence()
+
+
+def labelled(dataset):
+    return all({"units", "long_name"} <= set(dataset[name].attrs) for name in dataset.variables)
+
+
+def test_hertz_is_within_one_percent_at_twenty_cells(hertz):
+    at_twenty = hertz.sel(cells_per_radius=20)
+    for name in ("force_error", "radius_error", "peak_pressure_error"):
+        assert 0 < at_twenty[name] < 0.01
+
+
+@pytest.mark.parametrize(("name", "order"), [("force", 2), ("radius", 1), ("peak_pressure", 2)])
+def test_hertz_error_falls_at_its_order(hertz, name, order):
+    assert (np.diff(hertz[f"{name}_error"]) < 0).all()
+    assert hertz[f"{name}_order"] == pytest.approx(order, abs=0.2)
+    assert hertz[f"{name}_order_low"] < hertz[f"{name}_order"] < hertz[f"{name}_order_high"]
+
+
+def test_punch_error_falls_at_its_order():
+    punch = punch_convergence()
+    assert (np.diff(punch["force_error"]) < 0).all()
+    assert punch["force_order"] == pytest.approx(1, abs=0.25)
+    assert punch["force_order_low"] < punch["force_order"] < punch["force_order_high"]
+    assert labelled(punch)
+
+
+def test_hertz_order_needs_three_resolutions():
+    assert np.isnan(hertz_convergence((5, 8), placements=1)["force_order"])
+
+
+def test_every_variable_is_labelled(hertz):
+    effect = kernel_effect(np.zeros((4, 4)), 0.1, 1.0, 0.01)
+    assert labelled(hertz)
+    assert labelled(effect)
+
+
+def test_kernel_effect_is_what_each_kernel_gives():
+    height = self_affine((32, 32), 0.1, 0.8, rms=0.1, seed=0)
+    effect = kernel_effect(height, 0.1, 30e3, 0.2)
+    assert list(effect.kernel.values) == ["love", *RIGID_PLATE_SELF_TERMS]
+    for kernel in effect.kernel.values:
+        space = HalfSpace((32, 32), (0.1, 0.1), 30e3, kernel=str(kernel))
+        state = solve_contact(height, space, closure=0.2)
+        found = effect.sel(kernel=kernel)
+        assert found.force == state.force
+        assert found.area == state.area
+        assert found.stiffness == state.stiffness
+
+
+def test_stiffer_self_term_carries_more():
+    height = self_affine((32, 32), 0.1, 0.5, rms=0.1, seed=1)
+    force = kernel_effect(height, 0.1, 30e3, 0.1).force
+    # From Love's 1.122 to the rigid square's 0.868 a lone node sinks ever less under its force.
+    order = ["love", "inscribed disc", "equal-area disc", "rigid square"]
+    assert (np.diff(force.sel(kernel=order)) > 0).all()

@@ -1,0 +1,171 @@
+"""`make check-scans`: every file of a folder in one table, whatever is wrong with some of them."""
+
+import shutil
+
+import numpy as np
+import pytest
+from places import ROOT
+
+from fractalcontact.commands.check_scans import WIDTH, main
+from fractalcontact.study.embedded import write_scan
+from fractalcontact.study.scan_files import list_scans
+from fractalcontact.surface.synthesis import self_affine
+
+SCANS = ROOT.parent / "shared" / "scans"
+ARGUMENTS = ("--study", "config/paper.yaml", "--schema", "config/schema/study.schema.yaml")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    return tmp_path / "scans"
+
+
+@pytest.fixture
+def check(folder, capsys):
+    def run():
+        code = main([str(folder), *ARGUMENTS])
+        return code, capsys.readouterr().out
+
+    return run
+
+
+def surface(n=64, noise=0.0, seed=1):
+    rng = np.random.default_rng(seed)
+    return self_affine((n, n), 0.2, 0.8, rms=0.1, seed=seed) + noise * rng.normal(size=(n, n))
+
+
+def test_a_good_scan_is_ok(folder, check):
+    write_scan(folder / "slab.npy", surface(), 0.2, sidecar={})
+    code, out = check()
+    assert code == 0
+    assert "64 x 64     0.2 mm     12.8 x 12.8" in out
+    assert "lower face: numpy" in out
+    assert "1 ok, 0 with warnings, 0 refused" in out
+
+
+def test_one_bad_file_keeps_no_other_from_being_read(folder, check):
+    for name in ("a", "z"):
+        write_scan(folder / f"{name}.npy", surface(), 0.2, sidecar={})
+    np.save(folder / "unitless.npy", surface())
+    (folder / "empty.csv").write_text("")
+    (folder / "lonely.yaml").write_text("unit: mm\n")
+    (folder / "half.lower.xyz").write_text("1 2 3\n")
+    (folder / "two.csv").write_text("1")
+    (folder / "two.txt").write_text("1")
+    write_scan(folder / "typo.npy", surface(), 0.2, sidecar={"spacng": 1})
+    code, out = check()
+    assert code == 1
+    assert "2 ok, 0 with warnings, 6 refused" in out
+    for words in (
+        "states no unit",
+        "unit: mm          # of its lengths",
+        "empty",
+        "this sidecar has no scan",
+        "the upper face is missing",
+        "both claim",
+        "unknown key 'spacng'",
+    ):
+        assert " ".join(words.split()) in " ".join(out.split())  # wherever lines are broken
+
+
+def test_a_noisy_scan_is_warned_of(folder, check):
+    write_scan(folder / "noisy.npy", surface(128, noise=0.05), 0.2, sidecar={})
+    code, out = check()
+    assert code == 0
+    assert "WARNING: resolutions s = 0.2" in out
+    assert "0 ok, 1 with warnings" in out
+
+
+def test_a_pair_and_a_contact_map(folder, check):
+    for face, seed in (("lower", 1), ("upper", 2)):
+        z = surface() + 0.01 * surface(seed=seed) + 0.3 * (face == "upper")
+        write_scan(folder / f"joint.{face}.npy", z, 0.2, sidecar={})
+        (folder / f"joint.{face}.yaml").rename(folder / "joint.yaml")
+    film = {"kind": "contact-map"}
+    write_scan(folder / "film.npy", (surface() > 0.1).astype(float), 0.2, sidecar=film)
+    code, out = check()
+    assert code == 0
+    assert "gap: mean 0.3 mm" in out
+    assert "% in contact above 0.5" in out
+
+
+def test_two_faces_that_do_not_match_or_share_no_frame_are_told(folder, check):
+    z = surface()
+    folder.mkdir()
+    y, x = (0.2 * index for index in np.indices(z.shape))
+    for name, upper in (("strange", surface(seed=9)), ("mounted", z)):
+        for face, heights, shift in (("lower", z, 0.0), ("upper", upper, 70.0)):
+            points = np.column_stack([x.ravel() + shift, y.ravel(), heights.ravel() + shift])
+            np.savetxt(folder / f"{name}.{face}.xyz", points)
+        (folder / f"{name}.yaml").write_text("unit: mm\n")
+    code, out = check()
+    text = " ".join(out.split())
+    assert code == 1
+    assert "sd before unknown" in text
+    assert "strange.lower.xyz" in text
+    assert ", 1 refused" in text
+
+
+@pytest.mark.parametrize("name", ["a\x1b[31mred", "two\nlines", "-rf", "x" * 200, "Zürich 岩"])
+def test_names_that_act_on_a_terminal_are_escaped_and_lines_stay_short(folder, check, name):
+    folder.mkdir()
+    (folder / f"{name}.csv").write_text("")
+    code, out = check()
+    assert code == 1
+    assert "\x1b" not in out
+    lines = out.splitlines()
+    assert sum(line.strip().startswith("REFUSED") for line in lines) == 1
+    assert max(map(len, lines)) <= max(WIDTH, len(str(folder)) + 8)
+
+
+def test_a_missing_folder_is_one_error(folder, capsys):
+    assert main([str(folder), *ARGUMENTS]) == 1
+    assert capsys.readouterr().err.startswith(f"error: {folder}: no such folder (not mounted?)")
+
+
+def test_an_empty_folder_is_no_error(folder, check):
+    folder.mkdir()
+    code, out = check()
+    assert code == 0
+    assert "0 ok, 0 with warnings, 0 refused" in out
+
+
+def test_a_wrong_study_is_one_error(folder, capsys):
+    folder.mkdir(parents=True)
+    (folder / "study.yaml").write_text("study: x\n")
+    assert main([str(folder), "--study", str(folder / "study.yaml"), *ARGUMENTS[2:]]) == 1
+    assert "missing key" in capsys.readouterr().err
+
+
+def test_a_refused_file_takes_its_specimen_with_it_but_no_other(folder):
+    folder.mkdir()
+    for name in ("a.csv", "a.npy", "b.csv"):
+        (folder / name).write_text("1")
+    scans, refused = list_scans(folder)
+    assert list(scans) == ["b"]
+    assert list(refused) == ["a"]
+
+
+@pytest.mark.scans
+@pytest.mark.skipif(not SCANS.is_dir(), reason="the real scans are not beside the project")
+def test_real_scans_are_read_with_the_sidecars_their_readme_asks_for(folder, check):
+    folder.mkdir()
+    granite = SCANS / "cnl_granite_pair"
+    shutil.copy(granite / "Extracted_M_CNL_SideA_bottom.txt", folder / "granite.lower.txt")
+    shutil.copy(granite / "Extracted_M_CNL_SideB_top.txt", folder / "granite.upper.txt")
+    (folder / "granite.yaml").write_text("unit: mm\n")
+    shutil.copy(SCANS / "corona_fault/coronaA_grids.npz", folder / "corona.npz")
+    (folder / "corona.yaml").write_text("variable: Z_grid\nunit: m\nspacing: 0.0056858\n")
+    shutil.copy(SCANS / "nanovea/test4.txt", folder / "test4.txt")
+    (folder / "test4.yaml").write_text("unit_xy: mm\nunit_z: um\n")
+    instruments = SCANS / "instruments/surfacetopography"
+    shutil.copy(instruments / "di_corrupted.di", folder)
+    code, out = check()
+    assert code == 1
+    assert out.count("REFUSED") == 1
+    assert "di_corrupted.di" in out
+    assert "gap: mean 0.6" in out
+    assert "537 x 388" in out
+    assert "5.69 mm    3050 x 2210" in out
+    assert "0.515 mm" in out

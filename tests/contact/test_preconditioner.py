@@ -1,0 +1,147 @@
+"""The approximate inverse on contact sets: exact where it can be, symmetric, positive, close."""
+
+import numpy as np
+import pytest
+
+from fractalcontact import HalfSpace
+from fractalcontact.contact.preconditioner import DIRECT, ContactInverse
+from fractalcontact.contact.projected_cg import Operator, SetEquations
+from fractalcontact.surface.synthesis import self_affine
+
+
+def rough_set(shape, share, seed=0, hurst=0.7):
+    """Nodes of a rough surface above a level, as numbers of cells."""
+    n = max(shape)
+    height = self_affine((n, n), 1.0, hurst, rms=1.0, seed=seed)[: shape[0], : shape[1]]
+    return np.flatnonzero(height > np.quantile(height, 1 - share)).astype(np.int32)
+
+
+def matrix_on(space, rows):
+    y, x = rows // space.shape[1], rows % space.shape[1]
+    return space.influence()[np.abs(y[:, None] - y), np.abs(x[:, None] - x)]
+
+
+def inverse_on(space, rows):
+    inverse = ContactInverse(space)
+    inverse.update(rows, fresh=True)
+    return inverse
+
+
+SETS = [
+    ((60, 60), (1.0, 1.0), 0.2),
+    ((180, 170), (1.0, 1.0), 0.05),
+    ((31, 200), (1.0, 1.0), 0.3),
+    ((64, 64), (0.25, 2.0), 0.2),
+    ((40, 40), (1.0, 1.0), 1.0),
+]
+
+
+def test_few_nodes_are_inverted_exactly():
+    space = HalfSpace((40, 30), (0.1, 0.2), 1.0)
+    rows = np.sort(np.random.default_rng(1).choice(1200, DIRECT, replace=False)).astype(np.int32)
+    right_side = np.random.default_rng(2).standard_normal(DIRECT).astype(np.float32)
+    exact = np.linalg.solve(matrix_on(space, rows), right_side)
+    np.testing.assert_allclose(inverse_on(space, rows)(right_side), exact, rtol=1e-4, atol=1e-4)
+
+
+@pytest.mark.parametrize(("shape", "spacing", "share"), SETS)
+def test_inverse_is_symmetric_and_positive(shape, spacing, share):
+    space = HalfSpace(shape, spacing, 1.0)
+    rows = rough_set(shape, share)
+    inverse = inverse_on(space, rows)
+    a, b = np.random.default_rng(3).standard_normal((2, rows.size)).astype(np.float32)
+    scale = np.linalg.norm(a) * np.linalg.norm(inverse(b))
+    assert abs(float(a @ inverse(b)) - float(b @ inverse(a))) < 1e-5 * scale
+    for vector in (a, b, np.ones(rows.size, np.float32)):
+        assert float(vector @ inverse(vector)) > 0
+
+
+@pytest.mark.parametrize(("shape", "spacing", "share"), SETS)
+def test_spectrum_of_the_product_is_narrow(shape, spacing, share):
+    """Few eigenvalues of M K leave [1/2, 2]: hence few iterations, on any set."""
+    space = HalfSpace(shape, spacing, 1.0)
+    rows = rough_set(shape, share)
+    inverse = inverse_on(space, rows)
+    product = np.array([inverse(row) for row in matrix_on(space, rows).astype(np.float32)])
+    values = np.linalg.eigvals(product).real
+    assert values.min() > 0.2
+    assert np.mean((values > 0.5) & (values < 2)) > 0.97
+
+
+@pytest.mark.parametrize("shape", [(128, 128), (300, 280)])
+def test_ten_iterations_solve_a_linear_problem_to_a_millionth(shape):
+    space = HalfSpace(shape, (1.0, 1.0), 1.0)
+    rows = rough_set(shape, 0.1, hurst=0.8)
+    operator = Operator(space)
+    operator.inverse.update(rows, fresh=True)
+    equations = SetEquations(operator, rows, np.ones(rows.size))
+    equations.conjugate_gradients(1e-6, by_force=False)
+    assert np.abs(1 - matrix_on(space, rows) @ equations.solution.astype(float)).max() < 1e-5
+    assert operator.applications <= 14
+
+
+def test_an_updated_inverse_is_that_of_a_fresh_start_to_the_bit():
+    space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
+    first, second = rough_set((200, 190), 0.2), rough_set((200, 190), 0.19)
+    updated = ContactInverse(space)
+    updated.update(first, fresh=True)
+    updated.update(second, fresh=True)
+    vector = np.random.default_rng(4).standard_normal(second.size).astype(np.float32)
+    np.testing.assert_array_equal(updated(vector), inverse_on(space, second)(vector))
+
+
+def test_an_inverse_does_not_depend_on_the_sets_of_earlier_solves():
+    """Also where a solve begins with a few nodes, whose exact inverse needs no coarse operator."""
+    space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
+    before, few, many = (rough_set((200, 190), share) for share in (0.2, 0.002, 0.19))
+    assert few.size <= DIRECT
+    used, new = ContactInverse(space), ContactInverse(space)
+    used.update(before, fresh=True)
+    for inverse in (used, new):
+        inverse.update(few, fresh=True)
+        inverse.update(many, fresh=False)
+    vector = np.random.default_rng(6).standard_normal(many.size).astype(np.float32)
+    np.testing.assert_array_equal(used(vector), new(vector))
+
+
+def test_an_update_that_is_interrupted_changes_nothing(monkeypatch):
+    space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
+    first, second = rough_set((200, 190), 0.2), rough_set((200, 190), 0.3)
+    inverse = inverse_on(space, first)
+
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as broken:
+        broken.setattr("fractalcontact.contact.preconditioner.threads.in_parts", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            inverse.update(second, fresh=True)
+    inverse.update(second, fresh=True)
+    vector = np.random.default_rng(7).standard_normal(second.size).astype(np.float32)
+    np.testing.assert_array_equal(inverse(vector), inverse_on(space, second)(vector))
+
+
+def test_bits_do_not_depend_on_the_number_of_threads(monkeypatch):
+    space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
+    rows = rough_set((200, 190), 0.3)
+    vector = np.random.default_rng(5).standard_normal(rows.size).astype(np.float32)
+    results = []
+    for count in ("1", "3"):
+        monkeypatch.setenv("OMP_NUM_THREADS", count)
+        results.append(inverse_on(space, rows)(vector))
+    np.testing.assert_array_equal(*results)
+
+
+def test_a_few_nodes_that_stand_alone_do_not_get_an_operator_out_of_date():
+    """Of all nodes they are nothing, of those around their own hat they are all."""
+    space = HalfSpace((400, 400), (1.0, 1.0), 1.0)
+    grid = np.zeros(space.shape, bool)
+    grid[:150, :150] = True
+    before, after = grid.copy(), grid.copy()
+    before[300:302, 300:302] = after[300, 300] = True
+    updated, fresh = ContactInverse(space), ContactInverse(space)
+    updated.update(np.flatnonzero(before).astype(np.int32), fresh=True)
+    updated.update(np.flatnonzero(after).astype(np.int32), fresh=False)
+    fresh.update(np.flatnonzero(after).astype(np.int32), fresh=True)
+    residual = np.ones(np.count_nonzero(after), np.float32)
+    np.testing.assert_array_equal(updated(residual), fresh(residual))

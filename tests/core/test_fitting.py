@@ -1,0 +1,84 @@
+import numpy as np
+import pytest
+from scipy import stats
+
+from fractalcontact.core.fitting import fit_line
+from fractalcontact.core.intervals import mean_interval
+from fractalcontact.core.mean_plane import without_mean_plane
+
+
+def test_points_on_a_line_give_it_back_without_error():
+    x = np.array([0.0, 1.0, 2.0, 5.0])
+    line = fit_line(x, 3 - 2 * x)
+    assert line.slope == pytest.approx(-2)
+    assert line.intercept == pytest.approx(3)
+    assert line.slope_high - line.slope_low == pytest.approx(0, abs=1e-12)
+    assert (line.x_min, line.x_max, line.n, line.r2) == (0, 5, 4, pytest.approx(1))
+
+
+def test_intervals_agree_with_scipy():
+    rng = np.random.default_rng(3)
+    x = rng.random(9)
+    y = 2 * x + rng.standard_normal(9)
+    line, other = fit_line(x, y), stats.linregress(x, y)
+    quantile = stats.t.ppf(0.975, 7)
+    assert line.slope == pytest.approx(other.slope)
+    assert line.slope_high - line.slope == pytest.approx(quantile * other.stderr)
+    assert line.intercept - line.intercept_low == pytest.approx(quantile * other.intercept_stderr)
+    assert line.r2 == pytest.approx(other.rvalue**2)
+
+
+def test_interval_holds_the_true_slope_in_95_of_100_samples():
+    rng = np.random.default_rng(0)
+    x = np.arange(8.0)
+    held = 0
+    for _ in range(2000):
+        line = fit_line(x, 0.5 * x + rng.standard_normal(8))
+        held += line.slope_low <= 0.5 <= line.slope_high
+    assert held / 2000 == pytest.approx(0.95, abs=0.015)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "n"),
+    [([1, 2], [1, 2], 2), ([1, 2, np.nan], [1, 2, 3], 2), ([2, 2, 2], [1, 2, 3], 3), ([], [], 0)],
+)
+def test_no_line_without_three_points_at_two_places(x, y, n):
+    line = fit_line(x, y)
+    assert line.n == n
+    assert np.isnan([*line[:8], line.r2]).all()
+
+
+def test_mean_plane_is_taken_off_whatever_is_missing():
+    rng = np.random.default_rng(1)
+    y, x = np.indices((20, 30))
+    rough = rng.standard_normal((20, 30))
+    rough[rng.random(rough.shape) < 0.3] = np.nan
+    levelled = without_mean_plane(rough)
+    tilted = without_mean_plane(rough + 5 + 0.3 * y - 2 * x)
+    np.testing.assert_allclose(tilted, levelled, atol=1e-12)
+    for column in (np.ones_like(x), y, x):
+        assert np.nansum(levelled * column) == pytest.approx(0, abs=1e-9)
+
+
+def test_no_plane_through_a_line_of_cells():
+    heights = np.full((5, 5), np.nan)
+    heights[2] = 1.0
+    assert np.isnan(without_mean_plane(heights)).all()
+    assert np.isnan(without_mean_plane(np.full((5, 5), np.nan))).all()
+
+
+def test_mean_interval_is_students():
+    rng = np.random.default_rng(2)
+    values = rng.normal(3, 1, (7, 2))
+    mean, low, high, n = mean_interval(values)
+    known = stats.t.interval(0.95, 6, values.mean(axis=0), stats.sem(values, axis=0))
+    np.testing.assert_allclose((low, high), known)
+    np.testing.assert_allclose(mean, values.mean(axis=0))
+    assert n.tolist() == [7, 7]
+
+
+def test_mean_of_one_value_has_no_interval_and_of_none_no_value():
+    mean, low, high, n = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
+    np.testing.assert_array_equal(mean, [1, np.nan])
+    assert np.isnan([low, high]).all()
+    assert n.tolist() == [1, 0]

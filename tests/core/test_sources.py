@@ -1,0 +1,258 @@
+"""Which files code follows from, found as the parser of Python finds them, and their digest."""
+
+import ast
+import os
+import subprocess
+import sys
+import time
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import fractalcontact
+from fractalcontact.core import sources
+
+PACKAGE = Path(fractalcontact.__file__).parent
+SCRIPTS = PACKAGE.parents[1] / "workflow/scripts"
+CODE = sorted(PACKAGE.rglob("*.py"))
+#: Optional, and not installed everywhere.
+PEERS = {"ContactMechanics", "NuMPI", "muGrid", "tamaas"}
+
+
+def module_in(folder, name):
+    """The file of a module in a folder, in a list that may be empty."""
+    files = [folder / name / "__init__.py", folder / f"{name}.py"]
+    return [file for file in files if file.is_file()][:1]
+
+
+@cache
+def parsed_imports(path, package):
+    """Files that the import statements of one file name."""
+    found = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            parts = (node.module or "").split(".") if node.module else []
+            chains = [(node.level, parts, [alias.name for alias in node.names])]
+        elif isinstance(node, ast.Import):
+            chains = [(0, alias.name.split("."), []) for alias in node.names]
+        else:
+            continue
+        for level, parts, names in chains:
+            if level:
+                folder = path.parents[level - 1]
+            elif parts[0] == package.name:
+                folder = package.parent
+            elif (path.parent / "__init__.py").exists():
+                continue
+            else:
+                folder = path.parent
+            if not level and not module_in(folder, parts[0]):
+                continue
+            for part in parts:
+                found += module_in(folder, part)
+                folder /= part
+            if (folder / "__init__.py").exists():
+                for name in names:
+                    found += module_in(folder, name)
+    return found
+
+
+def parsed_files(path, package):
+    seen, queue = set(), [path]
+    while queue:
+        path = queue.pop()
+        if path not in seen:
+            seen.add(path)
+            queue += parsed_imports(path, package)
+            for folder in path.parents:
+                if not (folder / "__init__.py").exists():
+                    break
+                queue.append(folder / "__init__.py")
+    return sorted(seen)
+
+
+@pytest.mark.parametrize("path", [*CODE, *sorted(SCRIPTS.glob("*.py"))], ids=lambda path: path.stem)
+def test_files_are_those_that_the_parser_finds(path):
+    assert sources.source_files([path], package=PACKAGE) == parsed_files(path, PACKAGE)
+
+
+@pytest.fixture
+def project(tmp_path):
+    """A package with an inner one, and a script with a helper, every file still empty."""
+    for name in ("rocks/inner", "scripts"):
+        (tmp_path / name).mkdir(parents=True)
+    for name in (
+        *("rocks/__init__", "rocks/a", "rocks/b", "rocks/c", "rocks/numpy"),
+        *("rocks/inner/__init__", "rocks/inner/d", "rocks/inner/e", "scripts/job", "scripts/_help"),
+    ):
+        (tmp_path / f"{name}.py").write_text("")
+    return tmp_path
+
+
+def files_of(project, name):
+    """What a file follows from, besides itself and the packages' own files."""
+    found = sources.source_files([project / f"{name}.py"], package=project / "rocks")
+    names = {path.relative_to(project).with_suffix("").as_posix() for path in found}
+    return sorted(names - {name, "rocks/__init__", "rocks/inner/__init__"})
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "found"),
+    [
+        ("rocks/a", "from . import b, c\n", "rocks/b rocks/c"),
+        ("rocks/a", "from . import b as other, c as third  # both\n", "rocks/b rocks/c"),
+        ("rocks/a", "from .b import (\n    one,  # (this)\n    two,\n)\n", "rocks/b"),
+        ("rocks/a", "from . import (\n    b,  # (this)\n    c,\n)\n", "rocks/b rocks/c"),
+        ("rocks/a", "from . import b, \\\n    c\n", "rocks/b rocks/c"),
+        ("rocks/a", "from . import b\r\nfrom . import c\r\n", "rocks/b rocks/c"),
+        ("rocks/a", "def f():\n    from .b import one\n\n    return one\n", "rocks/b"),
+        ("rocks/a", "from .b import *\nfrom .c import one", "rocks/b rocks/c"),
+        ("rocks/a", "from .inner import d\n", "rocks/inner/d"),
+        ("rocks/a", "from .inner.d import one\n", "rocks/inner/d"),
+        ("rocks/a", "import rocks.inner.d as x, rocks.b\n", "rocks/b rocks/inner/d"),
+        ("rocks/inner/d", "from ..b import one\n", "rocks/b"),
+        ("rocks/inner/d", "from .. import b\n", "rocks/b"),
+        ("rocks/inner/d", "from . import e\n", "rocks/inner/e"),
+        ("rocks/inner/d", "from rocks.c import one\n", "rocks/c"),
+        ("scripts/job", "from rocks import b\n", "rocks/b"),
+        ("scripts/job", "from rocks.inner import d\n", "rocks/inner/d"),
+        ("scripts/job", "from _help import one\n", "scripts/_help"),
+        ("scripts/job", "import os\nimport _help\n", "scripts/_help"),
+        # A module of a package does not import what lies beside it without a dot.
+        ("rocks/a", "import numpy\n", ""),
+        ("rocks/a", '"""Nothing of this\nfrom . import b is meant.\n"""\n', ""),
+        ("rocks/a", "# from . import b\n", ""),
+    ],
+)
+def test_every_way_to_import_is_followed(project, name, text, found):
+    (project / f"{name}.py").write_bytes(text.encode())
+    assert files_of(project, name) == found.split()
+
+
+def test_far_imports_and_those_of_packages_on_the_way_count(project):
+    (project / "scripts/job.py").write_text("from rocks.inner.d import one\n")
+    (project / "rocks/inner/d.py").write_text("from . import e\n")
+    (project / "rocks/inner/__init__.py").write_text("from ..a import one\n")
+    (project / "rocks/__init__.py").write_text("from .b import one\n")
+    assert files_of(project, "scripts/job") == ["rocks/a", "rocks/b", *_inner("d", "e")]
+    files = sources.source_files([project / "scripts/job.py"], package=project / "rocks")
+    assert project / "rocks/inner/__init__.py" in files
+    assert files == sorted(files)
+
+
+def _inner(*names):
+    return [f"rocks/inner/{name}" for name in names]
+
+
+def test_names_that_a_package_imports_when_first_asked_lead_to_their_module(project):
+    (project / "rocks/__init__.py").write_text(
+        '_HOMES = {\n    "one": ".b",\n    "two": ".c",\n}\n'
+    )
+    (project / "scripts/job.py").write_text("from rocks import one\n")
+    assert files_of(project, "scripts/job") == ["rocks/b"]
+    (project / "scripts/job.py").write_text("import rocks\n")
+    assert files_of(project, "scripts/job") == []
+
+
+def test_circles_end(project):
+    (project / "rocks/a.py").write_text("from . import b\n")
+    (project / "rocks/b.py").write_text("from . import a\n")
+    assert files_of(project, "rocks/a") == ["rocks/b"]
+
+
+def test_a_file_that_changes_within_a_process_is_read_again(project):
+    path = project / "rocks/a.py"
+    for name in "bcbc":
+        path.write_text(f"from . import {name}\n")
+        os.utime(path, (1e9, 1e9))
+        assert files_of(project, "rocks/a") == [f"rocks/{name}"]
+
+
+def test_the_package_is_read_much_faster_than_it_is_parsed():
+    begin = time.perf_counter()
+    for path in CODE:
+        ast.parse(path.read_bytes())
+    parsing, reading = time.perf_counter() - begin, []
+    for _ in range(5):
+        sources._imports.cache_clear()
+        begin = time.perf_counter()
+        assert sources.source_files(CODE, package=PACKAGE) == CODE
+        reading.append(time.perf_counter() - begin)
+    assert min(reading) < parsing / 10
+
+
+def test_reading_the_workflow_imports_nothing_heavy_for_it():
+    heavy = "{'numpy', 'numba', 'xarray', 'snakemake', 'importlib.metadata'}"
+    code = f"import sys, fractalcontact.core.sources; print({heavy} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
+def test_libraries_are_neither_python_s_nor_ours(project):
+    (project / "scripts/job.py").write_text(
+        '"""One must not\nimport whatever comes along.\n"""\n'
+        "from __future__ import annotations\n"
+        "import os.path, numpy as np\n"
+        "import matplotlib.pyplot\n"
+        "from scipy import (\n    fft,\n)\n"
+        "import _help\n"
+        "from fractalcontact import store\n"
+        "def f():\n    import yaml\n"
+    )
+    found = sources.libraries([project / "scripts/job.py", project / "rocks/a.py"])
+    assert found == ["matplotlib", "numpy", "scipy", "yaml"]
+    (project / "rocks/a.py").write_text("from . import b\nimport numpy\n")
+    assert sources.libraries([project / "rocks/a.py"]) == ["numpy"]
+
+
+def test_every_library_of_the_package_has_a_version():
+    versions = sources.versions_of(sources.libraries([*CODE, *SCRIPTS.glob("*.py")]))
+    assert {"numba", "llvmlite", "numpy", "yaml", "netCDF4", "xarray"} <= versions.keys()
+    assert {name for name, version in versions.items() if not version} <= PEERS
+    assert list(versions) == sorted(versions)
+
+
+def test_versions_are_those_of_the_distributions():
+    import yaml
+
+    assert sources.versions_of(["yaml", "no_such_library"]) == {
+        "no_such_library": "",
+        "yaml": yaml.__version__,
+    }
+    assert list(sources.versions_of(["numba"])) == ["llvmlite", "numba"]
+    assert sources.versions_of([]) == {}
+
+
+def test_the_digest_follows_content_names_and_versions_not_the_place(project, tmp_path_factory):
+    files = sorted((project / "rocks").glob("*.py"))
+    before = sources.digest(files, root=project)
+    assert len(before) == 16
+    assert int(before, 16) >= 0
+    assert sources.digest(files[::-1] + files[:1], root=str(project)) == before
+    moved = tmp_path_factory.mktemp("moved")
+    (project / "rocks").rename(moved / "rocks")
+    assert sources.digest([moved / f.relative_to(project) for f in files], root=moved) == before
+    (moved / "rocks").rename(project / "rocks")
+
+    others = [
+        sources.digest(files[1:], root=project),
+        sources.digest(files, root=project.parent),
+        sources.digest(files, root=project, versions={"numpy": "2.4"}),
+        sources.digest(files, root=project, versions={"numpy": "2.5"}),
+    ]
+    (project / "rocks/a.py").write_text("\n")
+    others.append(sources.digest(files, root=project))
+    (project / "rocks/a.py").write_text("")
+    (project / "rocks/b.py").rename(project / "rocks/other.py")
+    others.append(sources.digest(sorted((project / "rocks").glob("*.py")), root=project))
+    assert len({before, *others}) == len(others) + 1
+    versions = {"a": "1", "b": "2"}
+    assert sources.digest([], root=project, versions=versions) == sources.digest(
+        [], root=project, versions=dict(reversed(versions.items()))
+    )
+
+
+def test_a_file_outside_the_root_is_refused(project):
+    with pytest.raises(ValueError, match=r"job\.py: not below .*rocks"):
+        sources.digest([project / "scripts/job.py"], root=project / "rocks")

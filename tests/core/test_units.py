@@ -1,0 +1,65 @@
+"""Quantities as people write them."""
+
+import math
+import time
+
+import pytest
+
+from fractalcontact.core.errors import InputError
+from fractalcontact.core.units import length_factor, load, quantity
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        ("20 mm", "length", 20),
+        ("0.5 um", "length", 5e-4),
+        ("80 µm", "length", 0.08),
+        ("0.02 m", "length", 20),
+        ("20 GPa", "pressure", 20e3),
+        ("10 kN", "force", 10e3),
+        ("-1.5e-3mm", "length", -1.5e-3),
+        ("2 N/mm^2", "pressure", 2),
+        ("2 kgf / cm**2", "pressure", 0.196133),
+    ],
+)
+def test_known_quantities(text, kind, value):
+    assert quantity(text, kind, "key") == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["20", 20, "20 MPa", "20 mmm", "", None, "__import__('os')"])
+def test_what_is_no_length_is_refused_by_its_key(text):
+    with pytest.raises(InputError, match=r"study\.yaml: window: .*'20 mm'"):
+        quantity(text, "length", "study.yaml: window")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["9**9**9**9 mm", "1 mm*9**9**9", "1 mm + 1 mm", "1e999 mm", "nan mm", "1 " + "a" * 57 + "!"],
+)
+def test_a_quantity_is_one_finite_number_and_no_sum(text):
+    start = time.monotonic()
+    with pytest.raises(InputError, match=r"key: .*'20 mm'"):
+        quantity(text, "length", "key")
+    assert time.monotonic() - start < 2
+
+
+def test_loads_are_forces_or_pressures():
+    assert load("2 kN", "k") == (2000.0, "force")
+    assert load("2.5 MPa", "k") == (2.5, "pressure")
+    with pytest.raises(InputError, match="neither a force nor a nominal pressure"):
+        load("2 mm", "k")
+
+
+def test_units_of_length():
+    assert length_factor("um", "k") == pytest.approx(1e-3)
+    with pytest.raises(InputError):
+        length_factor("kN", "k")
+
+
+def test_an_angle_needs_its_unit():
+    assert quantity("30 deg", "angle", "here") == 30
+    assert quantity("0.5 rad", "angle", "here") == pytest.approx(90 / math.pi)
+    for wrong in ("30", "3 mm", 30):
+        with pytest.raises(InputError, match="expected an angle with its unit, such as '30 deg'"):
+            quantity(wrong, "angle", "here")

@@ -1,0 +1,76 @@
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from places import BENCHMARKS
+
+from fractalcontact.domain.box_counts import box_count, mean_count, whole_sizes
+
+DOMAINS = arrays(bool, st.tuples(st.integers(1, 14), st.integers(1, 14)))
+
+# -- exact -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("r", [1, 2, 7, 20, 50])
+def test_mean_counts_of_simple_sets(r):
+    square, point, row = (np.zeros((40, 60), dtype=bool) for _ in range(3))
+    square[5:25, 10:30] = point[3, 4] = row[9, 10:40] = True
+    assert mean_count(square, [r]).item() == pytest.approx(((20 + r - 1) / r) ** 2)
+    assert mean_count(point, [r]).item() == pytest.approx(1)
+    assert mean_count(row, [r]).item() == pytest.approx((30 + r - 1) / r)
+
+
+def test_whole_sizes():
+    assert whole_sizes(8).tolist() == [1, 2, 3, 4, 5, 6, 7, 8]
+    assert whole_sizes(0.5).tolist() == [1]
+    assert whole_sizes(64)[-1] == 64
+
+
+# -- independent -----------------------------------------------------------------------------------
+
+
+@given(DOMAINS, st.integers(1, 9), st.integers(1, 4))
+@settings(max_examples=60, deadline=None)
+def test_mean_counts_agree_with_counting_by_hand(domain, r, blocks):
+    ny, nx = domain.shape
+    places = np.zeros((blocks, blocks))
+    for y in range(1 - r, ny):
+        for x in range(1 - r, nx):
+            if domain[max(y, 0) : y + r, max(x, 0) : x + r].any():
+                part_y = np.clip((2 * y + r) * blocks // (2 * ny), 0, blocks - 1)
+                part_x = np.clip((2 * x + r) * blocks // (2 * nx), 0, blocks - 1)
+                places[part_y, part_x] += 1
+    np.testing.assert_allclose(mean_count(domain, [r], blocks=blocks)[0], places / r**2)
+
+
+# -- properties ------------------------------------------------------------------------------------
+
+
+@given(DOMAINS, st.integers(1, 9))
+@settings(max_examples=60, deadline=None)
+def test_the_fewest_are_no_more_than_the_mean(domain, r):
+    mean = mean_count(domain, [r]).sum()
+    assert box_count(domain, [r])[0] <= mean + 1e-9
+    for turned in (domain.T, domain[::-1], np.pad(domain, 3)):
+        assert mean_count(turned, [r]).sum() == pytest.approx(mean)
+
+
+def test_bad_arguments_are_refused():
+    with pytest.raises(ValueError, match="at least one cell"):
+        mean_count(np.ones((4, 4), dtype=bool), [0])
+    with pytest.raises(ValueError, match="grid"):
+        mean_count(np.ones(4, dtype=bool), [1])
+
+
+def test_benchmark_prints_time_and_growth():
+    script = BENCHMARKS / "box_counts.py"
+    command = [sys.executable, script, "--sizes", "64", "128"]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    header, first, second = (line.split() for line in done.stdout.splitlines())
+    assert header[0] == "cells"
+    assert (first[0], second[0]) == ("64", "128")
+    assert float(second[2]) > 0

@@ -1,0 +1,311 @@
+import itertools
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from fractalcontact.domain.clusters import (
+    CLUSTER_FIELDS,
+    cluster_sizes,
+    cluster_statistics,
+    follows_law,
+    half_share,
+    morisita_index,
+    octave_counts,
+    quadrat_counts,
+    random_half_share,
+    size_exponent,
+)
+from fractalcontact.surface.synthesis import self_affine
+
+
+def block(shape, rows, columns):
+    domain = np.zeros(shape, bool)
+    domain[rows, columns] = True
+    return domain
+
+
+def random_domain(shape, nodes, seed):
+    domain = np.zeros(shape[0] * shape[1], bool)
+    domain[np.random.default_rng(seed).choice(domain.size, nodes, replace=False)] = True
+    return domain.reshape(shape)
+
+
+# -- exact -----------------------------------------------------------------------------------------
+
+
+def test_no_contact():
+    found = cluster_statistics(np.zeros((32, 32), bool), 0.1)
+    assert found.pop("clusters") == found.pop("cluster_fit_n") == 0
+    assert not found.pop("cluster_octaves").any()
+    assert np.isnan(list(found.values())).all()
+
+
+def test_full_contact():
+    found = cluster_statistics(np.ones((64, 64), bool), 0.1)
+    assert found["clusters"] == found["largest_share"] == 1
+    assert found["cluster_area_mean"] == pytest.approx(6.4**2)
+    assert found["cluster_octaves"].tolist() == [0] * 12 + [1]
+    assert (found["morisita"], found["morisita_scatter"]) == (1, 0)
+    assert found["half_share"] == found["half_share_random"] == 0.5
+
+
+def test_one_node():
+    found = cluster_statistics(block((64, 64), 20, 3), 0.5)
+    assert found["clusters"] == found["largest_share"] == 1
+    assert found["cluster_area_mean"] == found["cluster_area_median"] == 0.25
+    assert found["half_share"] == 1 / 128  # half of one quadrat in 64
+    assert np.isnan([found["morisita"], found["morisita_scatter"]]).all()
+
+
+def test_all_contact_in_one_quadrat():
+    found = cluster_statistics(block((64, 64), slice(8, 14), slice(0, 6)), 1.0)
+    assert found["morisita"] == pytest.approx(4095 / 63)
+    assert found["half_share"] == 1 / 128
+    assert found["morisita"] > 1 + 10 * found["morisita_scatter"]
+
+
+def test_checkerboard_of_cells_is_one_cluster_more_regular_than_chance():
+    found = cluster_statistics(np.indices((64, 64)).sum(axis=0) % 2 == 0, 1.0)
+    assert found["clusters"] == 1  # joined over the corners
+    assert found["half_share"] == 0.5
+    assert found["morisita"] < 1
+    assert found["half_share"] > found["half_share_random"]
+
+
+def test_checkerboard_of_quadrats_holds_its_half_in_a_quarter():
+    contact, cells = quadrat_counts(np.indices((64, 64)).sum(axis=0) // 8 % 2 == 0)
+    assert contact.shape == cells.shape == (64,)
+    found = cluster_statistics(np.kron(np.indices((8, 8)).sum(axis=0) % 2 == 0, np.ones((8, 8))), 1)
+    assert found["half_share"] == 0.25
+    assert found["morisita"] == pytest.approx(4095 / 2047)
+    assert found["clusters"] == 1
+
+
+def test_clusters_join_over_corners():
+    domain = np.zeros((6, 6), bool)
+    domain[[0, 1, 2, 5], [0, 1, 1, 5]] = True
+    found = cluster_statistics(domain, 2.0)
+    assert sorted(cluster_sizes(domain)) == [1, 3]
+    assert found["clusters"] == 2
+    assert found["largest_share"] == 0.75
+    assert found["cluster_area_mean"] == found["cluster_area_median"] == 8.0
+
+
+def test_octaves_begin_at_powers_of_two():
+    sizes = np.array([1, 2, 3, 4, 7, 8, 2**20 - 1, 2**20])
+    counts = octave_counts(sizes, 2**20)
+    assert counts[:4].tolist() == [1, 2, 2, 1]
+    assert counts[[19, 20]].tolist() == [1, 1]
+    assert len(counts) == 21
+
+
+@pytest.mark.parametrize("beta", [0.5, 1.0, 2.0])
+def test_exponent_of_an_exact_power_law(beta):
+    # N(a >= 2^k) = 2^(-beta k) of a million, in whole clusters.
+    left = np.floor(1e6 * 2.0 ** (-beta * np.arange(24))).astype(int)
+    octaves = left - np.append(left[1:], 0)
+    sizes = np.repeat(2 ** np.arange(24), octaves)
+    found = size_exponent(octaves, sizes, 0.01)
+    assert found["cluster_exponent"] == pytest.approx(beta, rel=0.01)
+    assert found["cluster_exponent_low"] < beta < found["cluster_exponent_high"]
+    assert found["cluster_fit_min"] == pytest.approx(0.01 * sizes[-int(found["cluster_fit_n"])])
+    assert found["cluster_fit_max"] == pytest.approx(0.01 * sizes.max())
+    assert found["cluster_fit_distance"] < 0.01
+
+
+# -- independent -----------------------------------------------------------------------------------
+
+
+def clusters_by_hand(domain):
+    """Sizes by walking from node to neighbouring node."""
+    left, sizes = set(map(tuple, np.argwhere(domain))), []
+    while left:
+        front, size = [left.pop()], 0
+        while front:
+            y, x = front.pop()
+            size += 1
+            around = {(y + i, x + j) for i in (-1, 0, 1) for j in (-1, 0, 1)} & left
+            left -= around
+            front += around
+        sizes.append(size)
+    return sorted(sizes)
+
+
+@given(arrays(bool, st.tuples(st.integers(1, 12), st.integers(1, 12))))
+@settings(max_examples=60, deadline=None)
+def test_clusters_agree_with_walking(domain):
+    sizes = clusters_by_hand(domain)
+    found = cluster_statistics(domain, 1.0)
+    assert sorted(cluster_sizes(domain)) == sizes
+    assert found["clusters"] == len(sizes) == found["cluster_octaves"].sum()
+    if sizes:
+        assert found["largest_share"] == sizes[-1] / sum(sizes)
+        assert found["cluster_area_median"] == np.median(sizes)
+
+
+@given(arrays(bool, st.tuples(st.integers(1, 30), st.integers(1, 30))))
+@settings(max_examples=60, deadline=None)
+def test_morisita_is_the_ratio_of_pairs_that_share_a_quadrat(domain):
+    contact, cells = quadrat_counts(domain)
+    assert contact.sum() == domain.sum()
+    assert cells.sum() == domain.size
+    index, _ = morisita_index(contact, cells)
+    sharing, of_all = (
+        np.sum(n * (n - 1)) / max(n.sum() * (n.sum() - 1), 1) for n in (contact, cells)
+    )
+    if domain.sum() < 2 or of_all == 0:
+        assert np.isnan(index)
+    else:
+        assert index == pytest.approx(sharing / of_all)
+
+
+def test_mean_and_scatter_of_morisita_over_all_sets_of_few_nodes():
+    cells = np.array([2, 3, 4])
+    quadrat = np.repeat(np.arange(3), cells)
+    for nodes in (2, 3, 4, 6, 8):
+        values = [
+            morisita_index(np.bincount(quadrat[list(chosen)], minlength=3), cells)
+            for chosen in itertools.combinations(range(9), nodes)
+        ]
+        index, scatter = np.transpose(values)
+        assert index.mean() == pytest.approx(1)
+        np.testing.assert_allclose(scatter, index.std(), rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize(("shape", "nodes"), [((64, 64), 20), ((61, 50), 200), ((128, 96), 4000)])
+def test_random_nodes_read_as_random(shape, nodes):
+    found = [cluster_statistics(random_domain(shape, nodes, seed), 1.0) for seed in range(200)]
+    index, share = (np.array([f[name] for f in found]) for name in ("morisita", "half_share"))
+    scatter = found[0]["morisita_scatter"]
+    assert index.mean() == pytest.approx(1, abs=4 * scatter / np.sqrt(200))
+    assert index.std() == pytest.approx(scatter, rel=0.2)
+    assert share.mean() == pytest.approx(found[0]["half_share_random"], rel=0.05)
+
+
+def test_half_share_agrees_with_trying_all_choices():
+    contact = np.array([5, 0, 3, 9, 1, 1, 0, 1])
+    cells = np.full(8, 10)
+    fewest = min(
+        len(chosen)
+        for n in range(1, 9)
+        for chosen in itertools.combinations(range(8), n)
+        if contact[list(chosen)].sum() >= 10
+    )
+    assert fewest == 2
+    assert half_share(contact, cells) == pytest.approx((1 + (10 - 9) / 5) / 8)
+
+
+@pytest.mark.parametrize("beta", [0.6, 1.0, 1.5])
+def test_interval_of_the_exponent_holds_the_truth(beta):
+    rng = np.random.default_rng(5)
+    held = followed = 0
+    for _ in range(200):
+        sizes = np.minimum(rng.random(500) ** (-1 / beta), 2.0**39).astype(np.int64)
+        found = size_exponent(octave_counts(sizes, 2**40), sizes, 1.0)
+        held += found["cluster_exponent_low"] <= beta <= found["cluster_exponent_high"]
+        followed += follows_law(found["cluster_fit_n"], found["cluster_fit_distance"])
+    assert followed >= 186
+    assert held >= 178  # 95 %, less what choosing the range costs
+
+
+def test_sizes_without_a_power_law_are_told():
+    rng = np.random.default_rng(5)
+    sizes = np.ceil(rng.lognormal(3, 0.7, 3000)).astype(np.int64)
+    found = size_exponent(octave_counts(sizes, 2**16), sizes, 1.0)
+    assert np.isfinite(found["cluster_exponent"])
+    assert not follows_law(found["cluster_fit_n"], found["cluster_fit_distance"])
+
+
+# -- properties ------------------------------------------------------------------------------------
+
+
+def test_morisita_does_not_see_how_dense_a_domain_is():
+    heights = self_affine((128, 128), 1.0, 0.8, rms=1.0, seed=2, roll_off=40.0)
+    domain = heights > np.quantile(heights, 0.8)
+    whole = cluster_statistics(domain, 1.0)["morisita"]
+    rng = np.random.default_rng(1)
+    thinned = [
+        cluster_statistics(domain & (rng.random(domain.shape) < 0.1), 1.0)["morisita"]
+        for _ in range(100)
+    ]
+    error = np.std(thinned) / np.sqrt(100)
+    assert whole > 1.5
+    assert np.mean(thinned) == pytest.approx(whole, abs=4 * error)
+
+
+def test_localised_contact_is_told_from_contact_spread_evenly():
+    # The same clusters at random places, then all in one corner of the window.
+    rng = np.random.default_rng(3)
+    spread, packed = np.zeros((2, 128, 128), bool)
+    for y, x in rng.integers(0, 126, (60, 2)):
+        spread[y : y + 2, x : x + 2] = True
+        packed[y // 3 : y // 3 + 2, x // 3 : x // 3 + 2] = True
+    even, corner = (cluster_statistics(domain, 1.0) for domain in (spread, packed))
+    assert corner["morisita"] > 3 * even["morisita"]
+    assert corner["half_share"] < even["half_share"] < 0.5
+
+
+def test_unit_of_length_changes_only_areas():
+    domain = self_affine((128, 128), 1.0, 0.7, rms=1.0, seed=0) > 1.0
+    mm, um = cluster_statistics(domain, 0.1), cluster_statistics(domain, 100.0)
+    for name, (unit, _) in CLUSTER_FIELDS.items():
+        np.testing.assert_allclose(um[name], mm[name] * (1e6 if unit == "mm2" else 1))
+
+
+def test_direction_does_not_matter():
+    domain = self_affine((96, 96), 1.0, 0.7, rms=1.0, seed=4) > 0.8
+    first = cluster_statistics(domain, 1.0)
+    for turned in (domain.T, domain[::-1], np.rot90(domain)):
+        again = cluster_statistics(turned, 1.0)
+        assert again.keys() == first.keys() == {*CLUSTER_FIELDS, "cluster_octaves"}
+        for name, value in first.items():
+            np.testing.assert_allclose(again[name], value, rtol=1e-12)
+
+
+def test_few_clusters_have_no_exponent():
+    found = cluster_statistics(random_domain((64, 64), 49, 0), 1.0)
+    assert np.isnan(found["cluster_exponent"])
+    assert found["cluster_fit_n"] == 0
+    alike = np.zeros((64, 64), bool)
+    alike[::2, ::2] = True  # a thousand clusters of one node
+    assert np.isnan(cluster_statistics(alike, 1.0)["cluster_exponent"])
+
+
+def test_tables_of_one_window_fit_together():
+    lengths = {
+        len(cluster_statistics(random_domain((50, 40), n, n), 1.0)["cluster_octaves"])
+        for n in (0, 1, 100, 2000)
+    }
+    assert lengths == {11}
+
+
+def test_windows_smaller_than_the_quadrats():
+    for shape in ((1, 1), (1, 9), (5, 3), (9, 7)):
+        found = cluster_statistics(np.ones(shape, bool), 1.0)
+        assert found["half_share"] == pytest.approx(0.5)
+        contact, cells = quadrat_counts(np.ones(shape, bool))
+        np.testing.assert_array_equal(contact, cells)
+        assert cells.min() >= 1
+
+
+def test_a_large_window_costs_no_more_for_its_random_share():
+    cells = np.full(64, 512 * 512)
+    start = time.perf_counter()
+    share = random_half_share(10**6, cells)
+    assert time.perf_counter() - start < 0.1
+    assert 0.49 < share < 0.5
+
+
+def test_fast_enough_for_every_state_of_a_study():
+    heights = self_affine((256, 256), 1.0, 0.8, rms=1.0, seed=0)
+    domain = heights > np.quantile(heights, 0.9)
+    times = []
+    for _ in range(20):
+        start = time.perf_counter()
+        cluster_statistics(domain, 1.0)
+        times.append(time.perf_counter() - start)
+    assert min(times) < 2e-3

@@ -1,0 +1,159 @@
+import numpy as np
+import pytest
+import xarray as xr
+
+from fractalcontact.domain.renormalisation import (
+    compare_dimensions,
+    hausdorff_measure,
+    nominal_pressure,
+    renormalisation,
+)
+
+S = xr.DataArray(0.08 * 2.0 ** np.arange(4), dims="resolution")
+DELTA = xr.DataArray([1.2, 1.5, 1.8], dims="load")
+FORCE = xr.DataArray([100.0, 1000.0, 10000.0], dims="load")
+MEASURE = xr.DataArray([3.0, 40.0, 200.0], dims="load")
+AREA = MEASURE * S ** (2 - DELTA)
+
+
+def test_exact_fractal_gives_back_its_dimension_and_measure():
+    result = renormalisation(S, AREA, FORCE)
+    assert result.delta_sigma.dims == ("load",)
+    np.testing.assert_allclose(result.delta_sigma, DELTA)
+    np.testing.assert_allclose(result.hausdorff_measure, MEASURE)
+    np.testing.assert_allclose(result.hausdorff_spread, 1)
+    np.testing.assert_allclose(result.sigma_star, FORCE / MEASURE)
+    assert (result.n == 4).all()
+
+
+def test_interval_of_an_exact_fractal_is_that_of_counting_its_nodes():
+    result = renormalisation(S, AREA, FORCE)
+    nodes = AREA / S**2
+    weight = np.log(S) - np.log(S).mean()
+    weight = weight / (weight**2).sum()
+    half = 1.959964 * np.sqrt((weight**2 / nodes).sum("resolution"))
+    np.testing.assert_allclose(result.delta_sigma_high - result.delta_sigma, half, rtol=1e-6)
+    np.testing.assert_allclose(result.delta_sigma - result.delta_sigma_low, half, rtol=1e-6)
+    many = renormalisation(S, 1e8 * AREA, FORCE)
+    np.testing.assert_allclose(many.delta_sigma_low, DELTA, atol=1e-4)
+
+
+def test_sigma_star_does_not_depend_on_resolution_though_sigma_n_does():
+    whole, finer = (renormalisation(S[i], AREA[:, i], FORCE) for i in (slice(4), slice(3)))
+    np.testing.assert_allclose(whole.sigma_star, finer.sigma_star)
+    # Real pressures rise towards finer resolution, as in Fig. 8.
+    assert (whole.sigma_n.transpose("resolution", "load").diff("resolution") < 0).all()
+
+
+def test_euclidean_contact_keeps_the_usual_pressure():
+    area = xr.full_like(S, 7.0)
+    result = renormalisation(S, area, xr.DataArray(70.0))
+    assert result.delta_sigma.item() == pytest.approx(2)
+    assert result.sigma_star.item() == pytest.approx(10)
+
+
+def test_fit_agrees_with_numpy():
+    rng = np.random.default_rng(0)
+    area = AREA * np.exp(0.1 * xr.DataArray(rng.standard_normal(4), dims="resolution"))
+    result = renormalisation(S, area, FORCE)
+    for load in range(3):
+        slope = np.polyfit(np.log(S), np.log(area[load]), 1)[0]
+        assert result.delta_sigma[load].item() == pytest.approx(2 - slope)
+    assert (result.delta_sigma_low < result.delta_sigma).all()
+    assert (result.delta_sigma < result.delta_sigma_high).all()
+    assert (result.hausdorff_spread > 1).all()
+
+
+def test_resolutions_without_contact_are_left_out():
+    area = AREA.copy()
+    area[0, :2] = 0.0
+    area[1, 0] = np.nan
+    result = renormalisation(S, area, FORCE)
+    assert result.n.values.tolist() == [2, 3, 4]
+    assert np.isnan(result.delta_sigma[0]).all()
+    assert np.isnan(result.sigma_star[0]).all()
+    np.testing.assert_allclose(result.delta_sigma[1:], DELTA[1:])
+    assert np.isnan(result.sigma_n.sel(load=0)[:2]).all()
+
+
+@pytest.mark.parametrize(("nodes", "fitted"), [(1, 0), (3, 0), (4, 4)])
+def test_few_nodes_have_no_dimension(nodes, fitted):
+    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0))
+    assert result.n.item() == fitted
+    if fitted:
+        assert result.delta_sigma.item() == pytest.approx(0, abs=1e-9)
+        assert result.delta_sigma_high - result.delta_sigma_low > 1
+    else:
+        assert np.isnan(result.delta_sigma)
+        assert np.isnan(result.sigma_n).all()
+
+
+def test_resolutions_of_few_nodes_are_left_out():
+    nodes = xr.DataArray([200, 66, 22, 3], dims="resolution")
+    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0))
+    assert result.n.item() == 3
+    slope = np.polyfit(np.log(S[:3]), np.log(nodes[:3]), 1)[0]
+    assert result.delta_sigma.item() == pytest.approx(-slope)
+    assert np.isfinite(result.sigma_n).values.tolist() == [True, True, True, False]
+
+
+def test_interval_holds_the_dimension_of_counts_that_scatter():
+    rng = np.random.default_rng(0)
+    expected = 400 * 2.0 ** (-1.2 * np.arange(4))
+    nodes = xr.DataArray(rng.poisson(expected, (500, 4)), dims=("sample", "resolution"))
+    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0))
+    inside = (result.delta_sigma_low <= 1.2) & (result.delta_sigma_high >= 1.2)
+    assert inside.mean() >= 0.95
+
+
+def test_more_dimensions_than_load():
+    area = AREA.expand_dims(offset=2).transpose("offset", "resolution", "load")
+    result = renormalisation(S, area, FORCE)
+    assert set(result.delta_sigma.dims) == {"offset", "load"}
+    assert result.sigma_star.transpose("offset", "load").shape == (2, 3)
+    np.testing.assert_allclose(result.delta_sigma.sel(offset=1), DELTA)
+
+
+def test_negative_areas_and_spacings_are_refused():
+    with pytest.raises(ValueError, match="negative"):
+        renormalisation(S, -AREA, FORCE)
+    with pytest.raises(ValueError, match="positive"):
+        renormalisation(0 * S, AREA, FORCE)
+
+
+def test_hausdorff_measure_counts_nodes_in_their_own_dimension():
+    assert hausdorff_measure(0.5, 12 * 0.25, 1.5) == pytest.approx(12 * 0.5**1.5)
+    assert hausdorff_measure(0.5, 12 * 0.25, 0.0) == pytest.approx(12)
+
+
+def test_size_effect_has_the_slope_of_equation_six():
+    b = np.array([20.0, 40.0, 200.0])
+    sigma = nominal_pressure(5.0, 1.6, b)
+    np.testing.assert_allclose(np.diff(np.log(sigma)) / np.diff(np.log(b)), -0.4)
+    np.testing.assert_allclose(nominal_pressure(5.0, 2.0, b), 5.0)  # no size effect
+    assert nominal_pressure(5.0, 1.3, 1.0) == 5.0
+
+
+def test_size_effect_and_renormalisation_are_the_same_statement():
+    # A fractal that fills the joint: N = (b/s)^Delta nodes, so H_D = b^Delta, sigma_0 = F/b^2.
+    b, delta, force = 20.0, 1.6, 1000.0
+    area = (b / S) ** delta * S**2
+    result = renormalisation(S, area, xr.DataArray(force))
+    sigma_0 = nominal_pressure(result.sigma_star, result.delta_sigma, b)
+    assert sigma_0.item() == pytest.approx(force / b**2)
+
+
+def test_dimensions_are_compared_with_their_intervals():
+    area, box = (xr.DataArray(v, dims="load") for v in ([1.7, 1.5], [1.4, 1.45]))
+    result = compare_dimensions(area, area - 0.03, area + 0.03, box, box - 0.04, box + 0.04)
+    np.testing.assert_allclose(result.difference, [0.3, 0.05])
+    np.testing.assert_allclose(result.difference_low, [0.25, 0.0], atol=1e-12)
+    np.testing.assert_allclose(result.difference_high, [0.35, 0.1])
+    assert result.disagree[0].item()
+
+
+def test_missing_dimension_never_disagrees():
+    one, nothing = xr.DataArray(1.5), xr.DataArray(np.nan)
+    result = compare_dimensions(one, one - 0.1, one + 0.1, nothing, nothing, nothing)
+    assert np.isnan(result.difference)
+    assert not result.disagree

@@ -1,0 +1,35 @@
+"""The convolution by transforms of its own, against one that shares nothing with it."""
+
+import numpy as np
+import pytest
+from scipy.signal import fftconvolve
+
+from fractalcontact.elastic.convolution import Convolution, fast_length
+
+
+@pytest.mark.parametrize(
+    ("least", "length"), [(1, 2), (7, 8), (11, 12), (1023, 1024), (1025, 1080), (1999, 2000)]
+)
+def test_lengths_have_small_factors_only(least, length):
+    assert fast_length(least) == length
+
+
+# One node, lanes half empty, a block and a lane more; lengths with every radix, and odd ones.
+SHAPES = [(1, 1), (2, 33), (8, 31), (13, 32), (23, 64), (45, 70), (41, 97), (128, 5)]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(("dtype", "error"), [(np.float32, 1e-6), (np.float64, 1e-14)])
+def test_convolution_with_any_even_kernel(shape, dtype, error):
+    ny, nx = shape
+    generator = np.random.default_rng(ny * nx)
+    kernel, field = generator.standard_normal((2, ny, nx))
+    padded = fast_length(2 * ny - 1), fast_length(2 * nx - 1)
+    y, x = np.arange(1 - ny, ny)[:, None], np.arange(1 - nx, nx)
+    around = np.zeros(padded)
+    around[y, x] = kernel[np.abs(y), np.abs(x)]
+    spectrum = np.fft.fft2(around).real[: padded[0] // 2 + 1, : padded[1] // 2 + 1]
+    image = Convolution(spectrum, shape, padded, dtype)(field.astype(dtype))
+    exact = fftconvolve(field, kernel[np.abs(y), np.abs(x)])[ny - 1 :, nx - 1 :][:ny, :nx]
+    assert image.dtype == dtype
+    np.testing.assert_allclose(image, exact, rtol=0, atol=error * np.abs(kernel).sum())

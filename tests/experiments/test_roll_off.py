@@ -1,0 +1,59 @@
+"""Joints with and without a roll-off: what is kept of them, and what makes the plateau."""
+
+import numpy as np
+import pytest
+
+from fractalcontact.core.directions import DIRECTIONS
+from fractalcontact.experiments.roll_off import roll_off_effect
+
+RECIPE = {
+    "label": "made",
+    "size": 25.6,
+    "outline": "square",
+    "spacing": 0.1,
+    "dimension": 2.2,
+    "rms": 0.2,
+    "roll_off": 2.5,
+}
+
+
+@pytest.fixture(scope="module")
+def effect():
+    return roll_off_effect(RECIPE, 12.8, range(8))
+
+
+def test_dilatancy_levels_off_with_a_roll_off_and_rises_on_without(effect):
+    with_it, without = (effect.sel(surface=f"{kind}_roll_off") for kind in ("with", "without"))
+    half = float(effect["rigid_offset"][-1]) / 2
+    second = effect["rigid_offset"] >= half
+    change = [
+        float(s["slope"] * half / s["rigid_dilatancy"][..., second].mean())
+        for s in (with_it, without)
+    ]
+    assert abs(change[0]) < 0.1
+    assert change[1] > 0.15
+    assert without["slope_low"] > 0
+
+
+def test_the_spread_is_what_heights_and_correlation_make_it(effect):
+    joints = effect.sel(surface="with_roll_off")
+    expected = joints["face_rms"] * np.sqrt(2 - 2 * joints["face_correlation"].clip(max=1))
+    mean = [values.mean(("seed", "direction")) for values in (expected, joints["composite_rms"])]
+    np.testing.assert_allclose(mean[0], mean[1], rtol=0.05, atol=1e-6)
+
+
+def test_short_waves_are_as_steep_in_both(effect):
+    slope = effect["rms_slope"].transpose("surface", "seed")
+    np.testing.assert_allclose(slope[0], slope[1], rtol=1e-12)
+
+
+def test_all_slide_as_far_in_every_direction(effect):
+    assert effect["direction"].values.tolist() == list(DIRECTIONS)
+    assert float(effect["rigid_offset"][-1]) == pytest.approx(6.4, abs=0.11)
+    assert np.isfinite(effect["rigid_dilatancy"]).all()
+    assert (effect["rigid_dilatancy"].isel(rigid_offset=0) == 0).all()
+
+
+def test_everything_is_labelled(effect):
+    for name, variable in effect.data_vars.items():
+        assert {"units", "long_name"} <= variable.attrs.keys(), name

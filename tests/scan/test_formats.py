@@ -1,0 +1,418 @@
+"""Readers of single formats: what they take from the file, and what they refuse."""
+
+import struct
+import zipfile
+
+import numpy as np
+import pytest
+from scan_writers import write
+
+from fractalcontact.core.errors import InputError
+from fractalcontact.scan import instruments, raw
+from fractalcontact.scan.read import read_scan
+
+DX, DY = 0.1, 0.25
+MATRIX = {"unit": "mm", "spacing": [DX, DY]}
+
+
+def surface(shape=(9, 14)):
+    """Heights in mm without symmetry; one cell is missing."""
+    heights = np.random.default_rng(3).uniform(-0.2, 0.2, shape)
+    heights[1, 2] = np.nan
+    return heights
+
+
+# --- X3P ---------------------------------------------------------------------------------------
+
+
+def x3p(path, file):
+    file.save(path)
+    return path
+
+
+def test_a_layer_of_an_x3p_file_is_named(tmp_path):
+    import x3pio
+
+    layers = np.stack([surface(), 2 * surface()]) * 1e-3
+    path = x3p(tmp_path / "rock.x3p", x3pio.Surface.from_array(layers, x_scale=1e-4, y_scale=1e-4))
+    with pytest.raises(InputError, match=r"'variable: NAME'; it has layer 1, layer 2"):
+        read_scan(path)
+    heights = read_scan(path, {"variable": "layer 2"})
+    np.testing.assert_allclose(heights, 2 * surface(), rtol=1e-12)
+    assert heights.attrs["notes"] == "layer 2 of 2"
+
+
+def test_an_x3p_profile_is_refused(tmp_path):
+    import x3pio
+
+    path = x3p(tmp_path / "rock.x3p", x3pio.Profile.from_array(np.arange(20.0), x_scale=1e-6))
+    with pytest.raises(InputError, match="a profile"):
+        read_scan(path)
+
+
+def test_an_irregular_x3p_grid_is_read_as_points_in_global_coordinates(tmp_path):
+    import x3pio
+
+    y, x = np.indices((12, 15)) * 1e-4
+    grid = np.stack([x, y, np.random.default_rng(0).uniform(0, 1e-4, x.shape)], axis=-1)
+    shifted = x3pio.Surface.from_points(
+        grid,
+        placement=x3pio.Placement(offset=[2e-3, 0, 5e-3]),
+        coordinate_system=x3pio.CoordinateSystem.VIEW,
+    )
+    heights = read_scan(x3p(tmp_path / "rock.x3p", shifted))
+    np.testing.assert_allclose(heights, 1e3 * grid[..., 2] + 5, rtol=1e-12)
+    assert float(heights.x[0]) == pytest.approx(2.0)
+
+
+def rewritten(path, name, change):
+    """The same archive with one member changed."""
+    with zipfile.ZipFile(path) as archive:
+        members = {member: archive.read(member) for member in archive.namelist()}
+    members[name] = change(members[name])
+    with zipfile.ZipFile(path, "w") as archive:
+        for member, content in members.items():
+            archive.writestr(member, content)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("member", "change"),
+    [
+        ("bindata/data.bin", lambda content: content[:-8] + b"\0" * 8),
+        ("main.xml", lambda content: content.replace(b"0.0001", b"0.0002", 1)),
+    ],
+)
+def test_x3p_content_that_does_not_match_its_checksum_is_refused(tmp_path, member, change):
+    path = tmp_path / "rock.x3p"
+    write(path, surface(), DX, DX)
+    rewritten(path, member, change)
+    with pytest.raises(InputError, match=r"checksum.*changed or damaged"):
+        read_scan(path)
+
+
+def old_x3p(path):
+    """As R's x3ptools writes: root element of the first edition, its own checksum, origin NW."""
+    import hashlib
+
+    write(path, surface(), DX, DY)
+    with zipfile.ZipFile(path) as archive:
+        index = archive.read("main.xml").decode()
+    start, end = index.index("<p:ISO5436_2"), index.index(">", index.index("<p:ISO5436_2"))
+    index = index[:start] + "<ISO5436" + index[end:].replace("</p:ISO5436_2>", "</ISO5436>")
+    index = index.replace("</Axes>", "<Origin>NW</Origin></Axes>")
+    rewritten(path, "main.xml", lambda _: index.encode())
+    digest = hashlib.md5(index.encode()).hexdigest()
+    return rewritten(path, "md5checksum.hex", lambda _: f"{digest} *main.xml".encode())
+
+
+def test_x3p_of_the_first_edition_from_the_north_west(tmp_path):
+    path = old_x3p(tmp_path / "rock.x3p")
+    np.testing.assert_allclose(read_scan(path), surface()[::-1], rtol=1e-12)
+    heights = read_scan(path, {"first_row": "bottom"})
+    np.testing.assert_allclose(heights, surface(), rtol=1e-12)
+    assert heights.attrs["overrides"] == "first_row bottom from the sidecar, the file says top"
+    rewritten(path, "main.xml", lambda content: content.replace(b"0.0001", b"0.0002", 1))
+    with pytest.raises(InputError, match=r"checksum of main\.xml.*changed or damaged"):
+        read_scan(path)
+
+
+# --- netCDF ------------------------------------------------------------------------------------
+
+
+def netcdf(path, heights, x=None, y=None, dims=("y", "x"), units=("mm", "mm"), z_units="mm"):
+    """A file as climate and lab software writes it; without coordinates if x is None."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, "w") as file:
+        for name, length in zip(dims, heights.shape, strict=True):
+            file.createDimension(name, length)
+        for name, values, unit in (("x", x, units[0]), ("y", y, units[1])):
+            if values is not None:
+                file.createVariable(name, "f4", (name,))[:] = values
+                if unit:
+                    file[name].units = unit
+        file.createVariable("z", "f8", dims, fill_value=np.nan)[:] = heights
+        if z_units:
+            file["z"].units = z_units
+    return path
+
+
+def coordinates(shape=(9, 14)):
+    return DX * np.arange(shape[1]) + 5, DY * np.arange(shape[0]) - 3
+
+
+def test_descending_and_swapped_netcdf_axes_are_turned(tmp_path):
+    x, y = coordinates()
+    variants = {
+        "plain": (surface(), x, y, ("y", "x")),
+        "y descends": (surface()[::-1], x, y[::-1], ("y", "x")),
+        "x descends": (surface()[:, ::-1], x[::-1], y, ("y", "x")),
+        "x first": (surface().T, x, y, ("x", "y")),
+    }
+    for name, (heights, x_values, y_values, dims) in variants.items():
+        read = read_scan(netcdf(tmp_path / f"{name}.nc", heights, x_values, y_values, dims))
+        np.testing.assert_array_equal(read, surface(), err_msg=name)
+        assert read.attrs["spacing_x"] == pytest.approx(DX, rel=1e-5)
+        assert read.attrs["spacing_y"] == pytest.approx(DY, rel=1e-5)
+
+
+def test_each_netcdf_axis_has_its_own_unit(tmp_path):
+    x, y = coordinates()
+    path = netcdf(
+        tmp_path / "rock.nc", surface() * 1e3, x, y * 1e3, units=("mm", "um"), z_units="um"
+    )
+    read = read_scan(path)
+    np.testing.assert_allclose(read, surface(), rtol=1e-12)
+    assert read.attrs["spacing_y"] == pytest.approx(DY, rel=1e-5)
+    assert read.attrs["file_unit"] == "x, y mm; z um"
+
+
+@pytest.mark.parametrize("units", [(None, None), ("degrees_east", "degrees_north")])
+def test_netcdf_coordinates_that_are_no_lengths_need_the_sidecar(tmp_path, units):
+    path = netcdf(tmp_path / "rock.nc", surface(), *coordinates(), units=units, z_units=None)
+    with pytest.raises(InputError, match="states no unit"):
+        read_scan(path)
+    read = read_scan(path, MATRIX)
+    np.testing.assert_array_equal(read, surface())
+    assert read.attrs["spacing_y"] == DY
+
+
+def test_an_irregular_netcdf_coordinate_is_refused(tmp_path):
+    x, y = coordinates()
+    path = netcdf(tmp_path / "rock.nc", surface(), x**1.5, y)
+    with pytest.raises(InputError, match=r"coordinate 'x' is not equidistant"):
+        read_scan(path)
+
+
+def test_one_of_several_netcdf_variables_is_named(tmp_path):
+    import netCDF4
+
+    path = netcdf(tmp_path / "rock.nc", surface(), *coordinates())
+    with netCDF4.Dataset(path, "a") as file:
+        inner = file.createGroup("raw")
+        inner.createVariable("z", "f8", ("y", "x"))[:] = surface() + 1
+        inner["z"].units = "mm"
+    with pytest.raises(InputError, match="it has raw/z, z"):
+        read_scan(path)
+    np.testing.assert_array_equal(read_scan(path, {"variable": "raw/z"}), surface() + 1)
+
+
+# --- HDF5 and MATLAB ---------------------------------------------------------------------------
+
+
+def hdf5(path, **datasets):
+    import h5py
+
+    with h5py.File(path, "w") as file:
+        for name, values in datasets.items():
+            file[name] = values
+    return path
+
+
+def test_an_hdf5_dataset_gives_its_unit_or_is_named(tmp_path):
+    import h5py
+
+    path = hdf5(tmp_path / "rock.h5", z=surface() * 1e3, time=np.arange(9), label="rock")
+    with h5py.File(path, "a") as file:
+        file["z"].attrs["units"] = "um"
+    heights = read_scan(path, {"spacing": "0.1 mm"})
+    np.testing.assert_allclose(heights, surface(), rtol=1e-12)
+    overridden = read_scan(path, {"unit": "nm", "spacing": "0.1 mm"})
+    np.testing.assert_allclose(overridden, surface() * 1e-3, rtol=1e-12)
+    assert overridden.attrs["overrides"] == "unit_z nm from the sidecar, the file says um"
+    hdf5(path, z=surface(), raw=surface())
+    with pytest.raises(InputError, match="it has raw, z"):
+        read_scan(path, MATRIX)
+
+
+def test_hdf5_data_in_other_files_is_never_opened(tmp_path):
+    import h5py
+
+    (tmp_path / "secret.bin").write_bytes(surface().tobytes())
+    hdf5(tmp_path / "other.h5", z=surface())
+    path = tmp_path / "rock.h5"
+    with h5py.File(path, "w") as file:
+        file.create_dataset("z", (9, 14), "f8", external=str(tmp_path / "secret.bin"))
+    with pytest.raises(InputError, match="lies in another file"):
+        read_scan(path, MATRIX)
+    with h5py.File(path, "w") as file:
+        layout = h5py.VirtualLayout((9, 14), "f8")
+        layout[:] = h5py.VirtualSource(tmp_path / "other.h5", "z", (9, 14))
+        file.create_virtual_dataset("z", layout)
+    with pytest.raises(InputError, match="lies in another file"):
+        read_scan(path, MATRIX)
+    with h5py.File(path, "w") as file:
+        file["z"] = h5py.ExternalLink(str(tmp_path / "other.h5"), "z")
+    with pytest.raises(InputError, match="no 2-D array"):
+        read_scan(path, MATRIX)
+
+
+@pytest.mark.parametrize("extension", ["h5", "nc"])
+def test_a_header_that_promises_too_much_is_refused_unread(tmp_path, extension):
+    """Nothing is stored of these 8 TB, so the file is tiny."""
+    import h5py
+
+    path = tmp_path / f"rock.{extension}"
+    with h5py.File(path, "w") as file:
+        file.create_dataset("z", (10**6, 10**6), "f8", chunks=(100, 100), compression="gzip")
+    assert path.stat().st_size < 10_000
+    with pytest.raises(InputError, match="GiB to read"):
+        read_scan(path, MATRIX)
+
+
+def test_only_plain_matrices_of_mat_files_are_opened(tmp_path):
+    from scipy.io import savemat
+
+    path = tmp_path / "rock.mat"
+    cell = np.full((2, 2), "rock", dtype=object)
+    others = {
+        "scalar": 3.0,
+        "row": np.arange(4.0),
+        "text": "rock",
+        "cell": cell,
+        "struct": {"a": 1},
+    }
+    savemat(path, {"z": surface(), **others})
+    np.testing.assert_array_equal(read_scan(path, MATRIX), surface())
+    for name in others:
+        with pytest.raises(InputError, match=rf"'variable' is '{name}'.*it has z"):
+            read_scan(path, MATRIX | {"variable": name})
+    savemat(path, {"z": surface() * 1j})
+    with pytest.raises(InputError, match="complex128; heights are real"):
+        read_scan(path, MATRIX)
+    savemat(path, others)
+    with pytest.raises(InputError, match="no 2-D array"):
+        read_scan(path, MATRIX)
+
+
+# --- TIFF --------------------------------------------------------------------------------------
+
+
+def tiff(path, image, **options):
+    import tifffile
+
+    tifffile.imwrite(path, image, **options)
+    return path
+
+
+def test_imagej_states_the_size_of_a_pixel(tmp_path):
+    path = tmp_path / "rock.tif"
+    pixels = (1 / (DX * 1e3), 1 / (DY * 1e3))  # a um
+    image = surface()[::-1].astype(np.float32)
+    tiff(path, image, imagej=True, resolution=pixels, metadata={"unit": "um"})
+    heights = read_scan(path, {"unit_z": "mm"})
+    np.testing.assert_allclose(heights, surface(), atol=1e-7)
+    assert heights.attrs["spacing_x"] == pytest.approx(DX, rel=1e-6)
+    assert heights.attrs["spacing_y"] == pytest.approx(DY, rel=1e-6)
+
+
+def test_sixteen_bits_and_the_number_for_missing_cells(tmp_path):
+    steps = np.where(np.isnan(surface()), -999, np.round(np.nan_to_num(surface()) * 1e4))
+    path = tmp_path / "rock.tiff"
+    tiff(path, steps.astype(np.int16), extratags=[(42113, "s", 0, "-999", True)])
+    heights = read_scan(path, {"unit_z": "0.1 um", "spacing": "0.1 mm", "first_row": "bottom"})
+    np.testing.assert_allclose(heights, np.round(surface(), 4), atol=1e-12)
+    assert "first_row bottom" in heights.attrs["overrides"]
+
+
+def test_pictures_are_no_heights(tmp_path):
+    path = tmp_path / "rock.tif"
+    grey = (np.nan_to_num(surface()) * 500 + 120).astype(np.uint8)
+    tiff(path, np.stack([grey] * 3, axis=-1), photometric="rgb")
+    with pytest.raises(InputError, match="a colour image"):
+        read_scan(path, MATRIX)
+    tiff(path, grey)
+    with pytest.raises(InputError, match=r"8 bits.*'unit_z: um'"):
+        read_scan(path, MATRIX)
+    heights = read_scan(path, {"unit_z": "um", "spacing": "0.1 mm"})
+    np.testing.assert_allclose(heights, grey[::-1] * 1e-3)
+    assert "256 steps" in heights.attrs["notes"]
+
+
+def test_a_page_of_a_tiff_is_named(tmp_path):
+    pages = np.stack([surface(), surface() + 1]).astype(np.float32)
+    path = tiff(tmp_path / "rock.tif", pages, photometric="minisblack")
+    with pytest.raises(InputError, match="it has page 1, page 2"):
+        read_scan(path, MATRIX)
+    heights = read_scan(path, MATRIX | {"variable": "page 2", "first_row": "bottom"})
+    np.testing.assert_allclose(heights, surface() + 1, atol=1e-7)
+
+
+# --- Gwyddion ----------------------------------------------------------------------------------
+
+
+def test_a_gwyddion_file_says_what_is_masked_and_which_channel(tmp_path):
+    path = tmp_path / "rock.gwy"
+    write(path, surface(), DX, DY)
+    heights = read_scan(path, {"variable": "Topography"})
+    assert heights.attrs["file_unit"] == "m"
+    assert "under the mask" in heights.attrs["notes"]
+    with pytest.raises(InputError, match="no channel 'phase'"):
+        read_scan(path, {"variable": "phase"})
+
+
+# --- sizes that cannot be ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"spacing": "20 m"}, r"not plausible.*'spacing: 0\.5 um'"),
+        ({"spacing": "1e-9 mm"}, r"less than an atom.*'spacing: 0\.5 um'"),
+        ({"spacing": ["0.1 mm", "11 mm"]}, r"more than 100 times.*'spacing: \[0\.1 mm, 0\.2 mm\]'"),
+        ({"spacing": "1 um"}, r"relief of 0\.3788 mm is not plausible"),
+        ({"spacing": "0 mm"}, "above zero"),
+    ],
+)
+def test_sizes_no_scan_has_are_refused(tmp_path, options, message):
+    path = tmp_path / "rock.npy"
+    np.save(path, surface())
+    with pytest.raises(InputError, match=rf"rock\.npy.*{message}"):
+        read_scan(path, {"unit": "mm"} | options)
+
+
+@pytest.mark.parametrize("step", [0.0, -1.0, np.inf])
+def test_a_spacing_in_the_file_that_is_no_length_is_refused_until_the_sidecar_says(tmp_path, step):
+    path = sdf(tmp_path / "rock.sdf", surface(), step, 1e-4)
+    with pytest.raises(InputError, match=r"rock\.sdf: cells of .* not plausible.*'spacing: 0"):
+        read_scan(path)
+    heights = read_scan(path, {"spacing": "0.1 mm"})
+    np.testing.assert_allclose(heights, surface(), rtol=1e-12)
+
+
+def sdf(path, heights, dx, dy):
+    """A binary ISO 25178-71 file: the header states the spacing in m."""
+    rows, columns = heights.shape
+    header = struct.pack(
+        "<8s10s12s12sHHddddBBB",
+        *(b"bISO-1.0", b"test", b"", b"", columns, rows, dx, dy, 1e-3, 0.0, 0, 7, 0),
+    )
+    path.write_bytes(header + heights.astype("<f8").tobytes())
+    return path
+
+
+def test_a_sidecar_that_overrides_an_instrument_is_recorded(tmp_path):
+    path = sdf(tmp_path / "rock.sdf", surface(), DX * 1e-3, DY * 1e-3)
+    heights = read_scan(path)
+    np.testing.assert_allclose(heights, surface(), rtol=1e-12)
+    assert heights.attrs["overrides"] == ""
+    assert heights.attrs["spacing_y"] == pytest.approx(DY)
+    heights = read_scan(path, {"unit_z": "nm", "spacing": "0.5 mm"})
+    np.testing.assert_allclose(heights, surface() * 1e-3, rtol=1e-12)
+    assert heights.attrs["overrides"] == (
+        "unit_z nm from the sidecar, the file says µm; "
+        "spacing 0.5 x 0.5 mm from the sidecar, the file says 0.1 x 0.25 mm"
+    )
+
+
+def test_units_that_are_no_units_of_length_state_nothing():
+    assert [raw.stated_unit(text) for text in ("um", "µm", "Å", "m ")] == ["um", "µm", "Å", "m"]
+    for text in ("", None, "V", "1", "degrees_east", "m**9**9", "9**9**9", "mm; rm", "\0"):
+        assert raw.stated_unit(text) is None
+
+
+def test_formats_of_our_own_are_not_read_by_surfacetopography():
+    extensions = instruments.instrument_formats()
+    assert not {"x3p", "npy", "npz", "nc", "h5", "mat", "asc", "xyz", "gwy"} & set(extensions)
+    assert {"plux", "sur", "al3d", "tif"} <= set(extensions)

@@ -1,0 +1,400 @@
+"""Sub-windows of a joint, and how its mechanics goes with size."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from places import SCANS
+
+from fractalcontact.core.mean_plane import without_mean_plane
+from fractalcontact.mechanics.closure import closure_curves
+from fractalcontact.mechanics.states import combine
+from fractalcontact.mechanics.strength import joint_strength
+from fractalcontact.mechanics.sweep import contact_states
+from fractalcontact.roughness.dimension import roughness_length
+from fractalcontact.scan.read import read_faces
+from fractalcontact.size_effect.laws import SHARES, size_laws
+from fractalcontact.size_effect.windows import (
+    FEWEST_CELLS,
+    local_roughness,
+    split,
+    spread_windows,
+    tilt_share,
+    window_states,
+)
+from fractalcontact.study.configuration import resolve_settings
+from fractalcontact.surface.specimen import make_specimen, window_sides
+from fractalcontact.surface.synthesis import self_affine
+
+SOLVER = {"rtol": 1e-6, "kernel": "love"}
+DIMENSION = (2.2, 2.15, 2.25)
+ROCK = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0}
+
+
+def scan(heights, spacing=0.1):
+    coordinates = [spacing * (np.arange(n) + 0.5) for n in heights.shape]
+    attrs = {"spacing_x": spacing, "spacing_y": spacing, "source": "made", "sha256": "0" * 64}
+    return xr.DataArray(heights, dims=("y", "x"), coords=coordinates, attrs=attrs)
+
+
+def settings(loads=("2 MPa", "20 MPa"), opposite="match"):
+    study = {
+        "materials": {},
+        "defaults": {
+            "material": {"modulus": "20 GPa", "poisson": 0.2},
+            "opposite": opposite,
+            "loads": list(loads),
+            "dilatancy_loads": list(loads),
+            "resolutions": [1],
+        },
+    }
+    return resolve_settings(study, "made", {}, "made")
+
+
+@pytest.fixture(scope="module")
+def rock():
+    """Self-affine without a roll-off."""
+    heights = self_affine((192, 192), 0.1, 0.8, rms=0.3, seed=11)
+    return make_specimen(scan(heights), window=12.8, reach=3.2, name="rock")
+
+
+@pytest.fixture(scope="module")
+def states(rock):
+    return window_states(rock, "W", [1, 2, 4, 8, 16, 32], settings(), SOLVER, (1, 2, 4, 8))
+
+
+@pytest.fixture(scope="module")
+def laws(states):
+    return size_laws(states, ROCK, 12.0, DIMENSION)
+
+
+# Exact
+
+
+def test_split_cuts_every_cell_once():
+    heights = np.arange(48.0).reshape(6, 8)
+    windows = split(heights, 2)
+    assert windows.shape == (4, 3, 4)
+    assert np.array_equal(windows[1], heights[:3, 4:])
+    assert sorted(windows.ravel()) == sorted(heights.ravel())
+    assert np.array_equal(split(heights, 1)[0], heights)
+
+
+def test_cells_that_do_not_divide_stay_at_the_edges():
+    windows = split(np.arange(121.0).reshape(11, 11), 3)
+    assert windows.shape == (9, 3, 3)
+    assert windows[0, 0, 0] == 11 + 1
+    assert windows[-1, -1, -1] == 9 * 11 + 9
+
+
+@pytest.mark.parametrize(("parts", "most"), [(1, 16), (4, 16), (6, 16), (8, 16), (8, 5), (3, 1)])
+def test_windows_are_spread_evenly_and_never_more_than_asked(parts, most):
+    chosen = spread_windows(parts, most)
+    assert len(chosen) == len(set(chosen)) <= most
+    assert set(chosen) <= set(range(parts**2))
+    rows, columns = np.divmod(chosen, parts)
+    assert set(rows) == set(columns)
+    # As far from one edge as from the other, within a sub-window.
+    assert abs((rows.min() + rows.max()) - (parts - 1)) <= 1
+
+
+def test_a_plane_is_not_rough_and_all_of_it_is_tilt():
+    y, x = np.mgrid[:20, :24] * 0.1
+    plane = (3 + 2 * x - y)[np.newaxis]
+    assert local_roughness(plane) == pytest.approx(0, abs=1e-12)
+    assert tilt_share(plane) == pytest.approx(1)
+    assert np.isnan(tilt_share(np.zeros((1, 20, 24))))
+
+
+def test_a_joint_of_equal_tiles_has_no_size():
+    tile = self_affine((24, 24), 0.1, 0.8, rms=0.05, seed=3)
+    tiled = make_specimen(scan(np.tile(tile, (2, 2))), opposite="flat", window=4.8, name="tiles")
+    states = window_states(tiled, "none", [0], settings(opposite="flat"), SOLVER, (2,))
+    for name in ("interface_closure", "sigma_z", "area_share"):
+        values = states[name].values
+        np.testing.assert_allclose(values, values[:, :1].repeat(4, axis=1), rtol=1e-5)
+
+
+def test_flush_faces_have_nothing_to_close(rock):
+    states = window_states(rock, "W", [0], settings(), SOLVER, (1, 2))
+    for name in ("interface_closure", "sigma_z", "rigid_opening"):
+        assert (states[name].isel(part=0, window=0) == 0).all()
+    np.testing.assert_allclose(states["area_share"].isel(part=0, window=0), 1)
+    assert np.isnan(states["interface_compliance"]).all()
+
+
+def test_similarity_holds_for_a_joint_enlarged_in_all_its_lengths():
+    # Sect. 3: b -> 2b with sigma_z -> 2 sigma_z gives 2 w_int at one nominal pressure.
+    heights = self_affine((96, 96), 0.1, 0.8, rms=0.1, seed=7)
+    small, large = (
+        window_states(
+            make_specimen(scan(k * heights, k * 0.1), window=k * 4.8, reach=k * 1.6, name="rock"),
+            "E",
+            [2, 8],
+            settings(),
+            SOLVER,
+            (1, 2),
+        )
+        for k in (1, 2)
+    )
+    np.testing.assert_allclose(large["side"], 2 * small["side"])
+    np.testing.assert_allclose(large["nominal_pressure"], small["nominal_pressure"])
+    for name, power in (
+        ("interface_closure", 1),
+        ("interface_compliance", 1),
+        ("sigma_z", 1),
+        ("rigid_opening", 1),
+        ("area_share", 0),
+        ("stiffness", 1),
+    ):
+        np.testing.assert_allclose(large[name], 2**power * small[name], rtol=1e-4)
+
+
+def powers_of_side(states, exponent):
+    """The states with w_int and sigma_z that are exact powers of the side."""
+    made = states.copy(deep=True)
+    side = made["side"]
+    made["interface_closure"] = 1e-3 * side**exponent + 0 * made["interface_closure"]
+    made["interface_closure"].attrs = states["interface_closure"].attrs
+    made["face_sigma_z"] = (0.01 * made["scale_side"] ** exponent).assign_attrs(units="mm")
+    return made
+
+
+def test_exact_powers_are_found_again(states):
+    found = size_laws(powers_of_side(states, 0.6), ROCK, 12.0, DIMENSION)
+    for end in ("", "_low", "_high"):
+        np.testing.assert_allclose(found[f"closure_exponent{end}"], 0.6, atol=1e-9)
+        np.testing.assert_allclose(found[f"face_hurst{end}"], 0.6, atol=1e-9)
+    np.testing.assert_allclose(found["closure_exponent_b_min"], states["side"].min())
+    np.testing.assert_allclose(found["closure_exponent_b_max"], 12.8)
+
+
+def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):
+    # delta = b f(v/b): larger in all its lengths, so that sizes differ at one v but not at one v/b.
+    made = states.copy(deep=True)
+    v, b = made["offset"], made["side"]
+    made["interface_closure"] = 0 * made["interface_closure"]
+    made["rigid_opening"] = (0.5 * v + 0 * b).transpose("part", "offset").expand_dims(
+        window=made.sizes["window"]
+    ).transpose("part", "window", "offset") + 0 * states["rigid_opening"]
+    found = size_laws(made, ROCK, 12.0, DIMENSION)
+    angle = 30 + np.degrees(np.arctan(0.5))
+    expected = made["nominal_pressure"].values * np.tan(np.radians(angle))
+    for name in ("peak_strength", "residual_strength"):
+        np.testing.assert_allclose(found[name], np.tile(expected, (4, 1)))
+    similar = found["similar_strength"].values
+    known = np.isfinite(similar)
+    np.testing.assert_allclose(similar[known], np.broadcast_to(expected, similar.shape)[known])
+    # v = share b lies between the first step of 0.1 mm and the last of 3.2 mm.
+    reached = np.outer(SHARES, b) >= 0.1 - 1e-9
+    np.testing.assert_array_equal(known.all(axis=2), reached)
+    np.testing.assert_allclose(found["similar_slope_exponent"][-1], 0, atol=1e-9)
+
+
+# Against another way
+
+
+def test_local_roughness_is_that_of_the_plane_by_least_squares():
+    windows = split(self_affine((60, 48), 0.1, 0.7, rms=1, seed=4), 3)
+    residual = np.array([without_mean_plane(w) for w in windows])
+    expected = np.sqrt((residual**2).sum(axis=(1, 2)) / (residual[0].size - 3))
+    np.testing.assert_allclose(local_roughness(windows), expected, rtol=1e-10)
+    explained = 1 - (residual**2).mean(axis=(1, 2)) / windows.var(axis=(1, 2))
+    np.testing.assert_allclose(tilt_share(windows), explained, rtol=1e-9)
+
+
+def test_local_roughness_is_that_of_the_roughness_length_estimator():
+    heights = self_affine((128, 128), 0.1, 0.8, rms=1, seed=4)
+    sides, rms = roughness_length(heights, 0.1)
+    for side in (8, 16, 32):
+        own = local_roughness(split(heights, 128 // side))
+        at = np.flatnonzero(np.isclose(sides, side * 0.1)).item()
+        assert np.sqrt(np.mean(own**2)) == pytest.approx(rms[at], rel=1e-10)
+
+
+def test_the_whole_window_is_the_specimen_itself(rock, states):
+    whole = combine([contact_states(rock, "W", [1, 8, 32], settings(), [1], SOLVER)])
+    curves = closure_curves(whole, window_sides(rock), settings()["material"]["e_star"])
+    curves = curves.sel(direction="W", resolution=1)
+    one = states.sel(part=1, offset=curves["offset"], method="nearest").isel(window=0)
+    for name in ("closure", "interface_closure", "area", "stiffness"):
+        np.testing.assert_allclose(one[name], curves[name], rtol=1e-5)
+    np.testing.assert_allclose(one["rigid_opening"], curves["rigid_opening"])
+    np.testing.assert_allclose(
+        one["interface_compliance"], 1 / curves["interface_stiffness"], rtol=1e-4
+    )
+
+
+def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
+    delta = (states["rigid_opening"] - states["interface_closure"]).sel(part=1).isel(window=0)
+    dilatancy = xr.Dataset(
+        {
+            "elastic_dilatancy": delta.expand_dims(contact_direction=["W"]),
+            "elastic_dilatancy_error": 0 * delta.expand_dims(contact_direction=["W"]),
+            "offset_made": (("contact_direction", "offset"), [states["offset"].values]),
+        }
+    )
+    cells = (("contact_direction", "offset"), [[1, 2, 4, 8, 16, 32]])
+    joint = xr.Dataset({"offset_cells": cells}, {"contact_direction": ["W"]})
+    chosen = settings()
+    chosen["material"] |= ROCK
+    strength = joint_strength(dilatancy, joint, rock, chosen).sel(contact_direction="W")
+    one = laws.sel(part=1)
+    for name in ("peak_strength", "peak_dilatancy_angle", "residual_strength", "shear_strength"):
+        np.testing.assert_allclose(one[name], strength[name])
+    assert strength["step"].sel(sampling="1.27 mm") == pytest.approx(1.3)
+
+
+def test_loose_states_are_off_by_no_more_than_they_say(rock, laws):
+    chosen = [1, 2, 4, 8, 16, 32]
+    loose = {"rtol": 1e-2, "kernel": "love"}
+    states = window_states(rock, "W", chosen, settings(), loose, (1, 2, 4, 8))
+    found = size_laws(states, ROCK, 12.0, DIMENSION)
+    differ = 0
+    for name in (
+        *("interface_closure", "interface_compliance", "area_share", "shear_strength"),
+        *("peak_strength", "peak_dilatancy_angle", "similar_strength", "similar_slope"),
+    ):
+        off, bound = abs(found[name] - laws[name]), found[f"{name}_error"] + laws[f"{name}_error"]
+        assert bound.dims == off.dims, name
+        np.testing.assert_array_equal(np.isfinite(bound), np.isfinite(off), err_msg=name)
+        inside = off <= bound + 1e-12 * abs(laws[name])
+        assert inside.where(np.isfinite(off), True).all(), name
+        differ += int((off > 1e-9 * abs(laws[name])).sum())
+    assert differ > 100
+
+
+# Properties
+
+
+def test_eq_2_finds_the_exponent_the_faces_were_made_with():
+    found = []
+    for seed in range(8):
+        face = make_specimen(
+            scan(self_affine((192, 192), 0.1, 0.8, rms=0.3, seed=seed)), window=12.8, reach=3.2
+        )
+        states = window_states(face, "W", [32], settings(["5 MPa"]), SOLVER, (8,), most=1)
+        laws = size_laws(states, ROCK, 12.0, DIMENSION)
+        found.append([laws["face_hurst"].item(), laws["hurst"].item()])
+    # One surface of this size scatters by 0.04-0.05.
+    np.testing.assert_allclose(np.mean(found, axis=0), 0.8, atol=0.04)
+
+
+def test_eq_2_expects_three_less_the_dimension(laws):
+    assert laws["expected_hurst"].item() == pytest.approx(0.8)
+    assert (laws["expected_hurst_low"], laws["expected_hurst_high"]) == pytest.approx((0.75, 0.85))
+
+
+def test_the_composite_follows_eq_2_only_where_it_slid_as_far_as_its_windows_are_wide(laws):
+    # Slid by one cell it is much the same everywhere: hardly any growth with b.
+    assert laws["hurst"][0] < 0.35
+    assert laws["hurst"][-1] > 2 * laws["hurst"][0]
+    assert laws["hurst"][-1] > laws["hurst"][2] > laws["hurst"][0]
+
+
+def test_larger_windows_close_more(laws):
+    closure = laws["interface_closure"].isel(offset=[3, 4, 5])
+    assert (closure.diff("part") < 0).all()  # parts ascending: sizes descending
+    assert (laws["closure_exponent_low"].isel(offset=[3, 4, 5]) > 0).all()
+
+
+def test_windows_too_small_are_left_out(rock):
+    states = window_states(rock, "W", [4], settings(["5 MPa"]), SOLVER, (1, 8, 9), most=1)
+    assert states["part"].values.tolist() == [1, 8]  # 128 / 8 = 16 cells, 128 / 9 = 14
+    assert FEWEST_CELLS == 16
+
+
+@pytest.mark.parametrize("cells", [[2, 4], [2]])
+def test_a_window_of_few_cells_has_one_size_and_no_law(cells):
+    heights = self_affine((24, 24), 0.1, 0.8, rms=0.1, seed=2)
+    tiny = make_specimen(scan(heights), window=1.2, reach=0.4, name="tiny")
+    found = size_laws(window_states(tiny, "E", cells, settings(), SOLVER), ROCK, 12.0, DIMENSION)
+    assert found["part"].values.tolist() == [1]
+    assert np.isfinite(found["interface_closure"]).all()
+    for name in ("closure_exponent", "face_hurst", "strength_exponent", "similar_slope_exponent"):
+        assert np.isnan(found[name]).all()
+
+
+def test_windows_that_are_not_there_are_missing(states):
+    assert states["sigma_z"].notnull().sum("window").isel(offset=0).values.tolist() == [
+        1,
+        4,
+        16,
+        16,
+    ]
+    assert states["interface_closure"].sel(part=2)[4:].isnull().all()
+
+
+def test_forces_are_those_of_the_whole_window_at_one_pressure_for_all(rock):
+    in_newton = settings(["1638.4 N"])  # 10 MPa on 12.8 x 12.8 mm
+    states = window_states(rock, "W", [4], in_newton, SOLVER, (2,), most=1)
+    np.testing.assert_allclose(states["nominal_pressure"], 10)
+    np.testing.assert_allclose(
+        states["bulk_settlement"], 0.946402 * 10 * 6.4 / 10416.667, rtol=1e-5
+    )
+
+
+def test_seating_takes_the_tilt_away_and_leaves_the_roughness(rock):
+    chosen = settings(["20 MPa"])
+    loose, seated = (
+        window_states(rock, "W", [32], chosen, SOLVER, (8,), seated=s) for s in (False, True)
+    )
+    np.testing.assert_allclose(seated["sigma_z"], loose["sigma_z"])
+    np.testing.assert_allclose(seated["tilt_share"], 0, atol=1e-12)
+    assert (loose["tilt_share"].mean() > 0.1).all()
+    assert seated["interface_closure"].mean() < loose["interface_closure"].mean()
+
+
+def test_a_surface_against_a_plane_has_no_strength():
+    face = make_specimen(
+        scan(self_affine((64, 64), 0.1, 0.8, rms=0.1, seed=2)), opposite="flat", name="flat"
+    )
+    states = window_states(face, "none", [0], settings(opposite="flat"), SOLVER)
+    found = size_laws(states, ROCK, np.nan, DIMENSION)
+    assert "peak_strength" not in found
+    assert (found["interface_closure"] > 0).all()
+    np.testing.assert_allclose(found["sigma_z_all"][0], found["face_sigma_z"])
+
+
+def test_what_the_study_does_not_state_is_missing(states):
+    unstated = {"basic_friction_angle": np.nan, "joint_wall_strength": np.nan}
+    found = size_laws(states, unstated, 12.0, DIMENSION)
+    for name in ("peak_strength", "similar_strength", "held_share", "barton_strength"):
+        assert np.isnan(found[name]).all()
+    assert np.isfinite(found["peak_dilatancy_angle"]).all()
+    assert np.isfinite(found["similar_slope"][-1]).all()
+
+
+def test_two_faces_and_an_oblong_window():
+    lower = self_affine((96, 96), 0.1, 0.8, rms=0.1, seed=1, roll_off=2)
+    upper = lower + 0.1 * self_affine((96, 96), 0.1, 0.8, rms=0.1, seed=2)
+    pair = make_specimen(scan(lower), scan(upper), window=(3.2, 6.4), reach=1, name="pair")
+    states = window_states(pair, "E", [0, 2, 8], settings(), SOLVER)
+    assert states["side"][0] == pytest.approx(np.sqrt(3.2 * 6.4))
+    assert states["side_along"][0] == pytest.approx(6.4)
+    found = size_laws(states, ROCK, 12.0, DIMENSION)
+    assert found.sizes["interval"] == 2
+    assert (states["interface_closure"].isel(offset=0, window=0) > 0).all()
+
+
+def test_everything_says_what_it_is(states, laws):
+    for dataset in (states, laws):
+        for name, variable in dataset.data_vars.items():
+            assert {"units", "long_name"} <= set(variable.attrs), name
+
+
+# Real scans
+
+
+@pytest.mark.scans
+def test_larger_windows_of_real_granite_close_more():
+    folder = SCANS / "cnl_granite_pair"
+    if not folder.exists():
+        pytest.skip("the real scans are not beside the project")
+    files = ("Extracted_M_CNL_SideA_bottom.txt", "Extracted_M_CNL_SideB_top.txt")
+    pair = read_faces(*(folder / name for name in files), {"unit": "mm"})
+    granite = make_specimen(*pair, window=38.4, reach=3.0, name="granite")
+    states = window_states(granite, "E", [0, 10], settings(), SOLVER, (1, 2, 4))
+    found = size_laws(states, ROCK, 12.0, DIMENSION)
+    assert found["part"].values.tolist() == [1, 2, 4]
+    assert (found["interface_closure"].diff("part") < 0).all()
+    assert 0.6 < found["face_hurst"] < 0.85

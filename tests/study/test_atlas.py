@@ -1,0 +1,85 @@
+"""What is written comes back, the same twice, and says with which versions it was made."""
+
+import json
+
+import pytest
+import xarray as xr
+
+from fractalcontact.core.arrays import padded
+from fractalcontact.core.netcdf import read, read_with_versions, versions, write
+from fractalcontact.study import atlas as store
+from fractalcontact.study.atlas import read_atlas, write_atlas
+
+
+def test_the_same_dataset_gives_the_same_bytes(tmp_path):
+    data = xr.Dataset({"a": ("x", [1.0, float("nan")], {"units": "mm", "long_name": "a"})})
+    write(data, tmp_path / "1.nc")
+    write(data, tmp_path / "2.nc")
+    assert (tmp_path / "1.nc").read_bytes() == (tmp_path / "2.nc").read_bytes()
+    assert read(tmp_path / "1.nc").identical(data)
+
+
+def test_words_are_not_cut_to_the_length_of_those_read_first(tmp_path):
+    for name in ("comb", "start from a wrong state"):
+        write(xr.Dataset(coords={"kind": [name]}), tmp_path / f"{name}.nc")
+    first, second = (read(path) for path in sorted(tmp_path.iterdir()))
+    write(xr.concat([first, second], "kind"), tmp_path / "whole.nc")
+    names = read(tmp_path / "whole.nc")["kind"].values
+    assert names.tolist() == ["comb", "start from a wrong state"]
+
+
+def test_padded_rows():
+    table = padded([[1, 2], [3]])
+    assert table[0].tolist() == [1, 2]
+    assert table[1, 0] == 3
+    assert table[1, 1] != table[1, 1]
+
+
+def test_an_atlas_comes_back_as_it_was_however_often_it_is_read(tmp_path):
+    def labelled(values):
+        return xr.Dataset({"a": ("x", values, {"units": "mm", "long_name": "a"})})
+
+    parts = {
+        "specimens": {"rock": labelled([1.0, 2.0]), "joint_2.1": labelled([3.0])},
+        "contact": {"rock": labelled([True, False])},
+    }
+    path = tmp_path / "atlas.nc"
+    write_atlas(parts, path, study="test", configuration={"n": 1})
+    for _ in range(3):
+        atlas = read_atlas(path)
+        assert atlas["specimens/joint_2.1"].to_dataset().identical(parts["specimens"]["joint_2.1"])
+        assert atlas["contact/rock"].to_dataset().identical(parts["contact"]["rock"])
+        assert atlas.attrs["study"] == "test"
+    assert "contact" not in read_atlas(path, without=("contact",)).children
+
+
+def test_nothing_without_a_unit_enters_the_atlas(tmp_path):
+    bare = {"specimens": {"rock": xr.Dataset({"a": ("x", [1.0])})}}
+    with pytest.raises(
+        ValueError, match="specimens/rock: variable a has no units and no long_name"
+    ):
+        write_atlas(bare, tmp_path / "atlas.nc", study="test", configuration={})
+    assert not list(tmp_path.iterdir())
+
+
+def test_parts_made_with_other_versions_are_named_in_the_atlas(tmp_path, monkeypatch):
+    labelled = xr.Dataset({"a": ("x", [1.0], {"units": "mm", "long_name": "a"})})
+    write(labelled, tmp_path / "new.nc")
+    older = versions() | {"numpy": "1.0"}
+    with monkeypatch.context() as patched:
+        patched.setattr(store, "versions", lambda: older)
+        write(labelled, tmp_path / "old.nc")
+    read_back = {name: read_with_versions(tmp_path / f"{name}.nc") for name in ("old", "new")}
+    assert [made for _, made in read_back.values()] == [older, versions()]
+    parts = {"specimens": {name: dataset for name, (dataset, _) in read_back.items()}}
+    made_with = {"specimens": {name: made for name, (_, made) in read_back.items()}}
+    path, asked = tmp_path / "atlas.nc", {"study": "test", "configuration": {}}
+    differing = write_atlas(parts, path, **asked, made_with=made_with)
+    (other,) = [words for words in differing if "numpy 1.0," in words]
+    assert differing[other] == ["specimens/old"]
+    attributes = read_atlas(path).attrs
+    assert json.loads(attributes["versions_differ"]) == differing
+    assert json.loads(attributes["versions"]) == versions()
+    del made_with["specimens"]["old"]
+    assert write_atlas(parts, path, **asked, made_with=made_with) == {}
+    assert "versions_differ" not in read_atlas(path).attrs

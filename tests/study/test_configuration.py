@@ -1,0 +1,255 @@
+"""A study is checked before anything runs; what is wrong is named by its key."""
+
+import copy
+import math
+
+import pytest
+import yaml
+from places import ROOT
+
+from fractalcontact.core.errors import InputError
+from fractalcontact.study import scan_files as catalogue
+from fractalcontact.study.configuration import (
+    MOST_NODES,
+    check_names,
+    check_study,
+    read_sidecar,
+    read_study,
+    resolve_embedded,
+    resolve_roll_off,
+    resolve_settings,
+    window_arguments,
+)
+
+SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+PAPER = yaml.safe_load((ROOT / "config/paper.yaml").read_text())
+
+
+@pytest.fixture
+def study():
+    return copy.deepcopy(PAPER)
+
+
+@pytest.mark.parametrize("name", ["paper", "smoke", "accuracy", "accuracy_small"])
+def test_the_studies_that_ship_are_valid(name):
+    check_study(yaml.safe_load((ROOT / f"config/{name}.yaml").read_text()), SCHEMA, name)
+
+
+@pytest.mark.parametrize("change", [{"scans": "scans"}, {"embedded": {}}, {"specimens": {}}])
+def test_only_a_study_without_specimens_needs_no_materials(change):
+    bare = {"study": "bare", "scans": None}
+    check_study(bare, SCHEMA, "bare")
+    with pytest.raises(InputError, match=r"missing key 'materials'; expected materials by name"):
+        check_study(bare | change, SCHEMA, "bare")
+
+
+def broken(study, path, value):
+    *parents, last = path
+    for key in parents:
+        study = study[key]
+    if value is None:
+        del study[last]
+    else:
+        study[last] = value
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (("defaults", "ofsets"), "auto", r"unknown key 'defaults.ofsets'; did you mean 'offsets'"),
+        (("materials", "concrete", "modulus"), None, r"missing key 'materials.concrete.modulus'"),
+        (("materials", "concrete", "modulus"), "30 mm", r"materials.concrete.modulus: '30 mm'"),
+        (("materials", "concrete", "poisson"), 0.7, r"materials.concrete.poisson: 0.7"),
+        (("defaults", "window"), "20 MPa", r"defaults.window: '20 MPa' is not a length"),
+        (("defaults", "window"), 20, r"defaults.window: 20 is not right; expected auto, or"),
+        (("defaults", "loads"), ["3 mm"], r"defaults.loads: '3 mm' is neither"),
+        (("defaults", "loads"), None, r"missing key 'defaults.loads'"),
+        (("defaults", "directions"), ["X"], r"defaults.directions.0: 'X' is not right; expected E"),
+        (("defaults", "material"), "sandston", r"no material 'sandston'; did you mean 'sandstone'"),
+        (("specimens", "concrete_twin", "map_load"), "7 kN", r"map_load: '7 kN' is not among"),
+        (
+            ("materials", "concrete", "basic_friction_angle"),
+            "35 mm",
+            r"angle: '35 mm' is not an ang",
+        ),
+        (("materials", "concrete", "basic_friction_angle"), "95 deg", r"an angle below 90"),
+        (("materials", "concrete", "joint_wall_strength"), "40", r"strength: '40' has no unit"),
+        (("roll_off", "embedded"), "sandstone", r"no embedded 'sandstone'; did you mean 'sandst"),
+        (("roll_off", "embedded"), "joint_2.1", r"roll_off.embedded: joint_2.1 has no roll_off"),
+        (("roll_off", "seeds"), [1], r"roll_off.seeds: \[1\]"),
+        (("area_slope", "loads"), [0.5], r"area_slope.loads.0: 0.5 is not right"),
+        (("speed",), {"sizes": [8]}, r"missing key 'speed.hurst'"),
+        (("solver", "rtol"), "1e-6", r"solver.rtol: '1e-6' is not right; expected a number"),
+        (("embedded", "concrete_twin", "size"), "4 N", r"embedded.concrete_twin.size: '4 N'"),
+        (("embedded", "concrete_twin", "dimension"), 3.2, r"embedded.concrete_twin.dimension: 3.2"),
+    ],
+)
+def test_what_is_wrong_is_one_error_that_names_the_key(study, path, value, message):
+    broken(study, path, value)
+    with pytest.raises(InputError, match=r"mine\.yaml: .*") as caught:
+        check_study(study, SCHEMA, "mine.yaml")
+    assert caught.match(message)
+
+
+def test_the_sidecar_wins_over_the_study_and_the_study_over_its_defaults(study, tmp_path):
+    sidecar = tmp_path / "concrete_twin.yaml"
+    sidecar.write_text("unit: um\nspacing: 5\nwindow: 10 mm\n")
+    scan, settings = read_sidecar(sidecar, SCHEMA)
+    assert scan == {"unit": "um", "spacing": 5}
+    resolved = resolve_settings(study, "concrete_twin", settings, "paper.yaml")
+    assert resolved["window"] == 10
+    assert resolved["material"]["name"] == "concrete"
+    assert resolved["material"]["e_star"] == pytest.approx(30e3 / (2 * (1 - 0.2**2)))
+    assert resolved["directions"] == ["E", "N", "W", "S"]
+
+
+def test_a_sidecar_with_an_unknown_key_is_refused_by_file_and_key(tmp_path):
+    sidecar = tmp_path / "mine.yaml"
+    sidecar.write_text("units: mm\n")
+    with pytest.raises(InputError, match=r"mine\.yaml: unknown key 'units'; did you mean 'unit'"):
+        read_sidecar(sidecar, SCHEMA)
+
+
+def test_the_window_is_cut_to_the_coarsest_prefractal(study):
+    settings = resolve_settings(study, "concrete_twin", {}, "paper.yaml")
+    arguments = window_arguments(settings)
+    assert arguments["multiple"] == 8
+    assert arguments["reach"] == dict.fromkeys("ENWS", 8.0)
+
+
+def test_cleaning_reaches_the_specimen_and_registration_the_reader(study, tmp_path):
+    arguments = window_arguments(resolve_settings(study, "concrete_twin", {}, "paper.yaml"))
+    assert (arguments["outliers"], arguments["fill_holes"]) == ("keep", 0)
+    sidecar = tmp_path / "concrete_twin.yaml"
+    sidecar.write_text("outliers: mask\nfill_holes: 5\nregistration: none\nmirror_upper: x\n")
+    scan, settings = read_sidecar(sidecar, SCHEMA)
+    assert scan == {"registration": "none", "mirror_upper": "x"}
+    arguments = window_arguments(resolve_settings(study, "concrete_twin", settings, "paper.yaml"))
+    assert (arguments["outliers"], arguments["fill_holes"]) == ("mask", 5)
+    sidecar.write_text("fill_holes: true\n")
+    with pytest.raises(InputError, match="fill_holes: True is not right; expected rows and col"):
+        read_sidecar(sidecar, SCHEMA)
+
+
+def test_a_surface_has_as_many_nodes_per_side_wherever_a_study_asks_for_one():
+    sections = SCHEMA["properties"]
+    limits = [
+        SCHEMA["$defs"]["sizes"]["items"],
+        sections["area_slope"]["properties"]["nodes"],
+        sections["dimension_test"]["properties"]["capped_size"],
+        sections["speed"]["properties"]["sizes"]["items"],
+    ]
+    assert {limit["maximum"] for limit in limits} == {MOST_NODES}
+
+
+def test_embedded_lengths_are_in_millimetres(study):
+    recipe = resolve_embedded({**study["embedded"]["concrete_twin"], "size": "4 cm"}, "here")
+    assert (recipe["size"], recipe["outline"]) == (40, "square")
+
+
+def test_strength_of_the_material_is_missing_where_it_is_not_stated(study):
+    material = resolve_settings(study, "concrete_twin", {}, "paper")["material"]
+    assert (material["basic_friction_angle"], material["joint_wall_strength"]) == (35, 40)
+    del study["materials"]["concrete"]["basic_friction_angle"]
+    material = resolve_settings(study, "concrete_twin", {}, "paper")["material"]
+    assert math.isnan(material["basic_friction_angle"])
+
+
+def test_joints_with_and_without_a_roll_off_follow_an_embedded_specimen(study):
+    joints = resolve_roll_off(study, "paper")
+    assert joints["window"] == 20
+    assert joints["recipe"]["roll_off"] == 5
+    del study["roll_off"]
+    assert resolve_roll_off(study, "paper") is None
+
+
+LONG = "a" * 240
+DIGITS = int("9" * 400)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (("study",), "paper\n", r"study: 'paper\\n' is not right; expected the study's name"),
+        (("study",), LONG, r"study: 'aaa.*\.\.\. is not right; .* up to 100 letters"),
+        (("embedded", "rock\n"), {}, r"embedded: 'rock\\n' is not right; expected the name of"),
+        (("embedded", LONG), {}, r"embedded: 'aaa.* is not right; expected the name of a specimen"),
+        (("embedded", 12), {}, "embedded: 12 is not right; expected the name of a specimen"),
+        (("materials", "rock\n"), {}, r"materials: 'rock\\n' is not right; expected the name of a"),
+        (("materials", LONG), {}, r"materials: 'aaa.* is not right; expected the name of a mater"),
+        (("materials", "a$b"), {}, r"materials: 'a\$b' is not right; expected the name of a mater"),
+        (("defaults", "label"), "rock\n", r"defaults.label: 'rock\\n' is not right; expected what"),
+        (("embedded", "joint_2.1", "label"), "a\nb", r"joint_2.1.label: 'a\\nb' is not right"),
+        (("embedded", "joint_2.1", "label"), LONG, r"joint_2.1.label: 'aaa.* up to 200 characters"),
+        (("embedded", "joint_2.1", "size"), "1e9 mm", r"size: '1e9 mm' at a spacing of .* nodes"),
+        (("embedded", "joint_2.1", "spacing"), "1 m", r"nodes per side; expected from 2 to 16384"),
+        (("embedded", "joint_2.1", "spacing"), "1e-200 mm", "'1e-200 mm' is beyond what can"),
+        (("embedded", "joint_2.1", "seed"), DIGITS, r"seed: 9{80}\.\.\. is not right; expected a"),
+        (("embedded", "joint_2.1", "seed"), 10**18, "seed: 1000000000000000000 is not right"),
+        (("embedded", "joint_2.1", "seed"), 7.0, "seed: 7.0 is not right; expected a whole number"),
+        (("roll_off", "seeds"), [1, DIGITS], r"roll_off.seeds.1: 9{80}\.\.\. is not right; "),
+        (("area_slope", "nodes"), DIGITS, r"area_slope.nodes: 9{80}\.\.\. is not right; "),
+        (("dimension_test", "sizes"), [10**6], "sizes.0: 1000000 is not right; expected a whole n"),
+        (("defaults", "resolutions"), [DIGITS], r"resolutions.0: 9{80}\.\.\. is not right; "),
+        (("defaults", "fill_holes"), DIGITS, "fill_holes: 9.* is not right; expected rows and col"),
+        (("defaults", "loads"), ["5e-324 N"], "loads: '5e-324 N' is beyond what can be computed"),
+        (("defaults", "loads"), ["1e200 MPa"], r"'1e200 MPa' is beyond .* 1e-150 to 1e\+150 MPa"),
+        (("materials", "concrete", "modulus"), "1e300 GPa", "'1e300 GPa' is beyond what can be"),
+    ],
+    ids=lambda value: "digits" if value is DIGITS else None,
+)
+def test_names_and_numbers_beyond_all_use_are_one_error_each(study, path, value, message):
+    if value == {}:  # what any of its kind is
+        value = next(iter(study[path[0]].values()))
+    broken(study, path, value)
+    with pytest.raises(InputError, match=r"mine\.yaml: .*") as caught:
+        check_study(study, SCHEMA, "mine.yaml")
+    assert caught.match(message)
+    assert len(str(caught.value)) < 350
+
+
+@pytest.mark.parametrize("length", [catalogue.LONGEST_NAME, catalogue.LONGEST_NAME + 1])
+def test_embedded_names_are_as_long_as_those_of_scans(study, length):
+    name = "".join(str(k) for k in range(150))[:length]  # no row of repeats
+    study["embedded"] = {name: study["embedded"]["joint_2.1"]}
+    del study["roll_off"], study["specimens"]
+    if length <= catalogue.LONGEST_NAME:
+        check_study(study, SCHEMA, "mine.yaml")
+    else:
+        with pytest.raises(InputError, match="up to 220 letters"):
+            check_study(study, SCHEMA, "mine.yaml")
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("Joint_2.1", "embedded.Joint_2.1: differs from the embedded specimen joint_2.1 in upper"),
+        ("CON", "embedded.CON: no name for files on every computer; write '_CON'"),
+        ("a" * 20, r"embedded.a+: no name for files on every computer; write 'a+-[0-9a-f]{6}'"),
+    ],
+)
+def test_embedded_names_that_files_cannot_have_are_refused(study, name, message):
+    study["embedded"][name] = study["embedded"]["joint_2.1"]
+    with pytest.raises(InputError, match=message):
+        check_study(study, SCHEMA, "mine.yaml")
+
+
+@pytest.mark.parametrize(
+    ("scan", "message"),
+    [
+        ("joint_2.1", "embedded.joint_2.1: has the name of a scan in rocks; rename one"),
+        ("JOINT_2.1", "embedded.joint_2.1: differs from a scan in rocks JOINT_2.1 in upper and"),
+    ],
+)
+def test_embedded_names_and_those_of_scans_are_told_apart(study, scan, message):
+    check_names(["other"], study, "rocks", "mine.yaml")
+    with pytest.raises(InputError, match=message):
+        check_names(["other", scan], study, "rocks", "mine.yaml")
+
+
+@pytest.mark.parametrize("value", ["9" * 5000, "2020-13-45"])
+def test_numbers_and_dates_that_are_none_are_refused_on_reading(tmp_path, value):
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"study: mine\nseed: {value}\n")
+    with pytest.raises(InputError, match=r"mine\.yaml: a date or number that is none"):
+        read_study(path)

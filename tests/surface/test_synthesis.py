@@ -1,0 +1,158 @@
+import hashlib
+
+import numpy as np
+import pytest
+import yaml
+
+from fractalcontact.roughness.dimension import roughness_length
+from fractalcontact.study.embedded import write_scan
+from fractalcontact.surface.synthesis import disc_outline, self_affine
+
+SEEDS = range(20)
+SPACING = 0.08
+
+
+def second_difference_hurst(heights, shortest, longest):
+    """H from second differences along x and y: knows nothing of spectra, blind to tilt."""
+    lags = np.unique(np.geomspace(shortest, longest, 10).astype(int))
+    size = [
+        np.mean((heights[2 * lag :] - 2 * heights[lag:-lag] + heights[: -2 * lag]) ** 2)
+        + np.mean((heights[:, 2 * lag :] - 2 * heights[:, lag:-lag] + heights[:, : -2 * lag]) ** 2)
+        for lag in lags
+    ]
+    return np.polyfit(np.log(lags), np.log(size), 1)[0] / 2
+
+
+@pytest.mark.parametrize("roll_off", [None, 256 * SPACING / 3])
+@pytest.mark.parametrize("hurst", [0.5, 0.76, 0.79, 0.9])
+def test_hurst_asked_for_comes_back_from_an_independent_estimator(hurst, roll_off):
+    longest = 32 if roll_off is None else 256 / 3 / 4
+    found = [
+        second_difference_hurst(
+            self_affine((256, 256), SPACING, hurst, rms=0.3, seed=seed, roll_off=roll_off),
+            4,
+            longest,
+        )
+        for seed in SEEDS
+    ]
+    assert np.mean(found) == pytest.approx(hurst, abs=0.05)
+
+
+def test_roughness_length_finds_the_hurst_exponent_too():
+    found = []
+    for seed in SEEDS:
+        surface = self_affine((256, 256), SPACING, 0.79, rms=0.3, seed=seed)
+        side, rms = roughness_length(surface, SPACING)
+        fitted = (side >= 8 * SPACING) & (side <= 64 * SPACING)
+        found.append(np.polyfit(np.log(side[fitted]), np.log(rms[fitted]), 1)[0])
+    assert np.mean(found) == pytest.approx(0.79, abs=0.05)
+
+
+def test_heights_do_not_grow_beyond_the_roll_off():
+    heights = [self_affine((256, 256), 1.0, 0.8, rms=1.0, seed=s, roll_off=16.0) for s in SEEDS]
+
+    def difference(lag):
+        return np.mean([np.mean((z[lag:] - z[:-lag]) ** 2) for z in heights])
+
+    assert difference(16) == pytest.approx(2, rel=0.1)
+    assert difference(100) == pytest.approx(2, rel=0.1)
+    assert difference(2) < 0.7  # below it they do
+
+
+def test_opposite_edges_know_nothing_of_each_other():
+    pairs = [self_affine((128, 128), 1.0, 0.8, rms=1.0, seed=s, roll_off=16.0) for s in range(40)]
+    across = [np.corrcoef(z[0], z[-1])[0, 1] for z in pairs]
+    beside = [np.corrcoef(z[0], z[1])[0, 1] for z in pairs]
+    assert np.mean(across) == pytest.approx(0, abs=0.12)
+    assert np.mean(beside) > 0.8
+
+
+def test_spectrum_is_isotropic():
+    ratio = []
+    for seed in SEEDS:
+        z = self_affine((128, 128), 1.0, 0.7, rms=1.0, seed=seed, roll_off=20.0)
+        along, across = np.mean(np.diff(z, axis=0) ** 2), np.mean(np.diff(z, axis=1) ** 2)
+        ratio.append(np.log(along / across))
+    assert np.mean(ratio) == pytest.approx(0, abs=0.05)
+
+
+def test_rms_is_that_of_the_levelled_patch():
+    z = self_affine((60, 90), SPACING, 0.8, rms=0.3, seed=4)
+    assert z.shape == (60, 90)
+    assert z.dtype == np.float64
+    assert np.sqrt(np.mean(z**2)) == pytest.approx(0.3)
+    y, x = np.indices(z.shape)
+    plane = np.stack([np.ones(z.size), y.ravel(), x.ravel()], axis=1)
+    assert np.linalg.lstsq(plane, z.ravel(), rcond=None)[0] == pytest.approx(0, abs=1e-12)
+
+
+def test_surface_does_not_depend_on_the_unit_of_length():
+    mm = self_affine((50, 50), SPACING, 0.8, rms=0.3, seed=4, roll_off=1.0)
+    um = self_affine((50, 50), 1e3 * SPACING, 0.8, rms=300.0, seed=4, roll_off=1e3)
+    np.testing.assert_allclose(um, 1e3 * mm, rtol=1e-9, atol=1e-9)
+
+
+def test_same_seed_gives_same_bits_and_another_seed_another_surface():
+    def fingerprint(seed):
+        z = self_affine((64, 64), SPACING, 0.8, rms=0.3, seed=seed)
+        return hashlib.sha256(z.tobytes()).hexdigest()
+
+    assert fingerprint(7) == fingerprint(7)
+    assert fingerprint(7) != fingerprint(8)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"hurst": 1.0},
+        {"hurst": 0.0},
+        {"rms": 0.0},
+        {"spacing": -1.0},
+        {"shape": (1, 9)},
+        {"roll_off": 0.0},
+    ],
+)
+def test_senseless_arguments_are_refused(wrong):
+    arguments = {"shape": (9, 9), "spacing": 1.0, "hurst": 0.5, "rms": 1.0, "seed": 0} | wrong
+    with pytest.raises(ValueError, match=r"must|needs"):
+        self_affine(**arguments)
+
+
+def test_disc_has_its_area_and_its_symmetry():
+    disc = disc_outline((500, 500), 0.1, 50.0)
+    assert disc.sum() * 0.01 == pytest.approx(np.pi * 25**2, rel=2e-3)
+    assert (disc == disc[::-1]).all()
+    assert (disc == disc.T).all()
+    assert not disc[0, 0]
+
+
+def test_scan_is_written_whole_with_its_sidecar(tmp_path):
+    heights = self_affine((20, 30), SPACING, 0.8, rms=0.3, seed=1)
+    heights[0, 0] = np.nan
+    path = tmp_path / "new" / "twin.npy"
+    write_scan(path, heights, SPACING, sidecar={"title": "a twin"})
+    write_scan(path, heights, SPACING, sidecar={"title": "a twin, again"})
+    np.testing.assert_array_equal(np.load(path, allow_pickle=False), heights)
+    assert yaml.safe_load(path.with_suffix(".yaml").read_text()) == {
+        "unit": "mm",
+        "spacing": "0.08 mm",
+        "title": "a twin, again",
+    }
+    assert sorted(p.name for p in path.parent.iterdir()) == ["twin.npy", "twin.yaml"]
+
+
+def test_failed_write_leaves_the_old_scan_and_no_rest(tmp_path):
+    path = tmp_path / "twin.npy"
+    write_scan(path, np.zeros((3, 3)), SPACING, sidecar={})
+    before = path.read_bytes()
+    with pytest.raises(ValueError, match="allow_pickle"):
+        write_scan(path, np.array([object()]), SPACING, sidecar={})
+    assert path.read_bytes() == before
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["twin.npy", "twin.yaml"]
+
+
+def test_sidecar_cannot_contradict_the_scan(tmp_path):
+    with pytest.raises(ValueError, match="unit"):
+        write_scan(tmp_path / "a.npy", np.zeros((3, 3)), SPACING, sidecar={"unit": "m"})
+    with pytest.raises(ValueError, match=r"\.npy"):
+        write_scan(tmp_path / "a.npz", np.zeros((3, 3)), SPACING, sidecar={})
