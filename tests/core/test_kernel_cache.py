@@ -23,12 +23,12 @@ SOURCES = {
     "constants": "OFFSET = 1.0\n",
     "unrelated": "OTHER = 1.0\n",
     "callee": (
-        "from .kernel_cache import njit\n\n\n"
+        "from .core.kernel_cache import njit\n\n\n"
         "@njit(cache=True)\ndef scaled(x):\n    return 2.0 * x\n"
     ),
     "caller": (
         "from .callee import scaled\nfrom .constants import OFFSET\n"
-        "from .kernel_cache import njit\n\n\n"
+        "from .core.kernel_cache import njit\n\n\n"
         "@njit(cache=True)\ndef result(x):\n    return scaled(x) + OFFSET\n"
     ),
 }
@@ -44,8 +44,9 @@ class Project:
         self.package.mkdir()
         for name, text in SOURCES.items():
             self.write(name, text)
-        for name in ("kernel_cache", "sources"):
-            shutil.copy(PACKAGE / f"{name}.py", self.package)
+        (self.package / "core").mkdir()
+        for name in ("__init__", "kernel_cache", "sources"):
+            shutil.copy(PACKAGE / f"core/{name}.py", self.package / "core")
         self.environment = {
             "PATH": os.environ["PATH"],
             "HOME": str(folder / "home"),
@@ -135,7 +136,7 @@ def test_an_edit_that_no_kernel_follows_from_compiles_nothing(compiled):
 
 def test_a_process_that_an_edit_overtakes_spoils_nothing(project):
     edit = "from pathlib import Path; Path('rocks/constants.py').write_text('OFFSET = 5.0')"
-    code = f"import rocks.kernel_cache, rocks.constants; {edit}; {RUN}"
+    code = f"import rocks.core.kernel_cache, rocks.constants; {edit}; {RUN}"
     assert project.run(code) == ("21.0 0", "")
     assert project.run() == ("25.0 0", "")
     assert project.run() == ("25.0 1", "")

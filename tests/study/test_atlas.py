@@ -5,9 +5,9 @@ import json
 import pytest
 import xarray as xr
 
+from fractalcontact.core import netcdf
 from fractalcontact.core.arrays import padded
 from fractalcontact.core.netcdf import read, read_with_versions, versions, write
-from fractalcontact.study import atlas as store
 from fractalcontact.study.atlas import read_atlas, write_atlas
 
 
@@ -67,7 +67,7 @@ def test_parts_made_with_other_versions_are_named_in_the_atlas(tmp_path, monkeyp
     write(labelled, tmp_path / "new.nc")
     older = versions() | {"numpy": "1.0"}
     with monkeypatch.context() as patched:
-        patched.setattr(store, "versions", lambda: older)
+        patched.setattr(netcdf, "versions", lambda: older)
         write(labelled, tmp_path / "old.nc")
     read_back = {name: read_with_versions(tmp_path / f"{name}.nc") for name in ("old", "new")}
     assert [made for _, made in read_back.values()] == [older, versions()]

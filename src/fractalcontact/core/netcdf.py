@@ -44,7 +44,7 @@ def read(path):
 def read_with_versions(path):
     """A dataset written by :func:`write`, and the versions it was made with by library."""
     with xr.open_dataset(path, engine="netcdf4") as dataset:
-        dataset = dataset.load().dropencoding()
+        dataset = dataset.load().drop_encoding()
     return dataset, json.loads(dataset.attrs.pop(_VERSIONS, "{}"))
 
 
