@@ -6,7 +6,7 @@
 # make verify   every result against its checksum
 # make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
-# make test   what the tests need, then the tests
+# make test   what the tests need, then the tests; make test-all takes larger ensembles
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make cost   where the time of the study went
@@ -29,7 +29,7 @@ export STUDY SCANS
 RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study smoke keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test bench scenes fuzz lint format lock clean
+.PHONY: all study smoke keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench scenes fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -70,6 +70,9 @@ cost: study
 
 test: $(VENV)/tests-installed
 	$(BIN)/python -m pytest
+
+test-all: $(VENV)/tests-installed
+	TESTS=all $(BIN)/python -m pytest
 
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)

@@ -52,7 +52,7 @@ def joint(moved: Motion, hurst=0.7, cells=96, noise=0.0, seed=1, gap=0.5, spacin
 
 
 def assert_found(found: Motion, true: Motion, cells=0.04, degrees=0.02, slope=5e-4):
-    true = true.about(*found.end)
+    true = true.cf_attrs(*found.end)
     assert np.hypot(*np.subtract(found.shift, true.shift)) < cells * SPACING
     assert abs(np.degrees(found.rotation - true.rotation)) < degrees
     np.testing.assert_allclose(found.slope, true.slope, atol=slope)
@@ -79,7 +79,7 @@ def test_there_and_back_again():
     there = Motion((1.0, 2.0), (3.0, -4.0), 0.3, (0.1, 0.2))
     x, y = np.array([0.0, 5.0, -2.0]), np.array([1.0, 1.0, 7.0])
     np.testing.assert_allclose(there.back(*there.forth(x, y)), (x, y), atol=1e-12)
-    other = there.about(10.0, 20.0)
+    other = there.cf_attrs(10.0, 20.0)
     np.testing.assert_allclose(other.forth(x, y), there.forth(x, y), atol=1e-12)
     second = Motion((0.0, 1.0), (2.0, 2.0), -0.2)
     both = there.then(second).forth(x, y)
@@ -160,7 +160,7 @@ def test_the_other_face_makes_the_inverse_motion():
     lower, upper = joint(motion((0.5, -0.2), 2.0, (0.02, 0.01)), noise=0.02)
     there, _ = find_motion(lower, upper)
     back, _ = find_motion(upper, lower)
-    back = back.about(*there.start)
+    back = back.cf_attrs(*there.start)
     np.testing.assert_allclose(back.shift, np.negative(there.shift), atol=2e-3)
     assert back.rotation == pytest.approx(-there.rotation, abs=1e-4)
     cos, sin = np.cos(there.rotation), np.sin(there.rotation)

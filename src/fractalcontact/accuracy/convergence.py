@@ -6,7 +6,7 @@ import xarray as xr
 from ..contact.solve import solve_contact
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
 from .richardson import richardson
 
@@ -80,15 +80,15 @@ def _convergence(problem, cells_per_radius, placements, rtol):
         for n in cells_per_radius
     ]
     cells = np.asarray(cells_per_radius)
-    attributes = about("1", "cells across the contact radius, a/s")
+    attributes = cf_attrs("1", "cells across the contact radius, a/s")
     result = xr.Dataset(coords={"cells_per_radius": ("cells_per_radius", cells, attributes)})
     for name, error in zip(QUANTITIES[problem], np.transpose(errors), strict=True):
         fit = fit_line(np.log(1 / cells), np.log(error))
         words = f"relative error of the {_WORDS[name]}, rms over positions"
-        result[f"{name}_error"] = ("cells_per_radius", error, about("1", words))
+        result[f"{name}_error"] = ("cells_per_radius", error, cf_attrs("1", words))
         for end, which in zip(INTERVAL, ("slope", "slope_low", "slope_high"), strict=True):
             words = f"order of the error of the {_WORDS[name]} in s{INTERVAL[end]}"
-            result[f"{name}_order{end}"] = ((), getattr(fit, which), about("1", words))
+            result[f"{name}_order{end}"] = ((), getattr(fit, which), cf_attrs("1", words))
     return result
 
 
@@ -174,19 +174,19 @@ def richardson_trials(cases, cells, *, seed=0, rtol=1e-7):
     dims = ("quantity", "case")
     return xr.Dataset(
         {
-            "error": (dims, error, about("1", "error of Richardson's value, relative")),
-            "bar": (dims, bar, about("1", "its own error bar, relative")),
-            "finest": (dims, finest, about("1", "error at the finest spacing, relative")),
+            "error": (dims, error, cf_attrs("1", "error of Richardson's value, relative")),
+            "bar": (dims, bar, cf_attrs("1", "its own error bar, relative")),
+            "finest": (dims, finest, cf_attrs("1", "error at the finest spacing, relative")),
             "within": (
                 "quantity",
                 np.count_nonzero(error <= bar, axis=1),
-                about("1", "cases within their own bar"),
+                cf_attrs("1", "cases within their own bar"),
             ),
-            "order": ("quantity", orders, about("1", "order in s assumed")),
+            "order": ("quantity", orders, cf_attrs("1", "order in s assumed")),
         },
         coords={
-            "quantity": ("quantity", names, about("1", "what is extrapolated")),
-            "cells": ("case", ratios, about("1", "cells across the radius, finest spacing")),
+            "quantity": ("quantity", names, cf_attrs("1", "what is extrapolated")),
+            "cells": ("case", ratios, cf_attrs("1", "cells across the radius, finest spacing")),
         },
     )
 
@@ -218,7 +218,7 @@ def kernel_effect(composite, spacing, modulus, closure):
         )
         for k in kernels
     ]
-    attributes = about("1", "influence of a loaded node")
+    attributes = cf_attrs("1", "influence of a loaded node")
     result = xr.Dataset(coords={"kernel": ("kernel", kernels, attributes)})
     for name, units, label in (
         ("force", "N", "normal force"),
@@ -226,5 +226,5 @@ def kernel_effect(composite, spacing, modulus, closure):
         ("stiffness", "N/mm", "normal stiffness dF/dw"),
     ):
         values = [getattr(state, name) for state in states]
-        result[name] = ("kernel", values, about(units, label))
+        result[name] = ("kernel", values, cf_attrs(units, label))
     return result

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.errors import NotConverged
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
 from ..methods.common import influence_matrix
 from ..methods.registry import METHODS
@@ -107,10 +107,14 @@ def elimination(draws=200):
     rows = [_case(kernel, ratio, draws) for kernel, ratio in CASES]
     result = xr.Dataset(
         coords={
-            "tolerance": ("tolerance", list(TOLERANCES), about("1", "tolerance of the solves")),
+            "tolerance": ("tolerance", list(TOLERANCES), cf_attrs("1", "tolerance of the solves")),
             "case": [f"{kernel}, cells {ratio:g}:1" for kernel, ratio in CASES],
             "kernel": ("case", [kernel for kernel, _ in CASES]),
-            "ratio": ("case", [ratio for _, ratio in CASES], about("1", "ratio of a cell's sides")),
+            "ratio": (
+                "case",
+                [ratio for _, ratio in CASES],
+                cf_attrs("1", "ratio of a cell's sides"),
+            ),
         },
         attrs={"rtol": RTOL, "window": WINDOW, "sides": SIDES},
     )
@@ -122,10 +126,14 @@ def elimination(draws=200):
         "counter_example": "1 where a scene made on purpose defeats it, 0 where none can be made",
     }
     for name, values in zip(labels, zip(*rows, strict=True), strict=True):
-        result[name] = "case", np.array(values), about("1", labels[name])
+        result[name] = "case", np.array(values), cf_attrs("1", labels[name])
     lost, area_error = np.array([_inexact(tolerance, draws) for tolerance in TOLERANCES]).T
-    result["lost"] = "tolerance", lost, about("1", "scenes that lose nodes of the contact, share")
-    result["area_error"] = "tolerance", area_error, about("1", "largest error of A_r, relative")
+    result["lost"] = (
+        "tolerance",
+        lost,
+        cf_attrs("1", "scenes that lose nodes of the contact, share"),
+    )
+    result["area_error"] = "tolerance", area_error, cf_attrs("1", "largest error of A_r, relative")
     return result
 
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from .speed import MODEL, OURS
 
 #: Nodes of the grid, not nodes a side, are what time and memory are fitted against.
@@ -56,19 +56,19 @@ def growth(scenes, error):
     dims = ("surface", "solver", "size")
     result = xr.Dataset(
         {
-            "seconds": (dims, table["seconds"], about("s", "wall time at the error asked for")),
-            "memory": (dims, table["memory"], about("B", "peak memory of a solve")),
-            "reached": (dims, table["reached"], about("1", "error of the force, relative")),
+            "seconds": (dims, table["seconds"], cf_attrs("s", "wall time at the error asked for")),
+            "memory": (dims, table["memory"], cf_attrs("B", "peak memory of a solve")),
+            "reached": (dims, table["reached"], cf_attrs("1", "error of the force, relative")),
             "bound": (
                 ("surface", "size"),
                 bound,
-                about("s", f"applications of the operator by {OURS}, alone"),
+                cf_attrs("s", f"applications of the operator by {OURS}, alone"),
             ),
         },
         coords={
-            "surface": ("surface", surfaces, about("1", "scene without its size")),
-            "solver": ("solver", solvers, about("1", "solver of the package, or peer")),
-            "size": ("size", sizes, about("1", "nodes a side")),
+            "surface": ("surface", surfaces, cf_attrs("1", "scene without its size")),
+            "solver": ("solver", solvers, cf_attrs("1", "solver of the package, or peer")),
+            "size": ("size", sizes, cf_attrs("1", "nodes a side")),
         },
         attrs={"error": error},
     )
@@ -78,7 +78,7 @@ def growth(scenes, error):
         for ending, which in zip(INTERVAL, ("slope", "slope_low", "slope_high"), strict=True):
             slopes = np.reshape([getattr(line, which) for line in lines], shape[:2])
             text = f"exponent of the {words} in the number of nodes{INTERVAL[ending]}"
-            result[f"{name}_exponent{ending}"] = (dims[:2], slopes, about("1", text))
+            result[f"{name}_exponent{ending}"] = (dims[:2], slopes, cf_attrs("1", text))
     return result
 
 

@@ -17,7 +17,7 @@ from ..contact.solve import solve_contact
 from ..core import threads
 from ..core.child_process import ChildFailed, in_child
 from ..core.errors import NotConverged
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..domain.box_dimension import box_dimension
 from ..elastic.halfspace import HalfSpace
 from ..methods import peers
@@ -113,7 +113,7 @@ def error_against_time(scene, recipe):
     result.attrs["told_apart_to"] = max(result.attrs["reference_error"], asked)
     for name, error in FRONTS.items():
         words = f"nothing is both faster and has less {ERRORS[error]}"
-        result[name] = ("point", _front(result, error), about("1", words))
+        result[name] = ("point", _front(result, error), cf_attrs("1", words))
     return result
 
 
@@ -299,24 +299,24 @@ def ahead_of_ours(points, *, quantity="force_error", below=LEADS_BELOW, models=T
 def _labelled(table):
     """The dataset from the rows."""
     words = {
-        **{name: about("1", text) for name, text in ERRORS.items()},
-        "seconds": about("s", "wall time of a cold solve, median of the runs"),
-        "seconds_low": about("s", "wall time, fastest run"),
-        "seconds_high": about("s", "wall time, slowest run"),
-        "runs": about("1", "runs"),
-        "memory": about("B", "peak memory of setting up and solving, on one thread"),
-        "applications": about("1", f"applications of the operator by {OURS}, on the full grid"),
+        **{name: cf_attrs("1", text) for name, text in ERRORS.items()},
+        "seconds": cf_attrs("s", "wall time of a cold solve, median of the runs"),
+        "seconds_low": cf_attrs("s", "wall time, fastest run"),
+        "seconds_high": cf_attrs("s", "wall time, slowest run"),
+        "runs": cf_attrs("1", "runs"),
+        "memory": cf_attrs("B", "peak memory of setting up and solving, on one thread"),
+        "applications": cf_attrs("1", f"applications of the operator by {OURS}, on the full grid"),
     }
     texts = {
-        "method": about("1", "solver or model"),
-        "kind": about("1", "solver of the package, peer or cheaper model"),
-        "said": about("1", "what the solver said of its failure"),
+        "method": cf_attrs("1", "solver or model"),
+        "kind": cf_attrs("1", "solver of the package, peer or cheaper model"),
+        "said": cf_attrs("1", "what the solver said of its failure"),
     }
     result = xr.Dataset()
     for name, attributes in texts.items():
         result[name] = ("point", np.array([row[name] for row in table], dtype=object), attributes)
     tolerance = [row["tolerance"] for row in table]
-    result["tolerance"] = ("point", tolerance, about("1", "tolerance asked for"))
+    result["tolerance"] = ("point", tolerance, cf_attrs("1", "tolerance asked for"))
     for name, attributes in words.items():
         values = [row.get(name, np.nan) if not row["said"] else np.nan for row in table]
         result[name] = ("point", np.array(values, float), attributes)

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..contact.solve import solve_contact
 from ..core.errors import NotConverged
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..methods import registry as methods
 from ..methods.peers import peer_methods
 from .hard_problems import KINDS, hard_scene
@@ -61,11 +61,14 @@ def stability(kinds=None, draws=25):
     ]
     codes = ", ".join(f"{code} {verdict}" for code, verdict in enumerate(VERDICTS))
     fields = {
-        "verdict": ("int8", about("1", codes)),
-        "violation": (float, about("1", "largest violation of the conditions, share of closure")),
-        "disagreement": (float, about("1", "relative difference from direct elimination")),
-        "asked": (float, about("1", "tolerance asked for")),
-        "said": (object, about("1", "what the solver said")),
+        "verdict": ("int8", cf_attrs("1", codes)),
+        "violation": (
+            float,
+            cf_attrs("1", "largest violation of the conditions, share of closure"),
+        ),
+        "disagreement": (float, cf_attrs("1", "relative difference from direct elimination")),
+        "asked": (float, cf_attrs("1", "tolerance asked for")),
+        "said": (object, cf_attrs("1", "what the solver said")),
     }
     result = xr.Dataset(
         coords={"kind": kinds, "draw": np.arange(draws), "solver": list(judged)},

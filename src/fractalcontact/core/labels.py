@@ -1,7 +1,7 @@
 """What every variable of the atlas says about itself, and how the texts of strangers are shown."""
 
 
-def about(units, long_name):
+def cf_attrs(units, long_name):
     """Attributes of a variable, named as the CF conventions have them.
 
     Parameters

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from .box_dimension import box_dimension, box_sizes, no_dimension
 from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .renormalisation import compare_dimensions, renormalisation
@@ -117,20 +117,25 @@ def analyse_domains(fields, spacing, *, fit_range=None, whole_cells=None):
     return xr.Dataset(
         {
             **{
-                name: (order, values, about(*DOMAIN_FIELDS[name])) for name, values in table.items()
+                name: (order, values, cf_attrs(*DOMAIN_FIELDS[name]))
+                for name, values in table.items()
             },
             "cluster_octaves": (
                 (*order, "octave"),
                 octaves,
-                about("1", "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k"),
+                cf_attrs("1", "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k"),
             ),
-            "reason": (order, reason.astype(str), about("1", "why there is no dimension")),
-            "box_count": ((*order, "scale"), count, about("1", "boxes that meet the domain, N(r)")),
-            "box_used": ((*order, "scale"), used, about("1", "box size used in the fit")),
+            "reason": (order, reason.astype(str), cf_attrs("1", "why there is no dimension")),
+            "box_count": (
+                (*order, "scale"),
+                count,
+                cf_attrs("1", "boxes that meet the domain, N(r)"),
+            ),
+            "box_used": ((*order, "scale"), used, cf_attrs("1", "box size used in the fit")),
             "box_side": (
                 ("resolution", "scale"),
                 padded([sizes[k] * k * spacing for k in factors]),
-                about("mm", "side of the boxes r"),
+                cf_attrs("mm", "side of the boxes r"),
             ),
         },
         coords={
@@ -138,9 +143,9 @@ def analyse_domains(fields, spacing, *, fit_range=None, whole_cells=None):
             "resolution": (
                 "resolution",
                 factors,
-                about("1", "multiple k of the scan's spacing"),
+                cf_attrs("1", "multiple k of the scan's spacing"),
             ),
-            "octave": ("octave", np.arange(n_octaves), about("1", "octave k of cluster sizes")),
+            "octave": ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes")),
         },
     )
 
@@ -166,7 +171,7 @@ def scaling_over_resolutions(curves, domains, spacing, *, fit_range=None):
         offset, load), and both estimates of Delta_sigma with their difference; the box counts are
         those at the scan's own resolution.
     """
-    s = (curves["resolution"] * spacing).assign_attrs(about("mm", "spacing s"))
+    s = (curves["resolution"] * spacing).assign_attrs(cf_attrs("mm", "spacing s"))
     area = curves["area"]
     if fit_range is not None:
         tolerance = 1e-9 * spacing

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.units import load as read_load
 from ..scan.read import read_matrix
 from .analysis import DOMAIN_FIELDS, analyse_domains
@@ -71,14 +71,14 @@ def read_contact_map(path, options, *, label):
     found = analyse_domains(domains, spacing, whole_cells=known).squeeze(drop=True)
     nominal = measured.sum() * dx * dy
     result = found[[*DOMAIN_FIELDS, "reason"]]
-    result["in_contact"] = (("y", "x"), touching, about("1", "cell in contact"))
-    result["measured"] = (("y", "x"), measured, about("1", "cell where something was measured"))
+    result["in_contact"] = (("y", "x"), touching, cf_attrs("1", "cell in contact"))
+    result["measured"] = (("y", "x"), measured, cf_attrs("1", "cell where something was measured"))
     share = touching.sum() / measured.sum()
-    result["area_share"] = ((), share, about("1", "real contact area A_r / A_0"))
+    result["area_share"] = ((), share, cf_attrs("1", "real contact area A_r / A_0"))
     result["nominal_pressure"] = (
         (),
         _pressure(options.get("load"), nominal, f"sidecar of {path}: load"),
-        about("MPa", "nominal pressure F / A_0"),
+        cf_attrs("MPa", "nominal pressure F / A_0"),
     )
     result.attrs = {
         "label": label,

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.slope_of_sums import NO_SLOPE
 from .box_counts import box_count, box_sizes
 from .box_dimension import box_dimension, local_slopes
@@ -139,22 +139,26 @@ def measures_of_states(domains, pressures, spacing, forces):
     variables["local_slope"] = (
         ("load", "slope_side"),
         slopes,
-        about("1", "local slope of log N(r) over a doubling of the box side"),
+        cf_attrs("1", "local slope of log N(r) over a doubling of the box side"),
     )
     for end, words in (("", ""), ("_low", ", lower end"), ("_high", ", upper end")):
         values = [getattr(curve, end.removeprefix("_") or "value") for curve in curves]
         variables[f"lacunarity{end}"] = (
             ("load", "gliding_side"),
             np.array(values),
-            about("1", f"gliding-box lacunarity{words and words + ' of the 95 % interval'}"),
+            cf_attrs("1", f"gliding-box lacunarity{words and words + ' of the 95 % interval'}"),
         )
     return xr.Dataset(
         variables,
         coords={
-            "load": ("load", forces, about("N", "normal force F")),
-            "order": ("order", np.array(ORDERS), about("1", "order q")),
-            "slope_side": ("slope_side", side, about("mm", "middle of the doubling")),
-            "gliding_side": ("gliding_side", curves[0].r, about("mm", "side of the gliding box")),
+            "load": ("load", forces, cf_attrs("N", "normal force F")),
+            "order": ("order", np.array(ORDERS), cf_attrs("1", "order q")),
+            "slope_side": ("slope_side", side, cf_attrs("mm", "middle of the doubling")),
+            "gliding_side": (
+                "gliding_side",
+                curves[0].r,
+                cf_attrs("mm", "side of the gliding box"),
+            ),
         },
     )
 
@@ -170,7 +174,7 @@ def _slope_variables(dims, name, long_name, values):
         "_n": ("1", f"{long_name}: lengths fitted"),
     }
     return {
-        f"{name}{end}": (dims, np.array(values(f"{name}{end}"), float), about(*label))
+        f"{name}{end}": (dims, np.array(values(f"{name}{end}"), float), cf_attrs(*label))
         for end, label in ends.items()
     }
 

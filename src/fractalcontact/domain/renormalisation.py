@@ -6,7 +6,7 @@ from scipy import special
 
 from ..core.fitting import fit_line
 from ..core.intervals import CONFIDENCE
-from ..core.labels import about
+from ..core.labels import cf_attrs
 
 #: The dimension along which resolutions s, 2s, 4s ... are stored.
 RESOLUTION = "resolution"
@@ -99,7 +99,7 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
         "sigma_n": ("MPa", "real mean pressure at each resolution"),
     }
     for name, (unit, words) in units.items():
-        result[name].attrs = about(unit, words)
+        result[name].attrs = cf_attrs(unit, words)
     return result
 
 
@@ -203,5 +203,5 @@ def compare_dimensions(
         "disagree": "the two estimates of Delta_sigma differ by more than their intervals",
     }
     for name, text in words.items():
-        result[name].attrs = about("1", text)
+        result[name].attrs = cf_attrs("1", text)
     return result

@@ -1,1 +1,16 @@
 """The elastic half-space: normal displacement under a pressure, by fast Fourier transforms."""
+
+from ..core.lazy import exports
+
+__getattr__, __dir__, __all__ = exports(
+    __name__,
+    {
+        "HalfSpace": ".halfspace",
+        "RIGID_PLATE_SELF_TERMS": ".halfspace",
+        "WIDTH": ".simd",
+        "load": ".simd",
+        "love_displacement": ".halfspace",
+        "rectangle_mean_displacement": ".halfspace",
+        "store": ".simd",
+    },
+)

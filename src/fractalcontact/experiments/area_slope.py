@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..elastic.halfspace import HalfSpace
 from ..mechanics import theory
 from ..mechanics.area import corrected_area
@@ -94,11 +94,11 @@ def _labelled(share, slope, loads, seeds):
     """The dataset from the shares (raw and corrected) and slopes of all surfaces."""
     dims = ("surface", "seed", "load")
     result = xr.Dataset(
-        {"rms_slope": (dims[:2], slope, about("1", "rms slope h'_rms of the surface"))},
+        {"rms_slope": (dims[:2], slope, cf_attrs("1", "rms slope h'_rms of the surface"))},
         coords={
             "surface": list(SURFACES),
-            "seed": ("seed", seeds, about("1", "seed of the surface")),
-            "load": ("load", loads, about("1", "p / (E* h'_rms)")),
+            "seed": ("seed", seeds, cf_attrs("1", "seed of the surface")),
+            "load": ("load", loads, cf_attrs("1", "p / (E* h'_rms)")),
         },
     )
     ends = (
@@ -111,15 +111,15 @@ def _labelled(share, slope, loads, seeds):
         ("corrected_", share[1], "area slope kappa, corrected area"),
     ):
         name = f"{prefix}share" if prefix else "area_share"
-        result[name] = (dims, shares, about("1", f"A_r/A_0 ({prefix.strip('_') or 'raw'})"))
+        result[name] = (dims, shares, cf_attrs("1", f"A_r/A_0 ({prefix.strip('_') or 'raw'})"))
         kappa = shares / loads
-        result[f"{prefix}kappa"] = (dims, kappa, about("1", words))
+        result[f"{prefix}kappa"] = (dims, kappa, cf_attrs("1", words))
         means = mean_interval(kappa, axis=1)[:3]
         for (ending, of), values in zip(ends, means, strict=True):
             key = f"{prefix}mean_kappa{ending}"
-            result[key] = (("surface", "load"), values, about("1", f"{of} {words}"))
+            result[key] = (("surface", "load"), values, cf_attrs("1", f"{of} {words}"))
         result[f"{prefix}mean_kappa_deviation"] = result[f"{prefix}kappa"].std("seed", ddof=1)
-        result[f"{prefix}mean_kappa_deviation"].attrs = about(
+        result[f"{prefix}mean_kappa_deviation"].attrs = cf_attrs(
             "1", f"standard deviation between seeds of {words}"
         )
     return result

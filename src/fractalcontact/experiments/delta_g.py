@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..roughness.dimension import FIRST_CELLS, LAST_PART, hurst_exponents
 from ..roughness.estimators import ESTIMATORS
 from ..surface.synthesis import self_affine
@@ -67,14 +67,14 @@ def _judged(found, names, exponents, sizes, seeds):
     }
     result = xr.Dataset(
         {
-            f"found{end}": (dims, values, about("1", f"Hurst exponent found{words}"))
+            f"found{end}": (dims, values, cf_attrs("1", f"Hurst exponent found{words}"))
             for (end, words), values in zip(ends.items(), found, strict=False)
         },
         coords={
             "estimator": names,
-            "hurst": ("hurst", exponents, about("1", "Hurst exponent of the surfaces")),
-            "size": ("size", sizes, about("1", "nodes a side")),
-            "seed": ("seed", seeds, about("1", "seed of the surface")),
+            "hurst": ("hurst", exponents, cf_attrs("1", "Hurst exponent of the surfaces")),
+            "size": ("size", sizes, cf_attrs("1", "nodes a side")),
+            "seed": ("seed", seeds, cf_attrs("1", "seed of the surface")),
         },
     )
     truth = exponents[:, np.newaxis, np.newaxis]
@@ -84,21 +84,21 @@ def _judged(found, names, exponents, sizes, seeds):
     held = (low <= truth) & (truth <= high)
     over = dims[:3]
     for end, values in zip(ends, (bias.value, bias.low, bias.high), strict=True):
-        result[f"bias{end}"] = (over, values, about("1", f"mean of H found less H{ends[end]}"))
+        result[f"bias{end}"] = (over, values, cf_attrs("1", f"mean of H found less H{ends[end]}"))
     result["slope_bias"] = (
         over,
         mean_interval(slope - truth, axis=-1).value,
-        about("1", "mean of H before known bias is taken off, less H"),
+        cf_attrs("1", "mean of H before known bias is taken off, less H"),
     )
     result["scatter"] = result["found"].std("seed", ddof=1)
-    result["scatter"].attrs = about("1", "standard deviation of H between surfaces")
-    result["half_width"] = half.assign_attrs(about("1", "half of the 95 % interval, mean"))
-    result["coverage"] = (over, held.mean(axis=-1), about("1", "share of intervals that hold H"))
+    result["scatter"].attrs = cf_attrs("1", "standard deviation of H between surfaces")
+    result["half_width"] = half.assign_attrs(cf_attrs("1", "half of the 95 % interval, mean"))
+    result["coverage"] = (over, held.mean(axis=-1), cf_attrs("1", "share of intervals that hold H"))
     natural = result.where(result["hurst"] >= FROM_HURST)
     of_natural = f"H from {FROM_HURST:g}"
     result["worst_bias"] = np.abs(natural["bias"]).max(["hurst", "size"])
-    result["worst_bias"].attrs = about("1", f"largest mean bias of all sizes, {of_natural}")
+    result["worst_bias"].attrs = cf_attrs("1", f"largest mean bias of all sizes, {of_natural}")
     result["mean_coverage"] = natural["coverage"].mean(["hurst", "size"])
-    result["mean_coverage"].attrs = about("1", f"share of intervals that hold H, {of_natural}")
+    result["mean_coverage"].attrs = cf_attrs("1", f"share of intervals that hold H, {of_natural}")
     result.attrs = {"first_cells": FIRST_CELLS, "last_part": LAST_PART, "from_hurst": FROM_HURST}
     return result

@@ -12,8 +12,9 @@ import xarray as xr
 
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
-from ..core.labels import about
-from ..domain.box_dimension import box_count, box_dimension
+from ..core.labels import cf_attrs
+from ..domain.box_counts import box_count
+from ..domain.box_dimension import box_dimension
 from ..domain.correlation import correlation_dimension
 from ..domain.renormalisation import renormalisation
 from ..elastic.halfspace import HalfSpace
@@ -106,17 +107,17 @@ def dimension_test(recipe, rtol=1e-6):
     result["rms_slope"] = (
         tuple(axes)[:3],
         slope,
-        about("1", "rms slope h'_rms at the finest spacing"),
+        cf_attrs("1", "rms slope h'_rms at the finest spacing"),
     )
     result = result.assign_coords(
-        resolution=("resolution", factors, about("1", "multiple k of the finest spacing"))
+        resolution=("resolution", factors, cf_attrs("1", "multiple k of the finest spacing"))
     )
     dims = (*axes, "resolution")
-    result["nodes"] = (dims, nodes, about("1", "nodes in contact at each resolution"))
+    result["nodes"] = (dims, nodes, cf_attrs("1", "nodes in contact at each resolution"))
     result["boxes_per_node"] = (
         dims,
         met / np.where(nodes > 0, nodes, np.nan),
-        about("1", "boxes of side k s that meet the finest domain over nodes in contact at k"),
+        cf_attrs("1", "boxes of side k s that meet the finest domain over nodes in contact at k"),
     )
     _add_means(result, "load")
     _add_trends(result)
@@ -193,13 +194,13 @@ def _capped(recipe, axes, factors, rtol):
     capped["area_share"] = (
         ("dimension", "seed", "load"),
         share,
-        about("1", "real contact area A_r / A_0"),
+        cf_attrs("1", "real contact area A_r / A_0"),
     )
     _add_means(capped, "load")
     capped = capped.drop_vars("light_load_delta")
     names = {name: f"capped_{name}" for name in [*capped.data_vars, "load"]}
     capped = capped.rename(names)
-    capped["capped_load"].attrs = about("1", "F / (H A_0)")
+    capped["capped_load"].attrs = cf_attrs("1", "F / (H A_0)")
     capped.attrs = {}
     return capped
 
@@ -212,15 +213,18 @@ def _labelled(axes, table):
         "seed": "seed of the surface",
         "load": "p / (E* h'_rms)",
     }
-    coords = {name: (name, values, about("1", words[name])) for name, values in axes.items()}
+    coords = {name: (name, values, cf_attrs("1", words[name])) for name, values in axes.items()}
     result = xr.Dataset(
-        {name: (tuple(axes), values, about("1", FIELDS[name])) for name, values in table.items()},
+        {
+            name: (tuple(axes), values, cf_attrs("1", FIELDS[name]))
+            for name, values in table.items()
+        },
         coords=coords,
     )
     result["difference"] = result["delta_area"] - result["delta_box"]
-    result["difference"].attrs = about("1", "Delta_sigma from A_r(s) less that from box counts")
+    result["difference"].attrs = cf_attrs("1", "Delta_sigma from A_r(s) less that from box counts")
     result["light_load_delta"] = 4.0 - result["dimension"]
-    result["light_load_delta"].attrs = about("1", "Delta_sigma = 1 + H of A_r(s) at light load")
+    result["light_load_delta"].attrs = cf_attrs("1", "Delta_sigma = 1 + H of A_r(s) at light load")
     return result
 
 
@@ -232,8 +236,8 @@ def _add_means(result, last):
         found = mean_interval(values.values, axis=values.dims.index("seed"))
         for ending, mean in zip(INTERVAL, found[:3], strict=True):
             words = f"mean over seeds of {values.attrs['long_name']}{INTERVAL[ending]}"
-            result[f"mean_{name}{ending}"] = (dims, mean, about("1", words))
-        result[f"mean_{name}_n"] = (dims, found.n, about("1", "seeds that have it"))
+            result[f"mean_{name}{ending}"] = (dims, mean, cf_attrs("1", words))
+        result[f"mean_{name}_n"] = (dims, found.n, cf_attrs("1", "seeds that have it"))
 
 
 def _add_trends(result):
@@ -251,7 +255,7 @@ def _add_trends(result):
         for ending, field in (("", "slope"), ("_low", "slope_low"), ("_high", "slope_high")):
             fitted = np.reshape([getattr(line, field) for line in lines], rows.shape[:2])
             text = f"change of the difference {words}{INTERVAL[ending]}"
-            result[f"{name}{ending}"] = (dims, fitted, about("1", text))
+            result[f"{name}{ending}"] = (dims, fitted, cf_attrs("1", text))
 
 
 def summary(result):

@@ -10,7 +10,7 @@ import xarray as xr
 from ..core.directions import DIRECTIONS
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from ..mechanics.joint import direction_spacing, face_correlation, rigid_dilatancy
 from ..roughness.dimension import slope_statistics
@@ -61,7 +61,7 @@ def roll_off_effect(recipe, window, seeds):
         "surface",
     )
     result = result.assign_coords(surface=list(SURFACES))
-    result["seed"] = ("seed", list(seeds), about("1", "seed of the surface"))
+    result["seed"] = ("seed", list(seeds), cf_attrs("1", "seed of the surface"))
     v = result["rigid_offset"].values
     second = v >= v[-1] / 2
     opened = result["rigid_dilatancy"].mean("direction").transpose("surface", "seed", ...).values
@@ -69,7 +69,7 @@ def roll_off_effect(recipe, window, seeds):
     found = mean_interval(slopes, axis=1)
     for (ending, end), values in zip(INTERVAL.items(), found[:3], strict=True):
         words = f"slope of the rigid dilatancy over the second half of v, mean over seeds{end}"
-        result[f"slope{ending}"] = ("surface", values, about("1", words))
+        result[f"slope{ending}"] = ("surface", values, cf_attrs("1", words))
     result.attrs = {"roll_off": recipe["roll_off"], "window": window, "label": recipe["label"]}
     return result
 
@@ -109,23 +109,23 @@ def _slide(heights, spacing, window):
             "rigid_dilatancy": (
                 of_slide,
                 [slid[d][0] for d in DIRECTIONS],
-                about("mm", "rigid dilatancy delta_r"),
+                cf_attrs("mm", "rigid dilatancy delta_r"),
             ),
             "composite_rms": (
                 of_slide,
                 [slid[d][1] for d in DIRECTIONS],
-                about("mm", "standard deviation of the composite topography"),
+                cf_attrs("mm", "standard deviation of the composite topography"),
             ),
             "face_correlation": (
                 of_slide,
                 [face_correlation(specimen, d, cells) for d in DIRECTIONS],
-                about("1", "correlation of the two faces under the window"),
+                cf_attrs("1", "correlation of the two faces under the window"),
             ),
-            "face_rms": ((), lower.std(), about("mm", "standard deviation of a face's heights")),
+            "face_rms": ((), lower.std(), cf_attrs("mm", "standard deviation of a face's heights")),
             "rms_slope": (
                 (),
                 slope_statistics(heights, spacing)["rms_slope"].item(),
-                about("1", "rms slope of the surface"),
+                cf_attrs("1", "rms slope of the surface"),
             ),
         },
         coords={
@@ -133,7 +133,7 @@ def _slide(heights, spacing, window):
             "rigid_offset": (
                 "rigid_offset",
                 cells * direction_spacing(specimen, "E"),
-                about("mm", "shear offset v"),
+                cf_attrs("mm", "shear offset v"),
             ),
         },
     )

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.intervals import mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..roughness.dimension import slope_statistics
 from . import theory
 from .joint import composite_topography, direction_spacing
@@ -122,7 +122,7 @@ def composite_statistics(specimen, direction, cells):
         for n in cells
     ]
     result = xr.concat(each, "offset", combine_attrs="override")
-    result["offset"] = ("offset", made, about("mm", "shear offset v"))
+    result["offset"] = ("offset", made, cf_attrs("mm", "shear offset v"))
     result.attrs = {"spacing_y": float(spacing[0]), "spacing_x": float(spacing[1])}
     return result
 
@@ -191,7 +191,7 @@ def area_laws(curves, statistics, e_star, dimension):
     touching = finest["area_share"] > (FEWEST_NODES - 0.5) * node_share
     result = statistics.copy()
     result["fitted"] = touching & (finest["area_share"] < 1 - 0.5 * node_share)
-    result["fitted"].attrs = about("1", "load used in the fits of area against force")
+    result["fitted"].attrs = cf_attrs("1", "load used in the fits of area against force")
     _add_laws(result, finest)
     _add_kappa(result, finest, e_star, touching)
     _add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
@@ -229,12 +229,12 @@ def _add_laws(result, curves):
             values = np.array([getattr(line, field) for line in lines.flat]).reshape(lines.shape)
             values = np.exp(values) if field in _LOGARITHMS else values
             kind = ", corrected area" if prefix else ""
-            result[prefix + key] = (dims, values, about(units, words + kind))
+            result[prefix + key] = (dims, values, cf_attrs(units, words + kind))
 
     log_ratio = np.log(curves["area"] / curves["load"]).where(result["fitted"])
     deviation = np.exp(np.abs(log_ratio - log_ratio.mean("load")).max("load")) - 1
     result["departure"] = deviation.where(np.isfinite(result["exponent"]))
-    result["departure"].attrs = about(
+    result["departure"].attrs = cf_attrs(
         "1", "largest deviation of A_r/F from its geometric mean, a part of it"
     )
     share = np.minimum(curves["area_error"] / curves["area"], 1)
@@ -242,7 +242,7 @@ def _add_laws(result, curves):
         off = abs(np.log1p(-share)).where(result["fitted"])
     error = (1 + result["departure"]) * np.expm1(off.max("load") + off.mean("load"))
     result["departure_error"] = error.assign_attrs(
-        about("1", "largest deviation of A_r/F from its geometric mean, error by the solver")
+        cf_attrs("1", "largest deviation of A_r/F from its geometric mean, error by the solver")
     )
     full = (curves["area_share"] > 0.5).all("load") & ~result["fitted"].any("load")
     reasons = [
@@ -252,7 +252,7 @@ def _add_laws(result, curves):
         )
     ]
     reasons = np.array(reasons).reshape(result["n"].shape)
-    result["no_law"] = (dims, reasons, about("1", "why there is no law of the area"))
+    result["no_law"] = (dims, reasons, cf_attrs("1", "why there is no law of the area"))
 
 
 def _too_few(n):
@@ -263,10 +263,10 @@ def _add_kappa(result, curves, e_star, touching):
     """kappa of A/A0 = kappa p / (E* h'_rms), raw and corrected, and its mean at light load."""
     slope = result["rms_slope"].where(result["rms_slope"] > FLUSH)
     reduced = curves["nominal_pressure"] / (e_star * slope)
-    result["reduced_pressure"] = reduced.assign_attrs(about("1", "p / (E* h'_rms)"))
+    result["reduced_pressure"] = reduced.assign_attrs(cf_attrs("1", "p / (E* h'_rms)"))
     light = touching & (reduced <= LIGHT_LOAD)
     result["light"] = light.assign_attrs(
-        about("1", f"{FEWEST_NODES} nodes or more touch and p / (E* h'_rms) <= {LIGHT_LOAD:g}")
+        cf_attrs("1", f"{FEWEST_NODES} nodes or more touch and p / (E* h'_rms) <= {LIGHT_LOAD:g}")
     )
     nominal = curves["load"] / curves["nominal_pressure"]
     for prefix, name, words in (
@@ -274,9 +274,9 @@ def _add_kappa(result, curves, e_star, touching):
         ("corrected_", "area_corrected", "area slope kappa, corrected area"),
     ):
         kappa = curves[name] / nominal / reduced
-        result[f"{prefix}kappa"] = kappa.assign_attrs(about("1", words))
+        result[f"{prefix}kappa"] = kappa.assign_attrs(cf_attrs("1", words))
         result[f"{prefix}kappa_error"] = (curves[f"{name}_error"] / nominal / reduced).assign_attrs(
-            about("1", f"{words}, error by the solver")
+            cf_attrs("1", f"{words}, error by the solver")
         )
         means = xr.apply_ufunc(
             lambda values: mean_interval(values, axis=-1)[:3],
@@ -287,15 +287,15 @@ def _add_kappa(result, curves, e_star, touching):
         ends = ("", ", lower end of the 95 % interval", ", upper end of the 95 % interval")
         for key, mean, end in zip(("", "_low", "_high"), means, ends, strict=True):
             text = f"mean of {words}, at light load{end}"
-            result[f"{prefix}mean_kappa{key}"] = mean.assign_attrs(about("1", text))
-    result["mean_kappa_n"] = light.sum("load").assign_attrs(about("1", "loads in the mean"))
+            result[f"{prefix}mean_kappa{key}"] = mean.assign_attrs(cf_attrs("1", text))
+    result["mean_kappa_n"] = light.sum("load").assign_attrs(cf_attrs("1", "loads in the mean"))
     reason = xr.where(
         np.isnan(slope),
         "the faces are flush and have no slope",
         f"no load with p / (E* h'_rms) <= {LIGHT_LOAD:g} and {FEWEST_NODES} nodes in contact",
     )
     reason = xr.where(result["mean_kappa_n"] > 0, "", reason)
-    result["no_mean_kappa"] = reason.assign_attrs(about("1", "why there is no mean of kappa"))
+    result["no_mean_kappa"] = reason.assign_attrs(cf_attrs("1", "why there is no mean of kappa"))
 
 
 def _add_theories(result, curves, e_star, dimension, spacing):
@@ -325,23 +325,23 @@ def _add_theories(result, curves, e_star, dimension, spacing):
         ("greenwood_williamson_share", greenwood / nominal, "1", "A_r/A_0 by Greenwood-Williamson"),
         ("majumdar_bhushan_share", majumdar / nominal, "1", "A_r/A_0 by Majumdar and Bhushan"),
     ):
-        result[name] = values.assign_attrs(about(units, words))
-    result["profile_dimension"] = ((), profile, about("1", "D = Delta_g - 1 of the profiles"))
+        result[name] = values.assign_attrs(cf_attrs(units, words))
+    result["profile_dimension"] = ((), profile, cf_attrs("1", "D = Delta_g - 1 of the profiles"))
     result["majumdar_bhushan_exponent"] = (
         (),
         2 / (3 - profile) if 1 < profile < 1.5 else np.nan,
-        about("1", "exponent 2/(3-D) of area against force by Majumdar and Bhushan"),
+        cf_attrs("1", "exponent 2/(3-D) of area against force by Majumdar and Bhushan"),
     )
     levels = np.arange(1, 4)
     result["archard_exponent"] = (
         "archard_level",
         theory.archard_exponent(levels),
-        about("1", "exponent 1 - 3^-n of area against force by Archard"),
+        cf_attrs("1", "exponent 1 - 3^-n of area against force by Archard"),
     )
     result["archard_level"] = (
         "archard_level",
         levels,
-        about("1", "generations n of spheres upon spheres"),
+        cf_attrs("1", "generations n of spheres upon spheres"),
     )
     result.attrs |= {
         "e_star": float(e_star),

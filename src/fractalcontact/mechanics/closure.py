@@ -6,7 +6,7 @@ import numpy as np
 
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..elastic.halfspace import rectangle_mean_displacement
 from .area import FEWEST_NODES
 from .load_curve import left_out_misses
@@ -142,19 +142,19 @@ def closure_curves(states, window, e_star, fit_range=None):
     result = states[[*OF_STATES, *OFFSETS]].copy()
     settlement = bulk_settlement(force.values, e_star, *window)
     area = window[0] * window[1]
-    result["bulk_settlement"] = ("load", settlement, about("mm", "bulk settlement w_b"))
-    result["nominal_pressure"] = ("load", force.values / area, about("MPa", "F / A_0"))
+    result["bulk_settlement"] = ("load", settlement, cf_attrs("mm", "bulk settlement w_b"))
+    result["nominal_pressure"] = ("load", force.values / area, cf_attrs("MPa", "F / A_0"))
     flush = result["composite_spread"] == 0
     closed = (result["closure"] - result["bulk_settlement"]).where(~flush, 0.0)
     result["interface_closure"] = closed.transpose(*result["closure"].dims)
-    result["interface_closure"].attrs = about("mm", "interface closure w_int = w - w_b")
+    result["interface_closure"].attrs = cf_attrs("mm", "interface closure w_int = w - w_b")
     result["area_share"] = result["area"] / area
-    result["area_share"].attrs = about("1", "real contact area A_r / A_0")
+    result["area_share"].attrs = cf_attrs("1", "real contact area A_r / A_0")
     stiffness = interface_stiffness(
         result["stiffness"] / area, result["nominal_pressure"] / result["bulk_settlement"]
     ).where(~flush)
     result["interface_stiffness"] = stiffness.transpose(*result["closure"].dims)
-    result["interface_stiffness"].attrs = about(
+    result["interface_stiffness"].attrs = cf_attrs(
         "MPa/mm", "stiffness of the interface d sigma / d w_int; none where faces are flush"
     )
     _add_conductance(result, e_star)
@@ -170,7 +170,7 @@ def closure_curves(states, window, e_star, fit_range=None):
     for name, units, words in HYPERBOLA_FIELDS:
         kind = str if name == "reason" else float
         values = np.array([getattr(fit, name) for fit in fits.flat], kind).reshape(fits.shape)
-        result[f"hyperbola_{name}"] = (dims, values, about(units, words))
+        result[f"hyperbola_{name}"] = (dims, values, cf_attrs(units, words))
     result.attrs["hyperbola_force_low"] = float(force.values[fitted].min(initial=np.inf))
     result.attrs["hyperbola_force_high"] = float(force.values[fitted].max(initial=-np.inf))
     return result
@@ -189,7 +189,7 @@ def _add_errors(curves, area, e_star):
     for name, error in errors.items():
         told = curves[name].attrs
         curves[f"{name}_error"] = error.transpose(*curves["closure"].dims)
-        curves[f"{name}_error"].attrs = about(
+        curves[f"{name}_error"].attrs = cf_attrs(
             told["units"], f"{told['long_name']}, error by the solver"
         )
     curves["closure_spacing_error"] = _spacing_error(curves["closure"])
@@ -204,7 +204,7 @@ def _spacing_error(closure):
     fine = [k for k in closure["resolution"].values if 2 * k in closure["resolution"]]
     coarser = closure.sel(resolution=[2 * k for k in fine]).assign_coords(resolution=fine)
     error = abs(closure - coarser.reindex(resolution=closure["resolution"].values))
-    error.attrs = about("mm", "closure w, change from twice the spacing to this one")
+    error.attrs = cf_attrs("mm", "closure w, change from twice the spacing to this one")
     return error.transpose(*closure.dims)
 
 
@@ -236,7 +236,7 @@ def _add_conductance(curves, e_star):
     Loads at which fewer than `FEWEST_NODES` touch are not fitted: they press punches of one cell.
     """
     curves["conductance"] = curves["interface_stiffness"] / e_star
-    curves["conductance"].attrs = about(
+    curves["conductance"].attrs = cf_attrs(
         "mm-1", "conductance of the interface per nominal area and conductivity of the material"
     )
     dims = ("direction", "offset", "resolution")
@@ -256,11 +256,11 @@ def _add_conductance(curves, e_star):
         ),
     ):
         values = np.array([getattr(fit, field) for fit in fits]).reshape(shape)
-        curves[name] = (dims, values, about("1", words))
+        curves[name] = (dims, values, cf_attrs("1", words))
     for name, field in (("low", "x_min"), ("high", "x_max")):
         values = np.exp([getattr(fit, field) for fit in fits]).reshape(shape)
         words = f"{name}est pressure of that fit"
-        curves[f"conductance_pressure_{name}"] = (dims, values, about("MPa", words))
+        curves[f"conductance_pressure_{name}"] = (dims, values, cf_attrs("MPa", words))
 
 
 #: What is kept of each hyperbola: field, unit, long name.
@@ -302,15 +302,15 @@ def elastic_dilatancy(curves, joint):
     # offsets, from which those of the others differ where cells are not square.
     elastic = finest["rigid_opening"] - finest["interface_closure"]
     result["elastic_dilatancy"] = elastic.transpose("contact_direction", "offset", "load")
-    result["elastic_dilatancy"].attrs = about("mm", "elastic dilatancy delta = delta_r - w_int")
+    result["elastic_dilatancy"].attrs = cf_attrs("mm", "elastic dilatancy delta = delta_r - w_int")
     misses = left_out_misses(finest["load"].values, finest["closure"], finest["stiffness"])
     result["left_out_error"] = abs(misses).transpose(*result["elastic_dilatancy"].dims)
-    result["left_out_error"].attrs = about(
+    result["left_out_error"].attrs = cf_attrs(
         "mm", "error of delta when interpolated from the states at the loads beside this one"
     )
     # Openings of rigid faces are read off the heights: they have no error of a solver.
     error = finest["closure_error"].transpose(*result["elastic_dilatancy"].dims)
     result["elastic_dilatancy_error"] = error
-    error.attrs = about("mm", "elastic dilatancy, error by the solver")
+    error.attrs = cf_attrs("mm", "elastic dilatancy, error by the solver")
     result["offset_made"] = finest["offset_made"]
     return result

@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from ..surface.specimen import faces, largest_offset, nominal_area, window_slices
 
@@ -259,31 +259,31 @@ def describe_joint(specimen, settings):
     of_slide = ("direction", "rigid_offset")
     return xr.Dataset(
         {
-            "rigid_dilatancy": (of_slide, dilatancy, about("mm", "rigid dilatancy delta_r")),
+            "rigid_dilatancy": (of_slide, dilatancy, cf_attrs("mm", "rigid dilatancy delta_r")),
             "composite_rms": (
                 of_slide,
                 spread,
-                about("mm", "standard deviation of the composite topography"),
+                cf_attrs("mm", "standard deviation of the composite topography"),
             ),
             "face_correlation": (
                 of_slide,
                 correlation,
-                about("1", "correlation of the two faces under the window"),
+                cf_attrs("1", "correlation of the two faces under the window"),
             ),
             "correlation_length": (
                 "direction",
                 length,
-                about("mm", "first offset where the correlation is at most 1/e"),
+                cf_attrs("mm", "first offset where the correlation is at most 1/e"),
             ),
             "uncorrelated_offset": (
                 "direction",
                 uncorrelated,
-                about("mm", "first offset where the correlation does not differ from zero"),
+                cf_attrs("mm", "first offset where the correlation does not differ from zero"),
             ),
             "correlation_limit": (
                 (),
                 limit,
-                about("1", "largest correlation that chance alone explains, 95 %"),
+                cf_attrs("1", "largest correlation that chance alone explains, 95 %"),
             ),
             **{
                 f"composite_{name}": ("offset", dimensions[name].values, dimensions[name].attrs)
@@ -292,19 +292,19 @@ def describe_joint(specimen, settings):
             "offset_cells": (
                 ("contact_direction", "offset"),
                 np.array([chosen[direction] for direction in solved]),
-                about("1", "offset in cells of the scan"),
+                cf_attrs("1", "offset in cells of the scan"),
             ),
             "composite": (
                 ("offset", "window_y", "window_x"),
                 np.array(composites),
-                about("mm", f"composite topography h, direction {reference}"),
+                cf_attrs("mm", f"composite topography h, direction {reference}"),
             ),
         },
         coords={
             "direction": directions,
             "contact_direction": solved,
-            "rigid_offset": ("rigid_offset", slid, about("mm", "shear offset v")),
-            "offset": ("offset", chosen[reference] * spacing, about("mm", "shear offset v")),
+            "rigid_offset": ("rigid_offset", slid, cf_attrs("mm", "shear offset v")),
+            "offset": ("offset", chosen[reference] * spacing, cf_attrs("mm", "shear offset v")),
             "window_y": ("window_y", specimen.y.values[window_y], specimen.y.attrs),
             "window_x": ("window_x", specimen.x.values[window_x], specimen.x.attrs),
         },

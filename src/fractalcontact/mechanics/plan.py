@@ -8,7 +8,7 @@ error it makes, as far as it can be estimated from the states themselves.
 import numpy as np
 import xarray as xr
 
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
 from .states import forces_of
 
@@ -82,7 +82,7 @@ def choices(curves, dilatancy, settings, solver):
     columns = ("choice", "value", "reason", "error_of")
     words = ("what was chosen", "how", "why", "what the error is of")
     texts = {
-        column: ("choice", [row[i] for row in rows], about("1", word))
+        column: ("choice", [row[i] for row in rows], cf_attrs("1", word))
         for i, (column, word) in enumerate(zip(columns, words, strict=True))
     }
     return xr.Dataset(
@@ -91,7 +91,7 @@ def choices(curves, dilatancy, settings, solver):
             "error": (
                 "choice",
                 np.array([row[-1] for row in rows], float),
-                about("1", "largest error it is estimated to make, as a share"),
+                cf_attrs("1", "largest error it is estimated to make, as a share"),
             ),
         },
         coords={"choice": texts["choice"]},

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..surface.specimen import nominal_area
 
 #: Scalars kept of every state: name, unit, long name.
@@ -174,7 +174,7 @@ def map_pressure(pressures, offset, direction, factor):
         Resolution k.
     """
     of_place = {"offset": offset, "direction": direction, "resolution": factor}
-    labels = about("MPa", "pressure p at the offset of the contact maps") | of_place
+    labels = cf_attrs("MPa", "pressure p at the offset of the contact maps") | of_place
     return {MAP_PRESSURE: (("load", f"y_{factor}", f"x_{factor}"), np.array(pressures), labels)}
 
 
@@ -196,15 +196,15 @@ def map_states(parts):
     pressure = part[MAP_PRESSURE]
     place = pressure.attrs
     return xr.Dataset(
-        {"pressure": (("load", "y", "x"), pressure.values, about("MPa", "pressure p"))},
+        {"pressure": (("load", "y", "x"), pressure.values, cf_attrs("MPa", "pressure p"))},
         coords={
             "load": part["load"],
             "direction": place["direction"],
-            "offset": ((), place["offset"], about("mm", "shear offset v")),
+            "offset": ((), place["offset"], cf_attrs("mm", "shear offset v")),
             "resolution": (
                 (),
                 int(place["resolution"]),
-                about("1", "multiple k of the scan's spacing"),
+                cf_attrs("1", "multiple k of the scan's spacing"),
             ),
         },
     )

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ..core.directions import DIRECTIONS
 from ..core.intervals import mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from ..surface.specimen import faces, nominal_area, window_sides, window_slices
 from .joint import direction_spacing, rigid_dilatancy
@@ -216,15 +216,19 @@ def profile_roughness(specimen, direction):
         note.append(f"JRC {jrc[chosen]:.3g} lies outside of Barton's {_range_words()}")
     return xr.Dataset(
         {
-            "step": ("sampling", spacing * np.array(lags), about("mm", "step of Z2, whole cells")),
-            "z2": ("sampling", z2, about("1", "rms slope Z2 of profiles along the sliding")),
-            "jrc": ("sampling", jrc, about("1", "JRC = 32.2 + 32.47 log10 Z2")),
+            "step": (
+                "sampling",
+                spacing * np.array(lags),
+                cf_attrs("mm", "step of Z2, whole cells"),
+            ),
+            "z2": ("sampling", z2, cf_attrs("1", "rms slope Z2 of profiles along the sliding")),
+            "jrc": ("sampling", jrc, cf_attrs("1", "JRC = 32.2 + 32.47 log10 Z2")),
             "jrc_used": (
                 (),
                 np.clip(jrc[chosen], *JRC_RANGE),
-                about("1", f"JRC at {JRC_SAMPLING}, kept within {_range_words()}"),
+                cf_attrs("1", f"JRC at {JRC_SAMPLING}, kept within {_range_words()}"),
             ),
-            "jrc_note": ((), "; ".join(note), about("1", "what is to be known of the JRC used")),
+            "jrc_note": ((), "; ".join(note), cf_attrs("1", "what is to be known of the JRC used")),
         },
         coords={"sampling": list(SAMPLINGS)},
     )
@@ -294,14 +298,14 @@ def joint_strength(dilatancy, joint, specimen, settings):
     result = result.assign_coords(
         contact_direction=directions,
         load=dilatancy["load"],
-        interval=("interval", result["midpoint"].values[0], about("mm", FIELDS["midpoint"][1])),
+        interval=("interval", result["midpoint"].values[0], cf_attrs("mm", FIELDS["midpoint"][1])),
     )
-    result["nominal_pressure"] = ("load", pressure, about("MPa", "nominal pressure sigma_n"))
+    result["nominal_pressure"] = ("load", pressure, cf_attrs("MPa", "nominal pressure sigma_n"))
     for name, units, words in (
         ("basic_friction_angle", "degree", "basic friction angle phi_b"),
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),
     ):
-        result[name] = ((), float(material[name]), about(units, words))
+        result[name] = ((), float(material[name]), cf_attrs(units, words))
     return result
 
 
@@ -403,7 +407,7 @@ def _one_direction(dilatancy, joint, specimen, material, direction, pressure):
         }
     result = roughness.assign(
         {
-            name: (_dims(name, values), values, about(*FIELDS[name]))
+            name: (_dims(name, values), values, cf_attrs(*FIELDS[name]))
             for name, values in found.items()
         }
     )

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..contact.solve import solve_contact
 from ..core.errors import NotConverged
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..elastic.halfspace import HalfSpace
 from ..surface.specimen import nominal_area
 from .closure import bulk_settlement
@@ -202,30 +202,30 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "load", f"y_{factor}", f"x_{factor}"),
             touching,
-            about("1", f"contact domain at {factor} times the scan's spacing"),
+            cf_attrs("1", f"contact domain at {factor} times the scan's spacing"),
         )
     dims = ("direction", "offset", "resolution", "load")
     opened, spread = rigid_dilatancy(specimen, direction, cells)
     of_offsets = {"offset_made": offsets_made, "rigid_opening": opened, "composite_spread": spread}
     return xr.Dataset(
         {
-            **{name: (dims, values, about(*kept[name])) for name, values in scalars.items()},
-            "solved": (dims, solved, about("1", "whether the state was needed, and solved")),
+            **{name: (dims, values, cf_attrs(*kept[name])) for name, values in scalars.items()},
+            "solved": (dims, solved, cf_attrs("1", "whether the state was needed, and solved")),
             **{
-                name: (("direction", "offset"), values[np.newaxis], about(*OFFSETS[name]))
+                name: (("direction", "offset"), values[np.newaxis], cf_attrs(*OFFSETS[name]))
                 for name, values in of_offsets.items()
             },
             **fields,
         },
         coords={
             "direction": [direction],
-            "offset": ("offset", offsets_made, about("mm", "shear offset v")),
+            "offset": ("offset", offsets_made, cf_attrs("mm", "shear offset v")),
             "resolution": (
                 "resolution",
                 np.array(resolutions),
-                about("1", "multiple k of the scan's spacing"),
+                cf_attrs("1", "multiple k of the scan's spacing"),
             ),
-            "load": ("load", forces, about("N", "normal force F")),
+            "load": ("load", forces, cf_attrs("N", "normal force F")),
         },
     )
 

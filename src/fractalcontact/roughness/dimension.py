@@ -12,7 +12,7 @@ import xarray as xr
 
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from .curves import Curve, roughness_length_curves
 from .estimators import ESTIMATORS, Estimator
@@ -122,7 +122,7 @@ def surface_dimension(
         ("measure_kind", "what was measured", [e.measure for e in chosen]),
         ("measure_units", "unit of what was measured", [e.units for e in chosen]),
     ):
-        result[name] = ("estimator", values, about("1", words))
+        result[name] = ("estimator", values, cf_attrs("1", words))
     return _described(result)
 
 
@@ -263,8 +263,8 @@ def _described(result: xr.Dataset) -> xr.Dataset:
     along = {"": "", "_x": " along x", "_y": " along y"}
     for end, words in ends.items():
         for axis, where in along.items():
-            result[f"hurst{axis}{end}"].attrs = about("1", f"Hurst exponent H{where}{words}")
-        result[f"dimension{end}"].attrs = about("1", f"surface dimension Delta_g = 3 - H{words}")
+            result[f"hurst{axis}{end}"].attrs = cf_attrs("1", f"Hurst exponent H{where}{words}")
+        result[f"dimension{end}"].attrs = cf_attrs("1", f"surface dimension Delta_g = 3 - H{words}")
     for name, units, words in (
         ("slope_hurst", "1", "Hurst exponent before the correction of known bias"),
         ("fit_min", "mm", "shortest length fitted"),
@@ -274,7 +274,7 @@ def _described(result: xr.Dataset) -> xr.Dataset:
         ("measure", "see measure_units", "measured quantity"),
         ("used", "1", "taken into the fit"),
     ):
-        result[name].attrs = about(units, words)
+        result[name].attrs = cf_attrs(units, words)
     return result
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..core.arrays import padded
 from ..core.intervals import INTERVAL
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from ..surface.specimen import cell_side
 from ..surface.window import hole_free_square
@@ -62,12 +62,12 @@ def scan_quality(specimen: xr.Dataset, resolutions) -> xr.Dataset:
     result["height_step"] = (
         "face",
         [height_step(z + _removed_plane(specimen)) for z in heights.values()],
-        about("mm", "step of quantised heights, missing if none is seen"),
+        cf_attrs("mm", "step of quantised heights, missing if none is seen"),
     )
     _add_profile_spectra(result, list(heights.values()), spacing)
     _add_radial_spectra(result, list(heights.values()), spacing)
     pitch = [_point_pitch(specimen, face) for face in faces]
-    result["point_pitch"] = "face", pitch, about("mm", "mean distance of the points measured")
+    result["point_pitch"] = "face", pitch, cf_attrs("mm", "mean distance of the points measured")
     _add_range_end(result, np.array(resolutions), cell_side(specimen))
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result
@@ -94,18 +94,20 @@ def _add_relief(result, heights):
         "highest": ("mm", "largest height", [z.max() for z in known]),
     }
     for name, (units, words, values) in moments.items():
-        result[name] = "face", np.asarray(values, float), about(units, words)
-    result["percentile"] = "percentile", list(PERCENTILES), about("%", "share of cells below")
+        result[name] = "face", np.asarray(values, float), cf_attrs(units, words)
+    result["percentile"] = "percentile", list(PERCENTILES), cf_attrs("%", "share of cells below")
     percentiles = np.array([np.percentile(z, PERCENTILES) for z in known])
-    result["height"] = ("face", "percentile"), percentiles, about("mm", "height")
+    result["height"] = ("face", "percentile"), percentiles, cf_attrs("mm", "height")
     low, high = percentiles[:, 0].min(), percentiles[:, -1].max()
     edges = np.linspace(low - (high - low) / 4, high + (high - low) / 4, BINS + 1)
     counts = np.array([np.histogram(z, edges)[0] for z in known])
-    result["edge"] = "edge", edges, about("mm", "edges of the bins of heights")
+    result["edge"] = "edge", edges, cf_attrs("mm", "edges of the bins of heights")
     result["density"] = (
         ("face", "bin"),
         counts / (np.array([[z.size] for z in known]) * np.diff(edges)),
-        about("mm-1", "share of cells in a bin, over its width; some heights lie beyond all bins"),
+        cf_attrs(
+            "mm-1", "share of cells in a bin, over its width; some heights lie beyond all bins"
+        ),
     )
 
 
@@ -171,14 +173,14 @@ def _add_profile_spectra(result, heights, spacing):
             [[r.fitted for r in row] for row in found],
         ),
     ):
-        result[name] = dims, _table(values), about(units, words)
+        result[name] = dims, _table(values), cf_attrs(units, words)
     for name, units, words in _RANGE_VARIABLES:
         values = np.array([[getattr(r, name) for r in row] for row in found])
         for i, (ending, of) in enumerate(INTERVAL.items()):
-            result[name + ending] = ("face", "axis"), values[..., i], about(units, words + of)
+            result[name + ending] = ("face", "axis"), values[..., i], cf_attrs(units, words + of)
     for name, units, words, take in _RANGE_NUMBERS:
         values = [[take(r) for r in row] for row in found]
-        result[name] = ("face", "axis"), values, about(units, words)
+        result[name] = ("face", "axis"), values, cf_attrs(units, words)
 
 
 _RANGE_VARIABLES = (
@@ -228,7 +230,7 @@ def _add_radial_spectra(result, heights, spacing):
         )
     ):
         values = padded([curve[i] for curve in found])
-        result[name] = ("face", "radial_wave"), values, about(units, words)
+        result[name] = ("face", "radial_wave"), values, cf_attrs(units, words)
 
 
 def radial_spectrum(heights: np.ndarray, spacing) -> tuple[np.ndarray, np.ndarray]:
@@ -297,13 +299,21 @@ def _add_range_end(result, resolutions, side):
     end, bounds, cause = max(found, default=(math.nan, [math.nan] * 2, ""))
     words = "shortest wavelength of the fractal range"
     for (ending, of), value in zip(INTERVAL.items(), (end, *bounds), strict=True):
-        result[f"range_end{ending}"] = (), value, about("mm", words + of)
+        result[f"range_end{ending}"] = (), value, cf_attrs("mm", words + of)
     result.attrs["ended_by"] = cause
-    result["resolution"] = "resolution", resolutions * side, about("mm", "spacing s of the nodes")
-    result["multiple"] = "resolution", resolutions, about("1", "multiple k of the scan's spacing")
+    result["resolution"] = (
+        "resolution",
+        resolutions * side,
+        cf_attrs("mm", "spacing s of the nodes"),
+    )
+    result["multiple"] = (
+        "resolution",
+        resolutions,
+        cf_attrs("1", "multiple k of the scan's spacing"),
+    )
     below = 2 * result["resolution"].values < end
     words = "shortest wave 2 s lies below the fractal range"
-    result["below_range"] = "resolution", below, about("1", words)
+    result["below_range"] = "resolution", below, cf_attrs("1", words)
     result.attrs["warning"] = _warning(result)
 
 

@@ -86,7 +86,7 @@ def _refine(lower, upper, motion: Motion, mode: str) -> tuple[Motion, bool]:
     for _ in range(_MOST_STEPS):
         both = np.isfinite(gap)
         # About the centroid shift and rotation hardly interact.
-        motion = motion.about(x[both].mean(), y[both].mean())
+        motion = motion.cf_attrs(x[both].mean(), y[both].mean())
         step = _gauss_newton_step(lower, gap, motion, x, y, mode)
         size = np.hypot(*step[:2]) + abs(step[2]) * np.hypot(np.ptp(x[both]), np.ptp(y[both])) / 2
         for halving in range(_MOST_HALVINGS):

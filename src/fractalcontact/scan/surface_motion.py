@@ -37,7 +37,7 @@ class Motion:
         """How far the tilt lifts the face at x, y (after the motion)."""
         return self.slope[0] * (x - self.end[0]) + self.slope[1] * (y - self.end[1])
 
-    def about(self, x: float, y: float) -> "Motion":
+    def cf_attrs(self, x: float, y: float) -> "Motion":
         """The same motion but for its height, told by the point that ends at x, y."""
         return replace(self, start=tuple(map(float, self.back(x, y))), end=(float(x), float(y)))
 

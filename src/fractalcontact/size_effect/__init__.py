@@ -1,1 +1,11 @@
 """The size effect: windows of one joint, how its mechanics goes with size, and eq. 6."""
+
+from ..core.lazy import exports
+
+__getattr__, __dir__, __all__ = exports(
+    __name__,
+    {
+        "joint_by_size": ".laws",
+        "size_test": ".eq6",
+    },
+)

@@ -18,7 +18,7 @@ import xarray as xr
 
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..domain.box_dimension import box_dimension
 from ..domain.renormalisation import FEWEST_NODES, renormalisation
 from ..mechanics.joint import direction_spacing
@@ -156,18 +156,22 @@ def _dimensions(specimen, whole, domains, parts, areas, settings):
             "sigma_star": (
                 dims,
                 star,
-                about("N mm^-delta_sigma", "fractal mean pressure sigma* of the whole window"),
+                cf_attrs("N mm^-delta_sigma", "fractal mean pressure sigma* of the whole window"),
             )
         },
         coords={"estimator": list(ESTIMATORS)},
     )
     for n, (ending, words) in enumerate(INTERVAL.items()):
         text = f"dimension of the contact domain of the whole window{words}"
-        result[f"delta_sigma{ending}"] = (dims, delta[:, n], about("1", text))
+        result[f"delta_sigma{ending}"] = (dims, delta[:, n], cf_attrs("1", text))
         text = f"slope -(2 - Delta_sigma) of eq. 6{words}"
-        result[f"predicted_slope{ending}"] = (dims, delta[:, n] - 2, about("1", text))
-    result["box_fit_min"] = ("load", [b.r_min for b in boxes], about("mm", "smallest box fitted"))
-    result["box_fit_max"] = ("load", [b.r_max for b in boxes], about("mm", "largest box fitted"))
+        result[f"predicted_slope{ending}"] = (dims, delta[:, n] - 2, cf_attrs("1", text))
+    result["box_fit_min"] = (
+        "load",
+        [b.r_min for b in boxes],
+        cf_attrs("mm", "smallest box fitted"),
+    )
+    result["box_fit_max"] = ("load", [b.r_max for b in boxes], cf_attrs("mm", "largest box fitted"))
     return result
 
 
@@ -210,7 +214,7 @@ def _verdicts(result):
         "size_effect": "whether the measured slope differs from zero",
     }
     for name, text in words.items():
-        found[name].attrs = about("1", text)
+        found[name].attrs = cf_attrs("1", text)
     return found
 
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..core.fitting import fit_line
 from ..core.intervals import mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..mechanics.strength import (
     FIELDS,
     angles_with_errors,
@@ -105,7 +105,7 @@ def size_laws(states, material, roughness, dimension, fit_range=None):
     """
     result = states[["side", "nominal_pressure", "scale_side", "scale_n"]].copy()
     result["windows"] = states["sigma_z"].isel(offset=0).notnull().sum("window")
-    result["windows"].attrs = about("1", "sub-windows pressed of each size")
+    result["windows"].attrs = cf_attrs("1", "sub-windows pressed of each size")
     _add_hurst(result, states, dimension, fit_range)
     for name, (exponent, words) in _OVER_LOADS.items():
         _add_mean(result, states[name], name, states[f"{name}_error"])
@@ -157,7 +157,7 @@ def strength_by_size(states, material, roughness):
     strength, held, off = strength_with_error(pressure, friction, angle_off)
     held = np.where(np.isnan(strength), np.nan, held == 1)
 
-    words = about("mm", "middle of the interval of offsets")
+    words = cf_attrs("mm", "middle of the interval of offsets")
     result = xr.Dataset(coords={"interval": ("interval", midpoint, words)})
     dims = ("part", "window", "load")
     largest = states["offset"].values[-1]
@@ -169,7 +169,7 @@ def strength_by_size(states, material, roughness):
     }
     for name, (values, errors) in of_curves.items():
         over = dims if values.ndim == 3 else ("interval", *dims)
-        values = xr.DataArray(values, dims=over, attrs=about(*FIELDS[name]))
+        values = xr.DataArray(values, dims=over, attrs=cf_attrs(*FIELDS[name]))
         _add_mean(result, values, name, values.copy(data=errors))
     slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
     for name, values, errors, units, text in (
@@ -177,9 +177,13 @@ def strength_by_size(states, material, roughness):
         ("similar_slope", slopes[0], slopes[1] - slopes[0], "1", "slope d delta/dv at v = share b"),
     ):
         values, errors = (_at_shares(offset, side.values, found) for found in (values, errors))
-        values = xr.DataArray(values, dims=("share", *dims), attrs=about(units, text))
+        values = xr.DataArray(values, dims=("share", *dims), attrs=cf_attrs(units, text))
         _add_mean(result, values, name, values.copy(data=errors))
-    result["share"] = ("share", np.array(SHARES), about("1", "offset as a share of the side, v/b"))
+    result["share"] = (
+        "share",
+        np.array(SHARES),
+        cf_attrs("1", "offset as a share of the side, v/b"),
+    )
     for name, exponent in _STRENGTH_EXPONENTS.items():
         _add_law(result, side, result[name], "part", exponent, f"exponent of {name} against b")
     ever, there = peak(midpoint, held)[0], _at_shares(offset, side.values, held)
@@ -187,12 +191,12 @@ def strength_by_size(states, material, roughness):
     result["held_share"] = (
         ("part", "load"),
         mean_interval(ever, axis=1)[0],
-        about("1", f"{words} at their peak"),
+        cf_attrs("1", f"{words} at their peak"),
     )
     result["similar_held"] = (
         ("share", "part", "load"),
         mean_interval(there, axis=2)[0],
-        about("1", f"{words} at v = share b"),
+        cf_attrs("1", f"{words} at v = share b"),
     )
     _add_barton(result, states, material, roughness)
     return result
@@ -233,11 +237,15 @@ def _add_barton(result, states, material, roughness):
         jrc[:, np.newaxis],
         jcs[:, np.newaxis],
     )
-    result["barton_roughness"] = ("part", jrc, about("1", "JRC_n by Barton and Bandis' scale law"))
+    result["barton_roughness"] = (
+        "part",
+        jrc,
+        cf_attrs("1", "JRC_n by Barton and Bandis' scale law"),
+    )
     result["barton_strength"] = (
         ("part", "load"),
         strength,
-        about("MPa", "peak strength by Barton's law with JRC_n and JCS_n of each size"),
+        cf_attrs("MPa", "peak strength by Barton's law with JRC_n and JCS_n of each size"),
     )
 
 
@@ -279,11 +287,11 @@ def _add_mean(result, values, name, errors=None):
     found = mean_interval(values.values, axis=values.dims.index("window"))[:3]
     for ending, mean in zip(ENDINGS, found, strict=True):
         words = f"{values.attrs['long_name']}, mean over sub-windows{ENDINGS[ending]}"
-        result[f"{name}{ending}"] = (dims, mean, about(values.attrs["units"], words))
+        result[f"{name}{ending}"] = (dims, mean, cf_attrs(values.attrs["units"], words))
     if errors is not None:
         words = f"{values.attrs['long_name']}, mean over sub-windows, error by the solver"
         result[f"{name}_error"] = errors.mean("window").transpose(*dims)
-        result[f"{name}_error"].attrs = about(values.attrs["units"], words)
+        result[f"{name}_error"].attrs = cf_attrs(values.attrs["units"], words)
 
 
 def _add_law(result, side, values, dim, name, words):
@@ -298,11 +306,11 @@ def _add_law(result, side, values, dim, name, words):
     lines = [fit_line(np.log(side.values), np.log(positive[index])) for index in np.ndindex(shape)]
     for ending, (field, more) in _LAW.items():
         fitted = np.array([getattr(line, field) for line in lines], float).reshape(shape)
-        result[f"{name}{ending}"] = (dims, fitted, about("1", f"{words}{more}"))
+        result[f"{name}{ending}"] = (dims, fitted, cf_attrs("1", f"{words}{more}"))
     for ending, field in (("_b_min", "x_min"), ("_b_max", "x_max")):
         fitted = np.exp([getattr(line, field) for line in lines]).reshape(shape)
         which = "smallest" if ending == "_b_min" else "largest"
-        result[f"{name}{ending}"] = (dims, fitted, about("mm", f"{which} b of that fit"))
+        result[f"{name}{ending}"] = (dims, fitted, cf_attrs("mm", f"{which} b of that fit"))
 
 
 def _add_hurst(result, states, dimension, fit_range):
@@ -313,7 +321,7 @@ def _add_hurst(result, states, dimension, fit_range):
         fit_range = FIRST_CELLS * cell, LAST_PART * side.values[0]
     tolerance = 1e-9 * fit_range[1]
     used = (side >= fit_range[0] - tolerance) & (side <= fit_range[1] + tolerance)
-    result["scale_used"] = used.assign_attrs(about("1", "size taken into the fit of eq. 2"))
+    result["scale_used"] = used.assign_attrs(cf_attrs("1", "size taken into the fit of eq. 2"))
     for curve, name, of in (
         ("sigma_z_all", "hurst", "composite topography"),
         ("face_sigma_z", "face_hurst", "lower face"),
@@ -325,4 +333,4 @@ def _add_hurst(result, states, dimension, fit_range):
     value, low, high = dimension
     for ending, number in (("", value), ("_low", high), ("_high", low)):
         words = f"H = 3 - Delta_g that eq. 2 expects{_LAW[ending][1]}"
-        result[f"expected_hurst{ending}"] = ((), 3.0 - float(number), about("1", words))
+        result[f"expected_hurst{ending}"] = ((), 3.0 - float(number), cf_attrs("1", words))

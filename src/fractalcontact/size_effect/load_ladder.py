@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..domain.renormalisation import FEWEST_NODES
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.closure import bulk_settlement
@@ -92,7 +92,7 @@ def press_parts(specimen, direction, cells, settings, solver, parts=PARTS, estim
     pressed = _labelled(sizes, parts, of_study[-1], n_tested, area).merge(found)
     place = cells * direction_spacing(specimen, direction)
     pressed = pressed.assign_coords(
-        direction=direction, offset=((), place, about("mm", "shear offset v"))
+        direction=direction, offset=((), place, cf_attrs("mm", "shear offset v"))
     )
     return pressed, domains
 
@@ -189,37 +189,41 @@ def _labelled(sizes, parts, largest_of_study, n_tested, area):
     sides = [np.sqrt(size.sides.prod()) for size in sizes]
     tested = pressures[:n_tested]
     of_nodes = ("part", "window", "resolution", "step")
-    closing = about("mm", "interface closure w_int = w - w_b of a sub-window")
-    beyond = about("1", "whether the load is larger than those of the study")
-    ladder = about("MPa", "nominal pressures that every window was pressed with")
+    closing = cf_attrs("mm", "interface closure w_int = w - w_b of a sub-window")
+    beyond = cf_attrs("1", "whether the load is larger than those of the study")
+    ladder = cf_attrs("MPa", "nominal pressures that every window was pressed with")
     return xr.Dataset(
         {
-            "nodes": (of_nodes, nodes, about("1", "nodes in contact")),
+            "nodes": (of_nodes, nodes, cf_attrs("1", "nodes in contact")),
             "nodes_error": (
                 of_nodes,
                 undecided,
-                about("1", "nodes in contact, error by the solver"),
+                cf_attrs("1", "nodes in contact, error by the solver"),
             ),
             "interface_closure": (("part", "window", "step"), closure, closing),
-            "side": ("part", sides, about("mm", "side b of the sub-windows")),
-            "windows": ("part", np.square(parts), about("1", "sub-windows pressed of each size")),
+            "side": ("part", sides, cf_attrs("mm", "side b of the sub-windows")),
+            "windows": (
+                "part",
+                np.square(parts),
+                cf_attrs("1", "sub-windows pressed of each size"),
+            ),
             "nominal_pressure": (
                 "load",
                 tested,
-                about("MPa", "nominal pressure sigma_0 of the whole window"),
+                cf_attrs("MPa", "nominal pressure sigma_0 of the whole window"),
             ),
             "beyond_study": ("load", tested > largest_of_study, beyond),
             "ladder_pressure": ("step", pressures, ladder),
-            "spacing": ("resolution", s, about("mm", "spacing s")),
+            "spacing": ("resolution", s, cf_attrs("mm", "spacing s")),
         },
         coords={
-            "part": ("part", parts, about("1", "sub-windows along a side of the window")),
+            "part": ("part", parts, cf_attrs("1", "sub-windows along a side of the window")),
             "resolution": (
                 "resolution",
                 sizes[0].factors,
-                about("1", "multiple k of the scan's spacing"),
+                cf_attrs("1", "multiple k of the scan's spacing"),
             ),
-            "load": ("load", tested * area, about("N", "force on the whole window")),
+            "load": ("load", tested * area, cf_attrs("N", "force on the whole window")),
         },
     )
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 
 #: How the whole window is predicted from smaller ones; the middle ones are eq. 6 with Delta_sigma
 #: by each estimator.
@@ -114,17 +114,17 @@ def predict_whole_strength(laws, delta_sigma):
             "strength_share": (
                 (),
                 float(chosen["share"]),
-                about("1", "v/b at which strengths are compared"),
+                cf_attrs("1", "v/b at which strengths are compared"),
             ),
             "strength_held": (
                 dim,
                 chosen["similar_held"].max("part").values,
-                about("1", "largest part of windows of any size whose angle was held"),
+                cf_attrs("1", "largest part of windows of any size whose angle was held"),
             ),
         },
         coords={
             "predictor": list(PREDICTORS),
-            dim: (dim, forces, about("N", "force on the whole window")),
+            dim: (dim, forces, cf_attrs("N", "force on the whole window")),
         },
     )
     _add(result, "strength", np.array(found), strength[0], dim, "MPa", "shear strength at v/b")
@@ -159,9 +159,13 @@ def _add(result, name, found, direct, dim, units, words):
     """Predictions (predictor, 3, n), the value solved and the errors, into ``result``."""
     for i, (ending, more) in enumerate(INTERVAL.items()):
         text = f"{words} of the whole window, predicted from smaller ones{more}"
-        result[f"predicted_{name}{ending}"] = (("predictor", dim), found[:, i], about(units, text))
+        result[f"predicted_{name}{ending}"] = (
+            ("predictor", dim),
+            found[:, i],
+            cf_attrs(units, text),
+        )
     text = f"{words} of the whole window, solved"
-    result[f"direct_{name}"] = (dim, direct, about(units, text))
+    result[f"direct_{name}"] = (dim, direct, cf_attrs(units, text))
     error = found[:, 0] / direct - 1
     text = f"predicted over solved {words}, less one"
-    result[f"{name}_error"] = (("predictor", dim), error, about("1", text))
+    result[f"{name}_error"] = (("predictor", dim), error, cf_attrs("1", text))

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from .load_ladder import real_pressure
 
 
@@ -166,53 +166,55 @@ def slopes_at_equal_star(pressed, n_loads):
             "real_pressure": (
                 ("part", "step"),
                 together,
-                about("MPa", "real mean pressure sigma_n, geometric mean over resolutions"),
+                cf_attrs("MPa", "real mean pressure sigma_n, geometric mean over resolutions"),
             ),
             "equal_pressure": (
                 of_size,
                 equal,
-                about("MPa", "sigma_0 at which all windows of a size have the sigma* of the whole"),
+                cf_attrs(
+                    "MPa", "sigma_0 at which all windows of a size have the sigma* of the whole"
+                ),
             ),
             "real_pressure_error": (
                 ("part", "step"),
                 together * np.expm1(errors[0]),
-                about("MPa", "real mean pressure sigma_n, error by the solver"),
+                cf_attrs("MPa", "real mean pressure sigma_n, error by the solver"),
             ),
             "equal_pressure_error": (
                 of_size,
                 equal_off,
-                about("MPa", "sigma_0 at equal sigma*, error by the solver"),
+                cf_attrs("MPa", "sigma_0 at equal sigma*, error by the solver"),
             ),
             "window_pressure_error": (
                 of_size,
                 median_off,
-                about("MPa", "median of windows one by one, error by the solver"),
+                cf_attrs("MPa", "median of windows one by one, error by the solver"),
             ),
             "crossings": (
                 of_size,
                 times,
-                about("1", "places where sigma*(sigma_0) of that size has that value"),
+                cf_attrs("1", "places where sigma*(sigma_0) of that size has that value"),
             ),
-            "window_pressure": (of_size, median, about("MPa", "median of windows one by one")),
+            "window_pressure": (of_size, median, cf_attrs("MPa", "median of windows one by one")),
             "windows_below": (
                 of_size,
                 below,
-                about("1", "windows above that sigma* at all loads with nodes enough"),
+                cf_attrs("1", "windows above that sigma* at all loads with nodes enough"),
             ),
             "windows_above": (
                 of_size,
                 above,
-                about("1", "windows below that sigma* at all loads pressed"),
+                cf_attrs("1", "windows below that sigma* at all loads pressed"),
             ),
             "windows_unknown": (
                 of_size,
                 unknown - above,
-                about("1", "windows without nodes enough at any load"),
+                cf_attrs("1", "windows without nodes enough at any load"),
             ),
             "sensitivity": (
                 "load",
                 np.gradient(np.log(together[0]), np.log(pressures))[:n_loads],
-                about("1", "d log sigma* / d log sigma_0 of the whole window"),
+                cf_attrs("1", "d log sigma* / d log sigma_0 of the whole window"),
             ),
         }
     )
@@ -242,9 +244,9 @@ def _median(pressures):
 def _add_lines(result, name, lines, words):
     for ending, more in INTERVAL.items():
         values = [getattr(line, f"slope{ending}") for line in lines]
-        result[f"{name}{ending}"] = ("load", values, about("1", f"{words}{more}"))
-    result[f"{name}_n"] = ("load", [x.n for x in lines], about("1", f"{words}, points fitted"))
+        result[f"{name}{ending}"] = ("load", values, cf_attrs("1", f"{words}{more}"))
+    result[f"{name}_n"] = ("load", [x.n for x in lines], cf_attrs("1", f"{words}, points fitted"))
     for ending, field in (("_b_min", "x_min"), ("_b_max", "x_max")):
         values = np.exp([getattr(line, field) for line in lines])
         which = "smallest" if ending == "_b_min" else "largest"
-        result[f"{name}{ending}"] = ("load", values, about("mm", f"{which} b of that fit"))
+        result[f"{name}{ending}"] = ("load", values, cf_attrs("mm", f"{which} b of that fit"))

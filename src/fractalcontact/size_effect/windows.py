@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import mean_interval
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_planes
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.closure import bulk_settlement
@@ -158,30 +158,34 @@ def window_states(
     result = xr.Dataset(
         {
             **{
-                name: (("part", "window", "offset", "load"), values, about(*STATES[name]))
+                name: (("part", "window", "offset", "load"), values, cf_attrs(*STATES[name]))
                 for name, values in states.items()
             },
             **{
-                name: (("part", "window", "offset"), values, about(*SHAPES[name]))
+                name: (("part", "window", "offset"), values, cf_attrs(*SHAPES[name]))
                 for name, values in shapes.items()
             },
-            "side": ("part", np.sqrt(sides.prod(axis=1)), about("mm", "side b of the sub-windows")),
+            "side": (
+                "part",
+                np.sqrt(sides.prod(axis=1)),
+                cf_attrs("mm", "side b of the sub-windows"),
+            ),
             "side_along": (
                 "part",
                 sides[:, 1 if direction in ("E", "W") else 0],
-                about("mm", "length of the sub-windows along the sliding"),
+                cf_attrs("mm", "length of the sub-windows along the sliding"),
             ),
             "bulk_settlement": (
                 ("part", "load"),
                 settlement,
-                about("mm", "bulk settlement w_b of a sub-window"),
+                cf_attrs("mm", "bulk settlement w_b of a sub-window"),
             ),
-            "nominal_pressure": ("load", pressures, about("MPa", "nominal pressure sigma_n")),
+            "nominal_pressure": ("load", pressures, cf_attrs("MPa", "nominal pressure sigma_n")),
         },
         coords={
-            "part": ("part", parts, about("1", "sub-windows along a side of the window")),
-            "offset": ("offset", made, about("mm", "shear offset v")),
-            "load": ("load", pressures * area, about("N", "force on the whole window")),
+            "part": ("part", parts, cf_attrs("1", "sub-windows along a side of the window")),
+            "offset": ("offset", made, cf_attrs("mm", "shear offset v")),
+            "load": ("load", pressures * area, cf_attrs("N", "force on the whole window")),
             "direction": direction,
         },
         attrs={"opposite": specimen.attrs["opposite"], "seated": int(seated)},
@@ -289,9 +293,9 @@ def roughness_by_size(specimen, direction, cells):
     composite = _mean_roughness(composites, parts)
     result = xr.Dataset(
         {
-            "scale_side": ("scale", side, about("mm", "side b of the sub-windows")),
-            "scale_n": ("scale", parts**2, about("1", "sub-windows of that size")),
-            "scale_cells": ("scale", nodes, about("1", "cells of each")),
+            "scale_side": ("scale", side, cf_attrs("mm", "side b of the sub-windows")),
+            "scale_n": ("scale", parts**2, cf_attrs("1", "sub-windows of that size")),
+            "scale_cells": ("scale", nodes, cf_attrs("1", "cells of each")),
         }
     )
     for ending, of_face, of_composite in zip(ENDINGS, face, composite, strict=True):
@@ -299,12 +303,12 @@ def roughness_by_size(specimen, direction, cells):
         result[f"face_sigma_z{ending}"] = (
             "scale",
             of_face[0],
-            about("mm", f"rms of the lower face {words}"),
+            cf_attrs("mm", f"rms of the lower face {words}"),
         )
         result[f"sigma_z_all{ending}"] = (
             ("offset", "scale"),
             of_composite,
-            about("mm", f"rms of the composite topography {words}"),
+            cf_attrs("mm", f"rms of the composite topography {words}"),
         )
     return result
 

@@ -1,1 +1,13 @@
 """What the paper states, compared with the atlas of a study."""
+
+from ..core.lazy import exports
+
+__getattr__, __dir__, __all__ = exports(
+    __name__,
+    {
+        "FAILS": ".judge",
+        "HOLDS": ".judge",
+        "PARTLY": ".judge",
+        "UNKNOWN": ".judge",
+    },
+)

@@ -7,7 +7,7 @@ scan's own resolution, and where one is needed at the load (and offset) of the c
 
 import xarray as xr
 
-from ..core.labels import about
+from ..core.labels import cf_attrs
 from . import mechanics, scaling
 from .findings import FAILS, HOLDS, PARTLY, UNKNOWN, Finding, Joint
 
@@ -52,7 +52,10 @@ def judge(stages, settings):
         "numbers": ([finding.numbers for finding in found], "the numbers that say so"),
     }
     result = xr.Dataset(
-        {name: ("statement", text, about("1", words)) for name, (text, words) in columns.items()},
+        {
+            name: ("statement", text, cf_attrs("1", words))
+            for name, (text, words) in columns.items()
+        },
         coords={"statement": names},
     )
     return result.assign_attrs(direction=joint.direction, force=joint.force)

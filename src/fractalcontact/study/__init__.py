@@ -1,1 +1,33 @@
 """A study: its configuration, scan files, list of figures, and the atlas."""
+
+from ..core.lazy import exports
+
+__getattr__, __dir__, __all__ = exports(
+    __name__,
+    {
+        "ACCURACY": ".figure_list",
+        "EXPERIMENTS": ".figure_list",
+        "STAGES": ".atlas",
+        "accuracy_figures_of": ".figure_list",
+        "check_names": ".configuration",
+        "check_study": ".configuration",
+        "embedded_surface": ".embedded",
+        "figures_of": ".figure_list",
+        "find_scans": ".scan_files",
+        "is_contact_map": ".sidecar",
+        "list_scans": ".scan_files",
+        "prepare_specimen": ".preparation",
+        "read_atlas": ".atlas",
+        "read_sidecar": ".configuration",
+        "read_study": ".configuration",
+        "resolve_embedded": ".configuration",
+        "resolve_roll_off": ".configuration",
+        "resolve_settings": ".configuration",
+        "sidecar_of_matrix": ".sidecar",
+        "solver_settings": ".configuration",
+        "study_figures_of": ".figure_list",
+        "study_name": ".configuration",
+        "write_atlas": ".atlas",
+        "write_scan": ".embedded",
+    },
+)

@@ -1,0 +1,51 @@
+"""Labelled datasets made from a table: of each variable its dimensions, unit and long name."""
+
+import xarray as xr
+
+from .labels import cf_attrs
+
+
+def labelled(table, values):
+    """Variables with their dimensions and attributes, as ``xr.Dataset`` takes them.
+
+    Parameters
+    ----------
+    table : mapping of str to (dims, str, str)
+        Dimensions (a name, a tuple of names, or () for a number), unit and long name by variable.
+    values : mapping of str to array_like
+        Of the same names.
+
+    Returns
+    -------
+    dict of str to (dims, array_like, dict)
+        In the order of the table.
+
+    Raises
+    ------
+    KeyError
+        If a name of either is missing in the other.
+    """
+    if odd := table.keys() ^ values.keys():
+        raise KeyError(f"not both in the table and among the values: {', '.join(sorted(odd))}")
+    return {
+        name: (dims, values[name], cf_attrs(units, long_name))
+        for name, (dims, units, long_name) in table.items()
+    }
+
+
+def labelled_dataset(table, values, coords=None, attrs=None):
+    """A dataset made from a table.
+
+    Parameters
+    ----------
+    table, values
+        As :func:`labelled` takes them.
+    coords : mapping, optional
+        As ``xr.Dataset`` takes them.
+    attrs : mapping, optional
+
+    Returns
+    -------
+    xr.Dataset
+    """
+    return xr.Dataset(labelled(table, values), coords=coords, attrs=attrs)
