@@ -16,7 +16,7 @@ from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.contact import preconditioner as screening
 from fractalcontact.contact.effort import SOLVING, Effort
 from fractalcontact.contact.preconditioner import forget_preconditioner, preconditioner
-from fractalcontact.core.threads import in_parts, lazy
+from fractalcontact.core.threads import computed_once, in_parts
 from fractalcontact.surface.synthesis import self_affine
 
 THREADS = 8
@@ -127,7 +127,7 @@ def test_what_is_lazy_is_made_once_and_without_a_lock():
     class Made:
         count = 0
 
-        @lazy
+        @computed_once
         def thing(self):
             """Documented."""
             self.count += 1

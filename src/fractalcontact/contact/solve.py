@@ -22,7 +22,7 @@ from ..core.arguments import (
     quoted,
 )
 from ..core.errors import NotConverged
-from ..core.threads import lazy
+from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from . import active_set
 from .active_set import ActiveSet
@@ -98,7 +98,7 @@ class ContactState:
         near = ~self.in_contact & (self.gap <= hidden)
         return int(np.count_nonzero(weak) + np.count_nonzero(near))
 
-    @lazy
+    @computed_once
     def stiffness(self):
         """Normal stiffness dF/dw, N/mm, from H q = 1 on the contact set; 0 without contact.
 

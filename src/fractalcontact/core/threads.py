@@ -55,7 +55,7 @@ def in_parts(function, n, *, smallest):
     list(_pool(parts).map(function, edges[:-1], edges[1:]))
 
 
-class lazy:
+class computed_once:
     """A property made when first asked for, and kept in the object.
 
     `functools.cached_property` holds a lock meanwhile, one for all objects (up to Python 3.11): a

@@ -21,7 +21,7 @@ from ..core.arguments import (
     refuse_masked,
     whole_number,
 )
-from ..core.threads import lazy
+from ..core.threads import computed_once
 from .convolution import Convolution, fast_length
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
@@ -185,7 +185,7 @@ class HalfSpace:
         """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only."""
         return self._influence
 
-    @lazy
+    @computed_once
     def _influence(self):
         dy, dx = (d / self.cell for d in self.spacing)
         y = np.arange(self.shape[0])[:, None] * dy
@@ -228,7 +228,7 @@ class HalfSpace:
         vars(coarse)["_influence"] = self.influence()[: shape[0], : shape[1]]
         return self._coarser.setdefault(factor, coarse)
 
-    @lazy
+    @computed_once
     def _coarser(self):
         return {}
 
@@ -263,11 +263,11 @@ class HalfSpace:
             images[index] = convolution(values[index])
         return images
 
-    @lazy
+    @computed_once
     def _double(self):
         return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
 
-    @lazy
+    @computed_once
     def _single(self):
         return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
 
