@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.accuracy.convergence import hertz_convergence, kernel_effect, punch_convergence
@@ -11,7 +12,7 @@ from fractalcontact.surface.synthesis import self_affine
 
 @pytest.fixture(scope="module")
 def hertz():
-    return hertz_convergence()
+    return hertz_convergence(placements=ensemble("placements"))
 
 
 def labelled(dataset):
@@ -32,7 +33,7 @@ def test_hertz_error_falls_at_its_order(hertz, name, order):
 
 
 def test_punch_error_falls_at_its_order():
-    punch = punch_convergence()
+    punch = punch_convergence(placements=ensemble("placements"))
     assert (np.diff(punch["force_error"]) < 0).all()
     assert punch["force_order"] == pytest.approx(1, abs=0.25)
     assert punch["force_order_low"] < punch["force_order"] < punch["force_order_high"]

@@ -1,11 +1,13 @@
 """Error against time: the front, the errors, what is measured of a small problem, growth."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.accuracy import speed
 from fractalcontact.accuracy.growth import growth
 from fractalcontact.accuracy.reference import HertzProblem, PunchProblem, RoughProblem, problems_of
 from fractalcontact.accuracy.speed import (
@@ -18,8 +20,8 @@ from fractalcontact.accuracy.speed import (
     pareto_front,
 )
 from fractalcontact.accuracy.timing import peak_memory, repeated
-from fractalcontact.methods import peers
-from fractalcontact.methods.registry import METHODS
+from fractalcontact.methods.peers import PublicCode
+from fractalcontact.methods.registry import METHODS, Method
 
 RECIPE = {
     "sizes": [24, 32],
@@ -91,15 +93,15 @@ def test_others_are_ahead_only_below_the_error_and_on_the_front():
 
 
 @pytest.mark.parametrize(
-    "made", [RoughProblem(40, 0.5, 0.1, 2), HertzProblem(40), PunchProblem(41)]
+    "small", [RoughProblem(40, 0.5, 0.1, 2), HertzProblem(40), PunchProblem(41)]
 )
-def test_reference_is_as_close_to_elimination_as_it_says(made):
-    own = made.single.own_error(made.height)
+def test_reference_is_as_close_to_elimination_as_it_says(small):
+    own = small.single.own_error(small.height)
     assert 0 < own < 1e-11
-    assert made.eliminated() <= own + 1e-12
+    assert small.eliminated() <= own + 1e-12
 
 
-def test_scenes_are_pressed_to_the_share_asked_for():
+def test_surfaces_are_loaded_to_the_fraction_asked_for():
     problem = problems_of(RECIPE)["n32_h0.8_c10"]
     assert problem.single.fraction == pytest.approx(0.1, abs=1.1 / 32**2 + 0.02 * 0.1)
 
@@ -110,9 +112,7 @@ def test_reference_has_no_error(problem):
     assert set(errors.values()) == {0.0}
 
 
-def test_errors_are_shares_of_the_reference(problem):
-    from dataclasses import replace
-
+def test_errors_are_relative_to_the_reference(problem):
     exact = problem.single.state
     off = replace(exact, force=1.1 * exact.force, pressure=1.1 * exact.pressure)
     errors = errors_of(off, problem.single, 1.5)
@@ -172,14 +172,13 @@ def test_runs_are_taken_in_turn():
 
 
 def test_a_peer_that_crashes_is_a_failure_in_the_table(problem, monkeypatch):
-    class Wild:
-        control = "closure"
-
-        def solve(self, *load, **options):
+    class Wild(PublicCode):
+        def solve(self, load, rtol):
             os.abort()
 
-    monkeypatch.setattr(peers, "installed", lambda: ["wild"])
-    monkeypatch.setattr(peers, "set_up", lambda name, height, space: Wild())
+    wild = Method(name="wild")
+    monkeypatch.setattr(Method, "set_up", lambda self, height, space: Wild(height, space))
+    monkeypatch.setattr(speed, "installed_peers", lambda: {"wild": wild})
     recipe = {**RECIPE, "tolerances": [1e-1], "runs": 1, "slow_nodes": 0}
     found = error_against_time(problem, recipe)
     wild = found.isel(point=np.flatnonzero(found["method"] == "wild"))
@@ -201,7 +200,7 @@ def test_peak_memory_of_a_call_that_fails_is_not_known(capfd):
 # -- growth ----------------------------------------------------------------------------------------
 
 
-def made_points(size, exponent):
+def synthetic_points(size, exponent):
     """Two tolerances, of which only the tighter is close enough."""
     nodes = float(size**2)
     table = {
@@ -213,13 +212,13 @@ def made_points(size, exponent):
     points = xr.Dataset({name: ("point", values) for name, values in table.items()})
     points["method"] = ("point", np.array([OURS, OURS], dtype=object))
     points["kind"] = ("point", np.array(["solver", "solver"], dtype=object))
-    attrs = {"size": size, "scene": f"{size}, made", "application_seconds": 0.5}
+    attrs = {"size": size, "scene": f"{size}, synthetic", "application_seconds": 0.5}
     return points.assign_attrs(attrs)
 
 
 def test_growth_finds_the_exponent_of_a_power_law():
-    found = growth([made_points(size, 1.3) for size in (16, 32, 64)], 1e-4)
-    one = found.sel(surface="made", solver=OURS)
+    found = growth([synthetic_points(size, 1.3) for size in (16, 32, 64)], 1e-4)
+    one = found.sel(surface="synthetic", solver=OURS)
     assert one["seconds_exponent"] == pytest.approx(1.3)
     assert one["seconds_exponent_low"] == pytest.approx(1.3)
     assert one["memory_exponent"] == pytest.approx(1)
@@ -228,6 +227,6 @@ def test_growth_finds_the_exponent_of_a_power_law():
 
 
 def test_growth_says_nothing_of_a_solver_that_never_gets_there():
-    found = growth([made_points(size, 1.3) for size in (16, 32, 64)], 1e-9)
+    found = growth([synthetic_points(size, 1.3) for size in (16, 32, 64)], 1e-9)
     assert found["seconds"].isnull().all()
     assert found["seconds_exponent"].isnull().all()

@@ -1,10 +1,11 @@
-"""Hard problems, the judge of any solver, and when dropping points alone is right."""
+"""Hard test problems, the judge of any solver, and when dropping points alone is right."""
 
 import dataclasses
 import os
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.accuracy import stability as module
@@ -18,15 +19,14 @@ from fractalcontact.accuracy.elimination import (
 from fractalcontact.accuracy.hard_problems import KINDS, hard_problem
 from fractalcontact.accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, solvers, stability
 from fractalcontact.core.child_process import in_child
-from fractalcontact.methods.peers import PATIENCE, peer_methods
-from fractalcontact.methods.registry import METHODS
-
-PEERS = peer_methods()
+from fractalcontact.methods.common import NotOffered
+from fractalcontact.methods.peers import PATIENCE
+from fractalcontact.methods.registry import METHODS, installed_peers
 
 
 @pytest.fixture(scope="module")
 def judged():
-    return stability(draws=2)
+    return stability(draws=ensemble("stability draws"))
 
 
 def verdicts(monkeypatch, solver, kinds):
@@ -46,8 +46,10 @@ def test_what_a_method_is_not_made_for_is_neither_right_nor_wrong(judged, name):
     refused = found["verdict"] == NOT_OFFERED
     assert (found["said"].values[refused] != "").all()
     by_force = refused.sel(kind="one node, by force")
-    assert by_force.all() == by_force.any() == (name in ("paper", "gauss-seidel", "nnls"))
-    assert refused.sel(kind="cap, some yield").all() == (name in ("paper", "nnls"))
+    method = METHODS[name]
+    assert by_force.all() == by_force.any() == (not method.offers(force=1.0))
+    capped = refused.sel(kind="cap, some yield")
+    assert capped.all() == capped.any() == (not method.offers(closure=1.0, hardness=1.0))
     assert not (found["verdict"] == SILENT).any()
 
 
@@ -75,6 +77,19 @@ def test_giving_up_is_honest_where_there_is_a_solution_and_right_where_there_is_
     assert (found[1:] == RIGHT).all()
 
 
+def test_only_what_is_not_offered_by_name_is_left_unjudged(monkeypatch):
+    """A failure whose text speaks of a closure only is a failure all the same."""
+
+    def picky(height, space, *, rtol, closure=None, force=None):
+        if force is not None:
+            raise NotOffered("no forces")
+        raise ValueError("takes a closure only if it is small")
+
+    found = verdicts(monkeypatch, picky, ["one node, by force", "one node, by closure"])
+    assert (found[0] == NOT_OFFERED).all()
+    assert (found[1] == HONEST).all()
+
+
 def test_a_state_where_there_is_none_is_silently_wrong(monkeypatch):
     def bold(height, space, *, force, hardness, rtol):
         return solve_contact(height, space, force=force, rtol=rtol)
@@ -84,7 +99,7 @@ def test_a_state_where_there_is_none_is_silently_wrong(monkeypatch):
 
 def peer_of(monkeypatch, solver):
     """Let the judge take a solver for a public code."""
-    monkeypatch.setattr(module, "peer_methods", lambda: {"other": solver})
+    monkeypatch.setattr(module, "installed_peers", lambda: {"other": solver})
     return solver
 
 
@@ -132,30 +147,30 @@ def test_same_draw_same_problem(kind):
 
 
 def test_every_solver_of_the_package_is_judged():
-    assert set(solvers()) == {"fractalcontact", *METHODS, *PEERS}
+    assert set(solvers()) == {"fractalcontact", *METHODS, *installed_peers()}
 
 
 @pytest.mark.parametrize(("kernel", "ratio"), CASES)
 def test_elimination_is_right_exactly_where_the_inverse_has_no_positive_entry(kernel, ratio):
     space = HalfSpace(WINDOW, (ratio, 1.0), 1.0, kernel=kernel)
-    made = counter_example(space)
-    assert (made is None) == (largest_off_diagonal(space) < 0)
-    if made is not None:
-        exact = METHODS["dense"](made, space, closure=1.0)
+    height = counter_example(space)
+    assert (height is None) == (largest_off_diagonal(space) < 0)
+    if height is not None:
+        exact = METHODS["dense"](height, space, closure=1.0)
         assert exact.residual < 1e-9
         with pytest.raises(NotConverged, match="left interpenetrating") as caught:
-            METHODS["paper"](made, space, closure=1.0)
+            METHODS["paper"](height, space, closure=1.0)
         lost = exact.in_contact & ~caught.value.state.in_contact
         assert lost.sum() >= 1
 
 
-def test_the_made_scene_scales_with_the_closure():
+def test_the_counter_example_scales_with_the_closure():
     space = HalfSpace(WINDOW, (1.0, 1.0), 1.0, kernel="rigid square")
     np.testing.assert_allclose(counter_example(space, 3.0), 3 * counter_example(space), atol=1e-15)
 
 
 def test_elimination_by_kernel_and_tolerance():
-    found = elimination(draws=12)
+    found = elimination(draws=ensemble("elimination draws"))
     assert (found["wrong"].sel(case=found["kernel"] == "love") == 0).all()
     defeated = found["largest_off_diagonal"] > 0
     assert (found["counter_example"] == defeated).all()

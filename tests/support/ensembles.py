@@ -17,6 +17,14 @@ ENSEMBLES: dict[str, tuple] = {
     "dropping side": (20, 40),
     "method problems": ((0, 2), (1, 5)),
     "warm start side": (20, 40),
+    # accuracy
+    "random problems": (50, 300),
+    "random problem side": (100, 400),
+    "problems once given up": ((47,), (198, 47, 87, 1061)),
+    "stability draws": (1, 2),
+    "elimination draws": (4, 12),
+    "placements": (2, 4),
+    "extrapolations": (10, 30),
 }
 
 
