@@ -227,18 +227,11 @@ SOLVERS = {"": solve_contact, **METHODS}
 
 def offered(loads):
     """Pairs of a solver and one of the loads, those left out that it refuses for what they are."""
-    lacks = {
-        "paper": ("force", "hardness"),
-        "nnls": ("force", "hardness"),
-        "gauss-seidel": ("force",),
-        "polonsky-keer": ("hardness",),
-    }
-    return [
-        (name, *load)
-        for name in SOLVERS
-        for load in loads
-        if not any(key in load[0] for key in lacks.get(name, ()))
-    ]
+
+    def offers(name, rtol=None, **load):
+        return name not in METHODS or METHODS[name].offers(**load)
+
+    return [(name, *load) for name in SOLVERS for load in loads if offers(name, **load[0])]
 
 
 @pytest.mark.parametrize(

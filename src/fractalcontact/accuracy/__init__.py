@@ -19,7 +19,7 @@ __getattr__, __dir__, __all__ = exports(
         "PEER": ".speed",
         "QUANTITIES": ".convergence",
         "RIGHT": ".stability",
-        "RoughProblem": ".reference",
+        "RoughScene": ".reference",
         "SILENT": ".stability",
         "SOLVER": ".speed",
         "VERDICTS": ".stability",
@@ -30,6 +30,6 @@ __getattr__, __dir__, __all__ = exports(
         "join": ".stability",
         "punch_convergence": ".convergence",
         "richardson_trials": ".convergence",
-        "problems_of": ".reference",
+        "scenes_of": ".reference",
     },
 )

@@ -5,7 +5,15 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "Load": ".peers",
         "METHODS": ".registry",
+        "Method": ".registry",
+        "NotOffered": ".common",
+        "PATIENCE": ".peers",
+        "PublicCode": ".peers",
+        "clearance_of": ".peers",
         "influence_matrix": ".common",
+        "installed_peers": ".registry",
+        "state_of": ".peers",
     },
 )
