@@ -133,7 +133,8 @@ class MethodOfThePackage(Ours):
         super().__init__(problem, control)
         self.name, self.press, self.method = f"{method.name} ({control})", method, method
         self.likely = method.likely
-        self.convolves = self.runs_sweep = method.counts == "applications"
+        self.convolves = method.counts == "applications"
+        self.runs_sweep = method.warm and self.convolves
 
     def carries(self, problem):
         """Whether no more nodes interpenetrate than the method can take."""
@@ -153,6 +154,7 @@ class PublicCode(Solver):
     def __init__(self, problem, peer):
         self.control = peer.loads[0]
         self.name, self.likely = f"{peer.name} ({self.control})", peer.likely
+        self.runs_sweep = peer.warm
         self.code = peer.set_up(problem.height, problem.space)
 
     def solve(self, reference, tolerance, previous):

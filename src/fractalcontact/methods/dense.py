@@ -35,6 +35,7 @@ METHOD = Method(
     loads=("closure", "force"),
     hardness=("closure", "force"),
     direct=True,
+    warm=True,
     counts="contact sets",
     largest=6000,
     rtol=1e-9,

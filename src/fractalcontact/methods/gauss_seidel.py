@@ -24,6 +24,7 @@ METHOD = Method(
     # A sum to be kept is no bound on a single point.
     loads=("closure",),
     hardness=("closure",),
+    warm=True,
     counts="sweeps",
     largest=12_000,
 )

@@ -27,6 +27,7 @@ METHOD = Method(
     order=50,
     title="NNLS",
     loads=("closure",),  # as the authors impose it
+    warm=True,
     counts="contact sets",
     largest=12_000,
 )

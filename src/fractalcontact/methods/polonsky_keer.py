@@ -31,6 +31,7 @@ METHOD = Method(
     title="the Polonsky-Keer iteration",
     loads=("closure", "force"),
     hardness=("closure",),
+    warm=True,
     counts="applications",
 )
 

@@ -50,6 +50,8 @@ class Method:
     holes : bool
         Whether it would take a cell without a height for one that never touches, which is another
         problem than the package's.
+    warm : bool
+        Whether a state to start from spares it work.
     direct : bool
         Whether it is exact but for rounding, whatever the tolerance.
     counts : str
@@ -76,6 +78,7 @@ class Method:
     hardness: tuple[str, ...] = ()
     kernels: tuple[str, ...] = ()
     holes: bool = False
+    warm: bool = False
     direct: bool = False
     counts: str = ""
     largest: int | None = None
@@ -109,7 +112,7 @@ class Method:
         force : float, optional
             F, N.
         start : ContactState, optional
-            Where to start from, if the method uses one.
+            Where to start from; of no use to a method that is not ``warm``.
         rtol : float, optional
             Largest violation allowed of the contact conditions, relative to the closure; of a
             public code the tolerance on a quantity of its own.

@@ -19,6 +19,7 @@ METHOD = Method(
     order=200,
     loads=("force",),
     kernels=("love",),
+    warm=True,
     counts="applications",
     likely=3.2e-4,
     packages=("tamaas",),
