@@ -132,7 +132,7 @@ class MethodOfThePackage(Ours):
     def __init__(self, problem, control, method):
         super().__init__(problem, control)
         self.name, self.press, self.method = f"{method.name} ({control})", method, method
-        self.likely = method.likely
+        self.likely = 10**method.likely
         self.convolves = method.counts == "applications"
         self.runs_sweep = method.warm and self.convolves
 
@@ -153,7 +153,7 @@ class PublicCode(Solver):
 
     def __init__(self, problem, peer):
         self.control = peer.loads[0]
-        self.name, self.likely = f"{peer.name} ({self.control})", peer.likely
+        self.name, self.likely = f"{peer.name} ({self.control})", 10**peer.likely
         self.runs_sweep = peer.warm
         self.code = peer.set_up(problem.height, problem.space)
 

@@ -12,7 +12,7 @@ EXAMPLE = """
 from numba import njit
 import a_public_code
 
-METHOD = Method(name="mean plane", order=25, loads=("force",), hardness=("force",), likely=3.2e-5)
+METHOD = Method(name="mean plane", order=25, loads=("force",), hardness=("force",), likely=-4.5)
 """
 
 
@@ -25,7 +25,7 @@ def test_a_declaration_is_read_without_importing_its_file(tmp_path):
         order=25,
         loads=("force",),
         hardness=("force",),
-        likely=3.2e-5,
+        likely=-4.5,
         module="mean_plane",
     )
     assert method.offers(force=1.0, hardness=2.0)

@@ -62,7 +62,7 @@ class Method:
     rtol : float
         Tolerance unless another is given.
     likely : float
-        A tolerance near the one that brings the force within 1e-6 on 512 x 512 nodes.
+        Power of ten near the tolerance that brings the force within 1e-6 on 512 x 512 nodes.
     packages : tuple of str
         What must be installed; of public codes alone.
     options : mapping
@@ -83,7 +83,7 @@ class Method:
     counts: str = ""
     largest: int | None = None
     rtol: float = 1e-6
-    likely: float = 1e-5
+    likely: float = -5.0
     packages: tuple[str, ...] = ()
     options: Mapping[str, str] = field(default_factory=dict, hash=False)
     module: str = ""

@@ -21,7 +21,7 @@ METHOD = Method(
     kernels=("love",),
     warm=True,
     counts="applications",
-    likely=3.2e-4,
+    likely=-3.5,
     packages=("tamaas",),
 )
 
