@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
-from .arrays import choose_array, is_table
 from .raw import refuse_larger
+from .tables import choose_array, is_table
 
 MASK = "mask"
 _ATTRIBUTES = (

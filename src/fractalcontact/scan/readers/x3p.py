@@ -7,10 +7,11 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from ..core.errors import InputError
-from .arrays import choose_array
-from .options import ScanOptions
-from .raw import RawScan, reading
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading
+from ..tables import choose_array
 
 _INDEX = "main.xml"
 #: Root element of main.xml in ISO 5436-2 of 2000, which R's x3ptools still writes.
@@ -117,3 +118,6 @@ def _regular(layer, origin: str, stated: dict) -> RawScan:
         first_row="top" if origin.startswith("N") else "bottom",
         **stated,
     )
+
+
+FORMAT = Format(read_x3p, endings=(".x3p",), libraries=("x3pio", "defusedxml.ElementTree"))

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from .options import ScanOptions
-from .raw import RawScan, stated_unit
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, stated_unit
+from ..tables import refuse_unknown_channel
 
 #: Formats read elsewhere in this package, with stricter checks.
 _OWN_FORMATS = {"xyz", "asc", "npy", "npz", "x3p", "mat", "h5", "nc", "gwy"}
@@ -102,14 +104,6 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
     )
 
 
-def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> None:
-    """Refuse a ``variable`` of the sidecar that is none of the channels."""
-    if wanted is not None and wanted not in names:
-        raise InputError(
-            f"{path}: no channel {wanted!r} (key 'variable'); it has {', '.join(names)}"
-        )
-
-
 def _choose_channel(reader, wanted: str | None, path: Path):
     """The channel called ``wanted``, else the reader's first of heights."""
     channels = list(reader.channels)
@@ -146,3 +140,12 @@ def _spacing(topography) -> tuple[float, float]:
     sizes = topography.physical_sizes
     dx, dy = (float(size) / n for size, n in zip(sizes, topography.nb_grid_pts, strict=True))
     return dx, dy
+
+
+def _endings() -> list[str]:
+    return [f".{extension}" for extension in instrument_formats()]
+
+
+FORMAT = Format(
+    read_instrument, more_endings=_endings, libraries=("netCDF4", "SurfaceTopography.IO")
+)

@@ -4,11 +4,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from .raw import RawScan, reading
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading
 
 
-def read_mesh(path: Path) -> RawScan:
+def read_mesh(path: Path, options: ScanOptions) -> RawScan:
     """Read a mesh, or the points of a PLY cloud.
 
     STL repeats each vertex in every triangle that meets there; the repeats are joined.
@@ -59,3 +61,10 @@ def _join_repeats(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarr
     number = np.empty(len(vertices), dtype=np.int64)
     number[order] = np.cumsum(first) - 1
     return ordered[first], number[triangles]
+
+
+FORMAT = Format(
+    read_mesh,
+    endings=(".obj", ".ply", ".stl"),
+    libraries=("trimesh", "trimesh.exchange.load"),
+)

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from .arrays import choose_array
-from .options import ScanOptions
-from .raw import RawScan, reading, refuse_larger, table_to_raw
-from .variables import choose_variable, open_variables
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading, refuse_larger
+from ..tables import choose_array, table_to_raw
+from ..variables import choose_variable, open_variables
 
 #: MATLAB's classes that are plain numbers; cells, structs, objects and functions are never opened.
 _NUMERIC = {"double", "single", *(f"{u}int{bits}" for u in ("", "u") for bits in (8, 16, 32, 64))}
@@ -57,3 +58,6 @@ def _read_old(path: Path, wanted: str | None):
     if values.dtype.kind not in "fiu":
         raise InputError(f"{path}: matrix {name!r} is {values.dtype}; heights are real numbers")
     return name, values.astype(np.float64), f"scipy {scipy.__version__} / mat"
+
+
+FORMAT = Format(read_mat, endings=(".mat",), libraries=("scipy.io", "h5py"))

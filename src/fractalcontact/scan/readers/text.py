@@ -9,10 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from ..core.units import length_factor
-from .options import ScanOptions
-from .raw import RawScan, table_to_raw
+from ...core.errors import InputError
+from ...core.units import length_factor
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan
+from ..tables import table_to_raw
 
 _COMMENT_MARKS = ("#", "%", "//", "!")
 _WORD = re.compile(r"[A-Za-z_]+")
@@ -297,3 +299,12 @@ def _reader() -> str:
     import pandas as pd
 
     return f"pandas {pd.__version__} / text"
+
+
+FORMAT = Format(
+    read_text,
+    endings=(".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz"),
+    takes=is_text,
+    libraries=("pandas",),
+    refusal="not a text file; damaged, or the wrong extension?",
+)

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from .arrays import choose_array
-from .options import ScanOptions
-from .raw import RawScan, reading, refuse_larger, stated_unit
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading, refuse_larger, stated_unit
+from ..tables import choose_array
 
 PARK_TAG = 50432  # Park Systems keep the heights of their microscopes in tags of their own
 _PIXEL_SCALE, _NODATA = 33550, 42113  # GeoTIFF's and GDAL's tags
@@ -54,12 +55,12 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
     )
 
 
-def is_park_systems(path: Path) -> bool:
-    """Tell the files of Park Systems' microscopes from plain TIFF."""
+def is_plain_tiff(path: Path) -> bool:
+    """Tell plain TIFF from the files of Park Systems' microscopes."""
     import tifffile
 
     with reading(path, "TIFF file"), tifffile.TiffFile(path) as file:
-        return PARK_TAG in file.pages[0].tags
+        return PARK_TAG not in file.pages[0].tags
 
 
 def _refuse_images(page, options: ScanOptions, path: Path) -> None:
@@ -102,3 +103,6 @@ def _geotiff(page) -> dict:
 def _nodata(page) -> float | None:
     text = page.tags.valueof(_NODATA)
     return None if text is None else float(str(text).strip("\0 "))
+
+
+FORMAT = Format(read_tiff, endings=(".tif", ".tiff"), takes=is_plain_tiff, libraries=("tifffile",))

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from .instruments import refuse_unknown_channel
-from .options import ScanOptions
-from .raw import RawScan, reading, refuse_larger, stated_unit
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading, refuse_larger, stated_unit
+from ..tables import refuse_unknown_channel
 
 _FIELD, _UNIT = "GwyDataField", "GwySIUnit"
 _COUNT = 4  # bytes in front of an array, its number of items
@@ -85,3 +86,6 @@ def _array(path: Path, field: dict, shaped_like: dict) -> np.ndarray:
     refuse_larger(math.prod(shape) * 8, path)
     values = np.fromfile(path, "<f8", math.prod(shape), offset=field["data"]["offset"] + _COUNT)
     return values.reshape(shape)
+
+
+FORMAT = Format(read_gwyddion, endings=(".gwy",), libraries=("netCDF4", "SurfaceTopography.IO"))

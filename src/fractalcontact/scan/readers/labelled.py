@@ -5,11 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from ..core.units import length_factor
-from .options import ScanOptions
-from .raw import RawScan, reading, stated_unit, table_to_raw
-from .variables import MASK, Variable, choose_variable, open_variables
+from ...core.errors import InputError
+from ...core.units import length_factor
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading, stated_unit
+from ..tables import table_to_raw
+from ..variables import MASK, Variable, choose_variable, open_variables
 
 #: Coordinates may stray this fraction of a cell from equal steps: float32 leaves as much.
 REGULAR = 0.01
@@ -153,3 +155,6 @@ def _reader(path: Path) -> str:
     if h5py.is_hdf5(path):
         return f"h5py {h5py.__version__} / {path.suffix.lstrip('.').lower()}"
     return f"scipy {scipy.__version__} / netCDF classic"
+
+
+FORMAT = Format(read_labelled, endings=(".h5", ".hdf5", ".nc"), libraries=("h5py", "scipy.io"))

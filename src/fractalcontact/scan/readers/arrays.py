@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from .options import ScanOptions
-from .raw import RawScan, reading, refuse_larger, table_to_raw
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading, refuse_larger
+from ..tables import choose_array, is_table, table_to_raw
 
 _HEADER_READERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
@@ -82,48 +84,16 @@ def _tables_of(archive: zipfile.ZipFile) -> dict[str, tuple]:
     return tables
 
 
-def choose_array(names: list[str], wanted: str | None, path: Path) -> str:
-    """Choose the array of heights: the one the sidecar's ``variable`` names, or the only one.
-
-    Parameters
-    ----------
-    names : list of str
-        The arrays that could be heights.
-    wanted : str or None
-    path : Path
-
-    Raises
-    ------
-    InputError
-        If the wanted one is absent, or none is named where there are several or none at all.
-    """
-    if not names:
-        raise InputError(
-            f"{path}: holds no 2-D array of real numbers, so no heights; export it again"
-        )
-    has = f"it has {', '.join(names)}"
-    if wanted is not None:
-        if wanted not in names:
-            raise InputError(
-                f"{path}: key 'variable' is {wanted!r}, no 2-D array of numbers; {has}"
-            )
-        return wanted
-    if len(names) != 1:
-        raise InputError(
-            f"{path}: which array holds the heights? Name one 2-D array of numbers in the sidecar, "
-            f"'variable: NAME'; {has}"
-        )
-    return names[0]
-
-
-def is_table(shape: tuple, dtype: np.dtype) -> bool:
-    """Tell a 2-D array of real numbers from everything else."""
-    return len(shape) == 2 and dtype.kind in "fiu"
-
-
 def _as_float(values) -> np.ndarray:
     return np.array(values, dtype=np.float64)
 
 
 def _reader(kind: str) -> str:
     return f"numpy {np.__version__} / {kind}"
+
+
+def _read(path: Path, options: ScanOptions) -> RawScan:
+    return (read_npy if path.suffix.lower() == ".npy" else read_npz)(path, options)
+
+
+FORMAT = Format(_read, endings=(".npy", ".npz"))
