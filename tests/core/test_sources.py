@@ -28,9 +28,15 @@ def module_in(folder, name):
 
 @cache
 def parsed_imports(path, package):
-    """Files that the import statements of one file name."""
+    """Files that the import statements of one file name, and those of folders that it lists."""
     found = []
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    listed = {
+        node.args[0].id
+        for node in nodes
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "modules_of"
+    }
+    for node in nodes:
         if isinstance(node, ast.ImportFrom):
             parts = (node.module or "").split(".") if node.module else []
             chains = [(node.level, parts, [alias.name for alias in node.names])]
@@ -55,6 +61,8 @@ def parsed_imports(path, package):
             if (folder / "__init__.py").exists():
                 for name in names:
                     found += module_in(folder, name)
+                    if name in listed:
+                        found += sorted((folder / name).glob("*.py"))
     return found
 
 

@@ -42,6 +42,7 @@ __getattr__, __dir__, __all__ = exports(
         "length_factor": ".units",
         "load": ".units",
         "mean_interval": ".intervals",
+        "modules_of": ".modules",
         "njit": ".kernel_cache",
         "number": ".arguments",
         "padded": ".arrays",

@@ -22,6 +22,8 @@ _STATEMENT = re.compile(
 _COMMENT = re.compile(rb"#[^\n]*")
 #: Line of a table in an `__init__` that imports names when they are first asked for.
 _LAZY = re.compile(rb'"(\w+)": "\.([\w.]+)"')
+#: Call that imports every module of a package, see :func:`core.modules.modules_of`.
+_ALL_OF = re.compile(rb"\bmodules_of\((\w+)\)")
 
 _OWN = __name__.partition(".")[0]
 #: Distributions that are not called what one imports.
@@ -43,7 +45,8 @@ def source_files(paths, *, package):
     -------
     list of pathlib.Path
         Absolute, sorted, each once. Imports inside functions count, and the ``__init__.py`` of
-        every package on the way. A module whose name is put together at run time is not seen.
+        every package on the way, and every module of a package given to `core.modules.modules_of`.
+        Other modules whose names are put together at run time are not seen.
     """
     package, tree = os.path.abspath(package), _Tree()
     queue = [os.path.abspath(path) for path in paths]
@@ -161,6 +164,12 @@ class _Tree:
             return f"{inner}/__init__.py"
         return f"{folder}/{name}.py" if self._has(folder, f"{name}.py") else None
 
+    def modules(self, folder):
+        """The files of all modules in a folder."""
+        self._has(folder, "")
+        names = (name.removesuffix(".py") for name in sorted(self._names[folder]))
+        return [file for name in names if (file := self.module(folder, name)) is not None]
+
     def passed_through(self, path):
         """The `__init__.py` of every package that a file is in."""
         found, folder = [], os.path.dirname(path)
@@ -173,7 +182,9 @@ class _Tree:
 def _followed(path, package, tree):
     """The files that one file imports."""
     found = []
-    for module, names in _imports(_read(path)):
+    content = _read(path)
+    whole = {name.decode() for name in _ALL_OF.findall(content)}
+    for module, names in _imports(content):
         inner = module.lstrip(".")
         level, parts = len(module) - len(inner), inner.split(".") if inner else []
         if level:
@@ -193,6 +204,8 @@ def _followed(path, package, tree):
         if not parts or file == f"{folder}/__init__.py":
             names = _names(_COMMENT.sub(b"", names).strip(b"() \n"))
             found += [tree.module(folder, name) or _lazily(folder, name, tree) for name in names]
+            for name in whole.intersection(names):
+                found += tree.modules(f"{folder}/{name}")
     return [file for file in found if file is not None]
 
 

@@ -14,9 +14,11 @@ from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
-from .curves import Curve, roughness_length_curves
-from .estimators import ESTIMATORS, Estimator
+from .curves import Curve
+from .estimator import Estimator
+from .estimators.roughness_length import roughness_length_curves
 from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
+from .registry import ESTIMATORS
 from .spectrum_model import BAND_LIMITED
 
 #: Default fit range in cells and in parts of the smaller side. Below 4 cells interpolation and
@@ -30,7 +32,7 @@ FLATNESS = 1e-12
 SQUARENESS = 1e-3
 
 #: Those whose slope is H itself within 0.03 for H from 0.5 to 0.9, even without correction.
-LITTLE_BIASED = ("second_differences", "roughness_length", "power_spectrum")
+LITTLE_BIASED = tuple(name for name, of in ESTIMATORS.items() if of.little_biased)
 
 #: Added to either end of an interval for the bias that is left: at H from 0.5 to 0.9 that of made
 #: surfaces is at most twice this (roughness-length at H = 0.5), mostly below it.
@@ -234,7 +236,7 @@ def _corrected(
     """H without known bias, and an interval that holds whatever the nodes stand for."""
     ends = np.array([slope, slope - half, slope + half])
     of_either = {
-        nodes: extended(ends, estimator.found(fit, nodes), HURST_GRID)
+        nodes: extended(ends, estimator.expected_hurst(fit, nodes), HURST_GRID)
         for nodes in (BAND_LIMITED, POINTS)
     }
     every = np.concatenate(list(of_either.values()))
@@ -306,7 +308,7 @@ def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
 def roughness_length(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Rms height about the local mean plane (mm) in square windows of side b (mm): grows as b^H.
 
-    See :func:`roughness.curves.roughness_length_curves`.
+    See :func:`roughness.estimators.roughness_length.roughness_length_curves`.
     """
     curve = roughness_length_curves(np.asarray(heights, float), spacing)["both"]
     return curve.length, np.sqrt(curve.measure())

@@ -22,7 +22,7 @@ from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, name
 EVIDENCE = 6.0
 #: No bin of a spectrum is trusted better than this (relative): tapering and binning bend it.
 BIN_ERROR = 0.05
-#: Neighbouring strips of one surface share its long waves (`estimators.ESTIMATORS`).
+#: Neighbouring strips of one surface share its long waves (`estimator.Estimator.spread`).
 SPREAD = 1.2
 #: Slope 1 + 2H of a spectrum, between H = 0.2 and H = 1: flatter no rock is known, and what is
 #: flatter can hardly be told from noise.
@@ -89,7 +89,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     Parameters
     ----------
     curve : Curve
-        Of :func:`roughness.curves.profile_spectra`, mm and mm3.
+        Of :func:`roughness.spectra.profile_spectra`, mm and mm3.
     spacing : float
         Between the nodes of the profiles, mm.
 

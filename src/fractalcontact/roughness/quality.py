@@ -4,18 +4,15 @@ import json
 import math
 
 import numpy as np
-import scipy.fft
 import xarray as xr
 
 from ..core.arrays import padded
 from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
-from ..core.mean_plane import without_mean_plane
 from ..surface.specimen import cell_side
-from ..surface.window import hole_free_square
-from .curves import FIRST_ORDER, LENGTHS_PER_OCTAVE, SHORTEST_SEGMENT, STRIPS, profile_spectra
 from .fractal_range import FractalRange, find_fractal_range
 from .quality_words import AXES, interval_words
+from .spectra import STRIPS, profile_spectra, radial_spectrum
 
 #: Shares of the cells below a height, in percent.
 PERCENTILES = (0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9)
@@ -231,40 +228,6 @@ def _add_radial_spectra(result, heights, spacing):
     ):
         values = padded([curve[i] for curve in found])
         result[name] = ("face", "radial_wave"), values, cf_attrs(units, words)
-
-
-def radial_spectrum(heights: np.ndarray, spacing) -> tuple[np.ndarray, np.ndarray]:
-    """Radially averaged spectrum of the largest hole-free square, levelled and tapered (Hann).
-
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : (float, float)
-        (dy, dx), mm.
-
-    Returns
-    -------
-    wavelength, density : (k,) ndarray
-        mm, ascending; mm4, two-sided: independent errors of variance v have v dx dy everywhere.
-        Empty where the square has fewer than `curves.SHORTEST_SEGMENT` cells along a side.
-    """
-    z = heights[hole_free_square(np.isfinite(heights), spacing)]
-    if min(z.shape) < SHORTEST_SEGMENT:
-        return np.empty(0), np.empty(0)
-    taper = np.outer(*(np.hanning(n + 1)[:-1] for n in z.shape))
-    power = np.abs(scipy.fft.fft2(without_mean_plane(z) * taper, workers=1)) ** 2
-    power *= spacing[0] * spacing[1] / np.sum(taper**2)
-    waves = [scipy.fft.fftfreq(n, d) for n, d in zip(z.shape, spacing, strict=True)]
-    number = np.hypot(waves[0][:, np.newaxis], waves[1])
-    longest = FIRST_ORDER / min(n * d for n, d in zip(z.shape, spacing, strict=True))
-    seen = (number >= longest) & (number < 0.5 / max(spacing))  # a full circle of directions
-    bins = np.round(np.log2(number[seen] / longest) * LENGTHS_PER_OCTAVE).astype(int)
-    members = np.bincount(bins)
-    held = members > 0
-    density = np.bincount(bins, power[seen])[held] / members[held]
-    mean_number = np.exp(np.bincount(bins, np.log(number[seen]))[held] / members[held])
-    return (1 / mean_number)[::-1], density[::-1]
 
 
 # -- where the fractal range ends ------------------------------------------------------------------
