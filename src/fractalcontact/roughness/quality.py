@@ -9,6 +9,7 @@ import xarray as xr
 from ..core.arrays import padded
 from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
+from ..surface.grid import spacing_of
 from ..surface.specimen import cell_side
 from .fractal_range import FractalRange, find_fractal_range
 from .quality_words import AXES, interval_words
@@ -52,7 +53,7 @@ def scan_quality(specimen: xr.Dataset, resolutions) -> xr.Dataset:
     lies below the fractal range where 2 s < `range_end`.
     """
     faces = [face for face in ("lower", "upper") if face in specimen]
-    spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
+    spacing = spacing_of(specimen)
     heights = {face: specimen[face].values.astype(float) for face in faces}
     result = xr.Dataset(coords={"face": faces, "axis": list(AXES)})
     _add_relief(result, list(heights.values()))
