@@ -62,6 +62,7 @@ __getattr__, __dir__, __all__ = exports(
         "wave_error": ".slope_of_sums",
         "whole_number": ".arguments",
         "whole_numbers": ".arguments",
+        "within": ".ranges",
         "without_mean_plane": ".mean_plane",
         "without_mean_planes": ".mean_plane",
     },
