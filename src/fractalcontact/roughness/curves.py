@@ -50,6 +50,24 @@ def ratio(total: np.ndarray, weight: np.ndarray) -> np.ndarray:
     return np.divide(total, weight, out=np.full(np.shape(total), np.nan), where=weight > 0)
 
 
+def jackknife_standard_error(without: np.ndarray) -> np.ndarray:
+    """Standard error of values of which those without each part are given.
+
+    Parameters
+    ----------
+    without : (parts,) or (parts, k) ndarray
+
+    Returns
+    -------
+    () or (k,) ndarray
+        0 with less than two parts.
+    """
+    parts = len(without)
+    if parts < 2:
+        return np.zeros(without.shape[1:])
+    return np.sqrt((parts - 1) / parts * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
+
+
 def of_both_axes(curves: dict[str, Curve]) -> dict[str, Curve]:
     """The curves along x and y, and of both together."""
     x, y = curves["x"], curves["y"]

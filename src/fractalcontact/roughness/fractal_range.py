@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..core.intervals import t_quantile
-from .curves import Curve, ratio
+from .curves import Curve, jackknife_standard_error, ratio
 from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, named
 
 #: A feature must lower the score (BIC) by this beyond its share: "strong" in Kass & Raftery,
@@ -130,7 +130,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     x = 2 * spacing / curve.length[known]
     parts = np.log(curve.without_each_part()[:, known])
     logs = np.log(level[known])
-    error = np.hypot(_jackknife(parts), BIN_ERROR)
+    error = np.hypot(jackknife_standard_error(parts), BIN_ERROR)
 
     form, fit, values = _most_likely(x, logs, error, parts)
     fitted = np.full(len(level), np.nan)
@@ -305,7 +305,7 @@ def _with_intervals(form: Form, fit, x, logs, parts, error) -> dict[str, tuple]:
             # The floor lies above the surface at all wavelengths seen: a bound, not an estimate.
             intervals[name] = (value, -np.inf, value)
             continue
-        half = quantile * max(SPREAD * float(_jackknife(values)[0]), of_fit)
+        half = quantile * max(SPREAD * float(jackknife_standard_error(values)[0]), of_fit)
         intervals[name] = (value, value - half, value + half)
     return intervals
 
@@ -315,11 +315,3 @@ def _gradient(form, parameters, x, name, value):
     step = 1e-6
     steps = parameters + step * np.eye(len(parameters))
     return np.array([features_of(form, p, x).get(name, value) - value for p in steps]) / step
-
-
-def _jackknife(without: np.ndarray) -> np.ndarray:
-    """Standard error of values of which those without each part are given, (parts, k)."""
-    parts = len(without)
-    if parts < 2:
-        return np.zeros(without.shape[1])
-    return np.sqrt((parts - 1) / parts * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
