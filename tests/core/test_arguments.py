@@ -22,8 +22,10 @@ from fractalcontact.domain.multifractal import generalised_dimensions, gliding_m
 from fractalcontact.elastic.convolution import Convolution
 from fractalcontact.methods.common import measured_state
 from fractalcontact.methods.registry import METHODS
-from fractalcontact.roughness.area_curves import cube_counting_curves, triangular_prism_curves
-from fractalcontact.roughness.curves import roughness_length_curves, variogram_curves
+from fractalcontact.roughness.estimators.cube_counting import cube_counting_curves
+from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
+from fractalcontact.roughness.estimators.triangular_prism import triangular_prism_curves
+from fractalcontact.roughness.estimators.variogram import variogram_curves
 from fractalcontact.surface.synthesis import self_affine
 
 SHAPE = (24, 30)

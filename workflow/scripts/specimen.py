@@ -11,6 +11,7 @@ from fractalcontact.roughness.dimension import surface_dimension
 from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import noise_words, range_words
 from fractalcontact.study.preparation import prepare_specimen
+from fractalcontact.surface.grid import spacing_of
 
 with job(snakemake) as log:
     files, params, name = snakemake.input, snakemake.params, snakemake.wildcards.specimen
@@ -22,7 +23,7 @@ with job(snakemake) as log:
         "joint": describe_joint(specimen, settings),
         "surface_dimension": surface_dimension(
             specimen.lower.values,
-            (specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]),
+            spacing_of(specimen),
             fit_range=settings["surface_range"],
         ),
         "quality": quality,

@@ -10,7 +10,7 @@ import xarray as xr
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..roughness.dimension import FIRST_CELLS, LAST_PART, hurst_exponents
-from ..roughness.estimators import ESTIMATORS
+from ..roughness.registry import ESTIMATORS
 from ..surface.synthesis import self_affine
 
 #: H does not depend on the unit of length, nor on that of height.
