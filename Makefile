@@ -11,7 +11,7 @@
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make cost   where the time of the study went
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
-# make scenes SCENES=5000   so many random contact problems, each state verified
+# make problems PROBLEMS=5000   so many random contact problems, each state verified
 # make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
 # make lint   ruff and snakefmt, changing nothing
 # make lock   new pins for every package (needs uv)
@@ -29,7 +29,7 @@ export STUDY SCANS
 RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study smoke keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench scenes fuzz lint format lock clean
+.PHONY: all study smoke keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench problems fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -78,9 +78,9 @@ test-all: $(VENV)/tests-installed
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
 
-SCENES ?= 3000
-scenes: $(VENV)/tests-installed
-	SCENES=$(SCENES) $(BIN)/python -m pytest -q tests/accuracy/test_random_problems.py -k every_state
+PROBLEMS ?= 3000
+problems: $(VENV)/tests-installed
+	PROBLEMS=$(PROBLEMS) $(BIN)/python -m pytest -q tests/accuracy/test_random_problems.py -k every_state
 
 # What failed is kept in results/fuzzing; FUZZ='--only 1234' judges one file again.
 FILES ?= 5000

@@ -9,8 +9,8 @@ import numpy as np
 from fractalcontact.domain.box_counts import box_count, box_sizes, mean_count, whole_sizes
 from fractalcontact.surface.synthesis import self_affine
 
-#: Share of the window in contact.
-SHARE = 0.1
+#: Fraction of the window in contact.
+FRACTION = 0.1
 
 
 def seconds(count, domain, sizes, runs):
@@ -38,7 +38,7 @@ def main(arguments):
     before = None
     for n in options.sizes:
         heights = self_affine((n, n), 1.0 / n, 0.8, rms=1.0, seed=1)
-        domain = heights > np.quantile(heights, 1 - SHARE)
+        domain = heights > np.quantile(heights, 1 - FRACTION)
         took = np.array(
             [
                 seconds(count, domain, sizes, options.runs)

@@ -1,12 +1,12 @@
-"""A study held against the same study at full cost: numbers within their errors, and seconds.
+"""A study compared with the same study at full cost: numbers within their errors, and seconds.
 
     make check-accuracy
     python benchmarks/check_accuracy.py config/paper.yaml
 
 Every number that the first has is compared, in stages that rest on contact solves; how many points
-a fit had is not one. It is right if it differs from that of the second by no
-more than its error (``NAME_error`` in the atlas), or lies within its interval (``NAME_low``,
-``NAME_high``); where neither is stated, by no more than the closure asked for, as a share of it.
+a fit had is not one. It is right if it differs from that of the second by no more than its error
+(``NAME_error`` in the atlas), or lies within its interval (``NAME_low``, ``NAME_high``); where
+neither is stated, by no more than the relative accuracy asked of the closure.
 """
 
 import argparse
@@ -34,21 +34,21 @@ _STAGES = (
     "dimension_test",
     "area_slope",
 )
-#: How the solver went about it, not what it found.
+#: How the solver worked, not its result.
 _ABOUT_THE_SOLVER = ("iterations", "residual", "solved")
 _ENDINGS = ("_error", "_low", "_high", "_n")
 #: Rounding of sums in another order.
 _ROUNDING = 1e-9
 
 
-def compared(ours, full, share):
+def compared(ours, full, tolerance):
     """Verdicts on the numbers of one group: which kind of bound each had, and whether it held.
 
     Parameters
     ----------
     ours, full : xr.Dataset
-    share : float
-        What numbers without a bound may be off.
+    tolerance : float
+        Relative error allowed of numbers that state no bound.
 
     Yields
     ------
@@ -74,11 +74,11 @@ def compared(ours, full, share):
             kind, within = "interval", (low - slack <= exact) & (exact <= high + slack)
             within |= off <= slack
         else:
-            kind, within = "none stated", off <= share * abs(exact) + slack
+            kind, within = "none stated", off <= tolerance * abs(exact) + slack
         yield name, kind, within[known]
 
 
-def print_numbers(ours, full, share):
+def print_numbers(ours, full, tolerance):
     """How many numbers of an atlas lie within their bounds, and which lie outside most often."""
     numbers, right, outside = Counter(), Counter(), Counter()
     groups = {group.path: group for group in full.subtree}
@@ -86,7 +86,7 @@ def print_numbers(ours, full, share):
         stage = group.path.strip("/").split("/")[0]
         if stage in _STAGES and group.path in groups:
             pair = (group.to_dataset(), groups[group.path].to_dataset())
-            for name, kind, within in compared(*pair, share):
+            for name, kind, within in compared(*pair, tolerance):
                 for bound in (kind, "all"):
                     numbers[bound] += within.size
                     right[bound] += np.count_nonzero(within)
@@ -116,8 +116,8 @@ def main():
     full_in = ours_in.with_name(f"{ours_in.name}_full")
     ours, full = (read_atlas(path / "atlas.nc") for path in (ours_in, full_in))
     config = json.loads(ours.attrs["configuration"])["study"]
-    share = solver_settings(config, str(ours_in))["accuracy"]["closure"]
-    print_numbers(ours, full, share)
+    tolerance = solver_settings(config, str(ours_in))["accuracy"]["closure"]
+    print_numbers(ours, full, tolerance)
     print_seconds(ours_in, full_in)
 
 

@@ -1,4 +1,4 @@
-"""Tuning, counting and timing: every solver in turn, on the same scene, to the same error."""
+"""Tuning, counting and timing: every solver in turn, on one test problem, to the same error."""
 
 import json
 import resource
@@ -13,7 +13,7 @@ import numpy as np
 from solvers import Failed, counted_convolutions, forget
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.accuracy.reference import LOADS, RoughScene, closure_at_fraction
+from fractalcontact.accuracy.reference import LOADS, RoughProblem, closure_at_fraction
 
 # Force error every solver has to reach.
 ERROR = 1e-6
@@ -22,23 +22,23 @@ STEP = 10**0.5
 TIGHTEST = 1e-10
 
 
-def measure_cold(scene, solvers, *, runs):
-    """Rows of the table for single solves of one scene."""
-    return _measure(scene, solvers, [scene.single], "cold", runs)
+def measure_cold(problem, solvers, *, runs):
+    """Rows of the table for single solves of one problem."""
+    return _measure(problem, solvers, [problem.single], "cold", runs)
 
 
-def measure_sweep(scene, solvers, *, runs):
+def measure_sweep(problem, solvers, *, runs):
     """Rows of the table for a sweep, of the solvers that can start from the load before."""
     sweepers = [solver for solver in solvers if solver.runs_sweep]
-    return _measure(scene, sweepers, scene.sweep, "sweep", runs)
+    return _measure(problem, sweepers, problem.sweep, "sweep", runs)
 
 
-def _measure(scene, solvers, references, loading, runs):
+def _measure(problem, solvers, references, loading, runs):
     rows, ready = [], []
     for solver in solvers:
         row = {
-            "size": scene.size,
-            "hurst": scene.hurst,
+            "size": problem.size,
+            "hurst": problem.hurst,
             "contact": round(references[-1].fraction, 4),
             "loading": loading,
             "solver": solver.name,
@@ -64,7 +64,7 @@ def _measure(scene, solvers, references, loading, runs):
 
 
 def _press(solver, references, tolerance):
-    """Press to the loads in order, each from the state before."""
+    """Solve the loads in order, each from the state before."""
     previous = None
     for reference in references:
         previous = solver.solve(reference, tolerance, previous)
@@ -126,24 +126,24 @@ def measure_scaling(sizes, *, hurst, fraction, seed, runs):
     """Ours alone over sizes: cold and warm, and the cost beyond the transforms'."""
     rows = []
     for size in sizes:
-        scene = RoughScene(size, hurst, fraction, seed)
-        space, closure = scene.space, scene.closure
-        state, applications, coarse = _counted(scene, closure)
-        seconds = _median_seconds(partial(_cold, scene, closure), runs)
+        problem = RoughProblem(size, hurst, fraction, seed)
+        space, closure = problem.space, problem.closure
+        state, applications, coarse = _counted(problem, closure)
+        seconds = _median_seconds(partial(_cold, problem, closure), runs)
         convolution = _median_seconds(partial(space.convolve, np.zeros(space.shape)), runs)
-        warm, warm_seconds = _own_sweep(scene)
+        warm, warm_seconds = _own_sweep(problem)
         rows.append(
             {
                 "size": size,
                 "hurst": hurst,
-                "contact": round(np.count_nonzero(state.in_contact) / scene.height.size, 4),
+                "contact": round(np.count_nonzero(state.in_contact) / problem.height.size, 4),
                 "seconds": seconds,
                 "applications": applications,
                 "coarse": round(coarse, 2),
                 "warm seconds": warm_seconds,
                 "warm applications": round(float(np.mean(warm)), 1),
                 "most": max(warm),
-                "microseconds per node": 1e6 * seconds / scene.height.size,
+                "microseconds per node": 1e6 * seconds / problem.height.size,
                 "one convolution": convolution,
                 "solve in convolutions": seconds / convolution,
             }
@@ -153,26 +153,26 @@ def measure_scaling(sizes, *, hurst, fraction, seed, runs):
     return rows
 
 
-def _cold(scene, closure):
-    forget(scene.space)
-    return solve_contact(scene.height, scene.space, closure=closure)
+def _cold(problem, closure):
+    forget(problem.space)
+    return solve_contact(problem.height, problem.space, closure=closure)
 
 
-def _counted(scene, closure, start=None):
-    """A state, the full applications it took, and the coarse ones as shares of a full one."""
+def _counted(problem, closure, start=None):
+    """A state, the full applications it took, and the coarse ones as fractions of a full one."""
     if start is None:
-        forget(scene.space)
-    with counted_convolutions(scene.space.shape) as calls:
-        state = solve_contact(scene.height, scene.space, closure=closure, start=start)
+        forget(problem.space)
+    with counted_convolutions(problem.space.shape) as calls:
+        state = solve_contact(problem.height, problem.space, closure=closure, start=start)
     return state, max(state.iterations, calls["full"]), calls["coarse"]
 
 
-def _own_sweep(scene):
+def _own_sweep(problem):
     """Applications of every warm solve of a sweep, and their mean seconds."""
-    state = _cold(scene, scene.closure / LOADS)
+    state = _cold(problem, problem.closure / LOADS)
     applications, begin = [], time.perf_counter()
     for step in range(2, LOADS + 1):
-        state, count, _ = _counted(scene, scene.closure * step / LOADS, state)
+        state, count, _ = _counted(problem, problem.closure * step / LOADS, state)
         applications.append(count)
     return applications, (time.perf_counter() - begin) / (LOADS - 1)
 
@@ -188,7 +188,7 @@ def _median_seconds(function, runs):
 
 
 def measure_huge(size, *, hurst, fraction, seed):
-    """Time and peak memory of one cold solve, alone in a process that finds the surface made."""
+    """Time and peak memory of a cold solve, alone in a process that reads the surface from a file."""
     with tempfile.TemporaryDirectory() as folder:
         for step in ("make", "solve"):
             command = [sys.executable, __file__, step, folder, size, hurst, fraction, seed]
@@ -199,9 +199,9 @@ def measure_huge(size, *, hurst, fraction, seed):
 
 
 def _make(folder, size, hurst, fraction, seed):
-    scene = RoughScene(size, hurst, fraction, seed)
-    closure = closure_at_fraction(scene.height, scene.space, fraction)
-    np.save(folder / "height.npy", scene.height, allow_pickle=False)
+    problem = RoughProblem(size, hurst, fraction, seed)
+    closure = closure_at_fraction(problem.height, problem.space, fraction)
+    np.save(folder / "height.npy", problem.height, allow_pickle=False)
     (folder / "closure.json").write_text(json.dumps(closure))
 
 

@@ -7,10 +7,10 @@
 
 The tables of a run replace those of the last one in its ``--output``.
 
-Every solver runs in this process on the same scene, in turn, each at the loosest tolerance that
-brings its force within 1e-6 of a reference solved to 1e-12, at every load of a sweep with the same
-one; ours also at its default tolerance, or a tighter one where that leaves a larger error. The
-first scene of each size is measured with every solver, and over a sweep of 16 loads with ours and
+Every solver runs in this process on the same test problem, in turn, each at the loosest tolerance
+that brings its force within 1e-6 of a reference solved to 1e-12, at every load of a sweep with the
+same one; ours also at its default tolerance, or a tighter one where that leaves a larger error. The
+first problem of each size is measured with every solver, and over a sweep of 16 loads with ours and
 the fastest of the peers; the others with these two, one load. What is set up once for a grid
 (kernel, transform plans) is not timed, for anybody; ours keeps nothing of the solve before. Peers
 are taken in where they are installed: ``pip install ContactMechanics tamaas``. Ours uses as many
@@ -36,16 +36,16 @@ def main():
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     from measure import measure_huge, measure_scaling
 
-    from fractalcontact.accuracy.reference import RoughScene
+    from fractalcontact.accuracy.reference import RoughProblem
 
     rows, remarks, scaling, huge = [], [], [], []
     for size in options.sizes:
         for number, (hurst, fraction) in enumerate(product(options.hurst, options.fractions)):
-            scene = RoughScene(size, hurst, fraction, options.seed)
-            difference = scene.eliminated()
+            problem = RoughProblem(size, hurst, fraction, options.seed)
+            difference = problem.eliminated()
             if isfinite(difference):
-                remarks.append(f"{scene.name}: reference and elimination {difference:.1e}")
-            rows += _scene_rows(scene, options, first=number == 0)
+                remarks.append(f"{problem.name}: reference and elimination {difference:.1e}")
+            rows += _problem_rows(problem, options, first=number == 0)
             _write(options.output, rows, remarks, scaling, huge)
     for hurst in options.hurst if options.scaling else []:
         _say(f"scaling, H = {hurst:g} ...")
@@ -59,19 +59,19 @@ def main():
     sys.stdout.write(_write(options.output, rows, remarks, scaling, huge))
 
 
-def _scene_rows(scene, options, *, first):
-    """What is measured on a scene; most on the ``first`` of its size."""
+def _problem_rows(problem, options, *, first):
+    """Rows of the table of solvers on a problem; most on the ``first`` of its size."""
     from measure import measure_cold, measure_sweep
     from solvers import solvers_for
 
     wanted = {"methods": options.methods, "peers_wanted": options.peers}
-    _say(f"{scene.name}, cold ...")
-    solvers = solvers_for(scene, every=first or options.every_solver, **wanted)
-    rows = measure_cold(scene, solvers, runs=options.runs)
+    _say(f"{problem.name}, cold ...")
+    solvers = solvers_for(problem, every=first or options.every_solver, **wanted)
+    rows = measure_cold(problem, solvers, runs=options.runs)
     if options.sweep and (first or options.every_sweep):
-        _say(f"{scene.name}, sweep ...")
-        solvers = solvers_for(scene, every=options.every_solver, **wanted)
-        rows += measure_sweep(scene, solvers, runs=options.runs)
+        _say(f"{problem.name}, sweep ...")
+        solvers = solvers_for(problem, every=options.every_solver, **wanted)
+        rows += measure_sweep(problem, solvers, runs=options.runs)
     return rows
 
 
@@ -80,15 +80,15 @@ def _options():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("--sizes", type=int, nargs="*", default=[64, 512], help="nodes a side")
+    add("--sizes", type=int, nargs="*", default=[64, 512], help="nodes per side")
     add("--hurst", type=float, nargs="+", default=[0.8, 0.5])
     add("--fractions", type=float, nargs="+", default=[0.07, 0.02, 0.18], help="in contact")
     add("--runs", type=int, default=5, help="of each solver, in turn")
     add("--seed", type=int, default=1)
     add("--scaling", type=int, nargs="*", default=[256, 512, 1024], help="sizes, ours alone")
     add("--huge", action="store_true", help="4096 x 4096, 5 %% in contact, with peak memory")
-    add("--every-solver", action="store_true", help="all of them on every scene and sweep")
-    add("--every-sweep", action="store_true", help="a sweep of every scene")
+    add("--every-solver", action="store_true", help="all of them on every problem and sweep")
+    add("--every-sweep", action="store_true", help="a sweep of every problem")
     add("--no-sweep", dest="sweep", action="store_false")
     add("--no-methods", dest="methods", action="store_false")
     add("--peers", nargs="+", metavar="NAME", help="of the installed codes these alone")
@@ -127,8 +127,10 @@ def _write(folder, rows, remarks, scaling, huge):
 
 def _versions():
     from fractalcontact.core.threads import count
+    from fractalcontact.methods.registry import PEERS
 
-    packages = ["fractalcontact", "numpy", "scipy", "numba", "ContactMechanics", "muGrid", "tamaas"]
+    packages = ["fractalcontact", "numpy", "scipy", "numba"]
+    packages += dict.fromkeys(package for peer in PEERS.values() for package in peer.packages)
     named = []
     for package in packages:
         try:
@@ -152,16 +154,18 @@ def _cell(value):
 
 
 def _verdict(rows):
-    """For every scene and loading: the fastest public code against ours under the same control."""
+    """For every problem and loading: the fastest public code against ours, both given the same."""
+    from fractalcontact.methods.registry import PEERS
+
     lines = []
-    scenes = dict.fromkeys((r["size"], r["hurst"], r["contact"], r["loading"]) for r in rows)
-    for key in scenes:
+    problems = dict.fromkeys((r["size"], r["hurst"], r["contact"], r["loading"]) for r in rows)
+    for key in problems:
         here = [
             r
             for r in rows
             if (r["size"], r["hurst"], r["contact"], r["loading"]) == key and "ratio" in r
         ]
-        peers = [r for r in here if r["solver"].startswith(("ContactMechanics", "Tamaas"))]
+        peers = [r for r in here if r["solver"].removesuffix(f" ({r['control']})") in PEERS]
         if not peers:
             continue
         peer = min(peers, key=lambda r: r["seconds"])

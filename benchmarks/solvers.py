@@ -1,11 +1,12 @@
 """Every solver behind one call: ours, the package's comparison methods, and the public codes.
 
-A solver is made for one scene. ``solve(reference, tolerance, previous)`` presses it to the
+A solver is made for one test problem. ``solve(reference, tolerance, previous)`` loads it to the
 reference's closure or force, whichever it controls, from ``previous`` (what the last call returned,
-or None for a cold start), and returns an `Answer`. ``applications()`` tells how many zero-padded
-convolutions the last call took; where counting costs time it is switched on by ``counting``.
+or None for a cold start), and returns an `Answer`. ``applications()`` is the number of zero-padded
+convolutions of the last call; where counting costs time it is switched on by ``counting``.
 ``likely`` is a tolerance near the one that reaches the benchmark's error at 512 x 512: the search
-for the best begins there, and ends at ``loosest``.
+for the best begins there, and ends at ``loosest``. Which methods and public codes there are, and
+what they offer, they declare themselves (`fractalcontact.methods.registry`).
 """
 
 from contextlib import contextmanager
@@ -14,9 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
+from fractalcontact.accuracy.speed import load_of
 from fractalcontact.contact.preconditioner import forget_preconditioner
-from fractalcontact.methods import peers
-from fractalcontact.methods.registry import METHODS
+from fractalcontact.methods.peers import Failed as PeerFailed
+from fractalcontact.methods.registry import METHODS, installed_peers
 
 
 class Failed(RuntimeError):
@@ -33,21 +35,21 @@ class Answer:
 
 
 class Solver:
-    """What the table needs of every solver; this is the part most of them share."""
+    """A solver as the table needs it; this is the part most of them share."""
 
     runs_sweep = True
     counting = False
     loosest = 1e-2
 
-    def carries(self, scene):
-        """Whether a solve of this scene takes seconds rather than hours."""
+    def carries(self, problem):
+        """Whether a solve of this problem takes seconds rather than hours."""
         return True
 
     def complete(self, answer):
         """Fill in, outside the clock, what the solver does not report itself."""
 
     def coarse_applications(self):
-        """Convolutions of the last call on coarser grids, as shares of a full one by area."""
+        """Convolutions of the last call on coarser grids, as fractions of a full one by area."""
         return 0.0
 
 
@@ -57,13 +59,13 @@ class Ours(Solver):
     called, likely = "fractalcontact", 1e-6
     press = staticmethod(solve_contact)
 
-    def __init__(self, scene, control):
+    def __init__(self, problem, control):
         self.name, self.control = f"{self.called} ({control})", control
-        self.height, self.space = scene.height, scene.space
+        self.height, self.space = problem.height, problem.space
         self.calls = {"full": 0, "coarse": 0.0}
 
     def solve(self, reference, tolerance, previous):
-        """Press to the reference's closure or force."""
+        """Load to the reference's closure or force."""
         load = {self.control: getattr(reference, self.control)}
         start = None if previous is None else previous.state
         if start is None:
@@ -88,7 +90,7 @@ class Ours(Solver):
         return self.work
 
     def coarse_applications(self):
-        """Convolutions of the last call on coarser grids, as shares of a full one by area."""
+        """Convolutions of the last call on coarser grids, as fractions of a full one by area."""
         return self.calls["coarse"]
 
 
@@ -99,13 +101,13 @@ class AtDefault(Ours):
 
 
 def forget(space):
-    """Drop what a half-space has kept of the last contact set: a cold solve must not find it."""
+    """Drop what a half-space has kept of the last contact set: a cold solve must not use it."""
     forget_preconditioner(space)
 
 
 @contextmanager
 def counted_convolutions(shape):
-    """Count the fields convolved meanwhile: on grids of a shape, and on others as shares of it."""
+    """Count the fields convolved meanwhile: on grids of a shape, on others as fractions of it."""
     counts, convolve = {"full": 0, "coarse": 0.0}, HalfSpace.convolve
 
     def counted(space, values):
@@ -124,164 +126,85 @@ def counted_convolutions(shape):
         HalfSpace.convolve = convolve
 
 
-#: Interpenetrating nodes beyond which a single solve takes minutes or too much memory.
-LARGEST = {"dense": 6000, "paper": 12_000, "gauss-seidel": 12_000, "nnls": 12_000}
-#: The method whose `iterations` are convolutions.
-CONVOLVES = "polonsky-keer"
-
-
-class Method(Ours):
+class MethodOfThePackage(Ours):
     """A comparison method of the package; what it counts as work is its own."""
 
-    likely, loosest = 1e-5, 1e-2
+    def __init__(self, problem, control, method):
+        super().__init__(problem, control)
+        self.name, self.press, self.method = f"{method.name} ({control})", method, method
+        self.likely = method.likely
+        self.convolves = self.runs_sweep = method.counts == "applications"
 
-    def __init__(self, scene, control, method):
-        super().__init__(scene, control)
-        self.name, self.method = f"{method} ({control})", method
-        self.press = METHODS[method]
-        self.runs_sweep = method == CONVOLVES
-
-    def carries(self, scene):
+    def carries(self, problem):
         """Whether no more nodes interpenetrate than the method can take."""
-        return scene.overlapping <= LARGEST.get(self.method, np.inf)
+        return self.method.largest is None or problem.overlapping <= self.method.largest
 
     def applications(self):
         """Zero-padded convolutions of the last call."""
-        return self.work if self.method == CONVOLVES else None
+        return self.work if self.convolves else None
 
 
-class ContactMechanics(Solver):
-    """ContactMechanics with one of the optimisers it offers.
+class PublicCode(Solver):
+    """A public code under the load that it declares first.
 
-    Tolerances are shares of the closure and of the mean pixel force in contact. Convolutions are
-    counted by wrapping ``evaluate_disp`` and ``evaluate_force`` of the substrate, which all of its
-    optimisers call.
+    A closure that is not given is evaluated from the pressure, outside the clock.
     """
 
-    control = "closure"
-
-    def __init__(self, scene, optimiser):
-        self.name = f"ContactMechanics {optimiser} (closure)"
-        self.likely = 10**-4.5 if optimiser == "ccg" else 10**-5.5
-        self.peer, self.work = peers.ContactMechanics(scene.height, scene.space, optimiser), None
-        self.substrate = self.peer.substrate
-        self.evaluate = {
-            name: getattr(self.substrate, name) for name in ("evaluate_disp", "evaluate_force")
-        }
+    def __init__(self, problem, peer):
+        self.control = peer.loads[0]
+        self.name, self.likely = f"{peer.name} ({self.control})", peer.likely
+        self.code = peer.set_up(problem.height, problem.space)
 
     def solve(self, reference, tolerance, previous):
-        """Press to the reference's closure or force."""
-        self._count()
-        start = None if previous is None else previous.state
-        nodes = reference.fraction * reference.state.pressure.size
-        try:
-            pressure = self.peer.solve(
-                reference.closure, tolerance, pixel_force=reference.force / nodes, start=start
-            )
-        except peers.Failed as error:
-            raise Failed(str(error)) from error
-        force = float(pressure.sum()) * self.peer.space.cell_area
-        return Answer(force, reference.closure, pressure)
-
-    def _count(self):
-        self.work = 0 if self.counting else None
-        for name, evaluate in self.evaluate.items():
-
-            def counted(*args, evaluate=evaluate, **options):
-                self.work += 1
-                return evaluate(*args, **options)
-
-            setattr(self.substrate, name, counted if self.counting else evaluate)
-
-    def applications(self):
-        """Zero-padded convolutions of the last call."""
-        return self.work
-
-
-class Tamaas(Solver):
-    """Tamaas; force control only.
-
-    Its closure is evaluated outside the clock. An iteration convolves twice, for gradient and step;
-    iterations are counted by a functional that adds nothing.
-    """
-
-    control = "force"
-    name = "Tamaas (force)"
-    likely = 10**-3.5
-
-    def __init__(self, scene):
-        self.peer, self.counter = peers.Tamaas(scene.height, scene.space), None
-
-    def solve(self, reference, tolerance, previous):
-        """Press to the reference's closure or force."""
-        self.counter = _tamaas_counter(self.peer.tamaas) if self.counting else None
+        """Load to the reference's closure or force."""
+        self.code.count(self.counting)
         start = None if previous is None else previous.state
         try:
-            pressure = self.peer.solve(
-                reference.force, tolerance, start=start, functional=self.counter
-            )
-        except peers.Failed as error:
+            pressure = self.code.solve(load_of(reference, self.control, start), tolerance)
+        except PeerFailed as error:
             raise Failed(str(error)) from error
-        force = float(pressure.sum()) * self.peer.space.cell_area
-        return Answer(force, np.nan, pressure)
+        force = float(pressure.sum()) * self.code.space.cell_area
+        closure = reference.closure if self.control == "closure" else np.nan
+        return Answer(force, closure, pressure)
 
     def complete(self, answer):
-        """The closure of an answer, from the mean gap over the contact."""
-        answer.closure = self.peer.closure(answer.state)
+        """The closure of an answer, where it was not given."""
+        if self.control != "closure":
+            answer.closure = self.code.closure(answer.state)
 
     def applications(self):
         """Zero-padded convolutions of the last call."""
-        return 2 * self.counter.iterations
-
-
-def _tamaas_counter(tamaas):
-    class Counter(tamaas.Functional):
-        def __init__(self):
-            super().__init__()
-            self.iterations = 0
-
-        def computeGradF(self, variable, gradient):
-            self.iterations += 1
-
-        def computeF(self, variable, dual):
-            return 0.0
-
-    return Counter()
+        return self.code.applications
 
 
 #: The fastest of the peers.
 FASTEST_PEER = "ContactMechanics dual"
 
 
-def solvers_for(scene, *, methods, peers_wanted, every):
-    """The solvers that can carry a scene, ours first; peers only where they are installed.
+def solvers_for(problem, *, methods, peers_wanted, every):
+    """Solvers that can carry a problem, ours first; public codes only where they are installed.
 
     Parameters
     ----------
-    scene : RoughScene
+    problem : RoughProblem
     methods : bool
         Whether the package's comparison methods are wanted, if ``every`` solver is.
     peers_wanted : list of str or None
-        Other codes, by name; all if None.
+        Public codes, by name; all if None.
     every : bool
-        Whether all that are wanted: else ours, and the fastest of the peers.
+        Whether all that are wanted: else ours, and the fastest of the public codes.
     """
-    chosen = [Ours(scene, "closure"), Ours(scene, "force"), AtDefault(scene, "closure")]
+    chosen = [Ours(problem, "closure"), Ours(problem, "force"), AtDefault(problem, "closure")]
     if methods and every:
         chosen += [
-            Method(scene, control, method)
-            for method, control in [
-                ("polonsky-keer", "closure"),
-                ("polonsky-keer", "force"),
-                ("dense", "closure"),
-                ("paper", "closure"),
-                ("gauss-seidel", "closure"),
-                ("nnls", "closure"),
-            ]
+            MethodOfThePackage(problem, control, method)
+            for method in METHODS.values()
+            # Under a force too where the work is counted in convolutions, as ours is.
+            for control in method.loads[: None if method.counts == "applications" else 1]
         ]
     chosen += [
-        Tamaas(scene) if name == "Tamaas" else ContactMechanics(scene, name.split()[1])
-        for name in peers.installed()
+        PublicCode(problem, peer)
+        for name, peer in installed_peers().items()
         if (peers_wanted is None or name in peers_wanted) and (every or name == FASTEST_PEER)
     ]
-    return [solver for solver in chosen if solver.carries(scene)]
+    return [solver for solver in chosen if solver.carries(problem)]

@@ -10,7 +10,7 @@ from fractalcontact.accuracy.cheap_models import (
     foundation_modulus,
     winkler,
 )
-from fractalcontact.accuracy.reference import HertzScene
+from fractalcontact.accuracy.reference import HertzProblem
 from fractalcontact.surface.synthesis import self_affine
 
 SIDE = 2.0  # mm
@@ -92,12 +92,12 @@ def test_rigid_cut_holds_the_elastic_contact(rough):
 
 
 def test_coarse_grid_comes_closer_to_hertz_than_its_own_grid():
-    scene = HertzScene(128)
-    exact = scene.single
-    found = coarse_grid(scene.height, scene.space, closure=scene.closure)
-    sample = scene.height[::2, ::2]
-    left = scene.closure - (scene.height.max() - sample.max())
-    coarse = solve_contact(sample, scene.space.coarser(2), closure=left)
+    problem = HertzProblem(128)
+    exact = problem.single
+    found = coarse_grid(problem.height, problem.space, closure=problem.closure)
+    sample = problem.height[::2, ::2]
+    left = problem.closure - (problem.height.max() - sample.max())
+    coarse = solve_contact(sample, problem.space.coarser(2), closure=left)
     assert abs(found.force / exact.force - 1) < abs(coarse.force / exact.force - 1) < 0.01
     assert found.area == pytest.approx(exact.state.area, rel=0.02)
 

@@ -1,6 +1,6 @@
 """Three hundred random contact problems, each state verified by a convolution of its own.
 
-``make scenes SCENES=5000`` tries more.
+``make problems SCENES=5000`` tries more.
 """
 
 import os
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.accuracy.random_problems import KINDS, PRESSED, random_scene, violation
+from fractalcontact.accuracy.random_problems import KINDS, PRESSED, random_problem, violation
 from fractalcontact.contact.active_set import ActiveSet
 
 SEEDS = range(300)
@@ -19,38 +19,38 @@ RTOL = 1e-6
 
 @pytest.mark.parametrize("first", range(0, TRIED, 10))
 def test_every_state_is_verified(first):
-    """Ten scenes at a time: one of every kind."""
+    """Ten problems at a time: one of every kind."""
     for seed in range(first, first + 10):
-        scene = random_scene(seed)
-        state = solve_contact(scene.height, scene.space, rtol=RTOL, **scene.load)
-        wrong, rounding = violation(state, scene.height)
-        assert wrong <= 1.01 * RTOL + rounding, scene.name
-        if "force" in scene.load:
-            assert state.force == pytest.approx(scene.load["force"], rel=RTOL), scene.name
+        problem = random_problem(seed)
+        state = solve_contact(problem.height, problem.space, rtol=RTOL, **problem.load)
+        wrong, rounding = violation(state, problem.height)
+        assert wrong <= 1.01 * RTOL + rounding, problem.name
+        if "force" in problem.load:
+            assert state.force == pytest.approx(problem.load["force"], rel=RTOL), problem.name
         else:
-            assert state.closure == scene.load["closure"], scene.name
+            assert state.closure == problem.load["closure"], problem.name
 
 
 def test_scenes_cover_what_they_should():
-    scenes = [random_scene(seed) for seed in SEEDS]
-    assert {scene.name for scene in scenes} == {f"{k}, {p}" for k in KINDS for p in PRESSED}
-    sides = [side for scene in scenes for side in scene.space.shape]
+    problems = [random_problem(seed) for seed in SEEDS]
+    assert {problem.name for problem in problems} == {f"{k}, {p}" for k in KINDS for p in PRESSED}
+    sides = [side for problem in problems for side in problem.space.shape]
     assert max(sides) > 390
-    ratios = [max(s.space.shape) / min(s.space.shape) for s in scenes]
+    ratios = [max(s.space.shape) / min(s.space.shape) for s in problems]
     assert sum(7.9 < ratio < 9.2 for ratio in ratios) > 20
-    cells = [scene.space.spacing[1] for scene in scenes]
+    cells = [problem.space.spacing[1] for problem in problems]
     assert min(cells) < 1e-5
     assert max(cells) > 1e2
-    stretched = [max(s.space.spacing) / min(s.space.spacing) for s in scenes]
+    stretched = [max(s.space.spacing) / min(s.space.spacing) for s in problems]
     assert max(stretched) > 6
-    slopes = [np.abs(np.diff(s.height, axis=1)).mean() / s.space.spacing[1] for s in scenes]
+    slopes = [np.abs(np.diff(s.height, axis=1)).mean() / s.space.spacing[1] for s in problems]
     assert min(slopes) < 2e-4
     assert max(slopes) > 5
-    assert {next(iter(scene.load)) for scene in scenes} == {"closure", "force"}
+    assert {next(iter(problem.load)) for problem in problems} == {"closure", "force"}
 
 
-def test_same_seed_same_scene():
-    one, same, other = random_scene(7), random_scene(7), random_scene(8)
+def test_same_seed_same_problem():
+    one, same, other = random_problem(7), random_problem(7), random_problem(8)
     np.testing.assert_array_equal(one.height, same.height)
     assert one.load == same.load
     assert one.space == same.space
@@ -59,8 +59,8 @@ def test_same_seed_same_scene():
 
 @pytest.mark.parametrize("harm", ["a node more", "a node less", "all a little more"])
 def test_the_judge_sees_a_wrong_state(harm):
-    scene = random_scene(0)
-    state = solve_contact(scene.height, scene.space, **scene.load)
+    problem = random_problem(0)
+    state = solve_contact(problem.height, problem.space, **problem.load)
     pressure = state.pressure.copy()
     if harm == "a node more":
         pressure[np.unravel_index(state.gap.argmax(), pressure.shape)] = pressure.max()
@@ -68,45 +68,47 @@ def test_the_judge_sees_a_wrong_state(harm):
         pressure[np.unravel_index(pressure.argmax(), pressure.shape)] = 0.0
     else:
         pressure *= 1 + 1e-4
-    wrong, rounding = violation(type(state)(**{**vars(state), "pressure": pressure}), scene.height)
+    wrong, rounding = violation(
+        type(state)(**{**vars(state), "pressure": pressure}), problem.height
+    )
     assert wrong > 1e-5 + rounding
 
 
 @pytest.mark.parametrize("patience", [0, 2])
 def test_forces_found_by_way_of_closures_are_the_same_states(monkeypatch, patience):
     """What serves where the set would swing for ever serves elsewhere too."""
-    seeds = [seed for seed in range(40) if "force" in random_scene(seed, largest=80).load]
+    seeds = [seed for seed in range(40) if "force" in random_problem(seed, largest=80).load]
     for seed in seeds:
-        scene = random_scene(seed, largest=80)
-        expected = solve_contact(scene.height, scene.space, rtol=1e-8, **scene.load)
+        problem = random_problem(seed, largest=80)
+        expected = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
         with monkeypatch.context() as patched:
             patched.setattr("fractalcontact.contact.active_set.PATIENCE", patience)
-            state = solve_contact(scene.height, scene.space, rtol=1e-8, **scene.load)
-        assert state.closure == pytest.approx(expected.closure, rel=1e-6), scene.name
-        assert state.force == pytest.approx(expected.force, rel=1e-8), scene.name
+            state = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
+        assert state.closure == pytest.approx(expected.closure, rel=1e-6), problem.name
+        assert state.force == pytest.approx(expected.force, rel=1e-8), problem.name
 
 
 def test_the_patient_way_alone_finds_the_same_states(monkeypatch):
     """What serves where the set would swing for ever, from the first correction on."""
     for seed in range(40):
-        scene = random_scene(seed, largest=80)
-        if "force" in scene.load:
+        problem = random_problem(seed, largest=80)
+        if "force" in problem.load:
             continue
-        expected = solve_contact(scene.height, scene.space, rtol=1e-8, **scene.load)
+        expected = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
         with monkeypatch.context() as patched:
             patched.setattr("fractalcontact.contact.active_set.PATIENCE", -1)
-            state = solve_contact(scene.height, scene.space, rtol=1e-8, **scene.load)
-        assert state.force == pytest.approx(expected.force, rel=1e-6), scene.name
+            state = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
+        assert state.force == pytest.approx(expected.force, rel=1e-6), problem.name
 
 
 def test_no_scene_is_given_up():
-    """The reason a scene has no state would be raised; of these none has one."""
+    """The reason a problem has no state would be raised; of these none has one."""
     for seed in (198, 47, 87, 1061):  # swung for ever once, the last under a given closure
-        scene = random_scene(seed)
+        problem = random_problem(seed)
         try:
-            solve_contact(scene.height, scene.space, **scene.load)
+            solve_contact(problem.height, problem.space, **problem.load)
         except NotConverged as error:
-            pytest.fail(f"scene {seed}: {error}")
+            pytest.fail(f"problem {seed}: {error}")
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -136,9 +138,9 @@ def test_a_set_that_is_far_off_when_patience_ends_is_sought_by_closures(monkeypa
     monkeypatch.setattr("fractalcontact.contact.active_set.PATIENCE", 0)
     monkeypatch.setattr("fractalcontact.contact.active_set.HOPELESS", -1)
     monkeypatch.setattr(ActiveSet, "_by_closures", lambda *a: called.append(1) or by_closures(*a))
-    scenes = [random_scene(seed, largest=60) for seed in range(12)]
-    scenes = [scene for scene in scenes if "force" in scene.load]
-    for scene in scenes:
-        state = solve_contact(scene.height, scene.space, **scene.load)
+    problems = [random_problem(seed, largest=60) for seed in range(12)]
+    problems = [problem for problem in problems if "force" in problem.load]
+    for problem in problems:
+        state = solve_contact(problem.height, problem.space, **problem.load)
         assert state.residual <= RTOL
-    assert len(called) >= len(scenes) > 3
+    assert len(called) >= len(problems) > 3

@@ -1,4 +1,4 @@
-"""Error against time: the front, the errors, what is measured of a small scene, growth."""
+"""Error against time: the front, the errors, what is measured of a small problem, growth."""
 
 import os
 
@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.accuracy.growth import growth
-from fractalcontact.accuracy.reference import HertzScene, PunchScene, RoughScene, scenes_of
+from fractalcontact.accuracy.reference import HertzProblem, PunchProblem, RoughProblem, problems_of
 from fractalcontact.accuracy.speed import (
     ERRORS,
     MODELS,
@@ -34,13 +34,13 @@ RECIPE = {
 
 
 @pytest.fixture(scope="module")
-def scene():
-    return scenes_of(RECIPE)["n24_h0.8_c10"]
+def problem():
+    return problems_of(RECIPE)["n24_h0.8_c10"]
 
 
 @pytest.fixture(scope="module")
-def points(scene):
-    return error_against_time(scene, RECIPE)
+def points(problem):
+    return error_against_time(problem, RECIPE)
 
 
 # -- the front -------------------------------------------------------------------------------------
@@ -87,10 +87,12 @@ def test_others_are_ahead_only_below_the_error_and_on_the_front():
     assert ahead_of_ours(points, below=1e-5).sizes["point"] == 0
 
 
-# -- the scenes ------------------------------------------------------------------------------------
+# -- the test problems -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("made", [RoughScene(40, 0.5, 0.1, 2), HertzScene(40), PunchScene(41)])
+@pytest.mark.parametrize(
+    "made", [RoughProblem(40, 0.5, 0.1, 2), HertzProblem(40), PunchProblem(41)]
+)
 def test_reference_is_as_close_to_elimination_as_it_says(made):
     own = made.single.own_error(made.height)
     assert 0 < own < 1e-11
@@ -98,22 +100,22 @@ def test_reference_is_as_close_to_elimination_as_it_says(made):
 
 
 def test_scenes_are_pressed_to_the_share_asked_for():
-    scene = scenes_of(RECIPE)["n32_h0.8_c10"]
-    assert scene.single.fraction == pytest.approx(0.1, abs=1.1 / 32**2 + 0.02 * 0.1)
+    problem = problems_of(RECIPE)["n32_h0.8_c10"]
+    assert problem.single.fraction == pytest.approx(0.1, abs=1.1 / 32**2 + 0.02 * 0.1)
 
 
-def test_reference_has_no_error(scene):
-    errors = errors_of(scene.single.state, scene.single, 1.5)
+def test_reference_has_no_error(problem):
+    errors = errors_of(problem.single.state, problem.single, 1.5)
     assert errors.keys() == ERRORS.keys()
     assert set(errors.values()) == {0.0}
 
 
-def test_errors_are_shares_of_the_reference(scene):
+def test_errors_are_shares_of_the_reference(problem):
     from dataclasses import replace
 
-    exact = scene.single.state
+    exact = problem.single.state
     off = replace(exact, force=1.1 * exact.force, pressure=1.1 * exact.pressure)
-    errors = errors_of(off, scene.single, 1.5)
+    errors = errors_of(off, problem.single, 1.5)
     assert errors["force_error"] == pytest.approx(0.1)
     assert errors["pressure_error"] == pytest.approx(0.1)
     assert errors["area_error"] == errors["delta_error"] == 0
@@ -149,9 +151,9 @@ def test_every_variable_is_labelled(points):
     assert all({"units", "long_name"} <= set(v.attrs) for v in points.data_vars.values())
 
 
-def test_a_slow_method_is_left_out_and_a_slow_way_run_once(scene):
+def test_a_slow_method_is_left_out_and_a_slow_way_run_once(problem):
     recipe = {**RECIPE, "slow_nodes": 0, "longest": 1e-9}
-    found = error_against_time(scene, recipe)
+    found = error_against_time(problem, recipe)
     assert "dense" not in found["method"].values
     tried = {
         name: found["tolerance"].values[(found["method"] == name).values].tolist()
@@ -169,7 +171,7 @@ def test_runs_are_taken_in_turn():
     assert [len(one) for one in seconds] == [3, 3, 1]
 
 
-def test_a_peer_that_crashes_is_a_failure_in_the_table(scene, monkeypatch):
+def test_a_peer_that_crashes_is_a_failure_in_the_table(problem, monkeypatch):
     class Wild:
         control = "closure"
 
@@ -179,7 +181,7 @@ def test_a_peer_that_crashes_is_a_failure_in_the_table(scene, monkeypatch):
     monkeypatch.setattr(peers, "installed", lambda: ["wild"])
     monkeypatch.setattr(peers, "set_up", lambda name, height, space: Wild())
     recipe = {**RECIPE, "tolerances": [1e-1], "runs": 1, "slow_nodes": 0}
-    found = error_against_time(scene, recipe)
+    found = error_against_time(problem, recipe)
     wild = found.isel(point=np.flatnonzero(found["method"] == "wild"))
     assert wild["said"].values.tolist() == ["crashed: SIGABRT"]
     assert wild["seconds"].isnull().all()

@@ -1,4 +1,4 @@
-"""Hard scenes, the judge of any solver, and when dropping points alone is right."""
+"""Hard problems, the judge of any solver, and when dropping points alone is right."""
 
 import dataclasses
 import os
@@ -15,7 +15,7 @@ from fractalcontact.accuracy.elimination import (
     elimination,
     largest_off_diagonal,
 )
-from fractalcontact.accuracy.hard_problems import KINDS, hard_scene
+from fractalcontact.accuracy.hard_problems import KINDS, hard_problem
 from fractalcontact.accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, solvers, stability
 from fractalcontact.core.child_process import in_child
 from fractalcontact.methods.peers import PATIENCE, peer_methods
@@ -121,8 +121,8 @@ def test_whatever_a_peer_raises_is_its_honest_failure(monkeypatch):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_same_draw_same_scene(kind):
-    one, same, other = (hard_scene(kind, draw) for draw in (0, 0, 1))
+def test_same_draw_same_problem(kind):
+    one, same, other = (hard_problem(kind, draw) for draw in (0, 0, 1))
     np.testing.assert_array_equal(one.height, same.height)
     assert one.space == same.space
     keys = [key for key in one.load if key != "start"]

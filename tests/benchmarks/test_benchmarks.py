@@ -1,4 +1,4 @@
-"""The benchmark command on a scene small enough for a test."""
+"""The benchmark command on a problem small enough for a test."""
 
 import csv
 import subprocess

@@ -12,7 +12,7 @@ from fractalcontact.accuracy.convergence import (
 )
 from fractalcontact.accuracy.elimination import elimination
 from fractalcontact.accuracy.growth import growth
-from fractalcontact.accuracy.reference import scenes_of
+from fractalcontact.accuracy.reference import problems_of
 from fractalcontact.accuracy.speed import OURS, error_against_time
 from fractalcontact.accuracy.stability import HONEST, SILENT, stability
 from fractalcontact.figures.draw import draw_study_figures, drawer_of
@@ -35,7 +35,7 @@ FIGURES = accuracy_figures_of(ACCURACY)
 
 @pytest.fixture(scope="module")
 def atlas_file(tmp_path_factory):
-    scenes = {n: error_against_time(s, RECIPE) for n, s in scenes_of(RECIPE).items()}
+    scenes = {n: error_against_time(s, RECIPE) for n, s in problems_of(RECIPE).items()}
     parts = {
         "speed": scenes,
         "speed_growth": {"surfaces": growth(list(scenes.values()), 1e-2)},
@@ -87,7 +87,7 @@ def test_the_same_atlas_gives_the_same_files(atlas_file, tmp_path):
 
 def test_every_rough_point_stands_in_the_table(atlas):
     table = drawn(atlas, "error_time").data
-    assert set(table["scene"]) == {n for n in scenes_of(RECIPE) if "_h0" in n}
+    assert set(table["scene"]) == {n for n in problems_of(RECIPE) if "_h0" in n}
     for name, rows in table.groupby("scene"):
         scene = atlas[f"speed/{name}"]
         assert rows["seconds_s"].to_numpy() == pytest.approx(scene["seconds"].values, nan_ok=True)

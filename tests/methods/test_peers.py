@@ -6,30 +6,33 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.accuracy.hard_problems import hard_scene
-from fractalcontact.accuracy.reference import RoughScene
+from fractalcontact.accuracy.hard_problems import hard_problem
+from fractalcontact.accuracy.reference import RoughProblem
 from fractalcontact.core.child_process import ChildFailed
 from fractalcontact.methods import peers
+from fractalcontact.methods.common import NotOffered
+from fractalcontact.methods.registry import installed_peers
 
-PEERS = peers.peer_methods()
+PEERS = installed_peers()
 CCG = "ContactMechanics ccg"
 needs_peers = pytest.mark.skipif(not PEERS, reason="the peers extra is not installed")
 
 
 @pytest.fixture(scope="module")
-def scene():
-    return RoughScene(32, 0.8, 0.1, 1)
+def problem():
+    return RoughProblem(32, 0.8, 0.1, 1)
 
 
 def load_of(name, reference):
-    return {"force": reference.force} if name == "Tamaas" else {"closure": reference.closure}
+    control = PEERS[name].loads[0]
+    return {control: getattr(reference, control)}
 
 
 @needs_peers
 @pytest.mark.parametrize("name", PEERS)
-def test_a_peer_finds_the_same_state(scene, name):
-    reference = scene.single
-    state = PEERS[name](scene.height, scene.space, rtol=1e-8, **load_of(name, reference))
+def test_a_peer_finds_the_same_state(problem, name):
+    reference = problem.single
+    state = PEERS[name](problem.height, problem.space, rtol=1e-8, **load_of(name, reference))
     assert reference.error(state) < 1e-5
     assert state.residual < 1e-4
     assert state.area == pytest.approx(reference.state.area)
@@ -45,10 +48,10 @@ def test_a_peer_has_our_operator(shape, spacing):
     space = HalfSpace(shape, spacing, 3e4)
     pressure = np.random.default_rng(0).random(shape)
     exact = pytest.approx(space.displacement(pressure), rel=1e-9)
-    mechanics = peers.set_up(CCG, pressure, space)
+    mechanics = PEERS[CCG].set_up(pressure, space)
     found = mechanics.substrate.evaluate_disp(-pressure * space.cell_area)
     assert found[: shape[0], : shape[1]] == exact
-    tamaas = peers.set_up("Tamaas", pressure, space)
+    tamaas = PEERS["Tamaas"].set_up(pressure, space)
     found = np.zeros(shape)
     tamaas.model.operators["dcfft"](pressure, found)
     assert found == exact
@@ -56,14 +59,14 @@ def test_a_peer_has_our_operator(shape, spacing):
 
 @needs_peers
 @pytest.mark.parametrize("load", ["force", "hardness", "force and hardness"])
-def test_constrained_gradients_take_a_force_and_a_hardness(scene, load):
-    reference = scene.single
+def test_constrained_gradients_take_a_force_and_a_hardness(problem, load):
+    reference = problem.single
     control = "force" if "force" in load else "closure"
     given = {control: getattr(reference, control)}
     if "hardness" in load:
         given["hardness"] = 0.5 * reference.state.pressure.max()
-    exact = solve_contact(scene.height, scene.space, rtol=1e-9, **given)
-    found = PEERS[CCG](scene.height, scene.space, rtol=1e-8, **given)
+    exact = solve_contact(problem.height, problem.space, rtol=1e-9, **given)
+    found = PEERS[CCG](problem.height, problem.space, rtol=1e-8, **given)
     assert (found.force, found.closure) == pytest.approx((exact.force, exact.closure), rel=1e-5)
     assert found.residual < 1e-4
     np.testing.assert_array_equal(found.in_contact, exact.in_contact)
@@ -71,25 +74,28 @@ def test_constrained_gradients_take_a_force_and_a_hardness(scene, load):
 
 @needs_peers
 @pytest.mark.parametrize("name", PEERS)
-def test_a_peer_says_what_it_was_not_made_for(scene, name):
-    other = {"closure": 0.01} if name == "Tamaas" else {"force": 1.0}
-    load = load_of(name, scene.single)
+def test_a_peer_says_what_it_was_not_made_for(problem, name):
+    load = load_of(name, problem.single)
+    other = {"force": 1.0} if "closure" in load else {"closure": 0.01}
     if name != CCG:
-        with pytest.raises(ValueError, match=r"takes a \w+ only"):
-            PEERS[name](scene.height, scene.space, **other)
-        with pytest.raises(ValueError, match="knows no hardness"):
-            PEERS[name](scene.height, scene.space, hardness=1.0, **load)
-    holed = np.where(scene.height == scene.height.min(), np.nan, scene.height)
+        with pytest.raises(NotOffered, match=r"takes a \w+ only"):
+            PEERS[name](problem.height, problem.space, **other)
+        with pytest.raises(NotOffered, match="knows no hardness"):
+            PEERS[name](problem.height, problem.space, hardness=1.0, **load)
+    plate = HalfSpace(problem.space.shape, problem.space.spacing, 1.0, kernel="rigid square")
+    with pytest.raises(NotOffered, match="no kernel but love: not rigid square"):
+        PEERS[name](problem.height, plate, **load)
+    holed = np.where(problem.height == problem.height.min(), np.nan, problem.height)
     # Tamaas finds out by itself.
     with pytest.raises((ValueError, ChildFailed, NotConverged)):
-        PEERS[name](holed, scene.space, **load)
+        PEERS[name](holed, problem.space, **load)
 
 
 @needs_peers
 def test_a_penetrating_node_that_ccg_does_not_see():
-    """Found by the atlas: the iteration that first sees the second node ends as converged."""
-    scene = hard_scene("spike", 5)
-    found = PEERS[CCG](scene.height, scene.space, rtol=1e-14, **scene.load)
+    """Seen in the atlas: the iteration that first sees the second node ends as converged."""
+    problem = hard_problem("spike", 5)
+    found = PEERS[CCG](problem.height, problem.space, rtol=1e-14, **problem.load)
     assert found.residual > 1e-4
 
 
@@ -97,41 +103,40 @@ def test_a_penetrating_node_that_ccg_does_not_see():
     ("seconds", "end", "words"),
     [(10, os.abort, "crashed: SIGABRT"), (0.2, None, "took longer than 0.2 s")],
 )
-def test_a_peer_that_crashes_or_hangs_does_no_harm(scene, monkeypatch, seconds, end, words):
-    class Wild:
-        def solve(self, closure, rtol, **load):
+def test_a_peer_that_crashes_or_hangs_does_no_harm(problem, monkeypatch, seconds, end, words):
+    class Wild(peers.PublicCode):
+        def solve(self, load, rtol):
             while True:
                 end and end()
 
-    monkeypatch.setattr(peers, "set_up", lambda name, height, space: Wild())
     monkeypatch.setattr(peers, "PATIENCE", seconds)
-    monkeypatch.setattr(peers, "import_module", lambda name: None)
+    load = {"closure": 0.1, "force": None, "hardness": None, "start": None}
     with pytest.raises(ChildFailed, match=words):
-        peers._solve_with(CCG, scene.height, scene.space, closure=0.1)
+        peers.solve_in_child(Wild, problem.height, problem.space, rtol=1e-6, **load)
 
 
 @needs_peers
 # ContactMechanics hands the limit of iterations to its own conjugate gradients only.
 @pytest.mark.parametrize("name", [name for name in PEERS if "lbfgs" not in name])
-def test_a_peer_that_gives_up_is_not_believed(scene, name, monkeypatch):
+def test_a_peer_that_gives_up_is_not_believed(problem, name, monkeypatch):
     monkeypatch.setattr(peers, "PATIENT_ITERATIONS", 2)
     with pytest.raises(NotConverged) as caught:
-        PEERS[name](scene.height, scene.space, rtol=1e-9, **load_of(name, scene.single))
+        PEERS[name](problem.height, problem.space, rtol=1e-9, **load_of(name, problem.single))
     assert caught.value.state.residual > 1e-9
 
 
-def test_a_state_of_our_own_pressure_is_our_state(scene):
-    ours = solve_contact(scene.height, scene.space, closure=scene.closure)
-    clearance = peers.clearance_of(scene.height)
-    state = peers.state_of(scene.space, ours.pressure, clearance, closure=ours.closure)
+def test_a_state_of_our_own_pressure_is_our_state(problem):
+    ours = solve_contact(problem.height, problem.space, closure=problem.closure)
+    clearance = peers.clearance_of(problem.height)
+    state = peers.state_of(problem.space, ours.pressure, clearance, closure=ours.closure)
     assert state.force == pytest.approx(ours.force)
     assert state.residual == pytest.approx(ours.residual, rel=1e-3, abs=1e-12)
-    by_force = peers.state_of(scene.space, ours.pressure, clearance, force=ours.force)
+    by_force = peers.state_of(problem.space, ours.pressure, clearance, force=ours.force)
     assert by_force.closure == pytest.approx(ours.closure, rel=1e-6)
 
 
-def test_no_pressure_is_the_state_of_first_touch(scene):
-    clearance = peers.clearance_of(scene.height)
-    state = peers.state_of(scene.space, np.zeros(scene.space.shape), clearance, force=0.0)
+def test_no_pressure_is_the_state_of_first_touch(problem):
+    clearance = peers.clearance_of(problem.height)
+    state = peers.state_of(problem.space, np.zeros(problem.space.shape), clearance, force=0.0)
     assert (state.closure, state.force, state.residual) == (0, 0, 0)
     np.testing.assert_array_equal(state.gap, clearance)

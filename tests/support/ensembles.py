@@ -9,7 +9,15 @@ import os
 EVERYTHING = os.environ.get("TESTS") == "all"
 
 #: Ensemble: (for ``make test``, for ``make test-all``).
-ENSEMBLES: dict[str, tuple] = {}
+ENSEMBLES: dict[str, tuple] = {
+    # methods
+    "dense problems": (3, 10),
+    "dense side": (24, 48),
+    "elimination side": (20, 32),
+    "dropping side": (20, 40),
+    "method problems": ((0, 2), (1, 5)),
+    "warm start side": (20, 40),
+}
 
 
 def ensemble(name):

@@ -1,25 +1,21 @@
 # How fast and how exact the solver, other solvers and cheaper models are: `snakemake accuracy`, a
 # study of its own (config/accuracy.yaml), no part of `all`.
-from importlib.util import find_spec
-
+from fractalcontact.methods import registry
 from fractalcontact.study.figure_list import accuracy_figures_of
 
-SCENES = []
+TIMED = []
 if "speed" in config:
     # Imported here, because no other study needs the solver to know its jobs.
-    from fractalcontact.accuracy.reference import scenes_of
+    from fractalcontact.accuracy.reference import problems_of
 
-    SCENES = list(scenes_of(config["speed"]))
+    TIMED = list(problems_of(config["speed"]))
 
 # Imported by name when they are called, and so not seen by `code` on its own.
-METHOD_MODULES = [
-    f"methods/{path.stem}"
-    for path in sorted(Path(workflow.basedir).glob("src/fractalcontact/methods/*.py"))
-]
+METHOD_MODULES = [f"methods/{module}" for module in registry.MODULES]
 PROBLEMS = ["hertz", "punch", "richardson"] if "convergence" in config else []
 # Installed later, they are measured later.
-PEERS = [name for name in ("ContactMechanics", "tamaas") if find_spec(name)]
-# Kinds of scene that one job judges.
+PEERS = list(registry.installed_peers())
+# Kinds of problem that one job judges.
 KINDS_A_JOB = 14
 KINDS = []
 if "stability" in config:
@@ -32,13 +28,13 @@ ACCURACY_FILES = {}
 # A clock is running: the job takes all cores, so that no other runs beside it.
 rule speed:
     output:
-        f"{RESULTS}/speed/{{scene}}.nc",
+        f"{RESULTS}/speed/{{case}}.nc",
     log:
-        f"{RESULTS}/logs/speed/{{scene}}.log",
+        f"{RESULTS}/logs/speed/{{case}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/speed/{{scene}}.tsv"
+        f"{RESULTS}/benchmarks/speed/{{case}}.tsv"
     wildcard_constraints:
-        scene=one_of(SCENES),
+        case=one_of(TIMED),
     conda:
         "../../environment.yml"
     threads: lambda wildcards: workflow.cores
@@ -55,7 +51,7 @@ rule speed:
 
 rule speed_growth:
     input:
-        expand(rules.speed.output[0], scene=SCENES),
+        expand(rules.speed.output[0], case=TIMED),
     output:
         f"{RESULTS}/speed_growth/surfaces.nc",
     log:
@@ -155,8 +151,8 @@ rule elimination:
         "../scripts/elimination.py"
 
 
-if SCENES:
-    ACCURACY_FILES["speed"] = expand(rules.speed.output[0], scene=SCENES)
+if TIMED:
+    ACCURACY_FILES["speed"] = expand(rules.speed.output[0], case=TIMED)
     ACCURACY_FILES["speed_growth"] = rules.speed_growth.output[0]
 if PROBLEMS:
     ACCURACY_FILES["convergence"] = expand(rules.convergence.output[0], problem=PROBLEMS)

@@ -1,4 +1,4 @@
-"""Error against time of every solver and cheaper model on one scene."""
+"""Error against time of every solver and cheaper model on one test problem."""
 
 import os
 
@@ -8,13 +8,13 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from _job import job
 
-from fractalcontact.accuracy.reference import scenes_of
+from fractalcontact.accuracy.reference import problems_of
 from fractalcontact.accuracy.speed import error_against_time
 from fractalcontact.core import netcdf
 
 with job(snakemake) as log:
     recipe = snakemake.params.recipe
-    scene = scenes_of(recipe)[snakemake.wildcards.scene]
-    points = error_against_time(scene, recipe)
+    problem = problems_of(recipe)[snakemake.wildcards.case]
+    points = error_against_time(problem, recipe)
     netcdf.write(points, snakemake.output[0])
     log.info("%s", points)

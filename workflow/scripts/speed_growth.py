@@ -1,4 +1,4 @@
-"""How time and memory grow with the size of the grid, from the scenes measured."""
+"""How time and memory grow with the size of the grid, from the problems measured."""
 
 from _job import job
 
@@ -6,7 +6,7 @@ from fractalcontact.accuracy.growth import growth
 from fractalcontact.core import netcdf
 
 with job(snakemake) as log:
-    scenes = [netcdf.read(path) for path in snakemake.input]
-    result = growth(scenes, snakemake.params.error)
+    problems = [netcdf.read(path) for path in snakemake.input]
+    result = growth(problems, snakemake.params.error)
     netcdf.write(result, snakemake.output[0])
     log.info("%s", result)

@@ -1,4 +1,4 @@
-"""Put the verdicts on all kinds of hard scenes together."""
+"""Put the verdicts on all kinds of hard problems together."""
 
 from _job import job
 

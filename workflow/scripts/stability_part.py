@@ -1,4 +1,4 @@
-"""Judge every solver on some kinds of hard scenes."""
+"""Judge every solver on some kinds of hard problems."""
 
 from _job import job
 

@@ -19,7 +19,7 @@ __getattr__, __dir__, __all__ = exports(
         "PEER": ".speed",
         "QUANTITIES": ".convergence",
         "RIGHT": ".stability",
-        "RoughScene": ".reference",
+        "RoughProblem": ".reference",
         "SILENT": ".stability",
         "SOLVER": ".speed",
         "VERDICTS": ".stability",
@@ -30,6 +30,6 @@ __getattr__, __dir__, __all__ = exports(
         "join": ".stability",
         "punch_convergence": ".convergence",
         "richardson_trials": ".convergence",
-        "scenes_of": ".reference",
+        "problems_of": ".reference",
     },
 )

@@ -1,30 +1,32 @@
 """Models cheaper than elastic contact at full resolution, to see where they are good enough.
 
 The bearing area cuts the topography with a plane and lets nothing give way. A Winkler foundation
-lets every node give way alone. A coarse grid is solved elastically, and what it gives carried to
+lets every node give way alone. A coarse grid is solved elastically, and its result extrapolated to
 the spacing asked for by what happens between two coarse spacings.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..contact.preconditioner import forget_preconditioner
 from ..contact.solve import checked_hardness, checked_problem, solve_contact
 from ..core.arguments import whole_number
-from ..elastic.halfspace import rectangle_mean_displacement
+from ..elastic.halfspace import HalfSpace, rectangle_mean_displacement
 
 #: Tolerance of the coarse solves: far below what the coarse grid itself is off by.
 COARSE_RTOL = 1e-4
-#: Order in s of the error of the force on sampled rough surfaces. Measured on 24 scenes (H 0.5 and
-#: 0.8, 256 and 512 nodes, 1 to 20 % in contact) first order leaves 0.3 % of the force from the
-#: spacings 2 s and 4 s. Samples did better than the largest, or the mean, of each 2 x 2 nodes.
+#: Order in s of the error of the force on sampled rough surfaces. Measured on 24 problems (H 0.5
+#: and 0.8, 256 and 512 nodes per side, 1 to 20 % in contact), first order leaves 0.3 %
+#: of the force from the spacings 2 s and 4 s. Samples did better than the largest, or the mean, of
+#: each 2 x 2 nodes.
 FORCE_ORDER = 1
 
 
 @dataclass(frozen=True)
 class CheapState:
-    """What a cheap model says of a contact.
+    """State of contact by a cheap model.
 
     Attributes
     ----------
@@ -43,7 +45,14 @@ class CheapState:
     area: float
 
 
-def bearing_area(composite, space, *, closure=None, force=None, hardness=None):
+def bearing_area(
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    closure: float | None = None,
+    force: float | None = None,
+    hardness: float | None = None,
+) -> CheapState:
     """Contact without elasticity: what lies above a plane (Abbott and Firestone 1933).
 
     Parameters
@@ -88,7 +97,7 @@ def bearing_area(composite, space, *, closure=None, force=None, hardness=None):
     )
 
 
-def foundation_modulus(space):
+def foundation_modulus(space: HalfSpace) -> float:
     """Foundation modulus p / u of the Winkler model, MPa/mm.
 
     Notes
@@ -101,7 +110,13 @@ def foundation_modulus(space):
     return space.modulus / rectangle_mean_displacement(*sides)
 
 
-def winkler(composite, space, *, closure=None, force=None):
+def winkler(
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    closure: float | None = None,
+    force: float | None = None,
+) -> CheapState:
     """Contact on a Winkler foundation: every node gives way alone, p = k (w - c) where w > c.
 
     Parameters
@@ -148,7 +163,9 @@ def _winkler_closure(clearance, total):
     return float(depth[last] + (total - overlap[last]) / count[last])
 
 
-def coarse_grid(composite, space, *, closure, factor=2):
+def coarse_grid(
+    composite: ArrayLike, space: HalfSpace, *, closure: float, factor: int = 2
+) -> CheapState:
     """Elastic contact on every ``factor``-th node, extrapolated with the help of a coarser grid.
 
     Parameters
@@ -164,7 +181,7 @@ def coarse_grid(composite, space, *, closure, factor=2):
     Returns
     -------
     CheapState
-        Force and area carried to the spacing s, NaN where the coarsest grid does not touch;
+        Force and area extrapolated to the spacing s, NaN where the coarsest grid does not touch;
         pressure and contact domain those of the finer of the two grids.
 
     Raises

@@ -1,13 +1,17 @@
-"""How far the contact solver is from exact results, and what its discretisation decides."""
+"""Convergence of the discrete contact to exact solutions, and what its discretisation decides."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from ..contact.solve import solve_contact
+from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
 from ..elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
+from .orders import slope_variables
 from .richardson import richardson
 
 # The window is this many times the contact across: what lies outside never touches.
@@ -21,14 +25,16 @@ PUNCH_CLOSURE, PUNCH_DEPTH = 0.01, 1.0
 
 #: What is compared with the exact solution, and the order in s that Richardson's extrapolation
 #: takes its error to have. The number of nodes on a disc scatters with s^1.5 about its area.
-QUANTITIES = {
+QUANTITIES: dict[str, dict[str, float]] = {
     "hertz": {"force": 2, "radius": 1, "peak_pressure": 2},
     "punch": {"force": 1, "radius": 1.5},
 }
 _WORDS = {"force": "force", "radius": "contact radius", "peak_pressure": "peak pressure"}
 
 
-def hertz_convergence(cells_per_radius=(5, 10, 20, 40), *, placements=4, rtol=1e-6):
+def hertz_convergence(
+    cells_per_radius: Sequence[int] = (5, 10, 20, 40), *, placements: int = 4, rtol: float = 1e-6
+) -> xr.Dataset:
     """Error of the Hertz contact against the number of cells across its radius.
 
     The relative errors depend on no size or modulus: a paraboloid of radius of curvature 1 mm is
@@ -49,7 +55,7 @@ def hertz_convergence(cells_per_radius=(5, 10, 20, 40), *, placements=4, rtol=1e
     -------
     Dataset
         On ``cells_per_radius``: ``force_error``, ``radius_error`` (of the disc as large as the
-        contact domain) and ``peak_pressure_error``, each a share of the exact value. For each also
+        contact domain) and ``peak_pressure_error``, relative to the exact value. For each also
         the order with which it falls with s, and the interval of the order: ``force_order``,
         ``force_order_low``, ``force_order_high`` and so on.
 
@@ -60,7 +66,9 @@ def hertz_convergence(cells_per_radius=(5, 10, 20, 40), *, placements=4, rtol=1e
     return _convergence("hertz", cells_per_radius, placements, rtol)
 
 
-def punch_convergence(cells_per_radius=(5, 10, 20, 40), *, placements=4, rtol=1e-6):
+def punch_convergence(
+    cells_per_radius: Sequence[int] = (5, 10, 20, 40), *, placements: int = 4, rtol: float = 1e-6
+) -> xr.Dataset:
     """Error of the flat circular punch against the number of cells across its radius.
 
     As `hertz_convergence`, for ``force`` and ``radius``; the pressure at the edge is infinite.
@@ -86,9 +94,8 @@ def _convergence(problem, cells_per_radius, placements, rtol):
         fit = fit_line(np.log(1 / cells), np.log(error))
         words = f"relative error of the {_WORDS[name]}, rms over positions"
         result[f"{name}_error"] = ("cells_per_radius", error, cf_attrs("1", words))
-        for end, which in zip(INTERVAL, ("slope", "slope_low", "slope_high"), strict=True):
-            words = f"order of the error of the {_WORDS[name]} in s{INTERVAL[end]}"
-            result[f"{name}_order{end}"] = ((), getattr(fit, which), cf_attrs("1", words))
+        words = f"order of the error of the {_WORDS[name]} in s"
+        result = result.assign(slope_variables(f"{name}_order", (), (), [fit], words))
     return result
 
 
@@ -132,7 +139,19 @@ def _grid(cells_per_radius, centre):
     return y[:, np.newaxis], x[np.newaxis, :], spacing
 
 
-def richardson_trials(cases, cells, *, seed=0, rtol=1e-7):
+#: Variables of `richardson_trials`: dimensions, unit, long name.
+_TRIALS = {
+    "error": (("quantity", "case"), "1", "error of Richardson's value, relative"),
+    "bar": (("quantity", "case"), "1", "its own error bar, relative"),
+    "finest": (("quantity", "case"), "1", "error at the finest spacing, relative"),
+    "within": ("quantity", "1", "cases within their own bar"),
+    "order": ("quantity", "1", "order in s assumed"),
+}
+
+
+def richardson_trials(
+    cases: int, cells: tuple[float, float], *, seed: int = 0, rtol: float = 1e-7
+) -> xr.Dataset:
     """How often Richardson's value lies within its own error bar of the exact one.
 
     Every case has its own place of the centre among the nodes and its own, not whole, number of
@@ -150,8 +169,8 @@ def richardson_trials(cases, cells, *, seed=0, rtol=1e-7):
     -------
     Dataset
         On (quantity, case): ``error`` of Richardson's value and its ``bar``, and ``finest``, the
-        error at s, all shares of the exact value; on quantity ``within``, the cases whose error is
-        no larger than the bar, and ``order``, assumed.
+        error at s, all relative to the exact value; on quantity ``within``, the cases whose error
+        is no larger than the bar, and ``order``, assumed.
     """
     generator = np.random.default_rng(seed)
     ratios = generator.uniform(*cells, size=cases)
@@ -159,7 +178,7 @@ def richardson_trials(cases, cells, *, seed=0, rtol=1e-7):
     names, orders, rows = [], [], []
     for problem, quantities in QUANTITIES.items():
         # The centre is a place, the same on every grid.
-        values = np.array(
+        errors = np.array(
             [
                 [_ERRORS[problem](ratio / k, centre / k, rtol) for k in (1, 2, 4)]
                 for ratio, centre in zip(ratios, centres, strict=True)
@@ -168,22 +187,19 @@ def richardson_trials(cases, cells, *, seed=0, rtol=1e-7):
         for i, (name, order) in enumerate(quantities.items()):
             names.append(f"{problem} {_WORDS[name]}")
             orders.append(order)
-            found = richardson(values[:, :, i].T, order)
-            rows.append((np.abs(found.value), found.error, np.abs(values[:, 0, i])))
+            limit = richardson(errors[:, :, i].T, order)
+            rows.append((np.abs(limit.value), limit.error, np.abs(errors[:, 0, i])))
     error, bar, finest = np.swapaxes(rows, 0, 1)
-    dims = ("quantity", "case")
-    return xr.Dataset(
-        {
-            "error": (dims, error, cf_attrs("1", "error of Richardson's value, relative")),
-            "bar": (dims, bar, cf_attrs("1", "its own error bar, relative")),
-            "finest": (dims, finest, cf_attrs("1", "error at the finest spacing, relative")),
-            "within": (
-                "quantity",
-                np.count_nonzero(error <= bar, axis=1),
-                cf_attrs("1", "cases within their own bar"),
-            ),
-            "order": ("quantity", orders, cf_attrs("1", "order in s assumed")),
-        },
+    values = {
+        "error": error,
+        "bar": bar,
+        "finest": finest,
+        "within": np.count_nonzero(error <= bar, axis=1),
+        "order": orders,
+    }
+    return labelled_dataset(
+        _TRIALS,
+        values,
         coords={
             "quantity": ("quantity", names, cf_attrs("1", "what is extrapolated")),
             "cells": ("case", ratios, cf_attrs("1", "cells across the radius, finest spacing")),
@@ -191,7 +207,17 @@ def richardson_trials(cases, cells, *, seed=0, rtol=1e-7):
     )
 
 
-def kernel_effect(composite, spacing, modulus, closure):
+#: Variables of `kernel_effect`: dimensions, unit, long name.
+_KERNEL_EFFECT = {
+    "force": ("kernel", "N", "normal force"),
+    "area": ("kernel", "mm2", "area of the contact domain"),
+    "stiffness": ("kernel", "N/mm", "normal stiffness dF/dw"),
+}
+
+
+def kernel_effect(
+    composite: ArrayLike, spacing: float, modulus: float, closure: float
+) -> xr.Dataset:
     """What the choice of the kernel decides: Love's, or a reading of the paper's rigid plate.
 
     Parameters
@@ -218,13 +244,8 @@ def kernel_effect(composite, spacing, modulus, closure):
         )
         for k in kernels
     ]
-    attributes = cf_attrs("1", "influence of a loaded node")
-    result = xr.Dataset(coords={"kernel": ("kernel", kernels, attributes)})
-    for name, units, label in (
-        ("force", "N", "normal force"),
-        ("area", "mm2", "area of the contact domain"),
-        ("stiffness", "N/mm", "normal stiffness dF/dw"),
-    ):
-        values = [getattr(state, name) for state in states]
-        result[name] = ("kernel", values, cf_attrs(units, label))
-    return result
+    return labelled_dataset(
+        _KERNEL_EFFECT,
+        {name: [getattr(state, name) for state in states] for name in _KERNEL_EFFECT},
+        coords={"kernel": ("kernel", kernels, cf_attrs("1", "influence of a loaded node"))},
+    )

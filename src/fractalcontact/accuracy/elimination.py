@@ -4,7 +4,7 @@ It does where the inverse M of the influence matrix K has no positive entry off 
 interpenetrating points, of interference d, p = M (d + g) with gaps g >= 0 is then a complementarity
 problem with a Z-matrix, and the paper's procedure is Chandrasekaran's for such problems: gaps only
 grow on the way to their values, so that no point is dropped that belongs to the contact. Where M
-has a positive entry, a scene can be made in which the first step drops a point wrongly.
+has a positive entry, a problem can be constructed whose first step drops a point wrongly.
 
 R. Chandrasekaran, Opsearch 7 (1970) 263; R. W. Cottle, J.-S. Pang & R. E. Stone, The Linear
 Complementarity Problem (1992), sect. 4.7.
@@ -13,29 +13,30 @@ Complementarity Problem (1992), sect. 4.7.
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import labelled_dataset
 from ..core.errors import NotConverged
 from ..core.labels import cf_attrs
 from ..elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
 from ..methods.common import influence_matrix
 from ..methods.registry import METHODS
-from .hard_surfaces import pressed_closure, rough_heights
+from .hard_surfaces import closure_reaching, rough_heights
 
 #: Kernel and ratio of the sides of a cell.
 CASES = [(kernel, 1.0) for kernel in ("love", *RIGID_PLATE_SELF_TERMS)] + [
     ("love", ratio) for ratio in (2.0, 8.0, 50.0)
 ]
-#: Window on which the inverse is looked at, and the range of sides of the random scenes.
+#: Window on which the inverse is examined, and the range of sides of the random problems.
 WINDOW = (12, 12)
 SIDES = (4, 14)
 RTOL = 1e-6
 #: Tolerances of the inner solves whose effect is shown.
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-#: How near the made scene comes to where it would not be one.
+#: How near the counter-example comes to where it would not be one.
 _NEARLY = 0.9
 
 
-def largest_off_diagonal(space):
-    """Largest entry of K^-1 off its diagonal, as a share of the diagonal entry of its row.
+def largest_off_diagonal(space: HalfSpace) -> float:
+    """Largest entry of K^-1 off its diagonal, relative to the diagonal entry of its row.
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ def largest_off_diagonal(space):
     return float((inverse / diagonal[:, None]).max())
 
 
-def counter_example(space, closure=1.0):
+def counter_example(space: HalfSpace, closure: float = 1.0) -> np.ndarray | None:
     """A topography on which the first step of elimination drops a point that is in contact.
 
     Parameters
@@ -76,7 +77,7 @@ def counter_example(space, closure=1.0):
     i, j = np.unravel_index((inverse / diagonal[:, None]).argmax(), inverse.shape)
     if not inverse[i, j] > 0:
         return None
-    everywhere = np.ones(space.shape, bool)
+    everywhere = np.ones(space.shape, dtype=bool)
     influence = influence_matrix(space, everywhere, everywhere)
     pressure = np.ones(len(influence))
     pressure[j] = 0.0
@@ -88,86 +89,92 @@ def counter_example(space, closure=1.0):
     return (closure * interference / interference.max()).reshape(space.shape)
 
 
-def elimination(draws=200):
+#: Variables of `elimination`: dimensions, unit, long name.
+_ELIMINATION = {
+    "largest_off_diagonal": (
+        "case",
+        "1",
+        "largest entry of the inverse influence matrix off its diagonal",
+    ),
+    "tried": ("case", "1", "random problems tried"),
+    "wrong": ("case", "1", "problems on which a dropped point is left interpenetrating"),
+    "force_error": ("case", "1", "largest relative error of the force of those"),
+    "counter_example": (
+        "case",
+        "1",
+        "1 where a problem constructed on purpose defeats it, 0 where none can be constructed",
+    ),
+    "lost": ("tolerance", "1", "fraction of problems that lose nodes of the contact"),
+    "area_error": ("tolerance", "1", "largest error of A_r, relative"),
+}
+
+
+def elimination(draws: int = 200) -> xr.Dataset:
     """How often the paper's algorithm ends on a wrong set, kernel by kernel.
 
     Parameters
     ----------
     draws : int
-        Random rough scenes a case.
+        Random rough problems per case.
 
     Returns
     -------
     xr.Dataset
         On ``case``, with ``kernel`` and ``ratio`` of the sides of a cell: ``tried``, ``wrong``, the
         largest ``force_error`` of those; ``largest_off_diagonal``; ``counter_example``, whether one
-        made on purpose defeats it. On ``tolerance``, with Love's kernel: the share of scenes that
-        ``lost`` a node of the contact to an inexact solve, and the largest ``area_error`` of them.
+        constructed on purpose defeats it. On ``tolerance``, with Love's kernel: the fraction of
+        problems that ``lost`` a node of the contact to an inexact solve, and the largest
+        ``area_error`` of them.
     """
-    rows = [_case(kernel, ratio, draws) for kernel, ratio in CASES]
-    result = xr.Dataset(
+    by_case = zip(*[_case(kernel, ratio, draws) for kernel, ratio in CASES], strict=True)
+    by_tolerance = zip(*[_inexact(tolerance, draws) for tolerance in TOLERANCES], strict=True)
+    columns = [np.array(column) for column in (*by_case, *by_tolerance)]
+    kernels, ratios = zip(*CASES, strict=True)
+    return labelled_dataset(
+        _ELIMINATION,
+        dict(zip(_ELIMINATION, columns, strict=True)),
         coords={
             "tolerance": ("tolerance", list(TOLERANCES), cf_attrs("1", "tolerance of the solves")),
             "case": [f"{kernel}, cells {ratio:g}:1" for kernel, ratio in CASES],
-            "kernel": ("case", [kernel for kernel, _ in CASES]),
-            "ratio": (
-                "case",
-                [ratio for _, ratio in CASES],
-                cf_attrs("1", "ratio of a cell's sides"),
-            ),
+            "kernel": ("case", list(kernels)),
+            "ratio": ("case", list(ratios), cf_attrs("1", "ratio of a cell's sides")),
         },
         attrs={"rtol": RTOL, "window": WINDOW, "sides": SIDES},
     )
-    labels = {
-        "largest_off_diagonal": "largest entry of the inverse influence matrix off its diagonal",
-        "tried": "random scenes tried",
-        "wrong": "scenes on which a dropped point is left interpenetrating",
-        "force_error": "largest relative error of the force of those",
-        "counter_example": "1 where a scene made on purpose defeats it, 0 where none can be made",
-    }
-    for name, values in zip(labels, zip(*rows, strict=True), strict=True):
-        result[name] = "case", np.array(values), cf_attrs("1", labels[name])
-    lost, area_error = np.array([_inexact(tolerance, draws) for tolerance in TOLERANCES]).T
-    result["lost"] = (
-        "tolerance",
-        lost,
-        cf_attrs("1", "scenes that lose nodes of the contact, share"),
-    )
-    result["area_error"] = "tolerance", area_error, cf_attrs("1", "largest error of A_r, relative")
-    return result
 
 
 def _inexact(tolerance, draws):
-    """Share of scenes that lose contact nodes to inexact solves, and the largest error of A_r."""
+    """Fraction of problems that lose contact nodes to inexact solves; largest error of A_r."""
     errors = []
     for draw in range(draws):
-        height, space, closure = _random_scene(draw, "love", 1.0)
-        found = METHODS["paper"](height, space, closure=closure, rtol=tolerance)
+        height, space, closure = _random_problem(draw, "love", 1.0)
+        inexact = METHODS["paper"](height, space, closure=closure, rtol=tolerance)
         exact = METHODS["dense"](height, space, closure=closure)
-        if (exact.in_contact & ~found.in_contact).any():
-            errors.append(abs(found.area / exact.area - 1))
+        if (exact.in_contact & ~inexact.in_contact).any():
+            errors.append(abs(inexact.area / exact.area - 1))
     return len(errors) / draws, max(errors, default=0.0)
 
 
-def _random_scene(draw, kernel, ratio):
+def _random_problem(draw, kernel, ratio):
     """A rough surface, its half-space and a closure."""
     generator = np.random.default_rng(draw)
     shape = tuple(int(n) for n in generator.integers(*SIDES, size=2))
     height = rough_heights(generator, shape, generator.uniform(0.1, 0.9))
-    closure = pressed_closure(height, generator.uniform(0.3, 1)) * generator.uniform(1, 6)
+    closure = closure_reaching(height, generator.uniform(0.3, 1)) * generator.uniform(1, 6)
     return height, HalfSpace(shape, (ratio, 1.0), 1.0, kernel=kernel), closure
 
 
 def _case(kernel, ratio, draws):
+    """The values of `_ELIMINATION` on a case."""
     wrong, worst = 0, 0.0
     for draw in range(draws):
-        height, space, closure = _random_scene(draw, kernel, ratio)
+        height, space, closure = _random_problem(draw, kernel, ratio)
         error = _error_of_elimination(height, space, closure)
         if error is not None:
             wrong, worst = wrong + 1, max(worst, error)
     space = HalfSpace(WINDOW, (ratio, 1.0), 1.0, kernel=kernel)
-    made = counter_example(space)
-    defeated = made is not None and _error_of_elimination(made, space, 1.0) is not None
+    height = counter_example(space)
+    defeated = height is not None and _error_of_elimination(height, space, 1.0) is not None
     return largest_off_diagonal(space), draws, wrong, worst, int(defeated)
 
 
@@ -182,6 +189,7 @@ def _error_of_elimination(height, space, closure):
 
 
 def _inverse(space):
-    everywhere = np.ones(space.shape, bool)
+    """Inverse of the influence matrix, and its diagonal."""
+    everywhere = np.ones(space.shape, dtype=bool)
     inverse = np.linalg.inv(influence_matrix(space, everywhere, everywhere))
     return inverse, np.diag(inverse).copy()

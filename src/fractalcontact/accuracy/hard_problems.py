@@ -1,33 +1,36 @@
 """Contact problems of the kinds that methods fail on, each drawn at random from a seed.
 
-The scenes of `scenes` mix sizes, shapes and units at random to find any fault of our own solver.
-Here every kind isolates one difficulty and stays small enough for direct elimination, so that it
-can be said of any method which difficulty it cannot take.
+Those of `random_problems` mix sizes, shapes and units to find any fault of our own solver. Here
+every kind isolates one difficulty and stays small enough for direct elimination, so that it can be
+said of any method which difficulty it cannot take.
 
 Kinds that are hard for their surface, or for how deeply it is pressed, are in `hard_surfaces`; here
 are those hard for their window, units, start or hardness, or for what they lack.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 
 from ..contact.solve import ContactState, solve_contact
 from .hard_surfaces import (
     SURFACES,
-    HardScene,
-    cells,
+    HardProblem,
+    closure_reaching,
     draw_shape,
-    pressed,
-    pressed_closure,
+    half_space,
+    loaded,
     rough_heights,
+    rough_surface,
     scaled,
 )
 
-#: Capped scenes: hardness as a share of the largest elastic pressure.
+#: Capped problems: hardness relative to the largest elastic pressure.
 YIELDING = {"cap, some yield": (0.5, 0.9), "cap, most yield": (0.05, 0.2)}
 
 
-def hard_scene(kind, draw):
-    """A scene that is the same for the same kind and number.
+def hard_problem(kind: str, draw: int) -> HardProblem:
+    """A contact problem that is the same for the same kind and number.
 
     Parameters
     ----------
@@ -37,7 +40,7 @@ def hard_scene(kind, draw):
 
     Returns
     -------
-    HardScene
+    HardProblem
     """
     number = list(KINDS).index(kind)
     generator = np.random.default_rng([number, draw])
@@ -45,12 +48,12 @@ def hard_scene(kind, draw):
 
 
 def _window(shape_of, stretch_of=lambda generator: 1.0):
-    def scene(kind, generator):
+    def problem(kind, generator):
         shape, stretch = shape_of(generator), stretch_of(generator)
         height = scaled(rough_heights(generator, shape))
-        return pressed(kind, generator, height, space=cells(shape, stretch=stretch))
+        return loaded(kind, generator, height, space=half_space(shape, stretch=stretch))
 
-    return scene
+    return problem
 
 
 def _strip(generator):
@@ -74,44 +77,44 @@ def _tiny(generator):
 def _length_unit(cell):
     """The same problem with lengths counted in another unit, and an odd unit of stress."""
 
-    def scene(kind, generator):
-        height = scaled(rough_heights(generator, draw_shape(generator))) * (cell / 0.1)
-        space = cells(height.shape, cell=cell, modulus=10 ** generator.uniform(-6, 12))
-        return pressed(kind, generator, height, space=space)
+    def problem(kind, generator):
+        height = rough_surface(generator) * (cell / 0.1)
+        space = half_space(height.shape, cell=cell, modulus=10 ** generator.uniform(-6, 12))
+        return loaded(kind, generator, height, space=space)
 
-    return scene
+    return problem
 
 
 def _offset(sign):
-    def scene(kind, generator):
-        height = scaled(rough_heights(generator, draw_shape(generator)))
-        return pressed(kind, generator, height + sign * 1e6 * np.ptp(height))
+    def problem(kind, generator):
+        height = rough_surface(generator)
+        return loaded(kind, generator, height + sign * 1e6 * np.ptp(height))
 
-    return scene
+    return problem
 
 
 def _single_precision(kind, generator):
-    height = scaled(rough_heights(generator, draw_shape(generator))).astype(np.float32)
-    return pressed(kind, generator, height)
+    height = rough_surface(generator).astype(np.float32)
+    return loaded(kind, generator, height)
 
 
 def _start(make):
     """A warm start from a state that is not near the one asked for."""
 
-    def scene(kind, generator):
+    def problem(kind, generator):
         shape = draw_shape(generator)
         height = scaled(rough_heights(generator, shape))
-        space = cells(shape)
-        plain = pressed(kind, generator, height, space=space, by_force=False)
+        space = half_space(shape)
+        plain = loaded(kind, generator, height, space=space, by_force=False)
         start = make(generator, height, space, plain.load["closure"])
-        return HardScene(kind, height, space, {**plain.load, "start": start})
+        return HardProblem(kind, height, space, {**plain.load, "start": start})
 
-    return scene
+    return problem
 
 
 def _of_other_surface(generator, height, space, closure):
     other = scaled(rough_heights(generator, height.shape, hurst=0.4))
-    return solve_contact(other, space, closure=pressed_closure(other, 0.4))
+    return solve_contact(other, space, closure=closure_reaching(other, 0.4))
 
 
 def _of_higher_load(generator, height, space, closure):
@@ -133,11 +136,11 @@ def _garbage(generator, height, space, closure):
 
 
 def _capped(kind, generator):
-    height = scaled(rough_heights(generator, draw_shape(generator)))
-    space = cells(height.shape)
-    closure = pressed_closure(height, generator.uniform(0.1, 0.6))
+    height = rough_surface(generator)
+    space = half_space(height.shape)
+    closure = closure_reaching(height, generator.uniform(0.1, 0.6))
     elastic = solve_contact(height, space, closure=closure).pressure.max()
-    return HardScene(
+    return HardProblem(
         kind,
         height,
         space,
@@ -147,33 +150,33 @@ def _capped(kind, generator):
 
 def _all_but_capped(kind, generator):
     """A force just below what the whole window carries at the hardness."""
-    height = scaled(rough_heights(generator, draw_shape(generator)))
-    space = cells(height.shape)
+    height = rough_surface(generator)
+    space = half_space(height.shape)
     hardness = 10 ** generator.uniform(0, 3)
     most = hardness * height.size * space.cell_area
     load = {"force": most * (1 - 10 ** generator.uniform(-6, -1)), "hardness": hardness}
-    return HardScene(kind, height, space, load)
+    return HardProblem(kind, height, space, load)
 
 
 def _above_the_cap(kind, generator):
     """More than the window can carry: there is no such state."""
-    height = scaled(rough_heights(generator, draw_shape(generator)))
-    space = cells(height.shape)
+    height = rough_surface(generator)
+    space = half_space(height.shape)
     hardness = 10 ** generator.uniform(0, 3)
     force = hardness * height.size * space.cell_area * generator.uniform(1, 10)
     load = {"force": force, "hardness": hardness}
-    return HardScene(kind, height, space, load, solvable=False)
+    return HardProblem(kind, height, space, load, solvable=False)
 
 
 def _missing_cell(kind, generator):
-    height = scaled(rough_heights(generator, draw_shape(generator)))
-    closure = pressed_closure(height, 0.3)
+    height = rough_surface(generator)
+    closure = closure_reaching(height, 0.3)
     height.flat[generator.integers(height.size)] = generator.choice([np.nan, np.inf, -np.inf])
-    return HardScene(kind, height, cells(height.shape), {"closure": closure}, solvable=False)
+    return HardProblem(kind, height, half_space(height.shape), {"closure": closure}, solvable=False)
 
 
-#: Every kind of scene, and what draws one. Their order is part of what is drawn.
-KINDS = {
+#: Every kind of problem, and what draws one. Their order is part of what is drawn.
+KINDS: dict[str, Callable[[str, np.random.Generator], HardProblem]] = {
     **SURFACES,
     "window 8:1": _window(_strip),
     "window one cell wide": _window(_row),

@@ -1,9 +1,11 @@
-"""Contact problems that are hard for their surface or for how deeply it is pressed.
+"""Contact problems that are hard for their surface or for how far it is loaded.
 
-What all scenes of `hard_scenes` are drawn with stands here too: shapes, rough heights, loads.
+What all kinds of `hard_problems` are drawn with stands here too: shapes, rough heights, loads.
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -16,17 +18,17 @@ SIDES = (20, 33)
 
 
 @dataclass(frozen=True)
-class HardScene:
-    """One contact problem.
+class HardProblem:
+    """A contact problem of a kind that methods fail on.
 
     Attributes
     ----------
     kind : str
-        A key of `hard_scenes.KINDS`.
+        A key of `hard_problems.KINDS`.
     height : (ny, nx) ndarray
         Composite topography, mm.
     space : HalfSpace
-    load : dict
+    load : mapping
         Keywords for a solver: ``closure`` (mm) or ``force`` (N), and where it matters ``hardness``
         (MPa) and ``start``.
     solvable : bool
@@ -36,16 +38,19 @@ class HardScene:
     kind: str
     height: np.ndarray
     space: HalfSpace
-    load: dict = field(default_factory=dict)
+    load: Mapping[str, Any] = field(default_factory=dict)
     solvable: bool = True
 
 
-def draw_shape(generator):
-    """Cells (ny, nx) of a window."""
-    return tuple(int(n) for n in generator.integers(*SIDES, size=2))
+def draw_shape(generator: np.random.Generator) -> tuple[int, int]:
+    """Cells (ny, nx) of a window, drawn at random."""
+    ny, nx = generator.integers(*SIDES, size=2)
+    return int(ny), int(nx)
 
 
-def rough_heights(generator, shape, hurst=0.8):
+def rough_heights(
+    generator: np.random.Generator, shape: tuple[int, int], hurst: float = 0.8
+) -> np.ndarray:
     """Self-affine heights of about unit standard deviation.
 
     Parameters
@@ -63,19 +68,32 @@ def rough_heights(generator, shape, hurst=0.8):
     return self_affine((n, n), 1.0, hurst, rms=1.0, seed=seed)[: shape[0], : shape[1]]
 
 
-def cells(shape, *, cell=0.1, stretch=1.0, modulus=1e4):
-    """The half-space under so many cells, ``stretch`` times as long along y as along x."""
+def scaled(height: np.ndarray, slope: float = 0.1, cell: float = 0.1) -> np.ndarray:
+    """Heights with a mean step of ``slope`` times ``cell`` (mm) from node to node along x."""
+    steps = np.abs(np.diff(height, axis=1)).mean() if height.shape[1] > 1 else 0.0
+    return height * (slope * cell / steps) if steps > 0 else height
+
+
+def rough_surface(generator: np.random.Generator) -> np.ndarray:
+    """A self-affine surface of a window drawn at random, scaled: what most kinds begin with, mm."""
+    return scaled(rough_heights(generator, draw_shape(generator)))
+
+
+def half_space(
+    shape: tuple[int, ...], *, cell: float = 0.1, stretch: float = 1.0, modulus: float = 1e4
+) -> HalfSpace:
+    """The half-space under so many cells (mm), ``stretch`` times as long along y as along x."""
     return HalfSpace(tuple(shape), (cell * stretch, cell), modulus)
 
 
-def pressed_closure(height, share):
-    """Closure at which a share of the nodes lies above the rigid plane, before they give way.
+def closure_reaching(height: np.ndarray, fraction: float) -> float:
+    """Closure at which a fraction of the nodes lies above the rigid plane, before they give way.
 
     Parameters
     ----------
     height : (ny, nx) ndarray
         mm.
-    share : float
+    fraction : float
         From 0 to 1.
 
     Returns
@@ -84,15 +102,36 @@ def pressed_closure(height, share):
         mm, above zero unless all heights are equal.
     """
     depth = np.sort(height.max() - height, axis=None)
-    reached = depth[min(int(share * depth.size), depth.size - 1)]
+    reached = depth[min(int(fraction * depth.size), depth.size - 1)]
     return float(max(reached, depth[min(1, depth.size - 1)], 1e-3 * depth[-1]))
 
 
-def pressed(kind, generator, height, *, share=(0.05, 0.6), space=None, by_force=None):
-    """A scene pressed to a random share of its nodes, by closure or by force."""
-    space = cells(height.shape) if space is None else space
-    closure = pressed_closure(height, generator.uniform(*share))
-    return HardScene(kind, height, space, _load(generator, space, closure, by_force))
+def loaded(
+    kind: str,
+    generator: np.random.Generator,
+    height: np.ndarray,
+    *,
+    fraction: tuple[float, float] = (0.05, 0.6),
+    space: HalfSpace | None = None,
+    by_force: bool | None = None,
+) -> HardProblem:
+    """A problem loaded until the plane reaches a random fraction of its nodes.
+
+    Parameters
+    ----------
+    kind : str
+    generator : numpy.random.Generator
+    height : (ny, nx) ndarray
+        mm.
+    fraction : (float, float)
+        The least and the most of it.
+    space : HalfSpace, optional
+    by_force : bool, optional
+        Whether a force is given rather than a closure; by default as chance has it.
+    """
+    space = half_space(height.shape) if space is None else space
+    closure = closure_reaching(height, generator.uniform(*fraction))
+    return HardProblem(kind, height, space, _load(generator, space, closure, by_force))
 
 
 def _load(generator, space, closure, by_force=None):
@@ -110,70 +149,64 @@ def _load(generator, space, closure, by_force=None):
 
 
 def _rough_of(hurst):
-    def scene(kind, generator):
-        return pressed(
+    def problem(kind, generator):
+        return loaded(
             kind, generator, scaled(rough_heights(generator, draw_shape(generator), hurst))
         )
 
-    return scene
-
-
-def scaled(height, slope=0.1, cell=0.1):
-    """Heights with a mean step of ``slope`` along x."""
-    steps = np.abs(np.diff(height, axis=1)).mean() if height.shape[1] > 1 else 0.0
-    return height * (slope * cell / steps) if steps > 0 else height
+    return problem
 
 
 def _sloped(low, high):
-    def scene(kind, generator):
+    def problem(kind, generator):
         slope = 10 ** generator.uniform(low, high)
-        return pressed(
+        return loaded(
             kind, generator, scaled(rough_heights(generator, draw_shape(generator)), slope)
         )
 
-    return scene
+    return problem
 
 
 def _first_touch(by_force):
-    def scene(kind, generator):
-        height = scaled(rough_heights(generator, draw_shape(generator)))
+    def problem(kind, generator):
+        height = rough_surface(generator)
         second = np.sort(height, axis=None)[-2]
-        space = cells(height.shape)
+        space = half_space(height.shape)
         closure = (height.max() - second) * generator.uniform(1e-3, 0.9)
         load = {"closure": closure}
         if by_force:
             load = {"force": space.modulus * space.cell * closure}
-        return HardScene(kind, height, space, load)
+        return HardProblem(kind, height, space, load)
 
-    return scene
+    return problem
 
 
 def _load_of(low, high):
-    def scene(kind, generator):
-        height = scaled(rough_heights(generator, draw_shape(generator)))
-        space = cells(height.shape)
+    def problem(kind, generator):
+        height = rough_surface(generator)
+        space = half_space(height.shape)
         closure = np.ptp(height) * 10 ** generator.uniform(low, high)
-        return HardScene(kind, height, space, _load(generator, space, closure))
+        return HardProblem(kind, height, space, _load(generator, space, closure))
 
-    return scene
+    return problem
 
 
 def _no_load(kind, generator):
-    height = scaled(rough_heights(generator, draw_shape(generator)))
+    height = rough_surface(generator)
     control = str(generator.choice(["closure", "force"]))
-    return HardScene(kind, height, cells(height.shape), {control: 0.0})
+    return HardProblem(kind, height, half_space(height.shape), {control: 0.0})
 
 
 def _peaks(places):
     """Single nodes above a rough surface; ``places`` chooses them from the shape."""
 
-    def scene(kind, generator):
-        height = scaled(rough_heights(generator, draw_shape(generator)))
+    def problem(kind, generator):
+        height = rough_surface(generator)
         for place in places(generator, height.shape):
             height[place] = height.max() + np.ptp(height) * generator.uniform(0.5, 20)
-        return pressed(kind, generator, height, share=(0.01, 0.3))
+        return loaded(kind, generator, height, fraction=(0.01, 0.3))
 
-    return scene
+    return problem
 
 
 def _anywhere(generator, shape):
@@ -194,10 +227,10 @@ def _several(generator, shape):
 
 def _twins(kind, generator):
     """Two equal peaks, which touch at the same moment."""
-    height = scaled(rough_heights(generator, draw_shape(generator)))
+    height = rough_surface(generator)
     top = height.max() + np.ptp(height)
     height[0, 0] = height[-1, -1] = top
-    return pressed(kind, generator, height, share=(0.01, 0.3))
+    return loaded(kind, generator, height, fraction=(0.01, 0.3))
 
 
 def _spike_on_a_mirror(kind, generator):
@@ -208,59 +241,59 @@ def _spike_on_a_mirror(kind, generator):
     """
     height = np.round(7 * generator.standard_t(4, size=draw_shape(generator))) * 1e-6
     height.flat[generator.integers(height.size)] = 1.3e-3 + height.std()
-    space = cells(height.shape, cell=0.024)
+    space = half_space(height.shape, cell=0.024)
     closure = generator.uniform(1, 1.05) * (height.max() - np.quantile(height, 0.98))
     force = solve_contact(height, space, closure=closure).force
-    return HardScene(kind, height, space, {"force": force})
+    return HardProblem(kind, height, space, {"force": force})
 
 
 def _pits(kind, generator):
-    height = scaled(rough_heights(generator, draw_shape(generator)))
+    height = rough_surface(generator)
     height.flat[generator.integers(height.size, size=6)] -= 20 * np.ptp(height)
-    return pressed(kind, generator, height, share=(0.3, 0.9))
+    return loaded(kind, generator, height, fraction=(0.3, 0.9))
 
 
 def _plateau(kind, generator):
-    height = scaled(rough_heights(generator, draw_shape(generator)))
+    height = rough_surface(generator)
     height = np.minimum(height, np.quantile(height, generator.uniform(0.2, 0.95)))
-    return pressed(kind, generator, height)
+    return loaded(kind, generator, height)
 
 
 def _ties(kind, generator):
     height = np.round(3 * rough_heights(generator, draw_shape(generator))) / 300
-    return pressed(kind, generator, height)
+    return loaded(kind, generator, height)
 
 
 def _zero(by_force):
-    def scene(kind, generator):
+    def problem(kind, generator):
         height = np.zeros(draw_shape(generator))
-        space = cells(height.shape)
+        space = half_space(height.shape)
         load = {"force": 10 ** generator.uniform(-3, 3)}
         if not by_force:
             load = {"closure": 10 ** generator.uniform(-4, 0)}
-        return HardScene(kind, height, space, load)
+        return HardProblem(kind, height, space, load)
 
-    return scene
+    return problem
 
 
 def _last_bit(kind, generator):
     """Heights that differ by one unit in the last place."""
     height = 1.0 + np.spacing(1.0) * generator.integers(0, 2, size=draw_shape(generator))
-    space = cells(height.shape)
-    return HardScene(kind, height, space, {"closure": 10 ** generator.uniform(-3, 0)})
+    space = half_space(height.shape)
+    return HardProblem(kind, height, space, {"closure": 10 ** generator.uniform(-3, 0)})
 
 
-def _made(make):
+def _shaped(make):
     """A topography from coordinates (y, x) in [-1, 1] across the longer side."""
 
-    def scene(kind, generator):
+    def problem(kind, generator):
         shape = draw_shape(generator)
         longest = max(shape)
         y, x = ((np.arange(n) - (n - 1) / 2) * 2 / longest for n in shape)
         height = make(generator, y[:, None] + 0 * x, x[None, :] + 0 * y[:, None])
-        return pressed(kind, generator, np.ascontiguousarray(0.05 * height))
+        return loaded(kind, generator, np.ascontiguousarray(0.05 * height))
 
-    return scene
+    return problem
 
 
 def _paraboloid(generator, y, x):
@@ -301,22 +334,22 @@ def _noise(generator, y, x):
     return generator.standard_normal(y.shape)
 
 
-#: Kinds of scene, and what draws one.
-SURFACES = {
+#: Kinds of problem, and what draws one from its kind and a generator.
+SURFACES: dict[str, Callable[[str, np.random.Generator], HardProblem]] = {
     "H = 0.1": _rough_of(0.1),
     "H = 0.3": _rough_of(0.3),
     "H = 0.5": _rough_of(0.5),
     "H = 0.8": _rough_of(0.8),
     "H = 0.99": _rough_of(0.99),
-    "white noise": _made(_noise),
-    "paraboloid": _made(_paraboloid),
-    "cone": _made(_cone),
-    "cylinder": _made(_cylinder),
-    "tilted plane": _made(_tilted),
-    "egg box": _made(_egg_box),
-    "checkerboard": _made(_checkerboard),
-    "comb": _made(_comb),
-    "step": _made(_step),
+    "white noise": _shaped(_noise),
+    "paraboloid": _shaped(_paraboloid),
+    "cone": _shaped(_cone),
+    "cylinder": _shaped(_cylinder),
+    "tilted plane": _shaped(_tilted),
+    "egg box": _shaped(_egg_box),
+    "checkerboard": _shaped(_checkerboard),
+    "comb": _shaped(_comb),
+    "step": _shaped(_step),
     "slopes 10 to 1000": _sloped(1, 3),
     "slopes 1e-9 to 1e-4": _sloped(-9, -4),
     "one node, by closure": _first_touch(False),

@@ -1,14 +1,16 @@
 """Random contact problems of every size, shape and unit, and a judge of their states."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.signal import fftconvolve
 
+from ..contact.solve import ContactState
 from ..elastic.halfspace import HalfSpace, love_displacement
 from ..surface.synthesis import self_affine
 
-#: What a scene's topography is made of.
+#: What a problem's topography is.
 KINDS = (
     "rough",
     "spikes",
@@ -21,33 +23,33 @@ KINDS = (
     "comb",
     "step",
 )
-#: How hard it is pressed: the share of nodes wanted within reach of the plane.
-PRESSED = ("first touch", "light", "half", "heavy", "full")
+#: How far it is loaded: the fraction of nodes wanted within reach of the plane.
+LOADINGS = ("first touch", "light", "half", "heavy", "full")
 
 
 @dataclass(frozen=True)
-class Scene:
-    """A contact problem.
+class RandomProblem:
+    """A contact problem drawn at random.
 
     Attributes
     ----------
     name : str
-        What it is made of and how hard it is pressed.
+        What its topography is and how far it is loaded.
     height : (ny, nx) ndarray
         Composite topography, mm.
     space : HalfSpace
-    load : dict
+    load : mapping
         ``closure`` in mm or ``force`` in N.
     """
 
     name: str
     height: np.ndarray
     space: HalfSpace
-    load: dict
+    load: Mapping[str, float]
 
 
-def random_scene(seed, *, largest=400):
-    """A scene that is the same for the same seed.
+def random_problem(seed: int, *, largest: int = 400) -> RandomProblem:
+    """A contact problem that is the same for the same seed.
 
     Parameters
     ----------
@@ -58,10 +60,11 @@ def random_scene(seed, *, largest=400):
 
     Returns
     -------
-    Scene
+    RandomProblem
     """
     generator = np.random.default_rng(seed)
-    kind, pressed = KINDS[seed % len(KINDS)], PRESSED[seed // len(KINDS) % len(PRESSED)]
+    kind = KINDS[seed % len(KINDS)]
+    loading = LOADINGS[seed // len(KINDS) % len(LOADINGS)]
     shape = _shape(generator, seed, largest)
     height = _topography(generator, kind, shape, seed)
     cell = 10 ** generator.uniform(-6, 3)  # from nm to m, in mm
@@ -72,11 +75,11 @@ def random_scene(seed, *, largest=400):
     span = np.ptp(height)
     if kind == "raised":
         height = height + 1e6 * span
-    closure = _closure(generator, height, pressed)
+    closure = _closure(generator, height, loading)
     # A rough guess at the force for that closure: any force has its state.
     force = space.modulus * np.sqrt(height.size) * space.cell * closure
     load = {"closure": closure} if generator.random() < 0.5 else {"force": force}
-    return Scene(f"{kind}, {pressed}", height, space, load)
+    return RandomProblem(f"{kind}, {loading}", height, space, load)
 
 
 def _shape(generator, seed, largest):
@@ -115,18 +118,19 @@ def _topography(generator, kind, shape, seed):
     return height
 
 
-def _closure(generator, height, pressed):
+def _closure(generator, height, loading):
+    """A closure that reaches about the nodes that a loading asks for, mm."""
     depth = np.sort(height.max() - height, axis=None)
-    if pressed == "first touch":
+    if loading == "first touch":
         return max(depth[min(2, depth.size - 1)], 1e-6 * depth[-1]) * generator.uniform(0.2, 1)
-    if pressed == "full":
+    if loading == "full":
         return depth[-1] * 10 ** generator.uniform(0.5, 2.5)
-    share = {"light": 0.05, "half": 0.5, "heavy": 0.9}[pressed] * generator.uniform(0.5, 1)
+    fraction = {"light": 0.05, "half": 0.5, "heavy": 0.9}[loading] * generator.uniform(0.5, 1)
     # Nodes are pushed down around those in contact, hence the factor.
-    return depth[int(share * (depth.size - 1))] * generator.uniform(1, 3) + 1e-6 * depth[-1]
+    return depth[int(fraction * (depth.size - 1))] * generator.uniform(1, 3) + 1e-6 * depth[-1]
 
 
-def violation(state, height):
+def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
     """Largest violation of the contact conditions, judged by a convolution of its own.
 
     Parameters
@@ -139,8 +143,8 @@ def violation(state, height):
     Returns
     -------
     violation, rounding : float
-        Shares of the closure: how far gaps and pressures are from a state of contact, and how much
-        of it the rounding of the heights themselves explains.
+        Relative to the closure: how far gaps and pressures are from a state of contact, and how
+        much of it the rounding of the heights themselves explains.
     """
     (ny, nx), (dy, dx) = state.space.shape, state.space.spacing
     y, x = np.arange(1 - ny, ny)[:, None] * dy, np.arange(1 - nx, nx)[None, :] * dx

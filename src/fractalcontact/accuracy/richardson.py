@@ -3,16 +3,17 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
 class Extrapolated(NamedTuple):
-    """A value at zero spacing and its error bar, both in the unit of the values."""
+    """Values at zero spacing and their error bars, in the unit and shape (...) of those given."""
 
-    value: float
-    error: float
+    value: np.ndarray
+    error: np.ndarray
 
 
-def richardson(values, order):
+def richardson(values: ArrayLike, order: float) -> Extrapolated:
     """Extrapolate values at the spacings s, 2 s and 4 s to zero spacing.
 
     Parameters

@@ -1,19 +1,23 @@
-"""Which method solves which kind of scene: right, an honest failure, or silently wrong."""
+"""Stability of solvers by kind of test problem: right, an honest failure, or silently wrong."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ..contact.solve import solve_contact
+from ..contact.solve import ContactState, solve_contact
+from ..core.datasets import labelled_dataset
 from ..core.errors import NotConverged
-from ..core.labels import cf_attrs
-from ..methods import registry as methods
-from ..methods.peers import peer_methods
-from .hard_problems import KINDS, hard_scene
+from ..methods.common import NotOffered
+from ..methods.registry import METHODS, installed_peers
+from .hard_problems import KINDS, hard_problem
+from .hard_surfaces import HardProblem
 from .random_problems import violation
 
 RTOL = 1e-6
-#: A state is right if it violates the conditions by no more than this many times the tolerance:
-#: methods judge themselves with other roundings than the judge.
+#: A state is right if it violates the contact conditions by no more than this many times the
+#: tolerance: methods judge themselves with other roundings than the judge.
 MARGIN = 2.0
 #: And if its force (its closure, where the force was given) is that of direct elimination.
 AGREEMENT = 1e-4
@@ -24,53 +28,72 @@ PEER_RTOLS = (RTOL, 1e-8, 1e-10, 1e-12, 1e-14)
 #: Verdicts, in the order of their codes.
 VERDICTS = ("right", "honest failure", "silently wrong", "not offered")
 RIGHT, HONEST, SILENT, NOT_OFFERED = range(len(VERDICTS))
-#: What a method says of a load it was not made for.
-_NOT_MADE_FOR = ("a closure only", "a force only", "knows no hardness", "solves another problem")
 #: How the package's solvers say that they failed; public codes raise whatever they raise.
-_OWN_WORDS = (NotConverged, ValueError)
+_OWN_FAILURES = (NotConverged, ValueError)
+_DIMS = ("kind", "draw", "solver")
+#: Variables of `stability`: dimensions, unit, long name.
+_STABILITY = {
+    "verdict": (_DIMS, "1", ", ".join(f"{code} {name}" for code, name in enumerate(VERDICTS))),
+    "violation": (_DIMS, "1", "largest violation of the contact conditions, relative to closure"),
+    "disagreement": (_DIMS, "1", "relative difference from direct elimination"),
+    "asked": (_DIMS, "1", "tolerance asked for"),
+    "said": (_DIMS, "1", "message of the solver"),
+}
+_DTYPES: dict[str, Any] = {"verdict": "int8", "said": object}
+
+#: A solver with the call of `fractalcontact.solve_contact`.
+Solver = Callable[..., ContactState]
 
 
-def solvers():
+class Judgement(NamedTuple):
+    """Verdict on a solver's answer to one problem, in the order of the variables."""
+
+    verdict: int
+    violation: float
+    disagreement: float
+    asked: float
+    said: str
+
+
+def solvers() -> dict[str, Solver]:
     """Every solver by name: ours first, those kept for comparison, public codes if installed."""
-    return {"fractalcontact": solve_contact, **methods.METHODS, **peer_methods()}
+    return {"fractalcontact": solve_contact, **METHODS, **installed_peers()}
 
 
-def stability(kinds=None, draws=25):
+def stability(kinds: Sequence[str] | None = None, draws: int = 25) -> xr.Dataset:
     """Verdicts on every solver.
 
     Parameters
     ----------
-    kinds : list of str, optional
-        Keys of `hard_scenes.KINDS`; all by default.
+    kinds : sequence of str, optional
+        Keys of `hard_problems.KINDS`; all by default.
     draws : int
-        Scenes of each kind.
+        Problems of each kind.
 
     Returns
     -------
     xr.Dataset
         On (kind, draw, solver): ``verdict``, an index into `VERDICTS`; ``violation`` of the contact
-        conditions as a share of the closure, and ``disagreement`` with direct elimination, NaN
-        where no state was returned; ``asked``, the tolerance at which it was judged: of peers one
-        of `PEER_RTOLS`; ``said``, what the solver said of a failure.
-        ``hard_scene(kind, draw)`` makes the scene again.
+        conditions relative to the closure, and ``disagreement`` with direct elimination, NaN where
+        no state was returned; ``asked``, the tolerance at which it was judged: of peers one of
+        `PEER_RTOLS`; ``said``, the message of a solver that failed.
+        ``hard_problem(kind, draw)`` makes the problem again.
     """
     kinds = list(KINDS) if kinds is None else list(kinds)
     judged = solvers()
-    found = [
-        [_judge_all(judged, hard_scene(kind, draw)) for draw in range(draws)] for kind in kinds
+    judgements = [
+        [_judge_all(judged, hard_problem(kind, draw)) for draw in range(draws)] for kind in kinds
     ]
-    codes = ", ".join(f"{code} {verdict}" for code, verdict in enumerate(VERDICTS))
-    fields = {
-        "verdict": ("int8", cf_attrs("1", codes)),
-        "violation": (
-            float,
-            cf_attrs("1", "largest violation of the conditions, share of closure"),
-        ),
-        "disagreement": (float, cf_attrs("1", "relative difference from direct elimination")),
-        "asked": (float, cf_attrs("1", "tolerance asked for")),
-        "said": (object, cf_attrs("1", "what the solver said")),
+    values = {
+        name: np.array(
+            [[[getattr(one, name) for one in problem] for problem in row] for row in judgements],
+            dtype=_DTYPES.get(name, float),
+        )
+        for name in _STABILITY
     }
-    result = xr.Dataset(
+    return labelled_dataset(
+        _STABILITY,
+        values,
         coords={"kind": kinds, "draw": np.arange(draws), "solver": list(judged)},
         attrs={
             "rtol": RTOL,
@@ -79,14 +102,10 @@ def stability(kinds=None, draws=25):
             "tightest": min(PEER_RTOLS),
         },
     )
-    for place, (name, (dtype, attributes)) in enumerate(fields.items()):
-        values = [[[verdict[place] for verdict in scene] for scene in row] for row in found]
-        result[name] = ("kind", "draw", "solver"), np.array(values, dtype=dtype), attributes
-    return result
 
 
-def join(parts):
-    """Verdicts on all kinds of scene, in the order of `hard_scenes.KINDS`.
+def join(parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Verdicts on all kinds of problem, in the order of `hard_problems.KINDS`.
 
     Parameters
     ----------
@@ -101,57 +120,58 @@ def join(parts):
     return whole.sel(kind=[kind for kind in KINDS if kind in whole["kind"]])
 
 
-def _judge_all(judged, scene):
-    """Every solver on one scene."""
-    exact = _exact(scene)
-    foreign = peer_methods()
+def _judge_all(judged: Mapping[str, Solver], problem: HardProblem) -> list[Judgement]:
+    """Judgements of every solver on one problem."""
+    exact = _exact(problem)
+    peers = installed_peers()
     return [
-        _judge_patiently(solve, scene, exact, PEER_RTOLS, Exception)
-        if name in foreign
-        else _judge_patiently(solve, scene, exact, (RTOL,), _OWN_WORDS)
+        _judge_patiently(solve, problem, exact, PEER_RTOLS, Exception)
+        if name in peers
+        else _judge_patiently(solve, problem, exact, (RTOL,), _OWN_FAILURES)
         for name, solve in judged.items()
     ]
 
 
-def _judge_patiently(solve, scene, exact, tolerances, failures):
-    """The verdict at the first tolerance where a solver is not silently wrong, or at the last."""
+def _judge_patiently(solve, problem, exact, tolerances, failures):
+    """The judgement at the first tolerance where a solver is not silently wrong, or at the last."""
     for rtol in tolerances:
-        verdict, wrong, apart, said = _judge(solve, scene, exact, rtol, failures)
-        if verdict != SILENT or not scene.solvable:
+        judgement = _judge(solve, problem, exact, rtol, failures)
+        if judgement.verdict != SILENT or not problem.solvable:
             break
-    return verdict, wrong, apart, rtol, said
+    return judgement
 
 
-def _exact(scene):
+def _exact(problem):
     """Force, or closure where the force is given, by direct elimination; NaN where that fails."""
-    load = {key: value for key, value in scene.load.items() if key != "start"}
+    load = {key: value for key, value in problem.load.items() if key != "start"}
     try:
-        state = methods.METHODS["dense"](scene.height, scene.space, **load)
+        state = METHODS["dense"](problem.height, problem.space, **load)
     except (NotConverged, ValueError):
         return np.nan
-    return _answer(state, scene)
+    return _answer(state, problem)
 
 
-def _answer(state, scene):
-    return state.closure if "force" in scene.load else state.force
+def _answer(state, problem):
+    """The one of force and closure that was not given."""
+    return state.closure if "force" in problem.load else state.force
 
 
-def _judge(solve, scene, exact, rtol, failures):
-    """Verdict, violation, disagreement and what the solver said."""
-    nothing = (np.nan, np.nan)
+def _judge(solve, problem, exact, rtol, failures):
+    """The judgement of a solver at one tolerance."""
     try:
-        state = solve(scene.height, scene.space, rtol=rtol, **scene.load)
+        state = solve(problem.height, problem.space, rtol=rtol, **problem.load)
+    except NotOffered as error:
+        return Judgement(NOT_OFFERED, np.nan, np.nan, rtol, str(error))
     except failures as error:
         said = str(error) or type(error).__name__
-        if any(words in said for words in _NOT_MADE_FOR):
-            return NOT_OFFERED, *nothing, said
-        return (HONEST if scene.solvable else RIGHT), *nothing, said
-    if not scene.solvable:
-        return SILENT, *nothing, "a state where there is none"
+        return Judgement(HONEST if problem.solvable else RIGHT, np.nan, np.nan, rtol, said)
+    if not problem.solvable:
+        return Judgement(SILENT, np.nan, np.nan, rtol, "a state where there is none")
     if state.closure == 0:
-        unloaded = not any(scene.load.get(control) for control in ("closure", "force"))
-        return (RIGHT if unloaded and not state.pressure.any() else SILENT), 0.0, 0.0, ""
-    wrong, rounding = violation(state, np.asarray(scene.height, float))
-    apart = abs(_answer(state, scene) / exact - 1)
-    right = wrong <= MARGIN * RTOL + rounding and not apart > AGREEMENT
-    return (RIGHT if right else SILENT), wrong, apart, ""
+        unloaded = not any(problem.load.get(control) for control in ("closure", "force"))
+        right = unloaded and not state.pressure.any()
+        return Judgement(RIGHT if right else SILENT, 0.0, 0.0, rtol, "")
+    worst, rounding = violation(state, np.asarray(problem.height, float))
+    disagreement = abs(_answer(state, problem) / exact - 1)
+    right = worst <= MARGIN * RTOL + rounding and not disagreement > AGREEMENT
+    return Judgement(RIGHT if right else SILENT, worst, disagreement, rtol, "")

@@ -6,29 +6,33 @@ import os
 import resource
 import sys
 import time
+from collections.abc import Callable, Sequence
+from typing import Any
 
 
-def timed(call):
-    """What a call returns, and the seconds it takes."""
+def timed(call: Callable[[], Any]) -> tuple[Any, float]:
+    """Value that a call returns, and the seconds it takes."""
     begin = time.perf_counter()
     value = call()
     return value, time.perf_counter() - begin
 
 
-def repeated(calls, first, *, runs, longest):
-    """Seconds of calls that were each made once, made again in turn.
+def repeated(
+    calls: Sequence[Callable[[], Any]], first: Sequence[float], *, runs: int, longest: float
+) -> list[list[float]]:
+    """Seconds of calls that were each made once already, made again in turn.
 
     All once, then all again: what disturbs the machine for a while disturbs all alike.
 
     Parameters
     ----------
-    calls : list of callable
-    first : list of float
+    calls : sequence of callable
+    first : sequence of float
         Seconds of the first call of each.
     runs : int
         Of each, the first included.
     longest : float
-        What took more seconds than this is not called again.
+        A call that took more seconds is not made again.
 
     Returns
     -------
@@ -42,7 +46,7 @@ def repeated(calls, first, *, runs, longest):
     return seconds
 
 
-def peak_memory(call):
+def peak_memory(call: Callable[[], Any]) -> float:
     """Largest memory that a call adds to that of the process, in bytes.
 
     Parameters
@@ -57,11 +61,11 @@ def peak_memory(call):
     """
     _hand_back()
     context = multiprocessing.get_context("fork")
-    found = context.Value("d", float("nan"))
-    child = context.Process(target=_report_memory, args=(call, found))
+    memory = context.Value("d", float("nan"))
+    child = context.Process(target=_report_memory, args=(call, memory))
     child.start()
     child.join()
-    return found.value
+    return memory.value
 
 
 def _hand_back():
@@ -71,14 +75,14 @@ def _hand_back():
         trim(0)
 
 
-def _report_memory(call, found):
+def _report_memory(call, memory):
     os.environ["OMP_NUM_THREADS"] = "1"
-    before = _largest_so_far()
+    before = _largest_resident()
     call()
-    found.value = _largest_so_far() - before
+    memory.value = _largest_resident() - before
 
 
-def _largest_so_far():
+def _largest_resident():
     """Largest resident memory of this process, bytes. A child starts at what it was forked with."""
     # Linux counts in KiB, the BSDs in bytes.
     unit = 1 if sys.platform == "darwin" else 1024

@@ -7,6 +7,5 @@ __getattr__, __dir__, __all__ = exports(
     {
         "METHODS": ".registry",
         "influence_matrix": ".common",
-        "peer_methods": ".peers",
     },
 )

@@ -1,34 +1,127 @@
-"""What the comparison solvers share: the matrix, summation without FFT, and the final check."""
+"""What the comparison solvers share: the problem, the matrix, sums without FFT, the final check."""
+
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..contact.solve import ContactState
+from ..contact.solve import ContactState, checked_hardness, checked_problem, unloaded_state
 from ..core.errors import NotConverged
+from ..elastic.halfspace import HalfSpace
 
 # Up to this many products (10 ms) the final check sums directly, which shares nothing with the FFT.
 # The FFT is always the faster way: 400 loads on 512 x 512 take 0.5 s against 0.015 s.
 LARGEST_SUM = 3_000_000
 
 
-def refuse_force(method, force):
-    """Say that a method takes a closure only, if a force is given."""
-    if force is not None:
-        raise ValueError(f"{method} takes a closure only: give closure=, not force=")
+class NotOffered(ValueError):
+    """A method was given a problem of a kind that it was not made for; the text says which."""
 
 
-def refuse_closure(method, closure):
-    """Say that a method takes a force only, if a closure is given."""
-    if closure is not None:
-        raise ValueError(f"{method} takes a force only: give force=, not closure=")
+def has_holes(composite: ArrayLike) -> bool:
+    """Whether a composite topography has cells without a height."""
+    return not np.isfinite(composite).all()
 
 
-def refuse_hardness(method, hardness):
-    """Say that a method knows no hardness, if one is given."""
-    if hardness is not None:
-        raise ValueError(f"{method} knows no hardness: leave hardness= out")
+@dataclass(frozen=True)
+class ContactProblem:
+    """A contact problem that was found sound, as the methods of the package are given it.
+
+    Attributes
+    ----------
+    space : HalfSpace
+    clearance : (ny, nx) ndarray
+        Opening at first touch, mm.
+    load : float
+        Closure w, mm, or force F, N.
+    by_force : bool
+        Which of the two.
+    hardness : float
+        Largest pressure, MPa; infinite without one.
+    start : ContactState or None
+    rtol : float
+        Largest violation allowed of the contact conditions, relative to the closure.
+    """
+
+    space: HalfSpace
+    clearance: np.ndarray
+    load: float
+    by_force: bool
+    hardness: float
+    start: ContactState | None
+    rtol: float
+
+    @property
+    def force(self) -> float | None:
+        """F, N, where it is given."""
+        return self.load if self.by_force else None
+
+    def unloaded_state(self) -> ContactState:
+        """The state of first touch."""
+        return unloaded_state(self.space, self.clearance)
+
+    def checked_state(
+        self, pressure: np.ndarray, closure: float, *, iterations: int, reason: str
+    ) -> ContactState:
+        """The state of a pressure, once its contact conditions have been verified.
+
+        Parameters
+        ----------
+        pressure : (ny, nx) ndarray
+            MPa.
+        closure : float
+            mm.
+        iterations : int
+            What the method counts as its work.
+        reason : str
+            What to say if ``rtol`` is exceeded.
+
+        Raises
+        ------
+        NotConverged
+        """
+        return checked_state(
+            self.space,
+            self.clearance,
+            pressure,
+            closure,
+            force=self.force,
+            iterations=iterations,
+            hardness=self.hardness,
+            rtol=self.rtol,
+            reason=reason,
+        )
 
 
-def influence_matrix(space, rows, columns):
+def posed_problem(
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    closure: float | None,
+    force: float | None,
+    start: ContactState | None,
+    rtol: float,
+    hardness: float | None,
+) -> ContactProblem:
+    """A contact problem, found sound.
+
+    Parameters
+    ----------
+    composite, space, closure, force, start, rtol, hardness
+        As of `fractalcontact.solve_contact`.
+
+    Raises
+    ------
+    ValueError
+        As `fractalcontact.solve_contact`.
+    """
+    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
+    limit = checked_hardness(hardness, space, force)
+    return ContactProblem(space, clearance, load, force is not None, limit, start, rtol)
+
+
+def influence_matrix(space: HalfSpace, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
     """Displacement at the nodes ``rows`` under unit pressure at the nodes ``columns``.
 
     Parameters
@@ -50,7 +143,7 @@ def influence_matrix(space, rows, columns):
     ]
 
 
-def sum_displacement(space, pressure):
+def sum_displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:
     """Displacement under a pressure by direct summation over the loaded cells.
 
     Parameters
@@ -75,15 +168,22 @@ def sum_displacement(space, pressure):
     return displacement * (space.cell / space.modulus)
 
 
-def in_stress(values, unit, hardness):
+def in_stress(values: np.ndarray, unit: float, hardness: float) -> np.ndarray:
     """Pressures counted in ``unit`` as MPa, those at the cap at exactly that."""
     return np.where(values >= hardness / unit, hardness, values * unit)
 
 
 def measured_state(
-    space, clearance, pressure, closure, *, force=None, iterations=0, hardness=np.inf
-):
-    """What a pressure is as a state, its violation of the contact conditions measured.
+    space: HalfSpace,
+    clearance: np.ndarray,
+    pressure: np.ndarray,
+    closure: float,
+    *,
+    force: float | None = None,
+    iterations: int = 0,
+    hardness: float = np.inf,
+) -> ContactState:
+    """The state of a pressure, its violation of the contact conditions measured.
 
     Parameters
     ----------
@@ -133,7 +233,16 @@ def measured_state(
     )
 
 
-def checked_state(space, clearance, pressure, closure, *, rtol, reason, **about):
+def checked_state(
+    space: HalfSpace,
+    clearance: np.ndarray,
+    pressure: np.ndarray,
+    closure: float,
+    *,
+    rtol: float,
+    reason: str,
+    **about: Any,
+) -> ContactState:
     """The state of a pressure, once its contact conditions have been verified.
 
     Parameters

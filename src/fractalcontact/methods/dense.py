@@ -10,10 +10,11 @@ import itertools
 import numpy as np
 from scipy import linalg
 
-from ..contact.solve import checked_hardness, checked_problem, unloaded_state
-from .common import checked_state, influence_matrix
+from ..contact.solve import ContactState
+from .common import ContactProblem, influence_matrix
+from .registry import Method
 
-# Pressures and gaps smaller than this share of the largest pressure and of the closure are zero:
+# Pressures and gaps smaller than this fraction of the largest pressure and of the closure are zero:
 # the rounding of a Cholesky solution, which must not count as tension or penetration.
 ROUNDING = 1e-12
 # Whole-set exchanges allowed without progress before single ones, which cannot cycle, take over
@@ -27,27 +28,26 @@ MAX_SETS = 10_000
 OPEN, CLOSED, CAPPED = 0, 1, 2
 
 
-def solve_contact(
-    composite, space, *, closure=None, force=None, start=None, rtol=1e-9, hardness=None
-):
-    """Press a composite topography against a rigid plane; direct and exact but for rounding.
+METHOD = Method(
+    name="dense",
+    order=10,
+    title="direct elimination",
+    loads=("closure", "force"),
+    hardness=("closure", "force"),
+    direct=True,
+    counts="contact sets",
+    largest=6000,
+    rtol=1e-9,
+)
+
+
+def solve(problem: ContactProblem) -> ContactState:
+    """State by block principal pivoting: direct, and exact but for rounding.
 
     Parameters
     ----------
-    composite : (ny, nx) array_like
-        Composite topography h, mm.
-    space : HalfSpace
-        Gives the kernel at every cell distance.
-    closure : float, optional
-        w, mm, from first touch. Either this or ``force`` is given.
-    force : float, optional
-        F, N.
-    start : ContactState, optional
-        Its contact set is the first one tried.
-    rtol : float
-        Largest violation allowed of the contact conditions in the final check.
-    hardness : float, optional
-        Largest pressure, MPa.
+    problem : ContactProblem
+        The contact set of its start, if it has one, is the first one tried.
 
     Returns
     -------
@@ -56,10 +56,8 @@ def solve_contact(
 
     Raises
     ------
-    ValueError
-        As `fractalcontact.solve_contact`.
     NotConverged
-        If the pivoting does not end, or the state found fails the final check.
+        If the pivoting does not end, or the state fails the final check.
 
     Notes
     -----
@@ -68,29 +66,22 @@ def solve_contact(
     every set yields, with its closure unknown, the bordered system [K -1; 1' 0] [p; w] = [-c; F],
     solved here by elimination of p.
     """
-    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
-    limit = checked_hardness(hardness, space, force)
-    if load == 0:
-        return unloaded_state(space, clearance)
+    space, clearance, limit = problem.space, problem.clearance, problem.hardness
+    closure = problem.load
     status = np.full(space.shape, OPEN)
-    if start is not None:
-        status[start.pressure > 0] = CLOSED
-    if force is None:
-        if start is None:
-            status[clearance < load] = CLOSED
-        pressure, _, sets = _pivot(space, clearance, load, status, limit)
+    if problem.start is not None:
+        status[problem.start.pressure > 0] = CLOSED
+    if problem.by_force:
+        pressure, closure, sets = _find_closure(space, clearance, problem.load, status, limit)
     else:
-        pressure, load, sets = _find_closure(space, clearance, load, status, limit)
-    return checked_state(
-        space,
-        clearance,
+        if problem.start is None:
+            status[clearance < closure] = CLOSED
+        pressure, _, sets = _pivot(space, clearance, closure, status, limit)
+    return problem.checked_state(
         pressure.clip(0.0, limit),
-        load,
-        force=force,
+        closure,
         iterations=sets,
-        rtol=rtol,
         reason=f"pivoting stopped after {sets} contact sets",
-        hardness=limit,
     )
 
 

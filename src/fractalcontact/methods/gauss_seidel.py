@@ -6,9 +6,10 @@ the number of interpenetrating points. A pressure capped at a hardness is projec
 
 import numpy as np
 
-from ..contact.solve import checked_hardness, checked_problem, unloaded_state
+from ..contact.solve import ContactState
 from ..core.kernel_cache import njit
-from .common import checked_state, in_stress, refuse_force
+from .common import ContactProblem, in_stress
+from .registry import Method
 
 # Sweeps before giving up: the number needed grows with the width of the contact patches in cells.
 MAX_SWEEPS = 5000
@@ -16,27 +17,25 @@ MAX_SWEEPS = 5000
 SAFETY = 0.3
 
 
-def solve_contact(
-    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
-):
-    """Press a composite topography against a rigid plane by projected Gauss-Seidel.
+METHOD = Method(
+    name="gauss-seidel",
+    order=40,
+    title="projected Gauss-Seidel",
+    # A sum to be kept is no bound on a single point.
+    loads=("closure",),
+    hardness=("closure",),
+    counts="sweeps",
+    largest=12_000,
+)
+
+
+def solve(problem: ContactProblem) -> ContactState:
+    """State by projected Gauss-Seidel.
 
     Parameters
     ----------
-    composite : (ny, nx) array_like
-        Composite topography h, mm.
-    space : HalfSpace
-        Gives the kernel at every cell distance.
-    closure : float
-        w, mm, from first touch.
-    force : None
-        Not offered: a sum to be kept is no bound on a single point.
-    start : ContactState, optional
-        Its pressure is where the sweeps start.
-    rtol : float
-        Largest violation allowed of the contact conditions, as a share of the closure.
-    hardness : float, optional
-        Largest pressure, MPa.
+    problem : ContactProblem
+        The pressure of its start, if it has one, is where the sweeps start.
 
     Returns
     -------
@@ -45,22 +44,17 @@ def solve_contact(
 
     Raises
     ------
-    ValueError
-        If a force is given, or as `fractalcontact.solve_contact`.
     NotConverged
         If `MAX_SWEEPS` were not enough.
     """
-    refuse_force("projected Gauss-Seidel", force)
-    closure, clearance = checked_problem(composite, space, closure, None, start, rtol)
-    limit = checked_hardness(hardness, space, None)
-    if closure == 0:
-        return unloaded_state(space, clearance)
+    space, clearance, limit = problem.space, problem.clearance, problem.hardness
+    closure = problem.load
     # As u >= 0, only interpenetrating points can touch.
     rows, columns = np.nonzero(clearance < closure)
     unit = closure * space.modulus / space.cell
     values = np.zeros(rows.size)
-    if start is not None:
-        values = np.minimum(start.pressure[rows, columns], limit) / unit
+    if problem.start is not None:
+        values = np.minimum(problem.start.pressure[rows, columns], limit) / unit
     sweeps = _sweep(
         space.influence(),
         rows,
@@ -68,21 +62,16 @@ def solve_contact(
         1 - clearance[rows, columns] / closure,
         values,
         limit / unit,
-        SAFETY * rtol,
+        SAFETY * problem.rtol,
         MAX_SWEEPS,
     )
     pressure = np.zeros(space.shape)
     pressure[rows, columns] = in_stress(values, unit, limit)
-    return checked_state(
-        space,
-        clearance,
+    return problem.checked_state(
         pressure,
         closure,
-        force=None,
         iterations=sweeps,
-        rtol=rtol,
         reason=f"projected Gauss-Seidel stopped after {sweeps} sweeps",
-        hardness=limit,
     )
 
 

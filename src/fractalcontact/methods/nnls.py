@@ -10,8 +10,9 @@ takes as many factorisations as there are points in contact; the warm start of B
 import numpy as np
 from scipy import linalg
 
-from ..contact.solve import checked_problem, unloaded_state
-from .common import checked_state, influence_matrix, refuse_force, refuse_hardness
+from ..contact.solve import ContactState
+from .common import ContactProblem, influence_matrix
+from .registry import Method
 
 # Gradient projections for the warm start; each one application of the operator.
 PROJECTIONS = 100
@@ -21,27 +22,23 @@ MAX_SETS = 5000
 SAFETY = 0.3
 
 
-def solve_contact(
-    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
-):
-    """Press a composite topography against a rigid plane by non-negative least squares.
+METHOD = Method(
+    name="nnls",
+    order=50,
+    title="NNLS",
+    loads=("closure",),  # as the authors impose it
+    counts="contact sets",
+    largest=12_000,
+)
+
+
+def solve(problem: ContactProblem) -> ContactState:
+    """State by non-negative least squares.
 
     Parameters
     ----------
-    composite : (ny, nx) array_like
-        Composite topography h, mm.
-    space : HalfSpace
-        The elastic operator on the same grid.
-    closure : float
-        w, mm, from first touch.
-    force : None
-        Not offered: the authors impose the closure.
-    start : ContactState, optional
-        Its pressure is the warm start, instead of gradient projections.
-    rtol : float
-        Largest violation allowed of the contact conditions, as a share of the closure.
-    hardness : None
-        Not offered.
+    problem : ContactProblem
+        The pressure of its start, if it has one, is the warm start instead of gradient projections.
 
     Returns
     -------
@@ -50,32 +47,23 @@ def solve_contact(
 
     Raises
     ------
-    ValueError
-        If a force or a hardness is given, or as `fractalcontact.solve_contact`.
     NotConverged
-        If the active set does not end, or the state found fails the final check.
+        If the active set does not end, or the state fails the final check.
     """
-    refuse_force("NNLS", force)
-    refuse_hardness("NNLS", hardness)
-    closure, clearance = checked_problem(composite, space, closure, None, start, rtol)
-    if closure == 0:
-        return unloaded_state(space, clearance)
+    space, closure = problem.space, problem.load
     # Pressure in units of E*/s, so that the operator gives mm.
     unit = space.modulus / space.cell
-    interference = closure - clearance
-    if start is not None:
-        pressure = np.where(interference > 0, start.pressure / unit, 0.0)
+    interference = closure - problem.clearance
+    if problem.start is not None:
+        pressure = np.where(interference > 0, problem.start.pressure / unit, 0.0)
     else:
         pressure = _gradient_projections(space, interference)
-    pressure, sets = _lawson_hanson(space, interference, pressure, SAFETY * rtol * closure)
-    return checked_state(
-        space,
-        clearance,
+    tolerance = SAFETY * problem.rtol * closure
+    pressure, sets = _lawson_hanson(space, interference, pressure, tolerance)
+    return problem.checked_state(
         pressure * unit,
         closure,
-        force=None,
         iterations=sets,
-        rtol=rtol,
         reason=f"the active set stopped after {sets} sets",
     )
 
@@ -105,11 +93,11 @@ def _lawson_hanson(space, interference, pressure, tolerance):
                 break
             # Step towards the solution until the first pressure reaches zero; its point leaves.
             falling = inside & (wanted <= 0)
-            shares = pressure[falling] / (pressure[falling] - wanted[falling])
-            share = shares.min()
-            pressure = pressure + share * (wanted - pressure)
+            fractions = pressure[falling] / (pressure[falling] - wanted[falling])
+            fraction = fractions.min()
+            pressure = pressure + fraction * (wanted - pressure)
             inside = inside & (pressure > 0)
-            inside[falling] &= shares > share
+            inside[falling] &= fractions > fraction
             pressure[~inside] = 0.0
         gap = space.convolve(pressure) - interference
         gap[inside] = 0.0

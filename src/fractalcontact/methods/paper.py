@@ -9,10 +9,11 @@ With ``HalfSpace(..., kernel=...)`` the influence terms are Love's or a rigid pl
 
 import numpy as np
 
-from ..contact.solve import checked_problem, unloaded_state
+from ..contact.solve import ContactState
 from ..core.kernel_cache import njit
-from .common import checked_state, refuse_force, refuse_hardness
+from .common import ContactProblem
 from .gauss_seidel import relieve
+from .registry import Method
 
 # Sweeps on one set before giving up: 500 over all sets sufficed for 12,000 interpenetrating nodes.
 MAX_SWEEPS = 5000
@@ -20,27 +21,23 @@ MAX_SWEEPS = 5000
 SAFETY = 0.3
 
 
-def solve_contact(
-    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
-):
-    """Press a composite topography against a rigid plane by dropping points in tension.
+METHOD = Method(
+    name="paper",
+    order=20,
+    title="the paper's algorithm",
+    loads=("closure",),  # as the paper imposes it
+    counts="sweeps",
+    largest=12_000,
+)
+
+
+def solve(problem: ContactProblem) -> ContactState:
+    """State by dropping points in tension.
 
     Parameters
     ----------
-    composite : (ny, nx) array_like
-        Composite topography h, mm.
-    space : HalfSpace
-        Gives the influence terms H_rs.
-    closure : float
-        w, mm, from first touch.
-    force : None
-        Not offered: the paper imposes the closure.
-    start : ContactState, optional
-        Checked and not used: the procedure starts from all interpenetrating points.
-    rtol : float
-        Largest violation allowed of the contact conditions, as a share of the closure.
-    hardness : None
-        Not offered.
+    problem : ContactProblem
+        Its start is not used: the procedure starts from all interpenetrating points.
 
     Returns
     -------
@@ -49,24 +46,19 @@ def solve_contact(
 
     Raises
     ------
-    ValueError
-        If a force or a hardness is given, or as `fractalcontact.solve_contact`.
     NotConverged
         If Gauss-Seidel does not converge, or a dropped point is left interpenetrating.
     """
-    refuse_force("the paper's algorithm", force)
-    refuse_hardness("the paper's algorithm", hardness)
-    closure, clearance = checked_problem(composite, space, closure, None, start, rtol)
-    if closure == 0:
-        return unloaded_state(space, clearance)
+    space, closure = problem.space, problem.load
+    tolerance = SAFETY * problem.rtol
     influence = space.influence()
-    interference = 1 - clearance / closure
+    interference = 1 - problem.clearance / closure
     rows, columns = np.nonzero(interference > 0)
     values = np.zeros(rows.size)
     sweeps, reason = 0, "a point dropped in tension was left interpenetrating"
     while True:
         target = interference[rows, columns]
-        done = _gauss_seidel(influence, rows, columns, target, values, SAFETY * rtol, MAX_SWEEPS)
+        done = _gauss_seidel(influence, rows, columns, target, values, tolerance, MAX_SWEEPS)
         sweeps += done
         if done > MAX_SWEEPS:
             reason = f"Gauss-Seidel did not converge in {MAX_SWEEPS} sweeps"
@@ -77,16 +69,7 @@ def solve_contact(
         rows, columns, values = rows[kept], columns[kept], values[kept]
     pressure = np.zeros(space.shape)
     pressure[rows, columns] = np.maximum(values, 0.0) * closure * space.modulus / space.cell
-    return checked_state(
-        space,
-        clearance,
-        pressure,
-        closure,
-        force=None,
-        iterations=sweeps,
-        rtol=rtol,
-        reason=reason,
-    )
+    return problem.checked_state(pressure, closure, iterations=sweeps, reason=reason)
 
 
 @njit(cache=True)

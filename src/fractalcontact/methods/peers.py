@@ -1,90 +1,93 @@
-"""Public contact codes behind the call of the comparison methods, where they are installed.
+"""What public contact codes share behind the call of the comparison methods.
 
-ContactMechanics (its substrate ``FreeFFTElasticHalfSpace``) and Tamaas (its non-periodic operator
-``dcfft``) solve the same free-space problem. Both are given heights from the highest one down. What
-they return is not checked against the contact conditions: whether their own word can be trusted is
-for others to judge. ``pip install -e '.[peers]'`` installs both.
+Each is set up in a file of its own, on the same free-space problem and with heights from the
+highest one down. What they return is not checked against the contact conditions: whether their own
+word can be trusted is for others to judge. ``pip install -e '.[peers]'`` installs them.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
-from importlib.util import find_spec
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..contact.solve import ContactState
 from ..core.child_process import in_child
 from ..core.errors import NotConverged
-from .common import in_stress, measured_state, refuse_closure, refuse_force, refuse_hardness
+from ..elastic.halfspace import HalfSpace
+from .common import measured_state
 
-#: Limit of iterations where a peer is set up for large grids.
+#: Limit of iterations where a code is set up for large grids.
 MAX_ITERATIONS = 500
 #: Behind the call of the comparison methods patience is greater, in iterations and in seconds.
 PATIENT_ITERATIONS, PATIENCE = 2000, 60.0
-#: The optimisers of ContactMechanics: its Polonsky-Keer iteration, and two on the dual problem.
-OPTIMISERS = ("ccg", "dual", "dual-lbfgs")
-# Their names there.
-_DUAL = {"dual": "ccg-without-restart", "dual-lbfgs": "l-bfgs-b"}
 
 
 class Failed(RuntimeError):
     """The code itself says that it did not converge; ``pressure`` is what it left, in MPa."""
 
-    def __init__(self, message, pressure):
+    def __init__(self, message: str, pressure: np.ndarray):
         super().__init__(message)
         self.pressure = pressure
 
 
-class ContactMechanics:
-    """ContactMechanics set up for one topography: ``FreeFFTElasticHalfSpace`` and an optimiser.
+@dataclass(frozen=True)
+class Load:
+    """What a public code is given besides the topography.
 
-    ``ccg``: ``NonSmoothContactSystem.minimize_proxy``, its Polonsky-Keer iteration, at a given
-    offset or force (the latter took twice the time), with or without a hardness. ``dual`` and
-    ``dual-lbfgs``: ``dual_minimize_proxy``, constrained conjugate gradients without restart, or
-    L-BFGS-B, for pixel forces at a given offset; L-BFGS-B is given no limit of iterations. The
-    package transforms with one thread; its parallelism is MPI's.
+    Attributes
+    ----------
+    closure, force : float or None
+        w, mm, or F, N.
+    hardness : float or None
+        Largest pressure, MPa.
+    start : (ny, nx) ndarray or None
+        Pressure to start from, MPa.
+    pixel_force : float or None
+        Mean force of a pixel in contact, N, for codes whose tolerance is on forces.
+    """
+
+    closure: float | None = None
+    force: float | None = None
+    hardness: float | None = None
+    start: np.ndarray | None = None
+    pixel_force: float | None = None
+
+
+class PublicCode:
+    """A public code set up for one topography; each code has a subclass in a file of its own.
 
     Parameters
     ----------
     height : (ny, nx) array_like
         mm.
     space : HalfSpace
-    optimiser : str
-        One of `OPTIMISERS`.
+
+    Attributes
+    ----------
+    height : (ny, nx) ndarray
+        From the highest one down, mm: an offset counted from it is a closure.
+    sides : (float, float)
+        Of the window along y and x, mm.
+    max_iterations : int
+        After so many it gives up.
     """
 
-    control = "closure"
-
-    def __init__(self, height, space, optimiser):
-        from ContactMechanics import FreeFFTElasticHalfSpace
-        from ContactMechanics.Systems import NonSmoothContactSystem
-        from SurfaceTopography import Topography
-
-        self.space, self.optimiser, self.max_iterations = space, optimiser, MAX_ITERATIONS
-        sides = tuple(n * d for n, d in zip(space.shape, space.spacing, strict=True))
-        self.substrate = FreeFFTElasticHalfSpace(space.shape, space.modulus, sides)
-        # First touch at offset 0, so that its offset is our closure.
+    def __init__(self, height: ArrayLike, space: HalfSpace):
+        self.space, self.max_iterations = space, MAX_ITERATIONS
         self.height = -clearance_of(height)
-        self.system = NonSmoothContactSystem(self.substrate, Topography(self.height, sides))
+        ny, nx = space.shape
+        self.sides = (ny * space.spacing[0], nx * space.spacing[1])
 
-    def solve(self, closure, rtol, *, force=None, hardness=None, pixel_force=None, start=None):
-        """Pressure at a closure or, of ``ccg``, under a force.
+    def solve(self, load: Load, rtol: float) -> np.ndarray:
+        """Pressure under a load of the kinds that the code offers.
 
         Parameters
         ----------
-        closure : float or None
-            mm.
+        load : Load
         rtol : float
-            Tolerance of gaps as a share of the closure, and of forces as one of ``pixel_force``.
-            Where the closure is not known or zero, gaps are compared with the standard deviation
-            of the heights or, if that is more, with the closure of a punch as large as the window.
-        force : float, optional
-            N, instead of a closure.
-        hardness : float, optional
-            Largest pressure, MPa; of ``ccg``.
-        pixel_force : float, optional
-            Mean force of a pixel in contact, N; by default that of one pressed alone.
-        start : (ny, nx) ndarray, optional
-            Pressure to start from, MPa.
+            Tolerance on the code's own measure of its error.
 
         Returns
         -------
@@ -94,211 +97,84 @@ class ContactMechanics:
         Raises
         ------
         Failed
+            If the code says that it did not converge.
         """
-        area = self.space.cell_area
-        length = closure or self._length(force)
-        if pixel_force is None:
-            pixel_force = self.space.modulus * self.space.cell * length
-        forces = None if start is None else start * area
-        if self.optimiser == "ccg":
-            tolerances = {
-                "pentol": rtol * length,
-                "forcetol": rtol * pixel_force,
-                "thermotol": rtol,
-            }
-            result = self._ccg(closure, force, hardness, forces, tolerances)
-            found = result.jac
-        else:
-            result = self._dual(closure, rtol * length, forces)
-            found = result.x
-        cap = np.inf if hardness is None else hardness
-        pressure = in_stress(np.reshape(found, self.space.shape), 1 / area, cap)
-        if not result.success:
-            raise Failed(str(result.message), pressure)
-        return pressure
+        raise NotImplementedError
 
-    def _length(self, force):
-        """What gaps are compared with where the closure is not known, mm."""
-        side = np.sqrt(np.prod(self.space.shape)) * self.space.cell
-        return max(np.std(self.height), (force or 0.0) / (self.space.modulus * side))
+    def closure(self, pressure: np.ndarray) -> float:
+        """The closure that a pressure belongs to, mm, of a code that is given a force."""
+        raise NotImplementedError
 
-    def _ccg(self, closure, force, hardness, start, tolerances):
-        padded = None
-        if start is not None:
-            padded = np.zeros(self.substrate.nb_domain_grid_pts)
-            padded[: start.shape[0], : start.shape[1]] = -start
-        # Divided as in `in_stress`: what comes back at the cap must be seen to be there.
-        cap = None if hardness is None else hardness / (1 / self.space.cell_area)
-        return self.system.minimize_proxy(
-            offset=closure,
-            external_force=force,
-            hardness=cap,
-            initial_forces=padded,
-            maxiter=self.max_iterations,
-            **tolerances,
-        )
+    def count(self, on: bool) -> None:
+        """Begin to count applications of the operator, from zero, or end it: it takes time."""
 
-    def _dual(self, closure, tolerance, start):
-        return self.system.dual_minimize_proxy(
-            offset=closure,
-            init_force=np.zeros(self.substrate.nb_grid_pts) if start is None else start.copy(),
-            solver=_DUAL[self.optimiser],
-            gtol=tolerance,
-            maxiter=self.max_iterations,
-        )
+    @property
+    def applications(self) -> int | None:
+        """Applications of the operator counted since then; None of a code that cannot count."""
+        return None
 
 
-class Tamaas:
-    """Tamaas set up for one topography: ``PolonskyKeerRey`` on ``dcfft``, force control only.
+def solve_in_child(
+    set_up: Callable[[ArrayLike, HalfSpace], PublicCode],
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    closure: float | None,
+    force: float | None,
+    hardness: float | None,
+    start: ContactState | None,
+    rtol: float,
+) -> ContactState:
+    """State that a public code gives, run where it may crash or never end without harm.
 
-    Its solver starts from ``model.traction``: zero for a cold start (it then spreads the load
-    evenly). Its displacement is known up to a constant, so the closure is evaluated from its
-    pressure with its operator. The wheels on PyPI have one thread.
+    A load is passed on as it is: that it makes no sense is for the code to say.
 
     Parameters
     ----------
-    height : (ny, nx) array_like
+    set_up : callable
+        Makes the code ready for a topography.
+    composite : (ny, nx) array_like
         mm.
     space : HalfSpace
-    """
-
-    control = "force"
-
-    def __init__(self, height, space):
-        import tamaas
-
-        tamaas.set_log_level(tamaas.LogLevel.warning)
-        self.tamaas, self.space, self.max_iterations = tamaas, space, MAX_ITERATIONS
-        sides = [n * d for n, d in zip(space.shape, space.spacing, strict=True)]
-        self.window = sides[0] * sides[1]
-        kind = tamaas.model_type.basic_2d
-        self.model = tamaas.ModelFactory.createModel(kind, sides, list(space.shape))
-        # The operator takes over the modulus it finds when it is registered.
-        self.model.E, self.model.nu = space.modulus, 0.0
-        tamaas.ModelFactory.registerNonPeriodic(self.model, "dcfft")
-        self.height = np.ascontiguousarray(-clearance_of(height))
-
-    def solve(self, force, rtol, *, start=None, functional=None):
-        """Pressure under a force.
-
-        Parameters
-        ----------
-        force : float
-            N.
-        rtol : float
-            Tolerance of Tamaas' own error measure: the gap in contact, averaged with the pressure,
-            as a share of the standard deviation of the heights.
-        start : (ny, nx) ndarray, optional
-            Pressure to start from, MPa.
-        functional : tamaas.Functional, optional
-            Added to the energy; one that adds nothing can count.
-
-        Returns
-        -------
-        (ny, nx) ndarray
-            Pressure, MPa.
-
-        Raises
-        ------
-        Failed
-        """
-        self.model.traction[:] = 0.0 if start is None else start
-        solver = self.tamaas.PolonskyKeerRey(self.model, self.height, rtol)
-        solver.setIntegralOperator("dcfft")
-        solver.max_iter = self.max_iterations
-        if functional is not None:
-            solver.addFunctionalTerm(functional)
-        reached = solver.solve(force / self.window)
-        pressure = np.array(self.model.traction)
-        if not reached <= rtol:
-            raise Failed(f"error {reached:.2g} after {self.max_iterations} iterations", pressure)
-        return pressure
-
-    def closure(self, pressure):
-        """The closure of a pressure, from the mean gap over the contact, mm."""
-        displacement = np.zeros_like(pressure)
-        self.model.operators["dcfft"](pressure, displacement)
-        return float((displacement - self.height)[pressure > 0].mean())
-
-
-def set_up(name, height, space):
-    """A peer made ready for one topography.
-
-    Parameters
-    ----------
-    name : str
-        One of `installed`.
-    height : (ny, nx) array_like
-        mm.
-    space : HalfSpace
+    closure, force, hardness : float or None
+        mm, N and MPa.
+    start : ContactState or None
+    rtol : float
+        Tolerance on the code's own measure of its error.
 
     Returns
     -------
-    ContactMechanics or Tamaas
+    ContactState
+        Of `state_of`.
+
+    Raises
+    ------
+    NotConverged
+        If the code says so itself.
+    ChildFailed
+        If it raises an error, crashes or takes longer than `PATIENCE` seconds.
     """
-    if name == "Tamaas":
-        return Tamaas(height, space)
-    return ContactMechanics(height, space, name.removeprefix("ContactMechanics "))
-
-
-def installed():
-    """Names of the peers that can be imported: the optimisers of ContactMechanics, and Tamaas."""
-    names = []
-    if find_spec("ContactMechanics"):
-        names += [f"ContactMechanics {optimiser}" for optimiser in OPTIMISERS]
-    if find_spec("tamaas"):
-        names.append("Tamaas")
-    return names
-
-
-def peer_methods():
-    """The installed peers by name, with the call of `fractalcontact.solve_contact`."""
-    return {name: partial(_solve_with, name) for name in installed()}
-
-
-def _solve_with(
-    name, composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
-):
-    """A load is passed on as it is: that it makes no sense is for the peer to say."""
-    if name != "Tamaas":
-        refuse_missing(name, composite)
-    if name != "ContactMechanics ccg":
-        refuse_hardness(name, hardness)
-    if name == "Tamaas":
-        refuse_closure(name, closure)
-    elif name != "ContactMechanics ccg":
-        refuse_force(name, force)
-    # Once, and not in every child.
-    import_module(name.split()[0].replace("Tamaas", "tamaas"))
-    load = {"closure": closure, "force": force, "hardness": hardness}
-    first = None if start is None else start.pressure
-    press = partial(_pressed, name, composite, space, load, rtol, first)
+    load = Load(closure, force, hardness, start=None if start is None else start.pressure)
+    press = partial(_pressed, set_up, composite, space, load, rtol)
     pressure, said = in_child(press, seconds=PATIENCE)
-    state = state_of(space, pressure, clearance_of(composite), **load)
+    clearance = clearance_of(composite)
+    state = state_of(space, pressure, clearance, closure=closure, force=force, hardness=hardness)
     if said:
         raise NotConverged(said, state, state.residual)
     return state
 
 
-def _pressed(name, composite, space, load, rtol, start):
-    """Pressure, and what a peer says if it did not converge."""
-    peer = set_up(name, composite, space)
-    peer.max_iterations = PATIENT_ITERATIONS
+def _pressed(set_up, composite, space, load, rtol):
+    """Pressure, and what a code says if it did not converge."""
+    code = set_up(composite, space)
+    code.max_iterations = PATIENT_ITERATIONS
     try:
-        if name == "Tamaas":
-            return peer.solve(load["force"], rtol, start=start), ""
-        return peer.solve(load.pop("closure"), rtol, start=start, **load), ""
+        return code.solve(load, rtol), ""
     except Failed as failure:
         return failure.pressure, str(failure)
 
 
-def refuse_missing(name, height):
-    """Say that ContactMechanics takes a cell without a height for a hole, if there is one."""
-    if not np.isfinite(height).all():
-        raise ValueError(f"{name} solves another problem: a missing cell is one that never touches")
-
-
-def clearance_of(height):
+def clearance_of(height: ArrayLike) -> np.ndarray:
     """Opening at first touch, mm; cells without a height keep their NaN or infinity.
 
     Parameters
@@ -314,8 +190,16 @@ def clearance_of(height):
     return height[np.isfinite(height)].max() - height
 
 
-def state_of(space, pressure, clearance, *, closure=None, force=None, hardness=None):
-    """What a peer's pressure is as a state, whether or not it satisfies the contact conditions.
+def state_of(
+    space: HalfSpace,
+    pressure: np.ndarray,
+    clearance: np.ndarray,
+    *,
+    closure: float | None = None,
+    force: float | None = None,
+    hardness: float | None = None,
+) -> ContactState:
+    """The state of a code's pressure, whether or not it satisfies the contact conditions.
 
     Parameters
     ----------

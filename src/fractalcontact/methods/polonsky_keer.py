@@ -13,10 +13,11 @@ error; here the iteration ends when the contact conditions hold.
 
 import numpy as np
 
-from ..contact.solve import checked_hardness, checked_problem, unloaded_state
-from .common import checked_state, in_stress
+from ..contact.solve import ContactState
+from .common import ContactProblem, in_stress
+from .registry import Method
 
-# Two applications each: rough scenes need 30 to 150 for 1e-6.
+# Two applications each: rough surfaces need 30 to 150 for 1e-6.
 MAX_ITERATIONS = 5000
 # The iteration ends this far below the tolerance of the final check.
 SAFETY = 0.9
@@ -24,27 +25,23 @@ SAFETY = 0.9
 LEAST_CLOSURE, MOST_CLOSURE = 1e-140, 1e140
 
 
-def solve_contact(
-    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
-):
-    """Press a composite topography against a rigid plane by constrained conjugate gradients.
+METHOD = Method(
+    name="polonsky-keer",
+    order=30,
+    title="the Polonsky-Keer iteration",
+    loads=("closure", "force"),
+    hardness=("closure",),
+    counts="applications",
+)
+
+
+def solve(problem: ContactProblem) -> ContactState:
+    """State by constrained conjugate gradients.
 
     Parameters
     ----------
-    composite : (ny, nx) array_like
-        Composite topography h, mm.
-    space : HalfSpace
-        The elastic operator on the same grid.
-    closure : float, optional
-        w, mm, from first touch. Either this or ``force`` is given.
-    force : float, optional
-        F, N.
-    start : ContactState, optional
-        Its pressure is where the iteration starts.
-    rtol : float
-        Largest violation allowed of the contact conditions, as a share of the closure.
-    hardness : float, optional
-        Largest pressure, MPa; with a closure only.
+    problem : ContactProblem
+        The pressure of its start, if it has one, is where the iteration starts.
 
     Returns
     -------
@@ -54,60 +51,50 @@ def solve_contact(
     Raises
     ------
     ValueError
-        If both a force and a hardness are given, or as `fractalcontact.solve_contact`.
+        If the squares of gaps at the closure have no double precision.
     NotConverged
         If the conditions are not met after `MAX_ITERATIONS`.
     """
-    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
-    if hardness is not None and force is not None:
-        raise ValueError("conjugate gradients take a hardness with a closure only: give closure=")
-    limit = checked_hardness(hardness, space, None)
-    if load == 0:
-        return unloaded_state(space, clearance)
-    if force is None and not LEAST_CLOSURE <= load <= MOST_CLOSURE:
+    space, force = problem.space, problem.force
+    if force is None and not LEAST_CLOSURE <= problem.load <= MOST_CLOSURE:
         raise ValueError(
-            f"closure {load:g} mm: conjugate gradients square gaps; expected "
+            f"closure {problem.load:g} mm: conjugate gradients square gaps; expected "
             f"{LEAST_CLOSURE:g} to {MOST_CLOSURE:g} mm"
         )
     # Pressure is counted in units of E*/s throughout, so that the operator gives mm.
     unit = space.modulus / space.cell
     total = None if force is None else force / (space.cell_area * unit)
-    pressure, applications = _first_pressure(space, clearance, closure, total, start, unit)
-    pressure, closure, more = _iterate(
-        space, clearance, pressure, closure, total, limit / unit, SAFETY * rtol
-    )
+    pressure, applications = _first_pressure(problem, total, unit)
+    pressure, closure, more = _iterate(problem, pressure, total, problem.hardness / unit)
     applications += more
-    return checked_state(
-        space,
-        clearance,
-        in_stress(pressure, unit, limit),
+    return problem.checked_state(
+        in_stress(pressure, unit, problem.hardness),
         closure,
-        force=force,
         iterations=applications,
-        rtol=rtol,
         reason=f"constrained conjugate gradients stopped after {applications} applications",
-        hardness=limit,
     )
 
 
-def _first_pressure(space, clearance, closure, total, start, unit):
+def _first_pressure(problem, total, unit):
     """Pressure to start from, and the applications it took.
 
     Given a force, the authors' uniform pressure. Given a closure, pressure in proportion to the
     interference, by the factor that leaves the least energy.
     """
+    start, clearance = problem.start, problem.clearance
     if start is not None and start.pressure.any():
         return start.pressure / unit, 0
     if total is not None:
-        return np.full(space.shape, total / clearance.size), 0
-    interference = np.maximum(closure - clearance, 0.0)
-    energy = np.vdot(interference, space.convolve(interference))
+        return np.full(clearance.shape, total / clearance.size), 0
+    interference = np.maximum(problem.load - clearance, 0.0)
+    energy = np.vdot(interference, problem.space.convolve(interference))
     return interference * (np.vdot(interference, interference) / energy), 1
 
 
-def _iterate(space, clearance, pressure, closure, total, limit, tolerance):
-    """Pressure, closure and applications once conditions hold to ``tolerance``, or in vain."""
-    by_force = total is not None
+def _iterate(problem, pressure, total, limit):
+    """Pressure, closure and applications once the conditions hold, or in vain."""
+    space, clearance, by_force = problem.space, problem.clearance, problem.by_force
+    closure, tolerance = problem.load, SAFETY * problem.rtol
     pressure = np.minimum(pressure, limit)
     direction = np.zeros(space.shape)
     # The first step's length where no point is free to give one: K is near 1 on a point itself.

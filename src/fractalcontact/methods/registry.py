@@ -1,24 +1,280 @@
-"""Other solvers of the same contact problem, for comparison only.
+"""Register of the comparison solvers: each file of this folder declares the method it holds.
 
-Each module offers ``solve_contact(composite, space, ...)`` with the call, the result and the errors
-of `fractalcontact.solve_contact`. What a method does not offer (a given force, a hardness) is a
-ValueError that says so. `METHODS` names them all; a module is imported when it is first called.
+A file registers a method by a call ``Method(name=..., ...)`` in an assignment at its top level, and
+offers beside it
+
+- ``solve(problem)``: the `ContactState` of a `common.ContactProblem`, or, of a public code,
+- ``set_up(height, space, **options)``: a `peers.PublicCode`, made ready for one topography.
+
+Nothing else has to know of it: accuracy study, figures, benchmarks, tests and digests of code read
+`METHODS` and `PEERS`. A declaration is read from the text of its file, so that neither numba nor a
+public code is imported before a method is called; its arguments are therefore literals.
 """
 
-from functools import partial
+import ast
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ..contact.solve import ContactState
+    from ..elastic.halfspace import HalfSpace
+    from .peers import PublicCode
 
 
-def _solve_with(module, composite, space, **load):
-    return import_module(f"{__package__}.{module}").solve_contact(composite, space, **load)
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A solver method as its file declares it, with the call of `fractalcontact.solve_contact`.
+
+    Attributes
+    ----------
+    name : str
+        In tables, legends and messages.
+    order : float
+        Its place among the others; equals are sorted by name.
+    title : str
+        Subject of the messages that say what it does not offer; by default the name.
+    loads : tuple of str
+        What it can be given, ``"closure"``, ``"force"`` or both; the first is what it is timed at.
+    hardness : tuple of str
+        The loads under which the pressure can be capped at a hardness.
+    kernels : tuple of str
+        The influence kernels of `HalfSpace` that it knows; any if none is named.
+    holes : bool
+        Whether it would take a cell without a height for one that never touches, which is another
+        problem than the package's.
+    direct : bool
+        Whether it is exact but for rounding, whatever the tolerance.
+    counts : str
+        What the ``iterations`` of its states count; ``"applications"`` are those of the operator.
+    largest : int or None
+        Interpenetrating nodes beyond which a solve takes minutes or too much memory, of methods
+        that write out the influence of every node on every other.
+    rtol : float
+        Tolerance unless another is given.
+    likely : float
+        A tolerance near the one that brings the force within 1e-6 on 512 x 512 nodes.
+    packages : tuple of str
+        What must be installed; of public codes alone.
+    options : mapping
+        Keywords that choose it among several methods of one file.
+    module : str
+        Name of its file; filled in by the register.
+    """
+
+    name: str
+    order: float = float("inf")
+    title: str = ""
+    loads: tuple[str, ...] = ("closure",)
+    hardness: tuple[str, ...] = ()
+    kernels: tuple[str, ...] = ()
+    holes: bool = False
+    direct: bool = False
+    counts: str = ""
+    largest: int | None = None
+    rtol: float = 1e-6
+    likely: float = 1e-5
+    packages: tuple[str, ...] = ()
+    options: Mapping[str, str] = field(default_factory=dict, hash=False)
+    module: str = ""
+
+    def __call__(
+        self,
+        composite: "ArrayLike",
+        space: "HalfSpace",
+        *,
+        closure: float | None = None,
+        force: float | None = None,
+        start: "ContactState | None" = None,
+        rtol: float | None = None,
+        hardness: float | None = None,
+    ) -> "ContactState":
+        """Press a composite topography against a rigid plane.
+
+        Parameters
+        ----------
+        composite : (ny, nx) array_like
+            Composite topography h, mm.
+        space : HalfSpace
+            The elastic operator on the same grid.
+        closure : float, optional
+            w, mm, from first touch. Either this or ``force`` is given, as far as it is offered.
+        force : float, optional
+            F, N.
+        start : ContactState, optional
+            Where to start from, if the method uses one.
+        rtol : float, optional
+            Largest violation allowed of the contact conditions, relative to the closure; of a
+            public code the tolerance on a quantity of its own.
+        hardness : float, optional
+            Largest pressure, MPa.
+
+        Returns
+        -------
+        ContactState
+            Its ``iterations`` count what ``counts`` says.
+
+        Raises
+        ------
+        NotOffered
+            If the method was not made for such a problem.
+        ValueError
+            As `fractalcontact.solve_contact`.
+        NotConverged
+            If the method does not end, or its state fails the check of the contact conditions.
+        ChildFailed
+            If a public code raises an error, crashes or takes too long.
+        """
+        from .common import NotOffered, has_holes, posed_problem
+
+        if self.holes and has_holes(composite):
+            title = self.title or self.name
+            raise NotOffered(
+                f"{title} solves another problem: a missing cell is one that never touches"
+            )
+        if lack := self._lack(closure, force, hardness, getattr(space, "kernel", "")):
+            raise NotOffered(lack)
+        load: dict[str, Any] = {
+            "closure": closure,
+            "force": force,
+            "start": start,
+            "hardness": hardness,
+        }
+        rtol = self.rtol if rtol is None else rtol
+        if self.packages:
+            from .peers import solve_in_child
+
+            # Once, and not in every child.
+            for package in self.packages:
+                import_module(package)
+            return solve_in_child(self.set_up, composite, space, rtol=rtol, **load)
+        problem = posed_problem(composite, space, rtol=rtol, **load)
+        if problem.load == 0:
+            return problem.unloaded_state()
+        return self._module.solve(problem)
+
+    def set_up(self, height: "ArrayLike", space: "HalfSpace") -> "PublicCode":
+        """A public code made ready for one topography.
+
+        Parameters
+        ----------
+        height : (ny, nx) array_like
+            mm.
+        space : HalfSpace
+
+        Returns
+        -------
+        PublicCode
+        """
+        return self._module.set_up(height, space, **self.options)
+
+    @cached_property
+    def _module(self) -> ModuleType:
+        return import_module(f"{__package__}.{self.module}")
+
+    def offers(
+        self,
+        *,
+        closure: float | None = None,
+        force: float | None = None,
+        hardness: float | None = None,
+    ) -> bool:
+        """Whether the method was made for a load and a hardness; of what is None nothing is asked.
+
+        Parameters
+        ----------
+        closure, force, hardness : float, optional
+            As of a call.
+        """
+        return not self._lack(closure, force, hardness, "")
+
+    def _lack(self, closure, force, hardness, kernel):
+        """What of a problem the method does not offer, as a sentence; empty if it offers all."""
+        title = self.title or self.name
+        for other, value in (("closure", closure), ("force", force)):
+            if value is not None and other not in self.loads:
+                only = self.loads[0]
+                return f"{title} takes a {only} only: give {only}=, not {other}="
+        if hardness is not None and not self.hardness:
+            return f"{title} knows no hardness: leave hardness= out"
+        if hardness is not None and ("closure" if force is None else "force") not in self.hardness:
+            only = self.hardness[0]
+            return f"{title} takes a hardness with a {only} only: give {only}="
+        if kernel and self.kernels and kernel not in self.kernels:
+            return f"{title} knows no kernel but {', '.join(self.kernels)}: not {kernel}"
+        return ""
 
 
-#: Name: solver. In order: direct elimination (the reference), the paper's own algorithm,
-#: constrained conjugate gradients, projected Gauss-Seidel, non-negative least squares.
-METHODS = {
-    "dense": partial(_solve_with, "dense"),
-    "paper": partial(_solve_with, "paper"),
-    "polonsky-keer": partial(_solve_with, "polonsky_keer"),
-    "gauss-seidel": partial(_solve_with, "gauss_seidel"),
-    "nnls": partial(_solve_with, "nnls"),
-}
+def declared(path: Path | str) -> list[Method]:
+    """The methods that a file declares, read from its text.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    list of Method
+        In the order in which they stand there.
+
+    Raises
+    ------
+    ValueError
+        If an argument of a declaration is no literal.
+    TypeError
+        If it is none that `Method` knows.
+    """
+    path = Path(path)
+    text = path.read_text(encoding="utf-8")
+    if f"{Method.__name__}(" not in text:
+        return []
+    assigned = (
+        node.value
+        for node in ast.parse(text).body
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None
+    )
+    calls = [call for value in assigned for call in ast.walk(value) if _is_declaration(call)]
+    return [_read(call, path) for call in calls]
+
+
+def _is_declaration(node):
+    """Whether a part of a file is a call of `Method` by that name."""
+    is_call = isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    return is_call and node.func.id == Method.__name__
+
+
+def _read(call, path):
+    arguments = {}
+    for keyword in call.keywords:
+        try:
+            arguments[keyword.arg] = ast.literal_eval(keyword.value)
+        except ValueError:
+            raise ValueError(
+                f"{path.name}, line {call.lineno}: {keyword.arg} of a method must be a literal, "
+                "since it is read without importing the file"
+            ) from None
+    return Method(**arguments, module=path.stem)
+
+
+_FOUND = sorted(
+    (method for path in Path(__file__).parent.glob("*.py") for method in declared(path)),
+    key=lambda method: (method.order, method.name),
+)
+#: Methods of the package by name.
+METHODS = {method.name: method for method in _FOUND if not method.packages}
+#: Public codes by name, installed or not.
+PEERS = {method.name: method for method in _FOUND if method.packages}
+#: Names of the modules that declare a method: they are imported when it is first called.
+MODULES = tuple(sorted({method.module for method in _FOUND}))
+
+
+def installed_peers() -> dict[str, Method]:
+    """The public codes by name whose packages are installed."""
+    return {name: peer for name, peer in PEERS.items() if all(map(find_spec, peer.packages))}

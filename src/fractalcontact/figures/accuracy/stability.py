@@ -35,7 +35,7 @@ def draw(atlas, names):
     -------
     Drawing
         Its data name the draws of every honest failure and of every silent error:
-        ``hard_scene(kind, draw)`` of `fractalcontact.accuracy.hard_problems` makes each again.
+        ``hard_problem(kind, draw)`` of `fractalcontact.accuracy.hard_problems` makes each again.
     """
     stability = group(atlas, "stability", "scenes")
     counts = _counts(stability)
@@ -124,7 +124,7 @@ def _caption(stability, counts):
         "closure, where the force was given) is that of direct elimination to "
         f"{stability.attrs['agreement']:g}. Where no state exists, only saying so is right. "
         f"{_of_peers(stability)}{by_solver}. {_silent(stability)} Every scene not solved stands in "
-        "the table beside the figure, kind and draw: hard_scene(kind, draw) of "
+        "the table beside the figure, kind and draw: hard_problem(kind, draw) of "
         "fractalcontact.accuracy.hard_problems makes it again."
     )
 
