@@ -5,7 +5,7 @@ import pytest
 
 from fractalcontact import HalfSpace
 from fractalcontact.contact.preconditioner import DIRECT, ContactInverse
-from fractalcontact.contact.projected_cg import Operator, SetEquations
+from fractalcontact.contact.projected_cg import Operator, ProjectedCG
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -74,8 +74,8 @@ def test_ten_iterations_solve_a_linear_problem_to_a_millionth(shape):
     rows = rough_set(shape, 0.1, hurst=0.8)
     operator = Operator(space)
     operator.inverse.update(rows, fresh=True)
-    equations = SetEquations(operator, rows, np.ones(rows.size))
-    equations.conjugate_gradients(1e-6, by_force=False)
+    equations = ProjectedCG(operator, rows, np.ones(rows.size))
+    equations.iterate(1e-6, by_force=False)
     assert np.abs(1 - matrix_on(space, rows) @ equations.solution.astype(float)).max() < 1e-5
     assert operator.applications <= 14
 

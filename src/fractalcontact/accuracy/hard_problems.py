@@ -10,7 +10,8 @@ are those hard for their window, units, start or hardness, or for what they lack
 
 import numpy as np
 
-from ..contact.solve import ContactState, solve_contact
+from ..contact.solve import solve_contact
+from ..contact.state import ContactState
 from .hard_surfaces import (
     SURFACES,
     HardScene,

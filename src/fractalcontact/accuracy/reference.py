@@ -10,7 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..contact.solve import ContactState, solve_contact
+from ..contact.solve import solve_contact
+from ..contact.state import ContactState
 from ..core.errors import NotConverged
 from ..elastic.halfspace import HalfSpace
 from ..methods.registry import METHODS

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..contact.solve import ContactState
+from ..contact.state import ContactState
 from ..core.errors import NotConverged
 
 # Up to this many products (10 ms) the final check sums directly, which shares nothing with the FFT.

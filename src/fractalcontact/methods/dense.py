@@ -10,7 +10,8 @@ import itertools
 import numpy as np
 from scipy import linalg
 
-from ..contact.solve import checked_hardness, checked_problem, unloaded_state
+from ..contact.solve import checked_hardness, checked_problem
+from ..contact.state import unloaded_state
 from .common import checked_state, influence_matrix
 
 # Pressures and gaps smaller than this share of the largest pressure and of the closure are zero:

@@ -6,7 +6,8 @@ the number of interpenetrating points. A pressure capped at a hardness is projec
 
 import numpy as np
 
-from ..contact.solve import checked_hardness, checked_problem, unloaded_state
+from ..contact.solve import checked_hardness, checked_problem
+from ..contact.state import unloaded_state
 from ..core.kernel_cache import njit
 from .common import checked_state, in_stress, refuse_force
 

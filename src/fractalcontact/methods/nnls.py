@@ -10,7 +10,8 @@ takes as many factorisations as there are points in contact; the warm start of B
 import numpy as np
 from scipy import linalg
 
-from ..contact.solve import checked_problem, unloaded_state
+from ..contact.solve import checked_problem
+from ..contact.state import unloaded_state
 from .common import checked_state, influence_matrix, refuse_force, refuse_hardness
 
 # Gradient projections for the warm start; each one application of the operator.

@@ -9,7 +9,8 @@ With ``HalfSpace(..., kernel=...)`` the influence terms are Love's or a rigid pl
 
 import numpy as np
 
-from ..contact.solve import checked_problem, unloaded_state
+from ..contact.solve import checked_problem
+from ..contact.state import unloaded_state
 from ..core.kernel_cache import njit
 from .common import checked_state, refuse_force, refuse_hardness
 from .gauss_seidel import relieve

@@ -13,7 +13,8 @@ error; here the iteration ends when the contact conditions hold.
 
 import numpy as np
 
-from ..contact.solve import checked_hardness, checked_problem, unloaded_state
+from ..contact.solve import checked_hardness, checked_problem
+from ..contact.state import unloaded_state
 from .common import checked_state, in_stress
 
 # Two applications each: rough scenes need 30 to 150 for 1e-6.
