@@ -9,10 +9,10 @@ import xarray as xr
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.accuracy.cheap_models import bearing_area, coarse_grid, winkler
-from fractalcontact.contact.coarse_correction import inverted, times
+from fractalcontact.contact.dense import inverted, times
 from fractalcontact.contact.kkt import kkt_residual, mean_closure
 from fractalcontact.contact.nested_iteration import prolong, prolong_constant
-from fractalcontact.contact.preconditioner import ContactInverse
+from fractalcontact.contact.preconditioner import Preconditioner
 from fractalcontact.contact.projected_cg import Operator, ProjectedCG, add
 from fractalcontact.contact.state import ContactState
 from fractalcontact.core import arguments
@@ -137,9 +137,9 @@ def kernel_calls():
     """Calls of what is compiled, with arrays that are too short, too long or point elsewhere."""
     space = HalfSpace((24, 30), (0.1, 0.1), 2e4)
     nodes = np.arange(100, 300, dtype=np.int32)
-    inverse = ContactInverse(space)
+    inverse = Preconditioner(space)
     inverse.update(nodes, fresh=True)
-    few = ContactInverse(space)
+    few = Preconditioner(space)
     few.update(nodes[:5], fresh=True)
     operator = Operator(space)
     ones = np.ones(200, np.float32)

@@ -17,9 +17,9 @@ from enum import Enum, auto
 import numpy as np
 
 from ..core.kernel_cache import njit
-from .coarse_correction import only_in_one
 from .feasible import first_iterate, verified
 from .kkt import Iterate, KKTResidual, Problem, Solution, kkt_residual
+from .node_sets import symmetric_difference
 from .projected_cg import Operator, ProjectedCG, add
 from .safeguards import (
     SAFETY,
@@ -246,7 +246,7 @@ def _reduction(extent, before, active):
     """Fraction of its first residual at which the linear solve on an active set stops."""
     if extent is LinearSolve.EXACT:
         return EXACT_REDUCTION
-    changed = only_in_one(before, active).size / max(active.size, 1)
+    changed = symmetric_difference(before, active).size / max(active.size, 1)
     return min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.kernel_cache import njit
 from .active_set import ActiveSetMethod
-from .coarse_correction import inverted
+from .dense import inverted
 from .kkt import Problem
 from .preconditioner import forget_preconditioner
 
