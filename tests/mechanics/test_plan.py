@@ -95,7 +95,7 @@ def test_states_lie_within_their_errors_of_exact_ones(hardness):
                     slack = 1e-9 * abs(true[name])
                     off = abs(numbers[name] - true[name])
                     right.append(off <= numbers[f"{name}_error"] + slack)
-                share = found.undecided / np.count_nonzero(found.in_contact)
+                share = found.ambiguous / np.count_nonzero(found.in_contact)
                 ours, theirs = (box_dimension(s.in_contact, 1).dimension for s in (found, exact))
                 if np.isfinite(ours):
                     dimensions.append(abs(ours - theirs) <= share + 1e-9)

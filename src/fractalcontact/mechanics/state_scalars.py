@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..contact.solve import STIFFNESS_ERROR
+from ..contact.state import STIFFNESS_ERROR
 from .area import EDGE_EXCESS, contact_perimeter, corrected_area
 from .states import SCALARS
 
@@ -61,7 +61,7 @@ def state_errors(state):
     by no more. Area and perimeter change by the nodes whose contact that leaves undecided, each
     with all its edges; so does the stiffness, in proportion to the nodes between the bounds.
     """
-    space, undecided = state.space, state.undecided
+    space, undecided = state.space, state.ambiguous
     dy, dx = space.spacing
     hidden = state.residual * state.closure * space.modulus / space.cell
     below_cap = state.in_contact & (state.pressure < state.hardness)

@@ -246,7 +246,7 @@ def _exact_enough(state, composite, solving, accuracy, where):
     # Faces that are flush have no interface to close.
     interface = abs(state.closure - settlement) if np.ptp(composite) > 0 else state.closure
     small = accuracy["closure"] * interface
-    while rtol > TIGHTEST and (state.undecided > few or state.residual * state.closure > small):
+    while rtol > TIGHTEST and (state.ambiguous > few or state.residual * state.closure > small):
         rtol /= TIGHTENING
         tighter = solving | {"rtol": rtol}
         state = _solved(composite, space, state.force, state, tighter, where)

@@ -152,7 +152,7 @@ class _Size:
         for (j, k), rising in self._states.items():
             for step, state in zip(following, rising, strict=False):
                 self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
-                self.undecided[j, k, step] = state.undecided
+                self.undecided[j, k, step] = state.ambiguous
                 if k == 0:
                     interface = state.closure - self._settlement[step]
                     self.closure[j, step] = self._open[j] * interface
