@@ -24,9 +24,10 @@ from fractalcontact.core import checksums, sources
 from fractalcontact.study.scan_files import find_scans
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.figure_list import EXPERIMENTS, figures_of, study_figures_of
+from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
 from fractalcontact.study.sidecar import is_contact_map, sidecar_of_matrix
 from fractalcontact.study.configuration import (
+    EXPERIMENTS,
     check_names,
     check_study,
     read_sidecar,
@@ -195,8 +196,7 @@ SLIDING = [name for name in SPECIMENS if name not in FLAT]
 
 def figure_modules(names):
     """Modules that draw figures, for `code`: they are imported by name when they are called."""
-    paths = [path for name in names for path in PACKAGE.glob(f"figures/*/{name}.py")]
-    return [str(path.relative_to(PACKAGE).with_suffix("")) for path in paths]
+    return [all_figures()[name].module for name in names]
 
 
 def grain(key, n):

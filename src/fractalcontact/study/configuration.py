@@ -29,6 +29,8 @@ SOLVER = {"kernel": "love"}
 ACCURACY = {"closure": "1 %", "delta_sigma": 0.02}
 #: Tolerance of a study that asks for everything.
 FULL_RTOL = 1e-6
+#: Experiments on synthetic surfaces: stages that a study has once, where it has their key.
+EXPERIMENTS = ("roll_off", "area_slope", "dimension_test", "estimator_bias")
 
 
 def read_study(path):
