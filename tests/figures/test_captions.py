@@ -1,4 +1,4 @@
-"""Captions of all figures: their length, and words that never stand in them; what a figure needs."""
+"""Captions of all figures: their length and words, and what each figure needs of the atlas."""
 
 import re
 

@@ -146,7 +146,7 @@ class Loading:
         too_few = [
             ""
             if np.isfinite(value)
-            else f"no fit: {n} of {FEWEST_POINTS} resolutions with enough nodes"
+            else f"no fit: A_r large enough at {n} of the {FEWEST_POINTS} resolutions needed"
             for value, n in zip(area["delta_sigma"].values, area["n"].values, strict=True)
         ]
         no_dimension = [f"no dimension: {text}" if text else "" for text in box["reason"].values]
