@@ -27,7 +27,7 @@ from fractalcontact.core.errors import InputError
 from fractalcontact.study import guards, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
-from fractalcontact.study.figure_list import figures_of, study_figures_of
+from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
 from fractalcontact.study.sidecar import sidecar_of_matrix
 
 SCHEMA = yaml.safe_load((Path(workflow.basedir) / "config/schema/study.schema.yaml").read_text())
@@ -157,8 +157,7 @@ STUDY_FILES = {
 
 def figure_modules(names):
     """Modules that draw figures, for `code`: they are imported by name when they are called."""
-    paths = [path for name in names for path in PACKAGE.glob(f"figures/*/{name}.py")]
-    return [str(path.relative_to(PACKAGE).with_suffix("")) for path in paths]
+    return [all_figures()[name].module for name in names]
 
 
 def grain(key, n):

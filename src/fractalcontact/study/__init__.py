@@ -5,8 +5,7 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
-        "ACCURACY": ".figure_list",
-        "EXPERIMENTS": ".figure_list",
+        "EXPERIMENTS": ".configuration",
         "STAGES": ".atlas",
         "accuracy_figures_of": ".figure_list",
         "check_study": ".checks",
