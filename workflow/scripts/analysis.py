@@ -7,7 +7,7 @@ from fractalcontact.domain.analysis import analyse_domains, scaling_over_resolut
 from fractalcontact.domain.measures import measures_of_map_states
 from fractalcontact.mechanics.area import area_laws, joint_statistics
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
-from fractalcontact.mechanics.plan import choices
+from fractalcontact.mechanics.plan import solve_plan
 from fractalcontact.mechanics.states import combine, domains_of, force_range, map_states
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.roughness.dimension import best_dimension
@@ -37,7 +37,7 @@ with job(snakemake) as log:
     made = {
         "closure": curves,
         "dilatancy": dilatancy,
-        "choices": choices(curves, dilatancy, settings, snakemake.params.solver),
+        "choices": solve_plan(curves, dilatancy, settings, snakemake.params.solver),
         "area": laws,
         "domains": domains,
         "contact": fields,

@@ -1,4 +1,4 @@
-"""Real contact area at light load on made surfaces, with and without a roll-off."""
+"""Real contact area at light load on synthetic surfaces, with and without a roll-off."""
 
 from _job import job
 

@@ -1,4 +1,4 @@
-"""Both estimates of Delta_sigma on made surfaces, over sizes and loads."""
+"""Both estimates of Delta_sigma on synthetic surfaces, over sizes and loads."""
 
 from _job import job
 

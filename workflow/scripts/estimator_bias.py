@@ -1,4 +1,4 @@
-"""How far the estimators of Delta_g are off, on made surfaces."""
+"""Bias of the estimators of Delta_g, on synthetic surfaces."""
 
 from _job import job
 

@@ -1,4 +1,4 @@
-"""Rigid dilatancy of made joints with and without a roll-off."""
+"""Rigid dilatancy of synthetic joints with and without a roll-off."""
 
 from _job import job
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ...mechanics.area import FEWEST_NODES, LIGHT_LOAD
+from ...mechanics.area import LIGHT_LOAD, RESOLVED_NODES
 from ...mechanics.states import chosen_offset
 from ..experiments.area_slope import kappa_lines
 from ..kit.drawing import (
@@ -209,7 +209,7 @@ def _caption(label, where, curve, law):
             f"{opening('Fig. 5', label, where)} (a) Real contact area, raw (hollow) and corrected "
             "for the perimeter of the discretised contact (filled), and what the classical "
             "theories make of the same composite topography at the scan's spacing. (b) Its slope "
-            f"kappa where {FEWEST_NODES} nodes or more touch.",
+            f"kappa where {RESOLVED_NODES} nodes or more touch.",
             _law_words(law),
             _between_words(law),
             _theory_words(curve, law),

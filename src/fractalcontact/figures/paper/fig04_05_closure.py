@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ...core.fitting import fit_line
-from ...mechanics.area import FEWEST_NODES
+from ...mechanics.area import RESOLVED_NODES
 from ...surface.specimen import nominal_area
 from ..kit.drawing import (
     LINES,
@@ -200,8 +200,8 @@ def _caption(label, direction, curves, laws, drawn):
         f"{opening('Figs. 4 and 5', label, where)} "
         f"(a) Force against interface closure; lines are hyperbolas fitted from "
         f"{' to '.join(ends)}, dotted their asymptotes w_m with 95 % intervals. (b) Real contact "
-        f"area against force and power laws fitted to the domains of {FEWEST_NODES} nodes or more "
-        f"(filled).",
+        f"area against force and power laws fitted to the domains of {RESOLVED_NODES} nodes or "
+        f"more (filled).",
         _hyperbola_words(curves.isel(offset=drawn)),
         _linearity_words(laws.isel(offset=drawn)),
     ]
