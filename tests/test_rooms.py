@@ -3,6 +3,7 @@
 import ast
 import importlib
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -29,7 +30,13 @@ USERS = [
 ]
 
 
+@cache
 def imports(path):
+    """As :func:`_imports`, read once."""
+    return tuple(_imports(path))
+
+
+def _imports(path):
     """Pairs of a module of the package, as a tuple, and a name taken from it, lazy ones too."""
     text = path.read_text()
     if path.suffix == ".smk":  # a Python file but for the words of Snakemake

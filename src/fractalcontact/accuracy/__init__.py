@@ -28,8 +28,9 @@ __getattr__, __dir__, __all__ = exports(
         "error_against_time": ".speed",
         "hertz_convergence": ".convergence",
         "join": ".stability",
+        "load_of": ".speed",
+        "problems_of": ".reference",
         "punch_convergence": ".convergence",
         "richardson_trials": ".convergence",
-        "problems_of": ".reference",
     },
 )

@@ -7,6 +7,7 @@ import xarray as xr
 from ..mechanics.joint import describe_joint
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
+from ..surface.grid import spacing_of
 
 
 def specimen_stages(specimen: xr.Dataset, settings: Mapping) -> dict[str, xr.Dataset]:
@@ -29,7 +30,7 @@ def specimen_stages(specimen: xr.Dataset, settings: Mapping) -> dict[str, xr.Dat
         "joints": describe_joint(specimen, settings),
         "surface_dimension": surface_dimension(
             specimen.lower.values,
-            (specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]),
+            spacing_of(specimen),
             fit_range=settings["surface_range"],
         ),
         "quality": scan_quality(specimen, settings["resolutions"]),

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from ..mechanics.loading import JointLoading
 from ..roughness.dimension import best_dimension
 from ..size_effect.eq6 import size_test
 from ..size_effect.laws import joint_by_size
@@ -33,12 +34,8 @@ def window_stages(
     dict of str to xr.Dataset
         By stage: windows and size_test.
     """
-    solved = (
-        specimens,
-        settings["contact_directions"][0],
-        np.sort(joints["offset_cells"][0].values),
-        settings,
-        solver,
-    )
-    laws = joint_by_size(*solved, best_dimension(surface_dimension))
-    return {"windows": laws, "size_test": size_test(*solved, laws)}
+    direction = settings["contact_directions"][0]
+    joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
+    loading = joint.at(np.sort(joint.cells))
+    laws = joint_by_size(loading, best_dimension(surface_dimension))
+    return {"windows": laws, "size_test": size_test(loading, laws)}

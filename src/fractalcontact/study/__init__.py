@@ -5,9 +5,9 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
-        "EXPERIMENTS": ".configuration",
         "STAGES": ".atlas",
         "accuracy_figures_of": ".figure_list",
+        "all_figures": ".figure_list",
         "check_study": ".checks",
         "embedded_surface": ".embedded",
         "figures_of": ".figure_list",

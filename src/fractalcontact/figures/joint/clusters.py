@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ...core.fitting import FEWEST_POINTS, fit_line
 from ...domain.clusters import follows_law
-from ...mechanics.area import FEWEST_NODES
+from ...mechanics.area import RESOLVED_NODES
 from ...surface.specimen import cell_side
 from ..kit.drawing import (
     LINES,
@@ -111,7 +111,7 @@ def _domain_table(domains, nodes, shown):
         row |= {column: domains[key].isel(load=j).values for key, column in COLUMNS.items()}
         rows.append(pd.DataFrame(row))
     table = pd.concat(rows, ignore_index=True)
-    return table.assign(in_trend=(table["nodes"] >= FEWEST_NODES) & (table["offset_mm"] > 0))
+    return table.assign(in_trend=(table["nodes"] >= RESOLVED_NODES) & (table["offset_mm"] > 0))
 
 
 def _size_table(domains, cell):
@@ -135,7 +135,7 @@ def _size_table(domains, cell):
 def _draw_domains(panels, table):
     number, share, localised = panels
     for n, (force, points) in enumerate(table.groupby("force_N")):
-        v, many = points["offset_mm"], (points["nodes"] >= FEWEST_NODES).values
+        v, many = points["offset_mm"], (points["nodes"] >= RESOLVED_NODES).values
         style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)]}
         for axes, column in (
             (number, "clusters"),
@@ -212,8 +212,8 @@ def _localisation_words(table):
     known = {force: line for force, line in lines.items() if np.isfinite(line.slope)}
     if not known:
         return (
-            f"Too few offsets with {FEWEST_NODES} nodes in contact ({FEWEST_POINTS} needed) for a "
-            "trend of the index."
+            f"Too few offsets with {RESOLVED_NODES} nodes in contact ({FEWEST_POINTS} needed) for "
+            "a trend of the index."
         )
     grows = sum(line.slope_low > 0 for line in known.values())
     falls = sum(line.slope_high < 0 for line in known.values())

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ...mechanics.strength import JRC_SAMPLING
+from ...mechanics.jrc import JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
     LINES,

@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ...mechanics.joint import STEPS
+from ...mechanics.joint import DIRECTION_STEPS
 from ...surface.specimen import faces, window_sides, window_slices
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
@@ -76,12 +76,12 @@ class Slid:
     @property
     def slid(self):
         """How far (y, x) the upper block has slid, mm."""
-        return tuple(self.offset * step for step in STEPS[self.direction])
+        return tuple(self.offset * step for step in DIRECTION_STEPS[self.direction])
 
     @property
     def axis(self):
         """Axis along which it slides."""
-        return "y" if STEPS[self.direction][0] else "x"
+        return "y" if DIRECTION_STEPS[self.direction][0] else "x"
 
     def profiles(self):
         """Both faces along the line of sliding through the point of first touch.
