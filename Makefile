@@ -13,7 +13,7 @@
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make problems PROBLEMS=5000   so many random contact problems, each state verified
 # make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
-# make lint   ruff and snakefmt, changing nothing
+# make lint   ruff, snakefmt, annotations and types, changing nothing; make format mends what it can
 # make lock   new pins for every package (needs uv)
 
 STUDY  ?= config/paper.yaml
@@ -91,6 +91,8 @@ lint: $(VENV)/tests-installed
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m snakefmt --check Snakefile workflow/rules
+	$(BIN)/python tests/support/annotations.py src/fractalcontact
+	$(BIN)/python -m mypy
 
 format: $(VENV)/tests-installed
 	$(BIN)/python -m ruff check --fix .

@@ -12,8 +12,9 @@ if not workflow.configfiles:
 include: "workflow/rules/common.smk"
 include: "workflow/rules/specimens.smk"
 include: "workflow/rules/contact.smk"
-include: "workflow/rules/mechanics.smk"
-include: "workflow/rules/scaling.smk"
+include: "workflow/rules/size_effect.smk"
+include: "workflow/rules/experiments.smk"
+include: "workflow/rules/atlas.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy.smk"
 
@@ -31,6 +32,6 @@ rule all:
     input:
         rules.atlas.output,
         collect_everything,
-    # Else some hundred names are printed.
+    # Without it some hundred names are printed.
     message:
         "everything of the study"

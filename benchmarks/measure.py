@@ -188,7 +188,7 @@ def _median_seconds(function, runs):
 
 
 def measure_huge(size, *, hurst, fraction, seed):
-    """Time and peak memory of a cold solve, alone in a process that loads the surface."""
+    """Time and peak memory of a cold solve, in a process that reads the surface from a file."""
     with tempfile.TemporaryDirectory() as folder:
         for step in ("make", "solve"):
             command = [sys.executable, __file__, step, folder, size, hurst, fraction, seed]

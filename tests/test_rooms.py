@@ -3,12 +3,14 @@
 import ast
 import importlib
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 import pytest
 from places import ROOT
 
 import fractalcontact
+from fractalcontact.study.stages import STAGES
 
 PACKAGE = Path(fractalcontact.__file__).parent
 FLOORS = (
@@ -17,7 +19,7 @@ FLOORS = (
     ("contact", "roughness", "scan"),
     ("domain", "mechanics", "methods", "study"),
     ("size_effect", "experiments", "accuracy", "statements", "commands"),
-    ("figures",),
+    ("figures", "stages"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 #: Who uses the package from outside.
@@ -28,7 +30,13 @@ USERS = [
 ]
 
 
+@cache
 def imports(path):
+    """As :func:`_imports`, read once."""
+    return tuple(_imports(path))
+
+
+def _imports(path):
     """Pairs of a module of the package, as a tuple, and a name taken from it, lazy ones too."""
     text = path.read_text()
     if path.suffix == ".smk":  # a Python file but for the words of Snakemake
@@ -77,6 +85,11 @@ def used_of(room):
                 # What is named as its module is taken from there: a package cannot have both.
                 if module[:1] == (room,) and len(module) > 1 and name not in (None, module[-1]):
                     found[name].add("." + ".".join(module[1:]))
+    # The functions of stages are called by name.
+    for stage in STAGES.values():
+        home, _, name = stage.function.partition(":")
+        if home.startswith(f"{room}.") and not home.endswith(f".{name}"):
+            found[name].add(home.removeprefix(room))
     return {name: sorted(modules) for name, modules in found.items()}
 
 

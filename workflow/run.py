@@ -27,7 +27,7 @@ import _running
 from fractalcontact.core import checksums
 from fractalcontact.core.atomic import sweep
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.configuration import read_study, study_name
+from fractalcontact.study.documents import read_study, study_name
 
 #: Seconds that another run is waited for, which may only be reading the workflow; and that jobs get
 #: to end when they are told to.

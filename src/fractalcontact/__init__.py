@@ -5,7 +5,7 @@ from .core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
-        "ContactState": ".contact.solve",
+        "ContactState": ".contact.state",
         "HalfSpace": ".elastic.halfspace",
         "InputError": ".core.errors",
         "NotConverged": ".core.errors",

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.contact import full_approximation as coarse_change
+from fractalcontact.contact import full_approximation
 from fractalcontact.contact.kkt import Problem
-from fractalcontact.contact.nested_iteration import on_nodes, pool_sum, shared_out
+from fractalcontact.contact.nested_iteration import prolong_constant, redistribute, restrict_sum
 from fractalcontact.surface.synthesis import self_affine
 
 CONTROLS = ["closure", "force"]
@@ -14,8 +14,8 @@ CONTROLS = ["closure", "force"]
 
 @pytest.fixture
 def on_small_grids(monkeypatch):
-    monkeypatch.setattr(coarse_change, "SMALLEST", 48)
-    monkeypatch.setattr(coarse_change, "COARSEST", 24)
+    monkeypatch.setattr(full_approximation, "LEAST_FINE_SIDE", 48)
+    monkeypatch.setattr(full_approximation, "LEAST_COARSE_SIDE", 24)
 
 
 def rough(shape, seed=3):
@@ -34,8 +34,8 @@ def test_a_state_of_the_load_is_not_changed(on_small_grids, shape, control):
     clearance = (height.max() - height).ravel()
     problem = Problem(space, clearance, load, by_force, state.hardness)
     pressure, displacement = state.pressure.ravel(), state.displacement.ravel()
-    assert coarse_change.coarse_change(problem, pressure, displacement) is None
-    found = coarse_change._changed(problem, pressure, state.gap, 3.0)
+    assert full_approximation.full_approximation_start(problem, pressure, displacement) is None
+    found = full_approximation._changed_pressure(problem, pressure, state.gap, 3.0)
     np.testing.assert_allclose(found, pressure, rtol=0, atol=1e-4 * pressure.max())
 
 
@@ -43,18 +43,18 @@ def test_a_state_of_the_load_is_not_changed(on_small_grids, shape, control):
 def test_every_cell_keeps_the_sum_it_is_given(shape):
     rng = np.random.default_rng(8)
     before = rng.random(shape) * (rng.random(shape) > 0.6)
-    old = pool_sum(before) / 2
+    old = restrict_sum(before) / 2
     new = rng.random(old.shape) * (rng.random(old.shape) > 0.3)
-    change = coarse_change._in_proportion(before, old, new)
+    change = full_approximation._in_proportion(before, old, new)
     influence = rough(shape)[1].influence()
-    for pressure in (before + change, shared_out(before, change, rng.random(shape), influence)):
-        np.testing.assert_allclose(pool_sum(pressure), 2 * new, atol=1e-12)
+    for pressure in (before + change, redistribute(before, change, rng.random(shape), influence)):
+        np.testing.assert_allclose(restrict_sum(pressure), 2 * new, atol=1e-12)
         assert (pressure >= 0).all()
 
 
 def test_values_of_cells_on_their_nodes():
     cells = np.arange(6.0).reshape(2, 3)
-    nodes = on_nodes(cells, (3, 5))
+    nodes = prolong_constant(cells, (3, 5))
     np.testing.assert_array_equal(nodes, cells[np.ix_([0, 0, 1], [0, 0, 1, 1, 2])])
 
 
@@ -64,8 +64,10 @@ def test_states_are_those_of_cold_starts(on_small_grids, monkeypatch, control, h
     height, space = rough((96, 101), seed=4)
     changed = []
     monkeypatch.setattr(
-        "fractalcontact.contact.solve.coarse_change",
-        lambda *known: changed.append(coarse_change.coarse_change(*known)) or changed[-1],
+        "fractalcontact.contact.solve.full_approximation_start",
+        lambda *known: (
+            changed.append(full_approximation.full_approximation_start(*known)) or changed[-1]
+        ),
     )
     state = None
     for closure in (1.0, 1.8, 2.2, 3.0, 2.4):
@@ -80,7 +82,7 @@ def test_states_are_those_of_cold_starts(on_small_grids, monkeypatch, control, h
 
 @pytest.mark.parametrize("control", CONTROLS)
 def test_applications_are_saved_on_large_grids(monkeypatch, control):
-    n = coarse_change.SMALLEST
+    n = full_approximation.LEAST_FINE_SIDE
     height, space = rough((n, n), seed=1)
     depth = np.ptp(height)
     loads = [{"closure": share * depth} for share in (0.16, 0.18, 0.20)]
@@ -89,7 +91,7 @@ def test_applications_are_saved_on_large_grids(monkeypatch, control):
     first = solve_contact(height, space, **loads[0])
     applications = {}
     for smallest in (n, n + 1):
-        monkeypatch.setattr(coarse_change, "SMALLEST", smallest)
+        monkeypatch.setattr(full_approximation, "LEAST_FINE_SIDE", smallest)
         state, applications[smallest] = first, 0
         for load in loads[1:]:
             state = solve_contact(height, space, start=state, **load)

@@ -4,21 +4,23 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.contact.nested_iteration import pool_minimum, pool_sum, spread
+from fractalcontact.contact.nested_iteration import prolong, restrict_minimum, restrict_sum
 
 
 def half_space(ny, nx, spacing=(0.1, 0.1)):
     return HalfSpace(shape=(ny, nx), spacing=spacing, modulus=1.0)
 
 
-@pytest.mark.parametrize(("pool", "numpy_pool"), [(pool_minimum, np.nanmin), (pool_sum, np.nansum)])
+@pytest.mark.parametrize(
+    ("restrict", "numpy_restrict"), [(restrict_minimum, np.nanmin), (restrict_sum, np.nansum)]
+)
 @pytest.mark.parametrize("shape", [(4, 6), (5, 7), (1, 2), (3, 1)])
-def test_cells_of_two_by_two_nodes(shape, pool, numpy_pool):
+def test_cells_of_two_by_two_nodes(shape, restrict, numpy_restrict):
     values = np.random.default_rng(1).standard_normal(shape)
     ny, nx = shape
     padded = np.pad(values, ((0, ny % 2), (0, nx % 2)), constant_values=np.nan)
     cells = padded.reshape((ny + 1) // 2, 2, (nx + 1) // 2, 2)
-    np.testing.assert_allclose(pool(values), numpy_pool(cells, axis=(1, 3)), rtol=1e-14)
+    np.testing.assert_allclose(restrict(values), numpy_restrict(cells, axis=(1, 3)), rtol=1e-14)
 
 
 @pytest.mark.parametrize("shape", [(24, 30), (25, 31)])
@@ -27,7 +29,7 @@ def test_every_cell_keeps_its_mean(shape):
     ny, nx = shape
     coarse = rng.random(((ny + 1) // 2, (nx + 1) // 2))
     coarse *= rng.random(coarse.shape) > 0.3
-    fine = spread(coarse, rng.random(shape), half_space(ny, nx).influence())
+    fine = prolong(coarse, rng.random(shape), half_space(ny, nx).influence())
     padded = np.pad(fine, ((0, ny % 2), (0, nx % 2)), constant_values=np.nan)
     cells = padded.reshape(coarse.shape[0], 2, -1, 2)
     np.testing.assert_allclose(np.nanmean(cells, axis=(1, 3)), coarse, atol=1e-12)
@@ -47,7 +49,7 @@ def test_one_cell_alone_is_solved_exactly(spacing, depth):
     coarse[5, 6] = 0.25
     # Unit pressure displaces by the influence in units of modulus and cell.
     unit = space.cell / space.modulus
-    fine = spread(coarse, clearance, space.influence())
+    fine = prolong(coarse, clearance, space.influence())
     state = solve_contact(-clearance * unit, space, force=space.cell_area, rtol=1e-12)
     np.testing.assert_allclose(fine, state.pressure, atol=1e-6)
     assert np.count_nonzero(fine) == {0.0: 4, 0.3: 4, 3.0: 2}[depth]
@@ -57,7 +59,7 @@ def test_neighbours_take_load_off_the_edge_they_share():
     """Two loaded cells side by side: a lower pressure between them than at their outer ends."""
     coarse = np.zeros((12, 12))
     coarse[6, 5:7] = 1.0
-    fine = spread(coarse, np.zeros((24, 24)), half_space(24, 24).influence())
+    fine = prolong(coarse, np.zeros((24, 24)), half_space(24, 24).influence())
     assert (fine[12:14, 13] < fine[12:14, 10]).all()
 
 
@@ -67,6 +69,6 @@ def test_where_one_node_of_a_cell_can_touch_it_carries_all():
     clearance[10, 12] = 1e20
     coarse = np.zeros((12, 13))
     coarse[5, 6] = 0.25
-    fine = spread(coarse, clearance, half_space(24, 26, (0.1, 0.155)).influence())
+    fine = prolong(coarse, clearance, half_space(24, 26, (0.1, 0.155)).influence())
     assert fine[10, 12] == 4 * 0.25
     assert np.count_nonzero(fine) == 1

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace
-from fractalcontact.contact.preconditioner import DIRECT, ContactInverse
-from fractalcontact.contact.projected_cg import Operator, SetEquations
+from fractalcontact.contact.preconditioner import DIRECT, Preconditioner
+from fractalcontact.contact.projected_cg import Operator, ProjectedCG
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -22,7 +22,7 @@ def matrix_on(space, rows):
 
 
 def inverse_on(space, rows):
-    inverse = ContactInverse(space)
+    inverse = Preconditioner(space)
     inverse.update(rows, fresh=True)
     return inverse
 
@@ -74,8 +74,8 @@ def test_ten_iterations_solve_a_linear_problem_to_a_millionth(shape):
     rows = rough_set(shape, 0.1, hurst=0.8)
     operator = Operator(space)
     operator.inverse.update(rows, fresh=True)
-    equations = SetEquations(operator, rows, np.ones(rows.size))
-    equations.conjugate_gradients(1e-6, by_force=False)
+    equations = ProjectedCG(operator, rows, np.ones(rows.size))
+    equations.iterate(1e-6, by_force=False)
     assert np.abs(1 - matrix_on(space, rows) @ equations.solution.astype(float)).max() < 1e-5
     assert operator.applications <= 14
 
@@ -83,7 +83,7 @@ def test_ten_iterations_solve_a_linear_problem_to_a_millionth(shape):
 def test_an_updated_inverse_is_that_of_a_fresh_start_to_the_bit():
     space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
     first, second = rough_set((200, 190), 0.2), rough_set((200, 190), 0.19)
-    updated = ContactInverse(space)
+    updated = Preconditioner(space)
     updated.update(first, fresh=True)
     updated.update(second, fresh=True)
     vector = np.random.default_rng(4).standard_normal(second.size).astype(np.float32)
@@ -95,7 +95,7 @@ def test_an_inverse_does_not_depend_on_the_sets_of_earlier_solves():
     space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
     before, few, many = (rough_set((200, 190), share) for share in (0.2, 0.002, 0.19))
     assert few.size <= DIRECT
-    used, new = ContactInverse(space), ContactInverse(space)
+    used, new = Preconditioner(space), Preconditioner(space)
     used.update(before, fresh=True)
     for inverse in (used, new):
         inverse.update(few, fresh=True)
@@ -113,7 +113,7 @@ def test_an_update_that_is_interrupted_changes_nothing(monkeypatch):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as broken:
-        broken.setattr("fractalcontact.contact.preconditioner.threads.in_parts", interrupt)
+        broken.setattr("fractalcontact.contact.inverse_cholesky.threads.in_parts", interrupt)
         with pytest.raises(KeyboardInterrupt):
             inverse.update(second, fresh=True)
     inverse.update(second, fresh=True)
@@ -139,7 +139,7 @@ def test_a_few_nodes_that_stand_alone_do_not_get_an_operator_out_of_date():
     grid[:150, :150] = True
     before, after = grid.copy(), grid.copy()
     before[300:302, 300:302] = after[300, 300] = True
-    updated, fresh = ContactInverse(space), ContactInverse(space)
+    updated, fresh = Preconditioner(space), Preconditioner(space)
     updated.update(np.flatnonzero(before).astype(np.int32), fresh=True)
     updated.update(np.flatnonzero(after).astype(np.int32), fresh=False)
     fresh.update(np.flatnonzero(after).astype(np.int32), fresh=True)

@@ -296,14 +296,14 @@ def test_leaving_nodes_out_beforehand_saves_applications_and_changes_no_state(mo
     height, space = rough(shape=(192, 192), hurst=0.8, seed=9, rms=1.0)
     exact = [solve_contact(height, space, closure=0.3 * k, rtol=1e-8) for k in range(1, 11)]
     applications = {}
-    for foreseeing in (active_set.FORESEEING, 0):
-        monkeypatch.setattr(active_set, "FORESEEING", foreseeing)
-        state, applications[foreseeing] = None, 0
+    for predictions in (active_set.SET_PREDICTIONS, 0):
+        monkeypatch.setattr(active_set, "SET_PREDICTIONS", predictions)
+        state, applications[predictions] = None, 0
         for expected in exact:
             load = {control: getattr(expected, control)}
             state = solve_contact(height, space, start=state, **load)
             assert_same(state, expected, rtol=5e-6)
-            applications[foreseeing] += state.iterations
+            applications[predictions] += state.iterations
     saving, without = applications.values()
     assert saving < without
 
@@ -463,7 +463,7 @@ def test_other_grids_are_refused():
 def test_unconverged_fields_are_never_returned(monkeypatch, load):
     height, space = rough()
     converged = solve_contact(height, space, **load)
-    monkeypatch.setattr(active_set, "MAX_CORRECTIONS", 1)
+    monkeypatch.setattr(active_set, "MAX_ITERATIONS", 1)
     with pytest.raises(NotConverged, match="contact set still changed") as caught:
         solve_contact(height, space, **load)
     error = caught.value

@@ -9,12 +9,12 @@ import xarray as xr
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.accuracy.cheap_models import bearing_area, coarse_grid, winkler
-from fractalcontact.contact.coarse_correction import inverted, times
-from fractalcontact.contact.kkt import examined_by, mean_reached
-from fractalcontact.contact.nested_iteration import on_nodes, spread
-from fractalcontact.contact.preconditioner import ContactInverse
-from fractalcontact.contact.projected_cg import Operator, SetEquations, add
-from fractalcontact.contact.solve import ContactState
+from fractalcontact.contact.dense import inverted, times
+from fractalcontact.contact.kkt import kkt_residual, mean_closure
+from fractalcontact.contact.nested_iteration import prolong, prolong_constant
+from fractalcontact.contact.preconditioner import Preconditioner
+from fractalcontact.contact.projected_cg import Operator, ProjectedCG, add
+from fractalcontact.contact.state import ContactState
 from fractalcontact.core import arguments
 from fractalcontact.domain.box_counts import box_count, mean_count
 from fractalcontact.domain.count_law import Law, best_law, law_dimension
@@ -22,8 +22,10 @@ from fractalcontact.domain.multifractal import generalised_dimensions, gliding_m
 from fractalcontact.elastic.convolution import Convolution
 from fractalcontact.methods.common import measured_state
 from fractalcontact.methods.registry import METHODS
-from fractalcontact.roughness.area_curves import cube_counting_curves, triangular_prism_curves
-from fractalcontact.roughness.curves import roughness_length_curves, variogram_curves
+from fractalcontact.roughness.estimators.cube_counting import cube_counting_curves
+from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
+from fractalcontact.roughness.estimators.triangular_prism import triangular_prism_curves
+from fractalcontact.roughness.estimators.variogram import variogram_curves
 from fractalcontact.surface.synthesis import self_affine
 
 SHAPE = (24, 30)
@@ -137,9 +139,9 @@ def kernel_calls():
     """Calls of what is compiled, with arrays that are too short, too long or point elsewhere."""
     space = HalfSpace((24, 30), (0.1, 0.1), 2e4)
     nodes = np.arange(100, 300, dtype=np.int32)
-    inverse = ContactInverse(space)
+    inverse = Preconditioner(space)
     inverse.update(nodes, fresh=True)
-    few = ContactInverse(space)
+    few = Preconditioner(space)
     few.update(nodes[:5], fresh=True)
     operator = Operator(space)
     ones = np.ones(200, np.float32)
@@ -155,12 +157,12 @@ def kernel_calls():
     yield "nodes as a mask", lambda: inverse.update(np.ones((24, 30), bool), fresh=True)
     yield "loads past the grid", lambda: operator.on((nodes + 600, ones))
     yield "loads for other nodes", lambda: operator.on((nodes, ones[1:]))
-    yield "another right side", lambda: SetEquations(operator, nodes, ones[1:])
-    yield "cells for other nodes", lambda: on_nodes(np.ones((2, 2)), (24, 30))
-    yield "pressures on another grid", lambda: spread(np.ones((9, 9)), GRID, GRID)
-    yield "influence on another grid", lambda: spread(np.ones((12, 15)), GRID, np.ones((2, 2)))
-    yield "clearance of another grid", lambda: examined_by(n10, n10, n9, 1.0, np.inf)
-    yield "displacement of another grid", lambda: mean_reached(n10, n9, n10, np.inf)
+    yield "another right side", lambda: ProjectedCG(operator, nodes, ones[1:])
+    yield "cells for other nodes", lambda: prolong_constant(np.ones((2, 2)), (24, 30))
+    yield "pressures on another grid", lambda: prolong(np.ones((9, 9)), GRID, GRID)
+    yield "influence on another grid", lambda: prolong(np.ones((12, 15)), GRID, np.ones((2, 2)))
+    yield "clearance of another grid", lambda: kkt_residual(n10, n10, n9, 1.0, np.inf)
+    yield "displacement of another grid", lambda: mean_closure(n10, n9, n10, np.inf)
     yield "too few changes", lambda: add(n10, 1.0, n9)
     yield "too many values", lambda: times(np.ones((3, 3), np.float32), ones)
     yield "no square matrix", lambda: inverted(np.ones((3, 2)))

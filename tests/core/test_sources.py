@@ -28,9 +28,15 @@ def module_in(folder, name):
 
 @cache
 def parsed_imports(path, package):
-    """Files that the import statements of one file name."""
+    """Files that the import statements of one file name, and those of folders that it lists."""
     found = []
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    listed = {
+        node.args[0].id
+        for node in nodes
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "modules_of"
+    }
+    for node in nodes:
         if isinstance(node, ast.ImportFrom):
             parts = (node.module or "").split(".") if node.module else []
             chains = [(node.level, parts, [alias.name for alias in node.names])]
@@ -55,6 +61,8 @@ def parsed_imports(path, package):
             if (folder / "__init__.py").exists():
                 for name in names:
                     found += module_in(folder, name)
+                    if name in listed:
+                        found += sorted((folder / name).glob("*.py"))
     return found
 
 
@@ -153,6 +161,28 @@ def test_names_that_a_package_imports_when_first_asked_lead_to_their_module(proj
     assert files_of(project, "scripts/job") == ["rocks/b"]
     (project / "scripts/job.py").write_text("import rocks\n")
     assert files_of(project, "scripts/job") == []
+
+
+def test_every_module_of_a_listed_folder_counts(project):
+    """Readers, estimators and others are found by listing the folder they lie in."""
+    (project / "rocks/a.py").write_text(
+        "from . import c, inner\nfrom .b import modules_of\nALL = modules_of(inner)\n"
+    )
+    assert files_of(project, "rocks/a") == ["rocks/b", "rocks/c", *_inner("d", "e")]
+    (project / "rocks/inner/f.py").write_text("from ..numpy import one\n")
+    assert files_of(project, "rocks/a") == [
+        "rocks/b",
+        "rocks/c",
+        *_inner("d", "e", "f"),
+        "rocks/numpy",
+    ]
+    (project / "rocks/a.py").write_text("from . import inner\n")
+    assert files_of(project, "rocks/a") == []
+
+
+def test_the_readers_of_scans_count_for_whoever_reads_scans():
+    files = sources.source_files([SCRIPTS / "specimen.py"], package=PACKAGE)
+    assert set((PACKAGE / "scan/readers").glob("*.py")) <= set(files)
 
 
 def test_circles_end(project):

@@ -13,7 +13,7 @@ import pytest
 from numba.core.compiler_lock import global_compiler_lock
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.contact import preconditioner as screening
+from fractalcontact.contact import preconditioner as preconditioning
 from fractalcontact.contact.effort import SOLVING, Effort
 from fractalcontact.contact.preconditioner import forget_preconditioner, preconditioner
 from fractalcontact.core.threads import computed_once, in_parts
@@ -111,7 +111,7 @@ def test_preconditioners_end_with_their_space_and_with_their_thread():
         key = id(space)
         del space
         assert here() is None
-        assert key not in screening._THREAD.kept
+        assert key not in preconditioning._THREAD.kept
     finally:
         gc.enable()
 

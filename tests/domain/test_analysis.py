@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.domain.analysis import ONE_NODE, analyse_domains, scaling_over_resolutions
-from fractalcontact.domain.box_dimension import box_dimension, box_sizes
+from fractalcontact.domain.analysis import analyse_domains, scaling_over_resolutions
+from fractalcontact.domain.box_counts import box_sizes
+from fractalcontact.domain.box_dimension import ONE_NODE, box_dimension
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1

@@ -6,7 +6,7 @@ from fractalcontact.experiments.delta_g import estimator_bias
 from fractalcontact.figures.experiments import estimator_bias as figure
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.roughness.dimension import LITTLE_BIASED, surface_dimension
-from fractalcontact.roughness.estimators import ESTIMATORS
+from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.surface.synthesis import self_affine
 
 RECIPE = {"hurst": [0.3, 0.5, 0.8], "sizes": [256, 128], "seeds": list(range(20))}

@@ -7,7 +7,8 @@ from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.intervals import mean_interval
 from fractalcontact.domain.box_dimension import box_dimension
 from fractalcontact.elastic.halfspace import HalfSpace
-from fractalcontact.experiments.delta_sigma import SIDE, dimension_test, made_surface
+from fractalcontact.experiments.delta_sigma import dimension_test, synthetic_surface
+from fractalcontact.experiments.units import SIDE
 
 RECIPE = {
     "dimensions": [2.2, 2.5],
@@ -50,7 +51,7 @@ def test_area_follows_the_light_load_theory(found):
 
 def test_boxes_are_counted_on_the_same_state(found):
     size, seed, load = 256, 2, 0.01
-    surface = made_surface(2.5, size, seed)
+    surface = synthetic_surface(2.5, size, seed)
     chosen = found.sel(dimension=2.5, size=size, seed=seed, load=load)
     force = load * float(chosen["rms_slope"]) * SIDE**2
     space = HalfSpace((size, size), (SIDE / size,) * 2, 1.0)

@@ -13,7 +13,8 @@ from fractalcontact.experiments.roll_off import roll_off_effect
 from fractalcontact.mechanics.area import area_laws, joint_statistics
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import describe_joint
-from fractalcontact.mechanics.plan import choices
+from fractalcontact.mechanics.loading import JointLoading
+from fractalcontact.mechanics.plan import solve_plan
 from fractalcontact.mechanics.states import combine, domains_of, force_range, map_states
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import joint_states
@@ -155,14 +156,14 @@ def atlas_file(tmp_path_factory):
             chosen["material"]["e_star"],
             best_dimension(dimension)[0],
         )
-        of_solved = (
+        loading = JointLoading(
             specimen,
             chosen["contact_directions"][0],
             np.sort(joint["offset_cells"][0].values),
             chosen,
             SOLVER,
         )
-        windows = joint_by_size(*of_solved, best_dimension(dimension))
+        windows = joint_by_size(loading, best_dimension(dimension))
         made = {
             "specimens": specimen,
             "quality": scan_quality(specimen, chosen["resolutions"]),
@@ -170,14 +171,14 @@ def atlas_file(tmp_path_factory):
             "joints": joint,
             "contact": fields,
             "closure": curves,
-            "choices": choices(curves, dilatancy, chosen, SOLVER),
+            "choices": solve_plan(curves, dilatancy, chosen, SOLVER),
             "dilatancy": dilatancy,
             "area": area,
             "windows": windows,
             "domains": domains,
             "scaling": scaling_over_resolutions(curves, domains, SPACING),
         }
-        made["size_test"] = size_test(*of_solved, windows)
+        made["size_test"] = size_test(loading, windows)
         made["domain_measures"] = measures_of_map_states(map_states([solved]), SPACING)
         made["statements"] = judge(made, chosen)
         if name != "flat":

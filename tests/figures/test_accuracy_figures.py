@@ -18,7 +18,7 @@ from fractalcontact.accuracy.stability import HONEST, SILENT, stability
 from fractalcontact.figures.draw import draw_study_figures, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.study.atlas import read_atlas, write_atlas
-from fractalcontact.study.figure_list import ACCURACY, accuracy_figures_of
+from fractalcontact.study.figure_list import accuracy_figures_of
 
 RECIPE = {
     "sizes": [16, 24, 32],
@@ -30,7 +30,7 @@ RECIPE = {
     "longest": 1.0,
     "slow_nodes": 200,
 }
-FIGURES = accuracy_figures_of(ACCURACY)
+FIGURES = accuracy_figures_of(("speed", "convergence", "stability"))
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ from fractalcontact.mechanics.area import (
 )
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.joint import describe_joint
+from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings, window_arguments
@@ -170,12 +171,8 @@ def solved():
     states = combine(
         [
             contact_states(
-                specimen,
-                direction,
-                joint["offset_cells"].sel(contact_direction=direction).values,
-                settings,
+                JointLoading.of_joint(specimen, joint, direction, settings, solver),
                 settings["resolutions"],
-                solver,
             )
             for direction in settings["contact_directions"]
         ]

@@ -13,6 +13,7 @@ from fractalcontact.mechanics.closure import (
 )
 from fractalcontact.mechanics.joint import describe_joint
 from fractalcontact.mechanics.load_curve import closure_at_force
+from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings
@@ -149,7 +150,7 @@ def curves_of(heights, forces):
     specimen["lower"].values[...] = heights  # as made, not levelled
     study = SETTINGS["defaults"] | {"opposite": "flat", "loads": [f"{f} N" for f in forces]}
     settings = resolve_settings(SETTINGS | {"defaults": study}, None, {}, "test")
-    states = contact_states(specimen, "none", [0], settings, [1], SOLVER)
+    states = contact_states(JointLoading(specimen, "none", [0], settings, SOLVER), [1])
     return closure_curves(combine([states]), window_sides(specimen), 2e4)
 
 
@@ -160,7 +161,7 @@ def slid_joint(cells, loads):
     offsets = [f"{n * 0.1:g} mm" for n in cells]
     study = SETTINGS["defaults"] | {"offsets": offsets, "loads": loads}
     settings = resolve_settings(SETTINGS | {"defaults": study}, None, {}, "test")
-    states = contact_states(specimen, "E", cells, settings, [1], SOLVER)
+    states = contact_states(JointLoading(specimen, "E", cells, settings, SOLVER), [1])
     curves = closure_curves(combine([states]), window_sides(specimen), 2e4)
     return specimen, describe_joint(specimen, settings), curves
 

@@ -10,7 +10,8 @@ from fractalcontact.core.tolerance import tolerance
 from fractalcontact.domain.box_dimension import box_dimension
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import describe_joint
-from fractalcontact.mechanics.plan import choices, solved_loads
+from fractalcontact.mechanics.loading import JointLoading
+from fractalcontact.mechanics.plan import solve_plan, solved_loads
 from fractalcontact.mechanics.state_scalars import numbers_of
 from fractalcontact.mechanics.states import UNCERTAIN, combine
 from fractalcontact.mechanics.sweep import contact_states
@@ -35,7 +36,7 @@ FORCES = np.array([20.0, 32.0, 100.0, 300.0])  # 2 MPa on 16 mm2 are 32 N
 
 
 def which(**where):
-    known = {"first": True, "mapped": False, "factor": 1, "everything": False}
+    known = {"first": True, "mapped": False, "factor": 1, "all_states": False}
     return solved_loads(SETTINGS, FORCES, 16.0, **(known | where)).tolist()
 
 
@@ -45,7 +46,7 @@ def test_only_what_is_shown_is_solved():
     assert which(factor=2, mapped=True) == [0, 1, 2, 3]
     assert which(first=False) == [1, 2]
     assert which(first=False, mapped=True, factor=2) == []
-    assert which(first=False, factor=4, everything=True) == [0, 1, 2, 3]
+    assert which(first=False, factor=4, all_states=True) == [0, 1, 2, 3]
 
 
 def test_the_tolerance_follows_the_stricter_wish():
@@ -95,7 +96,7 @@ def test_states_lie_within_their_errors_of_exact_ones(hardness):
                     slack = 1e-9 * abs(true[name])
                     off = abs(numbers[name] - true[name])
                     right.append(off <= numbers[f"{name}_error"] + slack)
-                share = found.undecided / np.count_nonzero(found.in_contact)
+                share = found.ambiguous / np.count_nonzero(found.in_contact)
                 ours, theirs = (box_dimension(s.in_contact, 1).dimension for s in (found, exact))
                 if np.isfinite(ours):
                     dimensions.append(abs(ours - theirs) <= share + 1e-9)
@@ -148,7 +149,9 @@ def test_a_small_closure_of_the_interface_is_as_exact_as_a_large_one():
 
 def curves_of(specimen, solver):
     states = [
-        contact_states(specimen, direction, [2, 5], SETTINGS, [1, 2, 4], solver, mapped=5)
+        contact_states(
+            JointLoading(specimen, direction, [2, 5], SETTINGS, solver), [1, 2, 4], mapped=5
+        )
         for direction in SETTINGS["contact_directions"]
     ]
     return closure_curves(combine(states), (4.0, 4.0), 2e4)
@@ -173,7 +176,7 @@ def test_a_study_solves_less_and_says_so(specimen):
     spacing = np.isfinite(found["closure_spacing_error"])
     assert spacing.any("load").sum() == 2
     dilatancy = elastic_dilatancy(found, describe_joint(specimen, SETTINGS))
-    table = choices(found, dilatancy, SETTINGS, solver).set_index(choice="choice")
+    table = solve_plan(found, dilatancy, SETTINGS, solver).set_index(choice="choice")
     assert table.attrs["states_solved"] == 20
     assert table.attrs["states"] == 48
     assert float(table["error"].sel(choice="solver tolerance")) < 2e-3

@@ -8,15 +8,15 @@ import xarray as xr
 
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import describe_joint
+from fractalcontact.mechanics.jrc import JRC_RANGE, profile_roughness
+from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import (
-    JRC_RANGE,
     angles_with_errors,
     dilatancy_angle,
     from_flush,
     joint_strength,
     peak,
-    profile_roughness,
     residual,
     shear_strength,
 )
@@ -58,14 +58,7 @@ def pressed(specimen, chosen):
     joint = describe_joint(specimen, chosen)
     states = combine(
         [
-            contact_states(
-                specimen,
-                d,
-                joint["offset_cells"].sel(contact_direction=d).values,
-                chosen,
-                [1],
-                SOLVER,
-            )
+            contact_states(JointLoading.of_joint(specimen, joint, d, chosen, SOLVER), [1])
             for d in chosen["contact_directions"]
         ]
     )

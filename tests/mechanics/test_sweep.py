@@ -7,6 +7,7 @@ import xarray as xr
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
+from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import MAP_PRESSURE, OFFSETS, combine, domains_of, map_states
 from fractalcontact.mechanics.sweep import contact_states, joint_states, load_steps
 from fractalcontact.surface.specimen import make_specimen, window_sides
@@ -43,7 +44,9 @@ def joint(specimen):
 def parts(specimen, joint):
     """One part a direction, offset and resolution, in the order of the study's directions."""
     return [
-        contact_states(specimen, direction, cells[i : i + 1], SETTINGS, [resolution], SOLVER)
+        contact_states(
+            JointLoading(specimen, direction, cells[i : i + 1], SETTINGS, SOLVER), [resolution]
+        )
         for direction in SETTINGS["contact_directions"]
         for cells in [joint["offset_cells"].sel(contact_direction=direction).values]
         for i in range(len(cells))

@@ -10,7 +10,7 @@ from fractalcontact.roughness.dimension import (
     slope_statistics,
     surface_dimension,
 )
-from fractalcontact.roughness.estimators import ESTIMATORS
+from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 
 WITH_AXES = ["variogram", "second_differences", "roughness_length", "power_spectrum"]

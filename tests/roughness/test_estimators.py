@@ -2,21 +2,16 @@ import numpy as np
 import pytest
 from places import SCANS
 
-from fractalcontact.roughness.area_curves import (
-    _islands,
-    cube_counting_curves,
-    slit_island_curves,
-    triangular_prism_curves,
-)
-from fractalcontact.roughness.curves import (
-    BLOCKS,
-    power_spectrum_curves,
-    roughness_length_curves,
-    second_difference_curves,
-    variogram_curves,
-)
-from fractalcontact.roughness.estimators import ESTIMATORS
+from fractalcontact.roughness.curves import BLOCKS
+from fractalcontact.roughness.estimators.cube_counting import cube_counting_curves
+from fractalcontact.roughness.estimators.power_spectrum import power_spectrum_curves
+from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
+from fractalcontact.roughness.estimators.second_differences import second_difference_curves
+from fractalcontact.roughness.estimators.slit_islands import _islands, slit_island_curves
+from fractalcontact.roughness.estimators.triangular_prism import triangular_prism_curves
+from fractalcontact.roughness.estimators.variogram import variogram_curves
 from fractalcontact.roughness.known_bias import slopes
+from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from fractalcontact.roughness.curves import profile_spectra
 from fractalcontact.roughness.fractal_range import find_fractal_range
+from fractalcontact.roughness.spectra import profile_spectra
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1

@@ -3,7 +3,6 @@ import pytest
 from brownian import brownian_surface
 
 from fractalcontact.roughness.dimension import hurst_exponents
-from fractalcontact.roughness.estimators import ESTIMATORS
 from fractalcontact.roughness.known_bias import (
     HURST_GRID,
     POINTS,
@@ -15,6 +14,7 @@ from fractalcontact.roughness.known_bias import (
     square_about_plane,
     unresolved,
 )
+from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.roughness.spectrum_model import BAND_LIMITED
 from fractalcontact.surface.synthesis import self_affine
 
@@ -30,7 +30,7 @@ def at(hurst, values):
 
 def found_over_default_range(name, sampling, axis="both"):
     lengths = ESTIMATORS[name].factor * np.geomspace(4, 32, 12)
-    return ESTIMATORS[name].found(Fit(lengths, 256, axis), sampling)
+    return ESTIMATORS[name].expected_hurst(Fit(lengths, 256, axis), sampling)
 
 
 def limit_at_one(values):
@@ -126,7 +126,7 @@ def test_slopes_are_those_of_made_surfaces(sampling, target):
             slopes_found[name].append(estimate.slope_hurst)
     for name, found in slopes_found.items():
         fit = Fit(made[name].length[made[name].used], n, "both")
-        expected = at(target, ESTIMATORS[name].found(fit, sampling))
+        expected = at(target, ESTIMATORS[name].expected_hurst(fit, sampling))
         error = np.std(found, ddof=1) / np.sqrt(len(found))
         assert abs(np.mean(found) - expected) < 0.008 + 3 * error, name
 

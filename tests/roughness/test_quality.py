@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 from scipy import stats
 
-from fractalcontact.roughness.quality import height_step, radial_spectrum, scan_quality
+from fractalcontact.roughness.quality import height_step, scan_quality
 from fractalcontact.roughness.quality_words import noise_words, range_words
+from fractalcontact.roughness.spectra import radial_spectrum
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 

@@ -14,6 +14,7 @@ import pytest
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import confined, reader_process, transfer
 from fractalcontact.scan.confined import ReaderBug, read_confined
+from fractalcontact.scan.format import Format
 from fractalcontact.scan.options import ScanOptions, parse_options
 from fractalcontact.scan.raw import RawScan
 
@@ -154,11 +155,17 @@ def test_a_fault_of_the_program_is_not_blamed_on_the_file(hostile):
     assert "hostile_reader.py" in bug.value.__notes__[0]
 
 
-def test_limits_grow_with_the_file_and_with_what_it_inflates_to(tmp_path):
-    small, large = reader_process.limits_for(1000), reader_process.limits_for(300 * 10**6)
+def test_limits_grow_with_the_file_as_its_most_generous_format_declares():
+    plain = [Format(read=None)]
+    small, large = (reader_process.limits_for(size, plain) for size in (1000, 300 * 10**6))
     assert small.memory < 1.1 * 1024**3
     assert small.processor_seconds < 10
     assert large.memory > 3 * 10**9
+    generous = Format(read=None, memory_per_byte=100, seconds_per_megabyte=7)
+    found = reader_process.limits_for(10**6, [*plain, generous])
+    assert found.memory == reader_process.BASE_MEMORY + 100 * 10**6
+    assert found.processor_seconds == reader_process.BASE_SECONDS + 7
+    assert found.seconds == reader_process.PATIENCE * found.processor_seconds
 
 
 def test_an_archive_may_take_memory_for_what_it_inflates_to(hostile, tmp_path):

@@ -1,15 +1,21 @@
 """Readers of single formats: what they take from the file, and what they refuse."""
 
 import struct
+import subprocess
+import sys
 import zipfile
+from collections import Counter
 
 import numpy as np
 import pytest
 from scan_writers import write
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan import instruments, raw
+from fractalcontact.scan import formats, raw
+from fractalcontact.scan.format import Format
+from fractalcontact.scan.options import ScanOptions
 from fractalcontact.scan.read import read_scan
+from fractalcontact.scan.readers import instruments
 
 DX, DY = 0.1, 0.25
 MATRIX = {"unit": "mm", "spacing": [DX, DY]}
@@ -416,3 +422,67 @@ def test_formats_of_our_own_are_not_read_by_surfacetopography():
     extensions = instruments.instrument_formats()
     assert not {"x3p", "npy", "npz", "nc", "h5", "mat", "asc", "xyz", "gwy"} & set(extensions)
     assert {"plux", "sur", "al3d", "tif"} <= set(extensions)
+
+
+# --- the registry -------------------------------------------------------------------------------
+
+
+def test_each_format_declares_endings_that_it_need_not_share_unseen():
+    """Where two formats share an ending, all but one look at the content."""
+    endings = Counter()
+    for name, declared in formats.FORMATS.items():
+        assert declared.endings or declared.more_endings, name
+        assert all(end == end.lower() and end.startswith(".") for end in declared.endings)
+        if declared.takes is None:
+            endings.update(declared.endings)
+    assert {end for end, count in endings.items() if count > 1} == set()
+    assert set(endings) <= set(formats.known_extensions())
+
+
+def test_a_format_is_known_once_it_is_declared(tmp_path, monkeypatch):
+    def read(path, options):
+        return raw.RawScan(np.full((9, 9), float(path.read_text())), "matrix", "dummy")
+
+    own = Format(read, endings=(".dummy",), takes=lambda path: path.read_text() != "none")
+    monkeypatch.setitem(formats.FORMATS, "dummy", own)
+    assert ".dummy" in formats.known_extensions()
+    assert formats.likely_formats(".dummy") == [own]
+    path = tmp_path / "rock.DUMMY"
+    path.write_text("3")
+    assert formats.read_raw(path, ScanOptions()).values[0, 0] == 3
+    path.write_text("none")
+    with pytest.raises(InputError, match=r"rock\.DUMMY: unknown extension '\.dummy'; known: "):
+        formats.read_raw(path, ScanOptions())
+    refusing = Format(read, endings=(".dummy",), takes=own.takes, refusal="holds none")
+    monkeypatch.setitem(formats.FORMATS, "dummy", refusing)
+    with pytest.raises(InputError, match=r"rock\.DUMMY: holds none$"):
+        formats.read_raw(path, ScanOptions())
+
+
+def test_a_content_that_one_format_refuses_is_offered_to_the_others(tmp_path, monkeypatch):
+    """A text file's ending on an instrument's binary file, and the other way round."""
+    path = tmp_path / "rock.dat"
+    path.write_bytes(b"\0\1\2\3" * 40)
+    with pytest.raises(InputError, match=r"rock\.dat: damaged, or not what its extension says"):
+        formats.read_raw(path, ScanOptions())
+    for name in ("rock.csv", "rock.xyz"):
+        path = path.rename(tmp_path / name)
+        with pytest.raises(InputError, match="not a text file; damaged, or the wrong extension"):
+            formats.read_raw(path, ScanOptions())
+
+
+def test_nothing_but_the_reader_process_imports_the_readers(tmp_path):
+    """They open untrusted input; and to read the workflow, or a scan, must not wait for them."""
+    code = (
+        "import sys, numpy\n"
+        "from fractalcontact.scan.read import read_matrix\n"
+        "from fractalcontact.study.scan_files import find_scans\n"
+        "numpy.save('rock.npy', numpy.arange(99.0).reshape(9, 11))\n"
+        "assert list(find_scans('.')) == ['rock']\n"
+        "read_matrix('rock.npy', {'unit': 'mm', 'spacing': 1})\n"
+        "print([name for name in sys.modules if 'scan.readers' in name or 'scan.formats' in name])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    assert (done.stdout, done.stderr) == ("[]\n", "")

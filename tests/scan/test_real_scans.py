@@ -169,7 +169,7 @@ def test_one_measurement_in_two_formats_is_one_surface():
 
 def test_german_and_english_exports_of_gwyddion_state_the_same():
     from fractalcontact.scan.options import ScanOptions
-    from fractalcontact.scan.text import read_text
+    from fractalcontact.scan.readers.text import read_text
 
     scans = [
         read_text(INSTRUMENTS / f"gwyddion-export-{language}.txt", ScanOptions())

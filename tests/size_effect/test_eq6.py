@@ -9,13 +9,18 @@ from fractalcontact.contact.solve import solve_contact
 from fractalcontact.domain.renormalisation import hausdorff_measure
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.scan.read import read_faces
-from fractalcontact.size_effect.eq6 import ESTIMATORS, VERDICTS, size_test
+from fractalcontact.size_effect.division import split
+from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, VERDICTS, size_test
 from fractalcontact.size_effect.laws import joint_by_size
-from fractalcontact.size_effect.load_ladder import BEYOND, DOUBLINGS, press_parts
+from fractalcontact.size_effect.load_ladder import (
+    SPARE_DOUBLINGS,
+    TESTED_DOUBLINGS,
+    solve_sub_windows,
+)
 from fractalcontact.size_effect.prediction import PREDICTORS, predict_whole
 from fractalcontact.size_effect.slope import equal_pressure, real_pressures, slopes_at_equal_star
-from fractalcontact.size_effect.windows import split
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
@@ -60,8 +65,8 @@ def pressed_apart(heights, opposite, cells, upper=None, window=9.6, **material):
 def found_of(specimen, direction, cells, chosen, solver=SOLVER):
     """The test, with the strength of the parts as the stage before it has it."""
     no_dimension = (np.nan,) * 3
-    windows = joint_by_size(specimen, direction, cells, chosen, solver, no_dimension)
-    return size_test(specimen, direction, cells, chosen, solver, windows)
+    loading = JointLoading(specimen, direction, cells, chosen, solver)
+    return size_test(loading, joint_by_size(loading, no_dimension))
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +139,7 @@ def test_its_whole_is_predicted_from_its_parts():
     delta = xr.DataArray(
         np.array([[1.6], [1.0], [2.0]]) * np.ones(4),
         dims=("estimator", "load"),
-        coords={"estimator": list(ESTIMATORS)},
+        coords={"estimator": list(DELTA_SIGMA_ESTIMATORS)},
     )
     found = predict_whole(states, delta, 4)
     for name in ("area_error", "closure_error"):
@@ -232,8 +237,8 @@ def test_labels_and_words(which, flat, sliding):
     assert "Delta_sigma" in found.attrs["summary"] or "no load" in found.attrs["summary"]
     assert list(found["predictor"].values) == list(PREDICTORS)
     assert ("predicted_strength" in found) == (which == "sliding")
-    assert found["beyond_study"].sum() == BEYOND
-    assert found.sizes["step"] == found.sizes["load"] + DOUBLINGS
+    assert found["beyond_study"].sum() == TESTED_DOUBLINGS
+    assert found.sizes["step"] == found.sizes["load"] + SPARE_DOUBLINGS
 
 
 def test_doublings_that_are_left_out_change_nothing(flat, monkeypatch):
@@ -286,11 +291,11 @@ def test_hardness_bounds_the_loads():
     heights = self_affine((64, 64), 0.1, 0.8, rms=0.02, seed=8)
     specimen = make_specimen(scan(heights), opposite="flat", window=6.4, name="soft", multiple=4)
     chosen = settings("flat", hardness="1 GPa")
-    pressed, domains = press_parts(specimen, "none", 0, chosen, SOLVER)
-    assert pressed["ladder_pressure"].max() < 1000
-    assert len(domains) == pressed.sizes["load"]
-    nodes = pressed["nodes"].isel(part=0, window=0, resolution=0).values
-    assert (nodes * 0.01 * 1000 >= pressed["ladder_pressure"].values * 6.4**2 * (1 - 1e-9)).all()
+    states, domains = solve_sub_windows(JointLoading(specimen, "none", [0], chosen, SOLVER))
+    assert states["ladder_pressure"].max() < 1000
+    assert len(domains) == states.sizes["load"]
+    nodes = states["nodes"].isel(part=0, window=0, resolution=0).values
+    assert (nodes * 0.01 * 1000 >= states["ladder_pressure"].values * 6.4**2 * (1 - 1e-9)).all()
 
 
 def test_undecided_nodes_are_passed_on():

@@ -7,20 +7,17 @@ from places import SCANS
 
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.mechanics.closure import closure_curves
+from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.roughness.dimension import roughness_length
 from fractalcontact.scan.read import read_faces
-from fractalcontact.size_effect.laws import SHARES, size_laws
-from fractalcontact.size_effect.windows import (
-    FEWEST_CELLS,
-    local_roughness,
-    split,
-    spread_windows,
-    tilt_share,
-    window_states,
-)
+from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
+from fractalcontact.size_effect.laws import size_laws
+from fractalcontact.size_effect.local_roughness import local_roughness, tilt_fraction
+from fractalcontact.size_effect.strength_laws import OFFSET_FRACTIONS
+from fractalcontact.size_effect.windows import window_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen, window_sides
 from fractalcontact.surface.synthesis import self_affine
@@ -50,6 +47,10 @@ def settings(loads=("2 MPa", "20 MPa"), opposite="match"):
     return resolve_settings(study, "made", {}, "made")
 
 
+def states_of(specimen, direction, cells, chosen, parts=PARTS, *, solver=SOLVER, **options):
+    return window_states(JointLoading(specimen, direction, cells, chosen, solver), parts, **options)
+
+
 @pytest.fixture(scope="module")
 def rock():
     """Self-affine without a roll-off."""
@@ -59,7 +60,7 @@ def rock():
 
 @pytest.fixture(scope="module")
 def states(rock):
-    return window_states(rock, "W", [1, 2, 4, 8, 16, 32], settings(), SOLVER, (1, 2, 4, 8))
+    return states_of(rock, "W", [1, 2, 4, 8, 16, 32], settings(), (1, 2, 4, 8))
 
 
 @pytest.fixture(scope="module")
@@ -101,21 +102,21 @@ def test_a_plane_is_not_rough_and_all_of_it_is_tilt():
     y, x = np.mgrid[:20, :24] * 0.1
     plane = (3 + 2 * x - y)[np.newaxis]
     assert local_roughness(plane) == pytest.approx(0, abs=1e-12)
-    assert tilt_share(plane) == pytest.approx(1)
-    assert np.isnan(tilt_share(np.zeros((1, 20, 24))))
+    assert tilt_fraction(plane) == pytest.approx(1)
+    assert np.isnan(tilt_fraction(np.zeros((1, 20, 24))))
 
 
 def test_a_joint_of_equal_tiles_has_no_size():
     tile = self_affine((24, 24), 0.1, 0.8, rms=0.05, seed=3)
     tiled = make_specimen(scan(np.tile(tile, (2, 2))), opposite="flat", window=4.8, name="tiles")
-    states = window_states(tiled, "none", [0], settings(opposite="flat"), SOLVER, (2,))
+    states = states_of(tiled, "none", [0], settings(opposite="flat"), (2,))
     for name in ("interface_closure", "sigma_z", "area_share"):
         values = states[name].values
         np.testing.assert_allclose(values, values[:, :1].repeat(4, axis=1), rtol=1e-5)
 
 
 def test_flush_faces_have_nothing_to_close(rock):
-    states = window_states(rock, "W", [0], settings(), SOLVER, (1, 2))
+    states = states_of(rock, "W", [0], settings(), (1, 2))
     for name in ("interface_closure", "sigma_z", "rigid_opening"):
         assert (states[name].isel(part=0, window=0) == 0).all()
     np.testing.assert_allclose(states["area_share"].isel(part=0, window=0), 1)
@@ -125,17 +126,11 @@ def test_flush_faces_have_nothing_to_close(rock):
 def test_similarity_holds_for_a_joint_enlarged_in_all_its_lengths():
     # Sect. 3: b -> 2b with sigma_z -> 2 sigma_z gives 2 w_int at one nominal pressure.
     heights = self_affine((96, 96), 0.1, 0.8, rms=0.1, seed=7)
-    small, large = (
-        window_states(
-            make_specimen(scan(k * heights, k * 0.1), window=k * 4.8, reach=k * 1.6, name="rock"),
-            "E",
-            [2, 8],
-            settings(),
-            SOLVER,
-            (1, 2),
-        )
+    rocks = (
+        make_specimen(scan(k * heights, k * 0.1), window=k * 4.8, reach=k * 1.6, name="rock")
         for k in (1, 2)
     )
+    small, large = (states_of(rock, "E", [2, 8], settings(), (1, 2)) for rock in rocks)
     np.testing.assert_allclose(large["side"], 2 * small["side"])
     np.testing.assert_allclose(large["nominal_pressure"], small["nominal_pressure"])
     for name, power in (
@@ -185,7 +180,7 @@ def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):
     known = np.isfinite(similar)
     np.testing.assert_allclose(similar[known], np.broadcast_to(expected, similar.shape)[known])
     # v = share b lies between the first step of 0.1 mm and the last of 3.2 mm.
-    reached = np.outer(SHARES, b) >= 0.1 - 1e-9
+    reached = np.outer(OFFSET_FRACTIONS, b) >= 0.1 - 1e-9
     np.testing.assert_array_equal(known.all(axis=2), reached)
     np.testing.assert_allclose(found["similar_slope_exponent"][-1], 0, atol=1e-9)
 
@@ -199,7 +194,7 @@ def test_local_roughness_is_that_of_the_plane_by_least_squares():
     expected = np.sqrt((residual**2).sum(axis=(1, 2)) / (residual[0].size - 3))
     np.testing.assert_allclose(local_roughness(windows), expected, rtol=1e-10)
     explained = 1 - (residual**2).mean(axis=(1, 2)) / windows.var(axis=(1, 2))
-    np.testing.assert_allclose(tilt_share(windows), explained, rtol=1e-9)
+    np.testing.assert_allclose(tilt_fraction(windows), explained, rtol=1e-9)
 
 
 def test_local_roughness_is_that_of_the_roughness_length_estimator():
@@ -212,7 +207,7 @@ def test_local_roughness_is_that_of_the_roughness_length_estimator():
 
 
 def test_the_whole_window_is_the_specimen_itself(rock, states):
-    whole = combine([contact_states(rock, "W", [1, 8, 32], settings(), [1], SOLVER)])
+    whole = combine([contact_states(JointLoading(rock, "W", [1, 8, 32], settings(), SOLVER), [1])])
     curves = closure_curves(whole, window_sides(rock), settings()["material"]["e_star"])
     curves = curves.sel(direction="W", resolution=1)
     one = states.sel(part=1, offset=curves["offset"], method="nearest").isel(window=0)
@@ -247,7 +242,7 @@ def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
 def test_loose_states_are_off_by_no_more_than_they_say(rock, laws):
     chosen = [1, 2, 4, 8, 16, 32]
     loose = {"rtol": 1e-2, "kernel": "love"}
-    states = window_states(rock, "W", chosen, settings(), loose, (1, 2, 4, 8))
+    states = states_of(rock, "W", chosen, settings(), (1, 2, 4, 8), solver=loose)
     found = size_laws(states, ROCK, 12.0, DIMENSION)
     differ = 0
     for name in (
@@ -272,7 +267,7 @@ def test_eq_2_finds_the_exponent_the_faces_were_made_with():
         face = make_specimen(
             scan(self_affine((192, 192), 0.1, 0.8, rms=0.3, seed=seed)), window=12.8, reach=3.2
         )
-        states = window_states(face, "W", [32], settings(["5 MPa"]), SOLVER, (8,), most=1)
+        states = states_of(face, "W", [32], settings(["5 MPa"]), (8,), most=1)
         laws = size_laws(states, ROCK, 12.0, DIMENSION)
         found.append([laws["face_hurst"].item(), laws["hurst"].item()])
     # One surface of this size scatters by 0.04-0.05.
@@ -298,7 +293,7 @@ def test_larger_windows_close_more(laws):
 
 
 def test_windows_too_small_are_left_out(rock):
-    states = window_states(rock, "W", [4], settings(["5 MPa"]), SOLVER, (1, 8, 9), most=1)
+    states = states_of(rock, "W", [4], settings(["5 MPa"]), (1, 8, 9), most=1)
     assert states["part"].values.tolist() == [1, 8]  # 128 / 8 = 16 cells, 128 / 9 = 14
     assert FEWEST_CELLS == 16
 
@@ -307,7 +302,7 @@ def test_windows_too_small_are_left_out(rock):
 def test_a_window_of_few_cells_has_one_size_and_no_law(cells):
     heights = self_affine((24, 24), 0.1, 0.8, rms=0.1, seed=2)
     tiny = make_specimen(scan(heights), window=1.2, reach=0.4, name="tiny")
-    found = size_laws(window_states(tiny, "E", cells, settings(), SOLVER), ROCK, 12.0, DIMENSION)
+    found = size_laws(states_of(tiny, "E", cells, settings()), ROCK, 12.0, DIMENSION)
     assert found["part"].values.tolist() == [1]
     assert np.isfinite(found["interface_closure"]).all()
     for name in ("closure_exponent", "face_hurst", "strength_exponent", "similar_slope_exponent"):
@@ -326,7 +321,7 @@ def test_windows_that_are_not_there_are_missing(states):
 
 def test_forces_are_those_of_the_whole_window_at_one_pressure_for_all(rock):
     in_newton = settings(["1638.4 N"])  # 10 MPa on 12.8 x 12.8 mm
-    states = window_states(rock, "W", [4], in_newton, SOLVER, (2,), most=1)
+    states = states_of(rock, "W", [4], in_newton, (2,), most=1)
     np.testing.assert_allclose(states["nominal_pressure"], 10)
     np.testing.assert_allclose(
         states["bulk_settlement"], 0.946402 * 10 * 6.4 / 10416.667, rtol=1e-5
@@ -335,9 +330,7 @@ def test_forces_are_those_of_the_whole_window_at_one_pressure_for_all(rock):
 
 def test_seating_takes_the_tilt_away_and_leaves_the_roughness(rock):
     chosen = settings(["20 MPa"])
-    loose, seated = (
-        window_states(rock, "W", [32], chosen, SOLVER, (8,), seated=s) for s in (False, True)
-    )
+    loose, seated = (states_of(rock, "W", [32], chosen, (8,), seated=s) for s in (False, True))
     np.testing.assert_allclose(seated["sigma_z"], loose["sigma_z"])
     np.testing.assert_allclose(seated["tilt_share"], 0, atol=1e-12)
     assert (loose["tilt_share"].mean() > 0.1).all()
@@ -348,7 +341,7 @@ def test_a_surface_against_a_plane_has_no_strength():
     face = make_specimen(
         scan(self_affine((64, 64), 0.1, 0.8, rms=0.1, seed=2)), opposite="flat", name="flat"
     )
-    states = window_states(face, "none", [0], settings(opposite="flat"), SOLVER)
+    states = states_of(face, "none", [0], settings(opposite="flat"))
     found = size_laws(states, ROCK, np.nan, DIMENSION)
     assert "peak_strength" not in found
     assert (found["interface_closure"] > 0).all()
@@ -368,7 +361,7 @@ def test_two_faces_and_an_oblong_window():
     lower = self_affine((96, 96), 0.1, 0.8, rms=0.1, seed=1, roll_off=2)
     upper = lower + 0.1 * self_affine((96, 96), 0.1, 0.8, rms=0.1, seed=2)
     pair = make_specimen(scan(lower), scan(upper), window=(3.2, 6.4), reach=1, name="pair")
-    states = window_states(pair, "E", [0, 2, 8], settings(), SOLVER)
+    states = states_of(pair, "E", [0, 2, 8], settings())
     assert states["side"][0] == pytest.approx(np.sqrt(3.2 * 6.4))
     assert states["side_along"][0] == pytest.approx(6.4)
     found = size_laws(states, ROCK, 12.0, DIMENSION)
@@ -393,7 +386,7 @@ def test_larger_windows_of_real_granite_close_more():
     files = ("Extracted_M_CNL_SideA_bottom.txt", "Extracted_M_CNL_SideB_top.txt")
     pair = read_faces(*(folder / name for name in files), {"unit": "mm"})
     granite = make_specimen(*pair, window=38.4, reach=3.0, name="granite")
-    states = window_states(granite, "E", [0, 10], settings(), SOLVER, (1, 2, 4))
+    states = states_of(granite, "E", [0, 10], settings(), (1, 2, 4))
     found = size_laws(states, ROCK, 12.0, DIMENSION)
     assert found["part"].values.tolist() == [1, 2, 4]
     assert (found["interface_closure"].diff("part") < 0).all()

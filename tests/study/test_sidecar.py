@@ -7,7 +7,7 @@ import yaml
 from places import ROOT
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.configuration import read_sidecar
+from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.sidecar import LARGEST_SIDECAR, read_yaml
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())

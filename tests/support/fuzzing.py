@@ -31,7 +31,7 @@ from scan_writers import WRITERS, write
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import confined
 from fractalcontact.scan.read import read_scan
-from fractalcontact.study.configuration import read_sidecar
+from fractalcontact.study.checks import read_sidecar
 
 LONGEST_SECONDS = 10
 MOST_MEMORY = 2 * 1024**3

@@ -11,8 +11,8 @@ import numpy as np
 import fractalcontact.scan.formats
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import reader_process
-from fractalcontact.scan.arrays import read_npz
 from fractalcontact.scan.raw import RawScan
+from fractalcontact.scan.readers.arrays import read_npz
 
 reader_process.BASE_SECONDS = 1
 reader_process.PATIENCE = 60  # the machine may be busy

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from places import ROOT
 
-from fractalcontact.study.figure_list import EXPERIMENTS
+from fractalcontact.study.stages import EXPERIMENTS
 
 
 def copy_project(folder):

@@ -14,8 +14,9 @@ import yaml
 from projects import ROOT, command, project, run, small_study, write_scan
 
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.figure_list import EXPERIMENTS, accuracy_figures_of, figures_of
+from fractalcontact.study.figure_list import accuracy_figures_of, figures_of, study_figures_of
 from fractalcontact.study.scan_files import find_scans
+from fractalcontact.study.stages import EXPERIMENTS
 
 __all__ = ["project"]  # a fixture
 SCANS = ROOT.parent / "shared" / "scans"
@@ -30,7 +31,8 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
     for name, opposite in (("small_twin", "match"), ("small_joint", "flat")):
         drawn = {path.stem for path in (results / "figures" / name).glob("*.png")}
         assert drawn == set(figures_of(opposite))
-    assert {path.stem for path in (results / "figures").glob("*.svg")} == set(EXPERIMENTS.values())
+    drawn = {path.stem for path in (results / "figures").glob("*.svg")}
+    assert drawn == set(study_figures_of(EXPERIMENTS))
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
 

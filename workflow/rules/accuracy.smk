@@ -187,15 +187,7 @@ use rule study_figures as accuracy_figures with:
     input:
         rules.accuracy_atlas.output[0],
     output:
-        *[
-            report(
-                f"{RESULTS}/figures/{name}.png",
-                category="accuracy",
-                labels={"figure": name},
-                caption=f"../report/{name}.rst",
-            )
-            for name in ACCURACY_FIGURES
-        ],
+        *[picture(name, folder="", category="accuracy") for name in ACCURACY_FIGURES],
         *expand(
             f"{RESULTS}/figures/{{name}}.{{ending}}",
             name=ACCURACY_FIGURES,

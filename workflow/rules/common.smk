@@ -1,4 +1,5 @@
-# What every rule file uses: the checked study, its specimens, and digests of scans and code.
+# What every rule file uses: the checked study, its specimens, files of its stages, and digests of
+# scans and code.
 import os
 import re
 import sys
@@ -21,118 +22,41 @@ import _running
 
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
 from fractalcontact.core import checksums, sources
-from fractalcontact.study.scan_files import find_scans
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.figure_list import EXPERIMENTS, figures_of, study_figures_of
-from fractalcontact.study.sidecar import is_contact_map, sidecar_of_matrix
-from fractalcontact.study.configuration import (
-    check_names,
-    check_study,
-    read_sidecar,
-    resolve_embedded,
-    resolve_roll_off,
-    resolve_settings,
-    solver_settings,
-)
+from fractalcontact.study import guards, stages
+from fractalcontact.study.checks import resolve_study
+from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
+from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
+from fractalcontact.study.sidecar import sidecar_of_matrix
 
 SCHEMA = yaml.safe_load((Path(workflow.basedir) / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
-# Said by whoever runs it, never by a study.
-MAY_DROP = "FRACTALCONTACT_DROP" in os.environ
 if workflow.is_main_process and "FRACTALCONTACT_ALONE" not in os.environ:
     # Held as long as this process lives; jobs hold their own. workflow/run.py alone lets nobody
     # else work while it looks at what killed runs left.
     AT_WORK = _running.mark()
 
-
-def read_study():
-    """Scan files; settings and reading options by specimen; contact maps; the solver's settings."""
-    check_study(config, SCHEMA, SOURCE)
-    folder = config.get("scans", "scans")
-    scans = find_scans(folder) if folder else {}
-    check_names(scans, config, folder, SOURCE)
-    unknown = sorted(
-        set(config.get("specimens", {})) - set(scans) - set(config.get("embedded", {}))
-    )
-    if unknown:
-        raise InputError(
-            f"{SOURCE}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
-        )
-    settings, options, maps = {}, {}, {}
-    for name, scan in scans.items():
-        options[name], own = read_sidecar(scan.sidecar, SCHEMA)
-        if is_contact_map(options[name]):
-            maps[name] = own.get("label", name)
-        else:
-            settings[name] = resolve_settings(config, name, own, SOURCE)
-    for name in config.get("embedded", {}):
-        settings[name] = resolve_settings(config, name, {}, SOURCE)
-    if folder and not scans and workflow.is_main_process:
-        logger.warning(f"{folder}: no scan files there; only what the study itself makes is used")
-    return scans, settings, options, maps, solver_settings(config, SOURCE)
-
-
-def refuse_loss(results, names):
-    """Keep an atlas from losing specimens unless that is what the user wants.
-
-    A folder that is not mounted, or half copied, looks like one from which scans were removed.
-    """
-    results = Path(results)
-    places = [results, results / checksums.ASIDE]
-    if MAY_DROP or not any((place / "atlas.nc").exists() for place in places):
-        return
-    listed = results / "specimens.txt"
-    if listed.is_file():
-        had = set(listed.read_text(encoding="utf-8").split())
-    else:  # of an earlier version, or damaged: those of which anything is there
-        stages = [place / stage for place in places for stage in ("specimens", "contact_maps")]
-        had = {path.stem for stage in stages for path in stage.glob("*.nc")}
-    lost = sorted(had - set(names))
-    if lost:
-        raise InputError(
-            f"{results}/atlas.nc has specimens that the study no longer has: {', '.join(lost)}; "
-            "put their scans back or, if they are to go, run 'make DROP=yes' (with snakemake: "
-            "set FRACTALCONTACT_DROP=yes in the environment). The atlas was not changed"
-        )
-
-
-def refuse_unknown_origin(results):
-    """Snakemake knows in its own folder alone what its files were made from."""
-    made = any(Path(results, checksums.FOLDER).rglob(f"*{checksums.ENDING}"))
-    known = any(Path(".snakemake/metadata").glob("*")) or any(Path(".snakemake").glob("*.db"))
-    if made and not known:
-        raise InputError(
-            f"{results}: nothing says from which scans, settings and code these results were made, "
-            "since .snakemake is not with them; bring it back, or remove the results"
-        )
-
-
-def refuse_damage(results):
-    """Stop before a damaged file is read, or what is good is removed to be made from it again."""
-    # workflow/run.py has set them aside; jobs that a killed run left half done, whose files may be
-    # newer than their checksums, Snakemake runs again by itself.
-    unfinished = any(Path(".snakemake/incomplete").glob("*"))
-    if "FRACTALCONTACT_CHECKED" not in os.environ and not unfinished:
-        damaged = checksums.check(results, DIGESTS.of).damaged
-        if damaged:
-            raise InputError(
-                f"{damaged[0]}: damaged or replaced after it was made"
-                + (f", and {len(damaged) - 1} more files" if len(damaged) > 1 else "")
-                + "; run 'make', which sets it aside and makes it again, or remove it yourself"
-            )
-
-
 DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
 try:
-    SCANS, SETTINGS, OPTIONS, LABELS, SOLVER = read_study()
-    RESULTS = f"results/{config['study']}"
+    STUDY = resolve_study(config, SCHEMA, SOURCE)
+    RESULTS, SCAN_FOLDER = f"results/{config['study']}", config.get("scans", "scans")
     if workflow.is_main_process:
-        refuse_unknown_origin(RESULTS)
-        refuse_damage(RESULTS)
-        refuse_loss(RESULTS, [*SETTINGS, *LABELS])
+        if SCAN_FOLDER and not STUDY.scans:
+            made_alone = "no scan files there; only what the study itself makes is used"
+            logger.warning(f"{SCAN_FOLDER}: {made_alone}")
+        guards.refuse_unknown_origin(RESULTS)
+        # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
+        # files aside, and the user, that specimens may go.
+        if "FRACTALCONTACT_CHECKED" not in os.environ:
+            guards.refuse_damage(RESULTS, DIGESTS.of)
+        if "FRACTALCONTACT_DROP" not in os.environ:
+            guards.refuse_loss(RESULTS, [*STUDY.settings, *STUDY.labels])
 except InputError as error:
     raise WorkflowError(str(error))
+
+SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels
+SOLVER = STUDY.solver
 
 #: Measured contact maps, which have no settings.
 MAPS = {name: SCANS[name] for name in LABELS}
@@ -193,16 +117,53 @@ FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and n
 SLIDING = [name for name in SPECIMENS if name not in FLAT]
 
 
+def files_of(paths):
+    """Files of stages in the folder of the study, by stage."""
+    return {stage: f"{RESULTS}/{path}" for stage, path in paths.items()}
+
+
+def inputs_of(stage):
+    """Files of the stages that a stage needs, for the rule that makes it."""
+    return files_of(stages.needed_by(stage))
+
+
+def outputs_of(stage, grains=stages.GRAINS):
+    """Files that the job of a stage makes: also of the other stages of its function."""
+    return files_of(stages.made_together(stage, grains))
+
+
+def calling(stage):
+    """Parameters by which scripts/stage.py calls the function of a stage."""
+    function, module = stages.STAGES[stage].function, stages.STAGES[stage].module
+    return {"function": function, "code": code("stage", module)}
+
+
+#: Files of the stages that every specimen has, and of those that only joints that slide have.
+STAGE_FILES = files_of(stages.paths_of(stages.SPECIMEN))
+SLIDING_FILES = files_of(stages.paths_of(stages.JOINT))
+# Measured contact maps stand in every atlas, beside the domains computed there.
+MAP_FILES = (
+    {stage: expand(path, map=MAPS) for stage, path in files_of(stages.paths_of(stages.MAP)).items()}
+    if MAPS
+    else {}
+)
+# What the study has once.
+STUDY_FILES = {
+    stage: path
+    for stage, path in files_of(stages.paths_of(stages.EXPERIMENT)).items()
+    if stage in config
+}
+
+
 def figure_modules(names):
     """Modules that draw figures, for `code`: they are imported by name when they are called."""
-    paths = [path for name in names for path in PACKAGE.glob(f"figures/*/{name}.py")]
-    return [str(path.relative_to(PACKAGE).with_suffix("")) for path in paths]
+    return [all_figures()[name].module for name in names]
 
 
 def grain(key, n):
     """Slices of n things for as many jobs as the study's grain asks for."""
-    share = config.get("grain", {}).get(key, "all")
-    size = n if share == "all" else share
+    stated = config.get("grain", {}).get(key, "all")
+    size = n if stated == "all" else stated
     return [[start, min(start + size, n)] for start in range(0, n, size)]
 
 

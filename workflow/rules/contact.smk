@@ -21,8 +21,8 @@ def part_of(wildcards, key):
 
 rule contact:
     input:
-        specimen=rules.specimen.output.specimen,
-        joint=rules.specimen.output.joint,
+        specimens=rules.specimen.output.specimens,
+        joints=rules.specimen.output.joints,
     output:
         f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
     log:
@@ -57,33 +57,15 @@ def contact_parts(wildcards):
     return contact_parts_of(wildcards.specimen)
 
 
-#: What every specimen has of its states, and what only joints that slide have.
-ANALYSES = (
-    "closure",
-    "dilatancy",
-    "choices",
-    "area",
-    "domains",
-    "contact",
-    "scaling",
-    "domain_measures",
-)
-ANALYSIS_FILES = {stage: f"{RESULTS}/{stage}/{{specimen}}.nc" for stage in ANALYSES}
-STRENGTH_FILE = f"{RESULTS}/strength/{{specimen}}.nc"
-
-
-# What is made of the states of a specimen: closure curves and what follows from them; strength; box
-# counts, dimension and clusters of every contact domain, what changes with resolution, lacunarity
-# and generalised dimensions of the domains that are drawn. Seconds of work, so one job.
+# What follows from the states of a specimen: closure curves and laws of area; strength; box counts,
+# dimension and clusters of every contact domain, what changes with resolution, lacunarity and
+# generalised dimensions of the domains that are drawn. Seconds of work, so one job.
 rule analysis:
     input:
-        specimen=rules.specimen.output.specimen,
-        surface_dimension=rules.specimen.output.surface_dimension,
-        joint=rules.specimen.output.joint,
-        contact=contact_parts,
+        **inputs_of("closure"),
+        parts=contact_parts,
     output:
-        **ANALYSIS_FILES,
-        strength=STRENGTH_FILE,
+        **outputs_of("closure"),
     log:
         f"{RESULTS}/logs/analysis/{{specimen}}.log",
     benchmark:
@@ -96,17 +78,17 @@ rule analysis:
         mem_mb=2000,
         runtime=20,
     params:
+        **calling("closure"),
         settings=settings_of,
         solver=SOLVER,
-        code=code("analysis"),
     script:
-        "../scripts/analysis.py"
+        "../scripts/stage.py"
 
 
 # Strength needs sliding.
 use rule analysis as analysis_against_plane with:
     output:
-        **ANALYSIS_FILES,
+        **outputs_of("closure", [stages.SPECIMEN]),
     log:
         f"{RESULTS}/logs/analysis/{{specimen}}.log",
     benchmark:
@@ -120,7 +102,7 @@ rule contact_map:
     input:
         scan=lambda wc: ancient(str(MAPS[wc.map].lower)),
     output:
-        f"{RESULTS}/contact_maps/{{map}}.nc",
+        **outputs_of("contact_maps"),
     log:
         f"{RESULTS}/logs/contact_map/{{map}}.log",
     benchmark:

@@ -8,11 +8,31 @@ def pictures(opposite):
     return [picture(name) for name in figures_of(opposite)]
 
 
-def picture(name):
-    path = f"{RESULTS}/figures/{{specimen}}/{name}.png"
-    caption = f"../report/{name}.rst"
+def picture(name, folder="{specimen}/", category="{specimen}"):
+    """The PNG file of a figure, with its title and its caption for the report."""
+    path, title = f"{RESULTS}/figures/{folder}{name}", all_figures()[name].title
+    labels, caption = {"figure": name, "title": title}, report_text(title, f"{path}.txt")
     # On a line of its own, `report` would be read as the directive.
-    return report(path, category="{specimen}", labels={"figure": name}, caption=caption)
+    return report(f"{path}.png", category=category, labels=labels, caption=caption)
+
+
+def report_text(title, caption):
+    """Template of what the report says of a figure: its title, and the caption drawn beside it.
+
+    Snakemake wants a file of each; they hold nothing that the figure does not state itself.
+    """
+    path = Path(".snakemake/fractalcontact-report", f"{Path(caption).stem}.rst").absolute()
+    written = REPORT_TEXT.replace("TITLE", title)
+    written = written.replace("CAPTION", caption.replace("{specimen}", SPECIMEN_OF_REPORT))
+    if workflow.is_main_process and not (path.is_file() and path.read_text() == written):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(written)
+    return path
+
+
+# What a user wrote, such as a label, is shown as it stands.
+REPORT_TEXT = (Path(workflow.basedir) / "workflow/report/figure.rst").read_text()
+SPECIMEN_OF_REPORT = "{{ snakemake.wildcards.specimen }}"
 
 
 def beside(opposite):
@@ -83,15 +103,7 @@ rule study_figures:
     input:
         rules.atlas.output[0],
     output:
-        *[
-            report(
-                f"{RESULTS}/figures/{name}.png",
-                category="study",
-                labels={"figure": name},
-                caption=f"../report/{name}.rst",
-            )
-            for name in STUDY_FIGURES
-        ],
+        *[picture(name, folder="", category="study") for name in STUDY_FIGURES],
         *expand(
             f"{RESULTS}/figures/{{name}}.{{ending}}",
             name=STUDY_FIGURES,

@@ -48,17 +48,14 @@ def options_of(wildcards):
     return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_of(wildcards)["spacing"])
 
 
-# The levelled specimen, and what is known of its joint before anything is pressed: the dimension of
-# its face, what the instrument adds and which resolutions go below it, and one face slid over the
-# other (offsets, composite topographies, rigid dilatancy). Seconds of work, so one job.
+# The levelled specimen, and what is known of its joint before contact is solved: the dimension of its
+# face, what the instrument adds and which resolutions go below it, and one face slid over the other
+# (offsets, composite topographies, rigid dilatancy). Seconds of work, so one job.
 rule specimen:
     input:
         unpack(scan_files),
     output:
-        specimen=f"{RESULTS}/specimens/{{specimen}}.nc",
-        surface_dimension=f"{RESULTS}/surface_dimension/{{specimen}}.nc",
-        quality=f"{RESULTS}/quality/{{specimen}}.nc",
-        joint=f"{RESULTS}/joints/{{specimen}}.nc",
+        **outputs_of("specimens"),
     log:
         f"{RESULTS}/logs/specimen/{{specimen}}.log",
     benchmark:

@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from fractalcontact.core import netcdf
-from fractalcontact.statements.judge import judge
-from fractalcontact.study.atlas import write_atlas
+from fractalcontact.stages import atlas
 
 
 def read_stages(files):
@@ -20,22 +19,7 @@ def read_stages(files):
 
 
 def join_stages(stages, made_with, path, configuration, log):
-    """One file of all of them, with the configuration and the versions that they were made by.
-
-    And with the paper's statements, judged for every specimen of the configuration.
-    """
-    judged = {}
-    # A label is only words: no job before this one has it, so that a new one solves nothing again.
-    for name, dataset in stages.get("specimens", {}).items():
-        dataset.attrs["label"] = configuration["settings"][name]["label"]
-    for name, settings in configuration["settings"].items():
-        # Contact maps, the study's, stand under names of their own.
-        of_joint = {stage: parts[name] for stage, parts in stages.items() if name in parts}
-        judged[name] = judge(of_joint, settings)
-    everything = stages | ({"statements": judged} if judged else {})
-    study = configuration["study"]["study"]
-    differing = write_atlas(
-        everything, path, study=study, configuration=configuration, made_with=made_with
-    )
+    """Write one atlas of them, and warn of parts that were made with other versions."""
+    differing = atlas.join_stages(stages, path, configuration, made_with)
     for versions, parts in differing.items():
         log.warning("warning: made with %s: %s", versions, ", ".join(parts))

@@ -8,8 +8,8 @@ from fractalcontact.mechanics.sweep import joint_states
 with job(snakemake) as log:
     params = snakemake.params
     states = joint_states(
-        netcdf.read(snakemake.input.specimen),
-        netcdf.read(snakemake.input.joint),
+        netcdf.read(snakemake.input.specimens),
+        netcdf.read(snakemake.input.joints),
         params.directions,
         slice(*params.offsets),
         params.settings,

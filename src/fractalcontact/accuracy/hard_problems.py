@@ -12,7 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..contact.solve import ContactState, solve_contact
+from ..contact.solve import solve_contact
+from ..contact.state import ContactState
 from .hard_surfaces import (
     SURFACES,
     HardProblem,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import fftconvolve
 
-from ..contact.solve import ContactState
+from ..contact.state import ContactState
 from ..elastic.halfspace import HalfSpace, love_displacement
 from ..surface.synthesis import self_affine
 

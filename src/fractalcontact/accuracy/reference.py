@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ..contact.solve import ContactState, solve_contact
+from ..contact.solve import solve_contact
+from ..contact.state import ContactState
 from ..core.errors import NotConverged
 from ..elastic.halfspace import HalfSpace
 from ..methods.registry import METHODS

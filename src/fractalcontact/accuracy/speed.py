@@ -15,7 +15,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..contact.preconditioner import forget_preconditioner
-from ..contact.solve import ContactState, solve_contact
+from ..contact.solve import solve_contact
+from ..contact.state import ContactState
 from ..core import threads
 from ..core.child_process import ChildFailed, in_child
 from ..core.datasets import labelled_dataset

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..contact.solve import ContactState, solve_contact
+from ..contact.solve import solve_contact
+from ..contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.errors import NotConverged
 from ..methods.common import NotOffered

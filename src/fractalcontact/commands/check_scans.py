@@ -18,7 +18,9 @@ from ..core.labels import printable
 from ..domain.measured_map import read_contact_map
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import length_words
-from ..study.configuration import check_study, read_sidecar, read_study, resolve_settings
+from ..study.checks import check_study, read_sidecar
+from ..study.configuration import resolve_settings
+from ..study.documents import read_study
 from ..study.preparation import prepare_specimen
 from ..study.scan_files import list_scans
 from ..study.sidecar import is_contact_map

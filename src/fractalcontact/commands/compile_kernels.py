@@ -5,7 +5,7 @@ python -m fractalcontact.commands.compile_kernels
 
 import numpy as np
 
-from ..contact.nested_iteration import pool_sum
+from ..contact.nested_iteration import restrict_sum
 from ..contact.solve import solve_contact
 from ..domain.measures import measures_of_states
 from ..elastic.halfspace import HalfSpace
@@ -36,7 +36,7 @@ def compile_kernels():
         for force in (2.0, 2000.0):
             state = solve_contact(surface, space, force=force, start=state, hardness=hardness)
             states.append(state)
-    pool_sum(surface)  # else of larger grids alone, whose loads change on coarser ones
+    restrict_sum(surface)  # else of larger grids alone, whose loads change on coarser ones
     stiffness = [state.stiffness for state in states]
     domains = np.array([state.in_contact for state in states])
     pressures = np.array([state.pressure for state in states])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..core.checksums import check
 from ..core.errors import InputError
-from ..study.configuration import read_study, study_name
+from ..study.documents import read_study, study_name
 
 
 def main(arguments=None):

@@ -5,14 +5,14 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
-        "ContactState": ".solve",
+        "ContactState": ".state",
         "SOLVING": ".effort",
-        "STIFFNESS_ERROR": ".solve",
+        "STIFFNESS_ERROR": ".state",
         "checked_hardness": ".solve",
         "checked_problem": ".solve",
         "forget_preconditioner": ".preconditioner",
-        "pool_sum": ".nested_iteration",
+        "restrict_sum": ".nested_iteration",
         "solve_contact": ".solve",
-        "unloaded_state": ".solve",
+        "unloaded_state": ".state",
     },
 )

@@ -1,39 +1,42 @@
-"""What a new load changes, found on coarser grids first, from the state that is known.
+"""Full approximation scheme (FAS): what a new load changes in a known state, on coarser grids.
 
-A coarse grid tells how contact spreads over distances for which corrections on the fine one take
-several applications of K. What it cannot tell is the state itself. So its problem is such that the
-pooled pressure of the known state leaves the pooled gaps of it, and only the change is taken from
-the solution (full approximation scheme: A. Brandt, Math. Comput. 31 (1977) 333). If the known state
-already were that of the new load, nothing would change.
+A coarse grid resolves how contact spreads over distances for which iterations on the fine one take
+several applications of K. What it does not resolve is the state itself. So its problem is such that
+the restricted pressure of the known state leaves the restricted gaps of it, and only the change is
+taken from the solution (A. Brandt, Multi-level adaptive solutions to boundary-value problems, Math.
+Comput. 31 (1977) 333). If the known state already were that of the new load, nothing would change.
 """
 
 import numpy as np
 
-from .active_set import ActiveSet
-from .kkt import Problem, examined_by, mean_reached
+from ..elastic.halfspace import HalfSpace
+from .active_set import ActiveSetMethod
+from .kkt import Problem, kkt_residual, mean_closure
 from .nested_iteration import (
-    COARSE_CORRECTIONS,
+    COARSE_ITERATIONS,
     COARSE_RTOL,
     KEPT_CELLS,
-    on_nodes,
-    pool_minimum,
-    pool_sum,
-    shared_out,
+    prolong_constant,
+    redistribute,
+    restrict_minimum,
+    restrict_sum,
 )
 from .preconditioner import forget_preconditioner
 
 # With fewer nodes along the shorter side, as many applications on the fine grid take no more time.
-SMALLEST = 768
+LEAST_FINE_SIDE = 768
 # No coarser grid has fewer.
-COARSEST = 96
-# Starts that violate the conditions by no more, as a share of the closure, are left as they are:
+LEAST_COARSE_SIDE = 96
+# Starts that violate the conditions by no more, as a fraction of the closure, are left as they are:
 # coarse solutions are hardly nearer.
 WORTHWHILE = 1e-2
 # Extrapolated from two states, a pressure at the cap in both may miss it by rounding.
 CAP_ROUNDING = 1e-9
 
 
-def coarse_change(problem, pressure, displacement):
+def full_approximation_start(
+    problem: Problem, pressure: np.ndarray, displacement: np.ndarray
+) -> np.ndarray | None:
     """Where to start from a known state: its pressure, changed for the load on coarser grids.
 
     Parameters
@@ -46,45 +49,46 @@ def coarse_change(problem, pressure, displacement):
     -------
     (n,) ndarray or None
         Within its bounds; None if the grid is too small, or the change, for this to be worth while,
-        and where nodes yield: those of one cell then differ in gap, which pooling cannot keep.
+        and where nodes yield: those of one cell then differ in gap, which restriction cannot keep.
     """
-    if min(problem.space.shape) < SMALLEST:
+    if min(problem.space.shape) < LEAST_FINE_SIDE:
         return None
     clearance, cap = problem.clearance, problem.cap
-    mean = mean_reached(pressure, displacement, clearance, cap)
+    mean = mean_closure(pressure, displacement, clearance, cap)
     yields = pressure.max() >= (1 - CAP_ROUNDING) * cap
     if yields or not np.isfinite(mean):
         return None
     closure = mean if problem.by_force else problem.load
-    worst = examined_by(pressure, displacement, clearance, closure, cap).worst
-    if worst <= WORTHWHILE * closure:
+    kkt = kkt_residual(pressure, displacement, clearance, closure, cap)
+    if kkt.largest <= WORTHWHILE * closure:
         return None
-    return _changed(problem, pressure, displacement + clearance - closure, closure)
+    return _changed_pressure(problem, pressure, displacement + clearance - closure, closure)
 
 
-def _changed(problem, pressure, gap, closure):
+def _changed_pressure(problem, pressure, gap, closure):
     """The same for a state whose ``gap`` at a ``closure`` is known."""
     shape, space = problem.space.shape, problem.space.coarser(2)
     before, gap = np.clip(pressure, 0.0, problem.cap).reshape(shape), gap.reshape(shape)
     # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
-    pooled, pooled_gap = pool_sum(before) / 2, pool_minimum(gap)
-    displacement = _displacement(space, pooled)
-    clearance = (pooled_gap + closure).ravel() - displacement
+    coarse_before, coarse_gap = restrict_sum(before) / 2, restrict_minimum(gap)
+    displacement = _displacement(space, coarse_before)
+    clearance = (coarse_gap + closure).ravel() - displacement
     load = problem.load / 2 if problem.by_force else problem.load
     coarse = Problem(space, clearance, load, problem.by_force, 2 * problem.cap)
-    start = pooled.ravel().copy()
-    if min(space.shape) >= 2 * COARSEST:
-        start = _changed(coarse, start, pooled_gap, closure)
+    start = coarse_before.ravel().copy()
+    if min(space.shape) >= 2 * LEAST_COARSE_SIDE:
+        start = _changed_pressure(coarse, start, coarse_gap, closure)
         displacement = _displacement(space, start)
-    found = ActiveSet(coarse, COARSE_RTOL).solve(start, displacement, at_least=COARSE_CORRECTIONS)
-    if found.pressure.size > KEPT_CELLS:
+    method = ActiveSetMethod(coarse, COARSE_RTOL)
+    solution = method.solve(start, displacement, at_least=COARSE_ITERATIONS)
+    if solution.pressure.size > KEPT_CELLS:
         forget_preconditioner(space)
-    change = _in_proportion(before, pooled, found.pressure.reshape(space.shape))
-    pressure = shared_out(before, change, gap, problem.space.influence())
+    change = _in_proportion(before, coarse_before, solution.pressure.reshape(space.shape))
+    pressure = redistribute(before, change, gap, problem.space.influence())
     return np.minimum(pressure, problem.cap).ravel()
 
 
-def _displacement(space, pressure):
+def _displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:
     """K of a pressure, (n,), of which single precision is enough: it is only a start."""
     pressure = pressure.reshape(space.shape).astype(np.float32)
     return space.convolve(pressure).astype(float).ravel()
@@ -92,7 +96,8 @@ def _displacement(space, pressure):
 
 def _in_proportion(before, old, new):
     """Change of a fine pressure in proportion to that of its cells; even where there was none."""
-    nodes = pool_sum(np.ones(before.shape))
+    nodes = restrict_sum(np.ones(before.shape))
     factor = np.divide(new, old, out=np.ones(old.shape), where=old > 0)
     fresh = np.where(old > 0, 0.0, 2 * new / nodes)
-    return before * on_nodes(factor - 1, before.shape) + on_nodes(fresh, before.shape)
+    shape = before.shape
+    return before * prolong_constant(factor - 1, shape) + prolong_constant(fresh, shape)

@@ -1,15 +1,23 @@
-"""The contact problem and its conditions: which a pressure satisfies, and by how much it fails."""
+"""The contact problem and its complementarity (KKT) conditions: how far a pressure is from them.
+
+With the gap g = K p + c - w at the nodes (c the clearance at first touch, w the closure, H a cap on
+the pressure) a state of contact has 0 <= p <= H, and g = 0 where p lies between, g >= 0 where it is
+0, g <= 0 where it is H. These are the Karush-Kuhn-Tucker conditions of a strictly convex quadratic
+programme between bounds: minimise p.K p / 2 + p.(c - w) over 0 <= p <= H. Where the force is given,
+w is the Lagrange multiplier of the sum of p.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..core.kernel_cache import njit
+from ..elastic.halfspace import HalfSpace
 
 
 @dataclass
 class Problem:
-    """What is pressed, in units in which loads are near one.
+    """A contact problem in units in which loads are near one.
 
     Attributes
     ----------
@@ -24,13 +32,13 @@ class Problem:
         Largest pressure, or infinity.
     """
 
-    space: object
+    space: HalfSpace
     clearance: np.ndarray
     load: float
     by_force: bool
     cap: float = np.inf
 
-    def first_touch(self):
+    def first_touch(self) -> np.ndarray:
         """The given force on the nodes that touch first, where nothing better is known.
 
         Forces so small that the depths of all other nodes drown theirs leave no other start.
@@ -38,29 +46,84 @@ class Problem:
         touching = self.clearance == 0
         return touching * (self.load / np.count_nonzero(touching))
 
+    def closure_at_force(self, pressure: np.ndarray, displacement: np.ndarray) -> float:
+        """The closure at which a given force acts: it makes the mean gap in contact vanish.
 
-@dataclass(frozen=True)
-class Examined:
-    """What the contact conditions say of a pressure.
+        Where all that touches is at the cap, the conditions hold for any closure that overlaps all
+        of it and nothing else. It is the least of these; where there is none, the mean still leads
+        on.
+        """
+        mean = mean_closure(pressure, displacement, self.clearance, self.cap)
+        if np.isfinite(mean):
+            return mean
+        reached, capped = displacement + self.clearance, pressure > 0
+        least = reached[capped].max()
+        if least <= reached[~capped].min(initial=np.inf):
+            return least
+        return reached[capped].mean()
+
+
+@dataclass
+class Iterate:
+    """A pressure, its displacement and a closure.
 
     Attributes
     ----------
-    free : (n,) int32 ndarray
-        Nodes on which the gap is to vanish.
-    beyond : (m,) int32 ndarray
+    pressure, displacement : (n,) ndarray
+        p and K p.
+    closure : float
+    """
+
+    pressure: np.ndarray
+    displacement: np.ndarray
+    closure: float
+
+
+@dataclass
+class Solution(Iterate):
+    """An iterate within its bounds, whose displacement was computed in double precision.
+
+    Attributes
+    ----------
+    residual : float
+        Largest violation of the contact conditions, as a fraction of the closure.
+    applications : int
+        Applications of K, in either precision.
+    """
+
+    residual: float
+    applications: int
+
+
+@dataclass(frozen=True)
+class KKTResidual:
+    """By how much, and where, the contact conditions are violated.
+
+    Attributes
+    ----------
+    active : (n,) int32 ndarray
+        The active contact set: nodes on which the gap is to vanish. Those between the bounds, and
+        those at a bound that the gap pulls off it.
+    infeasible : (m,) int32 ndarray
         Nodes whose pressure is beyond a bound.
-    worst : float
+    largest : float
         Largest violation: of a gap condition, or of a bound (as a node's pressure displaces it by
         about itself in these units).
     """
 
-    free: np.ndarray
-    beyond: np.ndarray
-    worst: float
+    active: np.ndarray
+    infeasible: np.ndarray
+    largest: float
 
 
-def examined_by(pressure, displacement, clearance, closure, cap):
-    """What the contact conditions say.
+def kkt_residual(
+    pressure: np.ndarray,
+    displacement: np.ndarray,
+    clearance: np.ndarray,
+    closure: float,
+    cap: float,
+) -> KKTResidual:
+    """Residual of the contact conditions.
 
     Parameters
     ----------
@@ -72,7 +135,7 @@ def examined_by(pressure, displacement, clearance, closure, cap):
 
     Returns
     -------
-    Examined
+    KKTResidual
 
     Raises
     ------
@@ -81,17 +144,19 @@ def examined_by(pressure, displacement, clearance, closure, cap):
     """
     if not pressure.shape == displacement.shape == clearance.shape:
         raise ValueError("expected pressure, displacement and clearance of one size")
-    return Examined(*_examine(pressure, displacement, clearance, closure, cap))
+    return KKTResidual(*_kkt_residual(pressure, displacement, clearance, closure, cap))
 
 
-def between_bounds(pressure, cap):
-    """Nodes whose pressure is neither zero nor at the cap, (n,) int32: those that keep gap 0."""
+def inactive_bounds(pressure: np.ndarray, cap: float) -> np.ndarray:
+    """Nodes at which neither bound is active, (n,) int32: those whose gap stays 0."""
     return np.flatnonzero((pressure > 0) & (pressure < cap)).astype(np.int32)
 
 
 @njit(cache=True)
-def mean_reached(pressure, displacement, clearance, cap):
-    """Mean displacement and clearance of the nodes between the bounds; NaN without any."""
+def mean_closure(
+    pressure: np.ndarray, displacement: np.ndarray, clearance: np.ndarray, cap: float
+) -> float:
+    """Closure at which the mean gap of the nodes between the bounds vanishes; NaN without any."""
     if pressure.size != displacement.size or pressure.size != clearance.size:
         raise ValueError("expected pressure, displacement and clearance of one size")
     total, n = 0.0, 0
@@ -103,27 +168,27 @@ def mean_reached(pressure, displacement, clearance, cap):
 
 
 @njit(cache=True)
-def _examine(pressure, displacement, clearance, closure, cap):
-    """The parts of :class:`Examined`."""
-    free = np.empty(pressure.size, np.int32)
-    beyond = np.empty(pressure.size, np.int32)
-    n, m, worst = 0, 0, 0.0
+def _kkt_residual(pressure, displacement, clearance, closure, cap):
+    """The parts of :class:`KKTResidual`."""
+    active = np.empty(pressure.size, np.int32)
+    infeasible = np.empty(pressure.size, np.int32)
+    n, m, largest = 0, 0, 0.0
     for i in range(pressure.size):
         p = pressure[i]
         if p < 0 or p > cap:
-            beyond[m] = i
+            infeasible[m] = i
             m += 1
-            worst = max(worst, -p if p < 0 else p - cap)
+            largest = max(largest, -p if p < 0 else p - cap)
             continue
         gap = displacement[i] + clearance[i] - closure
         if p == 0:
-            off = -gap
+            violation = -gap
         elif p == cap:
-            off = gap
+            violation = gap
         else:
-            off = abs(gap)
-        if off > 0 or (p > 0 and p < cap):
-            free[n] = i
+            violation = abs(gap)
+        if violation > 0 or (p > 0 and p < cap):
+            active[n] = i
             n += 1
-            worst = max(worst, off)
-    return free[:n].copy(), beyond[:m].copy(), worst
+            largest = max(largest, violation)
+    return active[:n].copy(), infeasible[:m].copy(), largest

@@ -1,30 +1,33 @@
-"""Where to start when no state is known: on a grid twice as coarse, and from there to the fine one.
+"""Nested iteration: a cold solve starts from the solution on the grid twice as coarse.
 
-A coarse cell has the height of the highest of its four nodes, which need not all touch: the sum of
-its pressure is kept, and shared among them so that those which touch have even gaps. The nodes of
-the eight cells around act on them as they are, from further away the four are displaced alike.
+(Full multigrid: A. Brandt, Multi-level adaptive solutions to boundary-value problems, Math. Comput.
+31 (1977) 333; for contact, A. A. Lubrecht and E. Ioannides, ASME J. Tribol. 113 (1991) 128.)
+Restriction gives a coarse cell the height of the highest of its four nodes, which need not all
+touch. Prolongation keeps the sum of its pressure, and local redistribution shares it among the four
+so that those which touch have even gaps. The nodes of the eight cells around act on them as they
+are, from further away the four are displaced alike.
 """
 
 import numpy as np
 
 from ..core.kernel_cache import njit
-from .active_set import ActiveSet
-from .coarse_correction import inverted
+from .active_set import ActiveSetMethod
+from .dense import inverted
 from .kkt import Problem
 from .preconditioner import forget_preconditioner
 
 # A coarser grid gives the start until its shorter side has fewer nodes than this.
-COARSEST = 24
+COARSEST_SIDE = 24
 # The preconditioner on coarse grids of more cells is not kept: it takes memory, and there is
 # little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
 KEPT_CELLS = 10_000
 # The coarse solution is only a start. But on grids so fine that the next coarser one's already
-# meets this, a correction is made all the same: else errors add up from grid to grid.
-COARSE_RTOL, COARSE_CORRECTIONS = 2e-2, 1
+# meets this, an iteration is made all the same: else errors add up from grid to grid.
+COARSE_RTOL, COARSE_ITERATIONS = 2e-2, 1
 
 
-def coarse_start(problem):
-    """Pressure to start from: the solution on the topography pooled 2 x 2, spread out there.
+def nested_iteration_start(problem: Problem) -> np.ndarray:
+    """Pressure to start from: the solution on the grid twice as coarse, prolonged.
 
     Parameters
     ----------
@@ -33,23 +36,23 @@ def coarse_start(problem):
     Returns
     -------
     (n,) ndarray
-        Within its bounds; on grids too small to be pooled it is uniform.
+        Within its bounds; on grids too small for a coarser one it is uniform.
     """
     space = problem.space
     ny, nx = space.shape
-    if min(ny, nx) < COARSEST:
+    if min(ny, nx) < COARSEST_SIDE:
         return np.full(ny * nx, min(1.0, problem.cap))
     coarse_space = space.coarser(2)
-    pooled = pool_minimum(problem.clearance.reshape(ny, nx)).ravel()
+    clearance = restrict_minimum(problem.clearance.reshape(ny, nx)).ravel()
     # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
     load = problem.load / 2 if problem.by_force else problem.load
-    coarse = Problem(coarse_space, pooled, load, problem.by_force, 2 * problem.cap)
-    search = ActiveSet(coarse, COARSE_RTOL)
-    found = search.solve(coarse_start(coarse), at_least=COARSE_CORRECTIONS)
-    if pooled.size > KEPT_CELLS:
+    coarse = Problem(coarse_space, clearance, load, problem.by_force, 2 * problem.cap)
+    method = ActiveSetMethod(coarse, COARSE_RTOL)
+    solution = method.solve(nested_iteration_start(coarse), at_least=COARSE_ITERATIONS)
+    if clearance.size > KEPT_CELLS:
         forget_preconditioner(coarse_space)
-    pressure = found.pressure.reshape(coarse_space.shape) / 2
-    pressure = spread(pressure, problem.clearance.reshape(ny, nx), space.influence())
+    pressure = solution.pressure.reshape(coarse_space.shape) / 2
+    pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.influence())
     return np.minimum(pressure, problem.cap).ravel()
 
 
@@ -57,7 +60,7 @@ def coarse_start(problem):
 
 
 @njit(cache=True)
-def pool_minimum(values):
+def restrict_minimum(values: np.ndarray) -> np.ndarray:
     """The smallest of each 2 x 2 nodes, an odd last row or column standing alone."""
     ny, nx = values.shape
     pooled = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
@@ -68,7 +71,7 @@ def pool_minimum(values):
 
 
 @njit(cache=True)
-def pool_sum(values):
+def restrict_sum(values: np.ndarray) -> np.ndarray:
     """The sum of each 2 x 2 nodes, an odd last row or column standing alone."""
     ny, nx = values.shape
     pooled = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
@@ -79,7 +82,7 @@ def pool_sum(values):
 
 
 @njit(cache=True)
-def on_nodes(cells, shape):
+def prolong_constant(cells: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
     ny, nx = shape
     if cells.shape[0] != (ny + 1) // 2 or cells.shape[1] != (nx + 1) // 2:
@@ -91,7 +94,7 @@ def on_nodes(cells, shape):
     return values
 
 
-def spread(pressure, clearance, influence):
+def prolong(pressure: np.ndarray, clearance: np.ndarray, influence: np.ndarray) -> np.ndarray:
     """Pressure of fine nodes, of which each coarse cell holds two by two.
 
     Parameters
@@ -114,11 +117,13 @@ def spread(pressure, clearance, influence):
     ValueError
         If these are not on two such grids of at least four nodes each way.
     """
-    change = on_nodes(pressure, clearance.shape)
-    return shared_out(np.zeros(clearance.shape), change, clearance, influence)
+    change = prolong_constant(pressure, clearance.shape)
+    return redistribute(np.zeros(clearance.shape), change, clearance, influence)
 
 
-def shared_out(before, change, gap, influence):
+def redistribute(
+    before: np.ndarray, change: np.ndarray, gap: np.ndarray, influence: np.ndarray
+) -> np.ndarray:
     """Pressure, (ny, nx), of which each 2 x 2 nodes have a given sum, and even gaps where it is.
 
     Parameters
@@ -128,7 +133,7 @@ def shared_out(before, change, gap, influence):
     gap : (ny, nx) ndarray
         What the pressure before leaves open.
     influence : (ny, nx) ndarray
-        As for :func:`spread`.
+        As for :func:`prolong`.
 
     Raises
     ------
@@ -143,17 +148,20 @@ def shared_out(before, change, gap, influence):
     padded = np.zeros((2 * my + 4, 2 * mx + 4))
     inside = padded[2 : gap.shape[0] + 2, 2 : gap.shape[1] + 2]
     inside[:] = change
-    _share_out(before, padded, gap, influence[:4, :4].astype(float))
+    _redistribute(before, padded, gap, influence[:4, :4].astype(float))
     return before + inside
 
 
 @njit(cache=True)
-def _share_out(before, change, gap, influence):
-    """Share out a change, with two nodes more on each side; a cell sees what others have become."""
+def _redistribute(before, change, gap, influence):
+    """Redistribute a change, with two nodes more on each side, within the cells, one by one.
+
+    A cell sees what others have become.
+    """
     ny, nx = gap.shape
     own, around = _influence_on(influence)
-    ways = _ways_to_share(own)
-    known, left, share = np.zeros(4), np.zeros(4), np.zeros(4)
+    maps = _redistributions(own)
+    known, left, part = np.zeros(4), np.zeros(4), np.zeros(4)
     for top in range(0, ny, 2):
         for side in range(0, nx, 2):
             total, those = 0.0, 0
@@ -174,10 +182,10 @@ def _share_out(before, change, gap, influence):
             for a in range(4):
                 for b in range(4):
                     left[a] -= own[a, b] * known[b]
-            _even_gaps(ways, left, total, those, share)
+            _equalise_gaps(maps, left, total, those, part)
             for a in range(4):
                 if those & (1 << a):
-                    change[top + a // 2 + 2, side + a % 2 + 2] = share[a] - known[a]
+                    change[top + a // 2 + 2, side + a % 2 + 2] = part[a] - known[a]
 
 
 @njit(cache=True)
@@ -199,26 +207,26 @@ def _influence_on(influence):
 
 
 @njit(cache=True)
-def _ways_to_share(own):
-    """For each set of a cell's nodes, given by its bits, how they share a sum: (16, 4, 5).
+def _redistributions(own):
+    """For each set of a cell's nodes, given by its bits, how a sum is distributed: (16, 4, 5).
 
     Of gaps g and a sum S pressures p = -M g + c S leave even gaps: own p + g is the same for all,
     which gives M = W - W 1 1' W / (1' W 1) and c = W 1 / (1' W 1), with W the inverse of own.
     """
-    ways = np.zeros((16, 4, 5))
+    maps = np.zeros((16, 4, 5))
     for those in range(1, 16):
         nodes = np.array([a for a in range(4) if those & (1 << a)])
         inverse = inverted(own[nodes][:, nodes])
         ones = inverse.sum(axis=1)
         for i, a in enumerate(nodes):
-            ways[those, a, 4] = ones[i] / ones.sum()
+            maps[those, a, 4] = ones[i] / ones.sum()
             for j, b in enumerate(nodes):
-                ways[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
-    return ways
+                maps[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
+    return maps
 
 
 @njit(cache=True)
-def _even_gaps(ways, gap, total, those, share):
+def _equalise_gaps(maps, gap, total, those, part):
     """Pressures of a given sum, 0 but on ``those`` nodes, that leave even gaps where positive.
 
     Those in tension are dropped, the strongest first, until there is none. Only by how much gaps
@@ -231,11 +239,11 @@ def _even_gaps(ways, gap, total, those, share):
                 nearest = min(nearest, gap[a])
         worst, least = 0, 0.0
         for a in range(4):
-            share[a] = ways[those, a, 4] * total
+            part[a] = maps[those, a, 4] * total
             for b in range(4):
-                share[a] += ways[those, a, b] * (gap[b] - nearest)
-            if share[a] < least:
-                worst, least = a, share[a]
+                part[a] += maps[those, a, b] * (gap[b] - nearest)
+            if part[a] < least:
+                worst, least = a, part[a]
         if not least < 0:
             break
         those &= ~(1 << worst)

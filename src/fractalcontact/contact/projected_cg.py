@@ -1,16 +1,23 @@
-"""Linear equations K x = b on a contact set, solved as far as the search for the set needs."""
+"""Linear equations K x = b on a contact set: a preconditioned step, then conjugate gradients.
+
+Where the sum of x is given, the gradients are projected so that they keep it (projected method of
+N. I. M. Gould, M. E. Hribar and J. Nocedal, On the solution of equality constrained quadratic
+programming problems arising in optimization, SIAM J. Sci. Comput. 23 (2001) 1376). Directions and
+their images are in single precision.
+"""
 
 import numpy as np
 
 from ..core.kernel_cache import njit
+from ..elastic.halfspace import HalfSpace
 from .preconditioner import preconditioner
 
 # Applications in one solve: on an exact set about ten reach 1e-6.
 MAX_INNER = 60
 # Passes in search of the closure that gives a clipped step its total.
 CLIPPING_PASSES = 20
-# In it, least effect of closure on a node's pressure, as a share of the mean.
-LEAST_SHARE = 1e-2
+# In it, least effect of closure on a node's pressure, as a fraction of the mean.
+LEAST_RESPONSE = 1e-2
 # Stiffness: its error is of second order in this residual.
 TANGENT_RESIDUAL = 1e-4
 
@@ -25,17 +32,17 @@ class Operator:
     space : HalfSpace
     """
 
-    def __init__(self, space):
+    def __init__(self, space: HalfSpace):
         self.space, self.inverse = space, preconditioner(space)
         self.applications = 0
         self._grid = np.zeros(space.shape, np.float32)
 
-    def __call__(self, pressure):
+    def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Displacement of the whole grid, (n,), in the precision of the pressure, (n,)."""
         self.applications += 1
         return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
 
-    def on(self, *parts):
+    def on(self, *parts: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """The same in single precision under (nodes, values) pairs alone.
 
         Raises
@@ -52,17 +59,17 @@ class Operator:
         return image
 
 
-class SetEquations:
-    """K x = right side on a set, up to a common constant where the sum of x is given.
+class ProjectedCG:
+    """Conjugate gradients for K x = right side + multiplier on a contact set.
 
-    The second is the change of closure that a given force leaves open (projected method of Gould,
-    Hribar and Nocedal, SIAM J. Sci. Comput. 23 (2001) 1376).
+    The multiplier, of the constraint on the sum of x, is the change of closure that a given force
+    leaves open; it is 0 where the closure is given.
 
     Parameters
     ----------
     operator : Operator
-        Its inverse is that on the set.
-    free : (n,) int ndarray
+        Its preconditioner is that on the set.
+    active : (n,) int ndarray
         Nodes of the set.
     right_side : (n,) ndarray
 
@@ -72,9 +79,9 @@ class SetEquations:
         x, and what is left of the right side.
     image : float32 ndarray
         K x on the whole grid.
-    common : float
-        The constant.
-    inside : (n,) float32 ndarray
+    multiplier : float
+        Lagrange multiplier of the sum.
+    unclipped : (n,) float32 ndarray
         0 at nodes that keep the x they have, whatever their equation says; else 1.
     at_zero, at_cap : (n,) bool ndarray
         Those that a clipped step took to a bound.
@@ -85,56 +92,58 @@ class SetEquations:
         If the right side is not one on the set.
     """
 
-    def __init__(self, operator, free, right_side):
-        if right_side.shape != free.shape:
-            raise ValueError(f"right side {right_side.shape}: expected {free.shape}")
-        self.operator, self.free, self.inverse = operator, free, operator.inverse
+    def __init__(self, operator: Operator, active: np.ndarray, right_side: np.ndarray):
+        if right_side.shape != active.shape:
+            raise ValueError(f"right side {right_side.shape}: expected {active.shape}")
+        self.operator, self.active, self.inverse = operator, active, operator.inverse
         self.residual = right_side.astype(np.float32)
-        self.solution = np.zeros(free.size, np.float32)
+        self.solution = np.zeros(active.size, np.float32)
         self.image = np.zeros(operator.space.shape, np.float32).ravel()
-        self.inside = np.ones(free.size, np.float32)
-        self.at_zero = self.at_cap = np.zeros(free.size, bool)
-        self.common = 0.0
+        self.unclipped = np.ones(active.size, np.float32)
+        self.at_zero = self.at_cap = np.zeros(active.size, bool)
+        self.multiplier = 0.0
 
-    def clipped_step(self, start, bounds, total):
-        """The approximate inverse's whole step, clipped so that start + x keeps within bounds.
+    def clipped_step(
+        self, start: np.ndarray, bounds: tuple[float, float], total: float | None
+    ) -> None:
+        """The preconditioner's whole step, clipped so that start + x keeps within bounds.
 
-        With a ``total``, start + x has that sum. What the step does is left to `carry_out`.
+        With a ``total``, start + x has that sum. What the step does is left to `apply_step`.
 
         Raises
         ------
         ValueError
             If the start is not one on the set.
         """
-        if start.shape != self.free.shape:
-            raise ValueError(f"start {start.shape}: expected {self.free.shape}")
+        if start.shape != self.active.shape:
+            raise ValueError(f"start {start.shape}: expected {self.active.shape}")
         aim = start + self.inverse(self.residual)
-        if total is not None and self.free.size:  # none is free where all that touches yields
-            ones = self.inverse(np.ones(self.free.size, np.float32))
-            common = _common_part(aim, ones, *bounds, total)
-            self.residual += np.float32(common)
-            self.common += common
-        self.at_zero, self.at_cap = _clip(aim, start, *bounds, self.solution, self.inside)
+        if total is not None and self.active.size:  # it is empty where all that touches yields
+            response = self.inverse(np.ones(self.active.size, np.float32))
+            multiplier = _multiplier_of_total(aim, response, *bounds, total)
+            self.residual += np.float32(multiplier)
+            self.multiplier += multiplier
+        self.at_zero, self.at_cap = _clip(aim, start, *bounds, self.solution, self.unclipped)
 
-    def carry_out(self, beyond, back):
-        """The image of the step, and of ``back`` on the nodes ``beyond``, which goes with it."""
-        self.image = self.operator.on((self.free, self.solution), (beyond, back))
-        self.residual *= self.inside
-        _take_off(self.residual, np.float32(1), self.image, self.free, self.inside)
+    def apply_step(self, infeasible: np.ndarray, change: np.ndarray) -> None:
+        """Apply K to the step, and to the ``change`` of ``infeasible`` nodes that goes with it."""
+        self.image = self.operator.on((self.active, self.solution), (infeasible, change))
+        self.residual *= self.unclipped
+        _subtract(self.residual, np.float32(1), self.image, self.active, self.unclipped)
 
-    def conjugate_gradients(self, goal, *, by_force):
-        """Go on until no residual exceeds ``goal``."""
-        ones, give = self.inside, 0.0
+    def iterate(self, goal: float, *, by_force: bool) -> None:
+        """Go on by conjugate gradients until no residual exceeds ``goal``."""
+        response, total = self.unclipped, 0.0
         if by_force:
-            ones = self.inverse(self.inside) * self.inside
-            give = ones.sum(dtype=float)
-            if give <= 0:
+            response = self.inverse(self.unclipped) * self.unclipped
+            total = response.sum(dtype=float)
+            if total <= 0:
                 return
         direction, previous = None, 1.0
         for _ in range(MAX_INNER):
             search = self.inverse(self.residual)
-            offset, slope, worst = _projected(search, self.residual, self.inside, ones, give)
-            self.common += offset
+            offset, slope, worst = _project(search, self.residual, self.unclipped, response, total)
+            self.multiplier += offset
             if worst <= goal or slope <= 0:
                 break
             if direction is None:
@@ -143,21 +152,21 @@ class SetEquations:
                 direction *= np.float32(slope / previous)
                 direction += search
             previous = slope
-            image = self.operator.on((self.free, direction))
-            along = _along(direction, image, self.free, self.inside)
-            length = np.float32(slope / along)
+            image = self.operator.on((self.active, direction))
+            curvature = _curvature(direction, image, self.active, self.unclipped)
+            length = np.float32(slope / curvature)
             add(self.solution, length, direction)
             add(self.image, length, image)
-            _take_off(self.residual, length, image, self.free, self.inside)
+            _subtract(self.residual, length, image, self.active, self.unclipped)
 
 
-def stiffness(operator, free):
+def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     """Sum of q with K q = 1 on some nodes: dF/dw of a state in which these lie between the bounds.
 
     Parameters
     ----------
     operator : Operator
-    free : (n,) int32 ndarray
+    active : (n,) int32 ndarray
 
     Returns
     -------
@@ -169,18 +178,18 @@ def stiffness(operator, free):
     -----
     For an approximate q with residual r = 1 - K q, sum(q) + r.q errs by r.K^-1 r only.
     """
-    if free.size == 0:
+    if active.size == 0:
         return 0.0, 0.0
-    operator.inverse.update(free, fresh=True)
-    equations = SetEquations(operator, free, np.ones(free.size))
-    equations.conjugate_gradients(TANGENT_RESIDUAL, by_force=False)
+    operator.inverse.update(active, fresh=True)
+    equations = ProjectedCG(operator, active, np.ones(active.size))
+    equations.iterate(TANGENT_RESIDUAL, by_force=False)
     residual, q = equations.residual.astype(float), equations.solution.astype(float)
     value = q.sum() + residual @ q
     return value, float(residual @ operator.inverse(equations.residual)) / value
 
 
 @njit(cache=True)
-def add(values, scale, change):
+def add(values: np.ndarray, scale: float, change: np.ndarray) -> None:
     """values += scale * change, without arrays in between."""
     if values.size != change.size:
         raise ValueError("expected as many changes as values")
@@ -189,90 +198,101 @@ def add(values, scale, change):
 
 
 @njit(cache=True)
-def _put(values, places, those):
-    """values[places] = those."""
-    if places.size != those.size:
+def _put(grid, nodes, values):
+    """grid[nodes] = values."""
+    if nodes.size != values.size:
         raise ValueError("expected as many values as nodes")
-    for i in range(places.size):
-        if places[i] < 0 or places[i] >= values.size:
+    for i in range(nodes.size):
+        if nodes[i] < 0 or nodes[i] >= grid.size:
             raise ValueError("expected nodes of the grid")
-        values[places[i]] = those[i]
+        grid[nodes[i]] = values[i]
 
 
 # Sums are made in double precision, and without the threads of a library of linear algebra.
 
 
 @njit(cache=True)
-def _projected(search, residual, inside, ones, give):
-    """Leave a search to the nodes inside; if ``ones`` give anything, make its sum zero by them.
+def _project(search, residual, unclipped, response, total):
+    """Make a search vanish on clipped nodes and, where the response has a total, sum to zero.
+
+    Parameters
+    ----------
+    search, residual, unclipped : (n,) float32 ndarray
+    response : (n,) float32 ndarray
+        What the preconditioner makes of 1 on the unclipped nodes.
+    total : float
+        Its sum; 0 where the sum of the search is free.
 
     Returns
     -------
     offset : float
-        What was added of ``ones``, and of 1 to the residual.
+        The multiplier added: so many times the response to the search, and 1 to the residual.
     slope, worst : float
         Search times residual, and the largest residual.
     """
-    total, slope, worst = 0.0, 0.0, np.float32(0)
+    missing, slope, worst = 0.0, 0.0, np.float32(0)
     for i in range(search.size):
-        search[i] *= inside[i]
-        total += search[i]
-    offset = np.float32(-total / give) if give > 0 else np.float32(0)
+        search[i] *= unclipped[i]
+        missing += search[i]
+    offset = np.float32(-missing / total) if total > 0 else np.float32(0)
     for i in range(search.size):
-        search[i] += offset * ones[i]
-        residual[i] += offset * inside[i]
+        search[i] += offset * response[i]
+        residual[i] += offset * unclipped[i]
         slope += search[i] * residual[i]
         worst = max(worst, abs(residual[i]))
     return float(offset), slope, worst
 
 
 @njit(cache=True)
-def _along(direction, image, free, inside):
-    """Direction times its image, on the nodes inside."""
+def _curvature(direction, image, active, unclipped):
+    """Direction times its image, on the unclipped nodes."""
     total = 0.0
-    for i in range(free.size):
-        total += direction[i] * image[free[i]] * inside[i]
+    for i in range(active.size):
+        total += direction[i] * image[active[i]] * unclipped[i]
     return total
 
 
 @njit(cache=True)
-def _take_off(residual, scale, image, free, inside):
-    """residual -= scale * image, on the nodes inside."""
-    for i in range(free.size):
-        residual[i] -= scale * image[free[i]] * inside[i]
+def _subtract(residual, scale, image, active, unclipped):
+    """residual -= scale * image, on the unclipped nodes."""
+    for i in range(active.size):
+        residual[i] -= scale * image[active[i]] * unclipped[i]
 
 
 @njit(cache=True)
-def _common_part(aim, ones, low, high, total):
-    """Move an aim along ``ones`` until it has a total when clipped; returns by how much of them."""
+def _multiplier_of_total(aim, response, low, high, total):
+    """Multiplier at which aim + multiplier * response, clipped, has a total; the aim moves there.
+
+    Found by Newton's method, safeguarded by bisection.
+    """
     n = aim.size
     # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
-    ones = np.maximum(ones.astype(np.float64), LEAST_SHARE * ones.mean())
-    common, least, most = 0.0, -np.inf, np.inf
+    response = np.maximum(response.astype(np.float64), LEAST_RESPONSE * response.mean())
+    multiplier, least, most = 0.0, -np.inf, np.inf
     for _ in range(CLIPPING_PASSES):
-        missing, give = total, 0.0
+        missing, slope = total, 0.0
         for i in range(n):
-            end = aim[i] + common * ones[i]
+            end = aim[i] + multiplier * response[i]
             missing -= min(max(end, low), high)
             if low < end < high:
-                give += ones[i]
+                slope += response[i]
         if abs(missing) <= 1e-7 * abs(total):
             break
-        least, most = (common, most) if missing > 0 else (least, common)
-        if give > 0:
-            common += missing / give
+        least, most = (multiplier, most) if missing > 0 else (least, multiplier)
+        if slope > 0:
+            multiplier += missing / slope
         # Between two bounds Newton's step may go to where every node is at one of them.
-        if not least < common < most:
+        if not least < multiplier < most:
             if np.isinf(most - least):
                 break
-            common = (least + most) / 2
+            multiplier = (least + most) / 2
     for i in range(n):
-        aim[i] += common * ones[i]
-    return common
+        aim[i] += multiplier * response[i]
+    return multiplier
 
 
 @njit(cache=True)
-def _clip(aim, start, low, high, step, inside):
+def _clip(aim, start, low, high, step, unclipped):
     """The step to an aim between bounds; nodes that it takes to the lower and to the upper one."""
     at_low, at_high = np.empty(aim.size, np.bool_), np.empty(aim.size, np.bool_)
     for i in range(aim.size):
@@ -280,5 +300,5 @@ def _clip(aim, start, low, high, step, inside):
         step[i] = end - start[i]
         at_low[i], at_high[i] = end <= low, end >= high
         if at_low[i] or at_high[i]:
-            inside[i] = 0
+            unclipped[i] = 0
     return at_low, at_high

@@ -6,11 +6,11 @@ at H, and points there may be pressed in. How such a state is found is told in `
 loads become dimensionless, starts are chosen, and nothing returns unverified.
 """
 
-import dataclasses
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..core.arguments import (
     LEAST_INPUT,
@@ -22,103 +22,30 @@ from ..core.arguments import (
     quoted,
 )
 from ..core.errors import NotConverged
-from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from . import active_set
-from .active_set import ActiveSet
+from .active_set import ActiveSetMethod
 from .effort import SOLVING
-from .full_approximation import coarse_change
-from .kkt import Problem, between_bounds
-from .nested_iteration import coarse_start
-from .projected_cg import Operator, stiffness
+from .full_approximation import full_approximation_start
+from .kkt import Problem
+from .nested_iteration import nested_iteration_start
+from .state import ContactState, unloaded_state
 
 # Earlier states are extrapolated by no more than this many of their own steps.
 FURTHEST = 2.0
-# Largest relative error of the stiffness.
-STIFFNESS_ERROR = 1e-6
-
-
-@dataclass(frozen=True)
-class ContactState:
-    """A state of contact that satisfies the conditions to ``residual``.
-
-    Attributes
-    ----------
-    pressure : (ny, nx) ndarray
-        p, MPa, zero outside the contact domain.
-    displacement : (ny, nx) ndarray
-        Elastic displacement u = K p of the composite surface, mm.
-    gap : (ny, nx) ndarray
-        Remaining opening, mm; within ``residual`` of zero in contact.
-    closure : float
-        w from first touch, mm.
-    force : float
-        F, N.
-    residual : float
-        Largest violation of the contact conditions, as a share of the closure.
-    iterations : int
-        Applications of the elastic operator, whatever their precision. Those on coarser
-        grids, for a start, are not counted.
-    space : HalfSpace
-        The operator it was solved with.
-    hardness : float
-        Largest pressure, MPa; infinity for an elastic surface.
-    """
-
-    pressure: np.ndarray
-    displacement: np.ndarray
-    gap: np.ndarray
-    closure: float
-    force: float
-    residual: float
-    iterations: int
-    space: HalfSpace = dataclasses.field(repr=False)
-    hardness: float = np.inf
-    _before: "ContactState | None" = dataclasses.field(default=None, repr=False, compare=False)
-
-    @property
-    def in_contact(self):
-        """Contact domain, (ny, nx) bool: the nodes that carry pressure."""
-        return self.pressure > 0
-
-    @property
-    def area(self):
-        """A_r = N s^2, mm2."""
-        return float(np.count_nonzero(self.in_contact)) * self.space.cell_area
-
-    @property
-    def undecided(self):
-        """Nodes of which it is not certain whether they touch, as the conditions hold to residual.
-
-        Their pressure, or their gap, is no larger than what the violation of the conditions may
-        hide: a gap of ``residual`` times the closure, and the pressure that closes it on one cell.
-        """
-        hidden = self.residual * self.closure
-        weak = self.in_contact & (self.pressure <= hidden * self.space.modulus / self.space.cell)
-        near = ~self.in_contact & (self.gap <= hidden)
-        return int(np.count_nonzero(weak) + np.count_nonzero(near))
-
-    @computed_once
-    def stiffness(self):
-        """Normal stiffness dF/dw, N/mm, from H q = 1 on the contact set; 0 without contact.
-
-        Raises
-        ------
-        NotConverged
-            If it is not known to 1e-6.
-        """
-        free = between_bounds(self.pressure.ravel(), self.hardness)
-        with SOLVING.counted(0):
-            value, error = stiffness(Operator(self.space), free)
-        if not error <= STIFFNESS_ERROR:
-            raise NotConverged("the stiffness equations on the contact set", self, error)
-        return value * self.space.modulus * self.space.cell
 
 
 def solve_contact(
-    composite, space, *, closure=None, force=None, start=None, rtol=1e-6, hardness=None
-):
-    """Press a composite topography against a rigid plane.
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    closure: float | None = None,
+    force: float | None = None,
+    start: ContactState | None = None,
+    rtol: float = 1e-6,
+    hardness: float | None = None,
+) -> ContactState:
+    """The state of contact of a composite topography with a rigid plane.
 
     Parameters
     ----------
@@ -127,13 +54,13 @@ def solve_contact(
     space : HalfSpace
         The elastic operator on the same grid.
     closure : float, optional
-        w, mm, from first touch. Either this or ``force`` is given.
+        w, mm, from first touch: the rigid-body approach. Either this or ``force`` is given.
     force : float, optional
         F, N.
     start : ContactState, optional
         A state of the same grid to start from, such as the previous load step.
     rtol : float
-        Largest violation allowed of gap and pressure conditions, as a share of the closure.
+        Largest violation allowed of gap and pressure conditions, as a fraction of the closure.
     hardness : float, optional
         H, MPa: the pressure at which the surface yields (elastic, then perfectly plastic).
 
@@ -157,23 +84,29 @@ def solve_contact(
     problem = units.problem(clearance, checked_hardness(hardness, space, force))
     with SOLVING.counted(1):
         if start is None or not start.pressure.any():
-            pressure, displacement = coarse_start(problem), None
+            pressure, displacement = nested_iteration_start(problem), None
         else:
             pressure, displacement = units.extrapolated(start, load)
             if displacement is not None:
-                changed = coarse_change(problem, pressure, displacement)
+                changed = full_approximation_start(problem, pressure, displacement)
                 if changed is not None:
                     pressure, displacement = changed, None
-        found = ActiveSet(problem, rtol).solve(pressure, displacement)
-    state = units.state(found, clearance, problem, start)
+        solution = ActiveSetMethod(problem, rtol).solve(pressure, displacement)
+    state = units.state(solution, clearance, problem, start)
     if not state.residual <= rtol:
-        reason = f"the contact set still changed after {active_set.MAX_CORRECTIONS} corrections"
+        reason = f"the contact set still changed after {active_set.MAX_ITERATIONS} iterations"
         raise NotConverged(reason, state, state.residual)
     return state
 
 
-def checked_hardness(hardness, space, force):
-    """The hardness as a number, infinite if there is none, after it was found sound."""
+def checked_hardness(hardness: float | None, space: HalfSpace, force: float | None) -> float:
+    """The hardness as a number, MPa, infinite if there is none.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or such that the window could not carry the force, N.
+    """
     if hardness is None:
         return np.inf
     hardness = number(hardness, "hardness", "MPa")
@@ -188,8 +121,20 @@ def checked_hardness(hardness, space, force):
     return hardness
 
 
-def checked_problem(composite, space, closure, force, start, rtol):
-    """What `solve_contact` and the comparison methods are given, after it was found sound.
+def checked_problem(
+    composite: ArrayLike,
+    space: HalfSpace,
+    closure: float | None,
+    force: float | None,
+    start: ContactState | None,
+    rtol: float,
+) -> tuple[float, np.ndarray]:
+    """Load and clearance of a problem as `solve_contact` and the comparison methods are given it.
+
+    Parameters
+    ----------
+    composite, space, closure, force, start, rtol
+        As `solve_contact` takes them.
 
     Returns
     -------
@@ -217,7 +162,7 @@ def checked_problem(composite, space, closure, force, start, rtol):
         raise ValueError(f"{name} {load}: expected a finite number >= 0, in {unit}")
     if start is not None:
         _check_start(start, space)
-    if not 0 < number(rtol, "rtol", "shares of the closure") < 1:
+    if not 0 < number(rtol, "rtol", "fractions of the closure") < 1:
         raise ValueError(f"rtol {rtol}: expected between 0 and 1")
     depth = float(height.max()) - float(height.min())
     if not depth <= MOST_INPUT:
@@ -263,12 +208,6 @@ def _load_units(space, load, by_force):
     return pressure / stress_per_length, pressure
 
 
-def unloaded_state(space, clearance):
-    """The state of first touch: no pressure, no closure."""
-    zero = np.zeros(space.shape)
-    return ContactState(zero, zero.copy(), clearance, 0.0, 0.0, 0.0, 0, space)
-
-
 class _Units:
     """Units in which loads are near one: nothing depends on mm or MPa."""
 
@@ -301,17 +240,17 @@ class _Units:
                 for name in ("pressure", "displacement")
             ]
         else:
-            share = min(load / at, FURTHEST) if at > 0 else 1.0
-            fields = [share * start.pressure, share * start.displacement]
+            factor = min(load / at, FURTHEST) if at > 0 else 1.0
+            fields = [factor * start.pressure, factor * start.displacement]
         pressure, displacement = (np.asarray(values, float).ravel() for values in fields)
         return pressure / self.pressure, displacement / self.length if known else None
 
-    def state(self, found, clearance, problem, start):
+    def state(self, solution, clearance, problem, start):
         """The solution in mm, N and MPa."""
         space = self.space
-        pressure = found.pressure.reshape(space.shape) * self.pressure
-        displacement = found.displacement.reshape(space.shape) * self.length
-        closure = found.closure * self.length if self.by_force else self.length
+        pressure = solution.pressure.reshape(space.shape) * self.pressure
+        displacement = solution.displacement.reshape(space.shape) * self.length
+        closure = solution.closure * self.length if self.by_force else self.length
         force = float(pressure.sum()) * space.cell_area
         # Of the states before, one is enough, and it need not hold on to its own.
         before = None if start is None or start.space != space else replace(start, _before=None)
@@ -322,8 +261,8 @@ class _Units:
             closure=closure,
             force=force,
             # What is no number violates no condition, and must not pass for a state.
-            residual=found.residual if math.isfinite(force) else math.nan,
-            iterations=found.applications,
+            residual=solution.residual if math.isfinite(force) else math.nan,
+            iterations=solution.applications,
             space=space,
             hardness=problem.cap * self.pressure,
             _before=before,

@@ -8,8 +8,13 @@ passes here first.
 import math
 import operator
 import reprlib
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+T = TypeVar("T")
 
 #: Lengths, pressures and forces a computation starts from lie between these: products and ratios
 #: of two of them, and sums over a grid, then neither over- nor underflow.
@@ -25,7 +30,7 @@ _LONGEST_INTEGER = 1000  # bits of an integer that is still quoted in full
 class _Short(reprlib.Repr):
     """Any value in few characters: Python refuses to write out integers of thousands of digits."""
 
-    def repr_int(self, x, level):
+    def repr_int(self, x: int, level: int) -> str:
         if x.bit_length() > _LONGEST_INTEGER:
             return f"an integer of {x.bit_length()} bits"
         return super().repr_int(x, level)
@@ -35,7 +40,7 @@ class _Short(reprlib.Repr):
 quoted = _Short().repr
 
 
-def number(value, name, unit):
+def number(value: Any, name: str, unit: str) -> float:
     """A real number.
 
     Parameters
@@ -70,7 +75,7 @@ def number(value, name, unit):
     return float(array)
 
 
-def whole_number(value, name, *, least, most):
+def whole_number(value: Any, name: str, *, least: int, most: int) -> int:
     """A whole number.
 
     Parameters
@@ -99,7 +104,7 @@ def whole_number(value, name, *, least, most):
     return found
 
 
-def whole_numbers(values, name, *, least, most):
+def whole_numbers(values: ArrayLike, name: str, *, least: int, most: int) -> np.ndarray:
     """Whole numbers, also such as 2.0.
 
     Parameters
@@ -126,7 +131,7 @@ def whole_numbers(values, name, *, least, most):
     return array.astype(np.int64)
 
 
-def pair(values, name, each):
+def pair(values: Sequence, name: str, each: Callable[[Any], T]) -> tuple[T, T]:
     """Two things, one along y and one along x.
 
     Parameters
@@ -150,10 +155,10 @@ def pair(values, name, each):
     both = tuple(values) if ordered else ()
     if len(both) != 2:
         raise ValueError(f"{name} {quoted(values)}: expected two numbers, along y and along x")
-    return tuple(each(value) for value in both)
+    return each(both[0]), each(both[1])
 
 
-def domain(values, name):
+def domain(values: ArrayLike, name: str) -> np.ndarray:
     """Nodes of a grid that are in contact, or in any other set.
 
     Parameters
@@ -181,7 +186,7 @@ def domain(values, name):
     return array.astype(bool, copy=False)
 
 
-def field(values, name, shape=None):
+def field(values: ArrayLike, name: str, shape: Sequence[int] | None = None) -> np.ndarray:
     """Real numbers on a grid.
 
     Parameters
@@ -215,7 +220,7 @@ def field(values, name, shape=None):
     return np.ascontiguousarray(array, float)
 
 
-def real_array(values, name, kinds=_REAL):
+def real_array(values: ArrayLike, name: str, kinds: str = _REAL) -> np.ndarray:
     """An array of real numbers, in their own precision.
 
     Parameters
@@ -244,7 +249,7 @@ def real_array(values, name, kinds=_REAL):
     return array
 
 
-def refuse_masked(values, name):
+def refuse_masked(values: Any, name: str) -> None:
     """Refuse masked cells: what stands in them is no number, though numpy takes it for one.
 
     Raises

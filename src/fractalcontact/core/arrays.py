@@ -1,9 +1,12 @@
 """Arrays of different length as rows of one table."""
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 
-def padded(arrays, length=None):
+def padded(arrays: Sequence[ArrayLike], length: int | None = None) -> np.ndarray:
     """Arrays of different length as rows of one table, the rest NaN.
 
     Parameters
@@ -15,8 +18,9 @@ def padded(arrays, length=None):
     -------
     (len(arrays), length) float64 ndarray
     """
-    length = max((len(a) for a in arrays), default=0) if length is None else length
-    table = np.full((len(arrays), length), np.nan)
-    for row, values in zip(table, arrays, strict=True):
+    rows = [np.asarray(values) for values in arrays]
+    length = max((len(row) for row in rows), default=0) if length is None else length
+    table = np.full((len(rows), length), np.nan)
+    for row, values in zip(table, rows, strict=True):
         row[: len(values)] = values
     return table

@@ -5,6 +5,7 @@ import errno
 import os
 import shutil
 import tempfile
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from .errors import OutputError
@@ -17,7 +18,7 @@ FULL_DISK = 2**20
 
 
 @contextlib.contextmanager
-def atomic_write(path):
+def atomic_write(path: Path | str) -> Iterator[Path]:
     """A temporary path beside ``path`` that takes its place when the block ends without error.
 
     Its content has reached the disk before it gets its name, so that a loss of power leaves the old
@@ -60,7 +61,7 @@ def atomic_write(path):
         temporary.unlink(missing_ok=True)
 
 
-def reach_disk(folders):
+def reach_disk(folders: Iterable[Path | str]) -> None:
     """Wait until the names in these folders have reached the disk, as their files' contents have.
 
     Parameters
@@ -75,7 +76,7 @@ def reach_disk(folders):
             os.close(handle)
 
 
-def sweep(folder):
+def sweep(folder: Path | str) -> list[Path]:
     """Remove what killed runs left half written; only while nothing writes there.
 
     Parameters

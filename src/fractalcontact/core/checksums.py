@@ -11,6 +11,7 @@ import hashlib
 import json
 import os
 import time
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,8 +19,8 @@ from .atomic import atomic_write, reach_disk
 from .errors import InputError
 
 FOLDER, ENDING = "checksums", ".sha256"
-#: Endings of what jobs make: nothing else in the folder of a study is ours.
-MADE = (".csv", ".nc", ".npy", ".png", ".svg", ".txt", ".yaml")
+#: Of the files that jobs make: nothing else in the folder of a study is ours.
+RESULT_ENDINGS = (".csv", ".nc", ".npy", ".png", ".svg", ".txt", ".yaml")
 #: Of these, those that later jobs read.
 _READ = (".nc", ".npy")
 MANIFEST = "manifest.sha256"
@@ -29,7 +30,7 @@ ASIDE = "damaged"
 _SAME_TICK = 2_000_000_000
 
 
-def sha256(path):
+def sha256(path: Path | str) -> str:
     """SHA-256 of a file's content, in hexadecimal digits."""
     with open(path, "rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
@@ -47,14 +48,15 @@ class Digests:
         Where they are kept; damaged or missing, it is made anew.
     """
 
-    def __init__(self, cache):
-        self._cache, self._new, self._known = Path(cache), False, {}
+    def __init__(self, cache: Path | str):
+        self._cache, self._new = Path(cache), False
+        self._known: dict[str, list] = {}
         with contextlib.suppress(OSError, UnicodeDecodeError):  # only a cache
             checksum, _, text = self._cache.read_text(encoding="utf-8").partition("\n")
             if hashlib.sha256(text.encode()).hexdigest() == checksum:
                 self._known = json.loads(text)
 
-    def of(self, path):
+    def of(self, path: Path | str) -> str:
         """SHA-256 of a file.
 
         Raises
@@ -73,7 +75,7 @@ class Digests:
             self._new = True
         return digest
 
-    def save(self):
+    def save(self) -> None:
         """Keep what was computed; without a place for it, it is computed again next time."""
         if self._new:
             text = json.dumps(self._known)
@@ -87,7 +89,7 @@ def _identity(path):
     return [found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns]
 
 
-def record(results, files):
+def record(results: Path | str, files: Iterable[Path | str]) -> None:
     """Keep the checksums of files that a job has made.
 
     Parameters
@@ -97,7 +99,8 @@ def record(results, files):
     files : iterable of path-like
         All that were made, below it; those that share a record together.
     """
-    results, records = Path(results), {}
+    results = Path(results)
+    records: dict[Path, list[Path]] = {}
     for file in map(Path, files):
         records.setdefault(_record_of(results, file), []).append(file)
     for path, members in records.items():
@@ -108,7 +111,7 @@ def record(results, files):
     reach_disk(folders | {path.parent for path in records})
 
 
-def require_intact(results, file):
+def require_intact(results: Path | str, file: Path | str) -> None:
     """Refuse a file that is not as the job that made it left it.
 
     Raises
@@ -142,13 +145,13 @@ class Checked:
         Files that later jobs would read, of which none is known.
     """
 
-    intact: list
-    damaged: list
-    missing: list
-    unrecorded: list
+    intact: list[Path]
+    damaged: list[Path]
+    missing: list[Path]
+    unrecorded: list[Path]
 
 
-def check(results, digest=sha256):
+def check(results: Path | str, digest: Callable[[Path], str] = sha256) -> Checked:
     """Compare all files of a study with their checksums.
 
     Parameters
@@ -186,7 +189,7 @@ def check(results, digest=sha256):
     return checked
 
 
-def set_aside(results, file):
+def set_aside(results: Path | str, file: Path | str) -> Path:
     """Move a damaged file out of the way, where nothing reads it: it may be its owner's work.
 
     Returns
@@ -200,7 +203,7 @@ def set_aside(results, file):
     return target
 
 
-def write_manifest(results):
+def write_manifest(results: Path | str) -> None:
     """All checksums in one file beside the atlas, as ``sha256sum -c`` takes them there."""
     results = Path(results)
     if results.is_dir():
@@ -208,9 +211,10 @@ def write_manifest(results):
             path.write_text("".join(lines_of(results)), encoding="utf-8")
 
 
-def lines_of(results):
+def lines_of(results: Path | str) -> list[str]:
     """All lines of the records of a study, of files that are there, sorted."""
-    results, lines = Path(results), []
+    results = Path(results)
+    lines: list[str] = []
     for path in (results / FOLDER).rglob(f"*{ENDING}"):
         found = _lines(path).items()
         lines += [f"{digest}  {name}\n" for name, digest in found if (results / name).is_file()]
@@ -226,7 +230,7 @@ def _recorded_in(results, path):
     """The files whose checksums a record holds, told by their names: those that are there."""
     folder = (results / path.relative_to(results / FOLDER)).parent
     stem = path.name.removesuffix(ENDING)
-    found = (f for f in folder.glob("*") if f.stem == stem and f.suffix in MADE)
+    found = (f for f in folder.glob("*") if f.stem == stem and f.suffix in RESULT_ENDINGS)
     return sorted(f for f in found if f.is_file())
 
 

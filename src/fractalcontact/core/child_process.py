@@ -4,13 +4,17 @@ import faulthandler
 import multiprocessing
 import os
 import signal
+from collections.abc import Callable
+from typing import TypeVar
+
+T = TypeVar("T")
 
 
 class ChildFailed(RuntimeError):
     """A call in a child process raised an error, crashed or took too long; the text says which."""
 
 
-def in_child(call, *, seconds):
+def in_child(call: Callable[[], T], *, seconds: float) -> T:
     """What a call returns.
 
     Parameters

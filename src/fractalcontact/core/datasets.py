@@ -1,11 +1,19 @@
 """Labelled datasets made from a table: of each variable its dimensions, unit and long name."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from .labels import cf_attrs
 
+Dims = str | tuple[str, ...]
 
-def labelled(table, values):
+
+def labelled(
+    table: Mapping[str, tuple[Dims, str, str]], values: Mapping[str, ArrayLike]
+) -> dict[str, tuple[Dims, ArrayLike, dict[str, str]]]:
     """Variables with their dimensions and attributes, as ``xr.Dataset`` takes them.
 
     Parameters
@@ -33,7 +41,12 @@ def labelled(table, values):
     }
 
 
-def labelled_dataset(table, values, coords=None, attrs=None):
+def labelled_dataset(
+    table: Mapping[str, tuple[Dims, str, str]],
+    values: Mapping[str, ArrayLike],
+    coords: Mapping[Any, Any] | None = None,
+    attrs: Mapping[Any, Any] | None = None,
+) -> xr.Dataset:
     """A dataset made from a table.
 
     Parameters

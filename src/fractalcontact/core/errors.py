@@ -1,5 +1,7 @@
 """What this package raises by names of its own, without what it takes to compute anything."""
 
+from typing import Any
+
 
 class InputError(ValueError):
     """A scan, a sidecar or a study that cannot be used as it stands.
@@ -24,7 +26,7 @@ class NotConverged(RuntimeError):
     residual : float
     """
 
-    def __init__(self, reason, state, residual):
+    def __init__(self, reason: str, state: Any, residual: float):
         super().__init__(f"contact not solved: {reason}; best residual {residual:.3g}")
         self.reason, self.state, self.residual = reason, state, residual
 

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .intervals import t_quantile
 
@@ -25,7 +26,10 @@ class LineFit(NamedTuple):
     r2: float
 
 
-def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
+NO_LINE = LineFit(**dict.fromkeys(LineFit._fields[:8], np.nan), n=0, r2=np.nan)
+
+
+def fit_line(x: ArrayLike, y: ArrayLike) -> LineFit:
     """Fit a line by ordinary least squares, with Student-t intervals.
 
     Parameters
@@ -40,12 +44,15 @@ def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
         of determination (NaN for a constant y). With fewer than three points, or all at one x,
         everything but `n` is NaN: the error of such a line cannot be told.
     """
-    x, y = np.asarray(x, float), np.asarray(y, float)
-    finite = np.isfinite(x) & np.isfinite(y)
-    x, y = x[finite], y[finite]
+    x_all, y_all = np.asarray(x, float), np.asarray(y, float)
+    finite = np.isfinite(x_all) & np.isfinite(y_all)
+    return _line_through(x_all[finite], y_all[finite])
+
+
+def _line_through(x: np.ndarray, y: np.ndarray) -> LineFit:
     n = x.size
     if n < FEWEST_POINTS or np.ptp(x) == 0:
-        return LineFit(*[np.nan] * 8, n=n, r2=np.nan)
+        return NO_LINE._replace(n=n)
 
     dx, dy = x - x.mean(), y - y.mean()
     sxx, syy = np.sum(dx**2), np.sum(dy**2)

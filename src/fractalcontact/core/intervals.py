@@ -1,8 +1,9 @@
 """Confidence intervals: the t quantile, means, the jackknife, and how an interval is named."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import special
 
 #: What follows the long name of an estimate at the ends of its interval, by ending of the name.
@@ -16,7 +17,7 @@ INTERVAL = {
 CONFIDENCE = 0.95
 
 
-def t_quantile(freedom):
+def t_quantile(freedom: ArrayLike) -> Any:
     """Half the width of a 95 % interval in standard errors, by Student's t.
 
     Parameters
@@ -37,7 +38,7 @@ class Mean(NamedTuple):
     n: np.ndarray
 
 
-def mean_interval(values, axis: int = 0) -> Mean:
+def mean_interval(values: ArrayLike, axis: int = 0) -> Mean:
     """Mean of independent values and its Student-t interval.
 
     Parameters
@@ -63,28 +64,28 @@ def mean_interval(values, axis: int = 0) -> Mean:
     return Mean(mean, mean - half, mean + half, n)
 
 
-def jackknife_error(*divisions: np.ndarray) -> float:
-    """Half the t-interval of a value from what is found with one part after another left out.
+def jackknife_error(*divisions: ArrayLike) -> float:
+    """Half the t-interval of a value by the jackknife, which leaves out one part after another.
 
     Parameters
     ----------
     *divisions : (n,) array_like
-        What is found without each part of a division of the window; NaN where nothing is. Where
-        the window is divided in more than one way, their variances are averaged and their degrees
-        of freedom added.
+        Replicates: the value without each part of a division of the window, NaN where there is
+        none. Where the window is divided in more than one way, their variances are averaged and
+        their degrees of freedom added.
 
     Returns
     -------
     float
-        A division in less than two parts says nothing; 0 if there is no other, infinite where only
-        one of its parts gives a value.
+        A division in fewer than two parts does not count; 0 if there is no other, infinite where
+        only one of its parts gives a value.
     """
-    divisions = [np.asarray(found, float) for found in divisions]
-    divisions = [found[np.isfinite(found)] for found in divisions if found.size > 1]
-    if not divisions:
+    replicates = [np.asarray(values, float) for values in divisions]
+    replicates = [values[np.isfinite(values)] for values in replicates if values.size > 1]
+    if not replicates:
         return 0.0
-    if min(found.size for found in divisions) < 2:
+    if min(values.size for values in replicates) < 2:
         return np.inf
-    variance = np.mean([(found.size - 1) * np.var(found) for found in divisions])
-    freedom = sum(found.size - 1 for found in divisions)
+    variance = np.mean([(values.size - 1) * np.var(values) for values in replicates])
+    freedom = sum(values.size - 1 for values in replicates)
     return float(t_quantile(freedom) * np.sqrt(variance))

@@ -22,9 +22,11 @@ import sys
 import tempfile
 import uuid
 import warnings
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import llvmlite
 import numba
@@ -38,7 +40,7 @@ PACKAGE = Path(__file__).absolute().parents[1]
 #: Kernels that come with the package; who can write there can write its code.
 OWN = PACKAGE / "__pycache__" / "kernels"
 #: Versions of a module's kernels that are kept: to change between branches compiles nothing.
-KEPT = 3
+VERSIONS_KEPT = 3
 #: Bytes of a file's SHA-256, with which it begins.
 _CHECKSUM = hashlib.sha256().digest_size
 
@@ -48,11 +50,13 @@ _VERSIONS = {
     "llvmlite": llvmlite.__version__,
     "numpy": np.__version__,
     # Kernels compiled to find an error are others, too.
-    "checks": f"{numba.config.BOUNDSCHECK} {numba.config.DEBUGINFO_DEFAULT} {numba.config.OPT}",
+    "checks": " ".join(
+        str(getattr(numba.config, name)) for name in ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "OPT")
+    ),
 }
 
 
-def njit(function=None, /, *, cache=False, **options):
+def njit(function: Callable | None = None, /, *, cache: bool = False, **options: Any) -> Any:
     """``numba.njit`` for the modules of this package, with a cache that no change outdates.
 
     Parameters
@@ -66,7 +70,7 @@ def njit(function=None, /, *, cache=False, **options):
     """
     if function is None:
         return lambda function: njit(function, cache=cache, **options)
-    kernel = numba.njit(function, **options)
+    kernel: Any = numba.njit(function, **options)
     # With NUMBA_DISABLE_JIT numba returns the function as it is.
     if cache and kernel is not function:
         name = _folder_name(function.__code__.co_filename)
@@ -87,7 +91,7 @@ class KernelCache(FunctionCache):
 
     _warned = False
 
-    def __init__(self, function, name):
+    def __init__(self, function: Callable, name: str):
         qualified = function.__qualname__.replace("<", "").replace(">", "")
         self._stem = f"{qualified}-{function.__code__.co_firstlineno}"
         self._name = f"{name}/{self._stem}"
@@ -98,7 +102,7 @@ class KernelCache(FunctionCache):
         self._paths = [folder / name for folder in readable]
         self.enable()
 
-    def flush(self):
+    def flush(self) -> None:
         """Forget what this kernel was compiled to."""
         if self._cache_path is not None:
             for path in self._cache_path.glob(f"{self._stem}-*"):
@@ -264,5 +268,5 @@ def _remove_old(folder):
     with contextlib.suppress(FileNotFoundError):  # removed by another process at the same time
         others = [other for other in folder.parent.glob("[0-9a-f]" * 16) if other != folder]
         others.sort(key=lambda other: other.stat().st_mtime, reverse=True)
-        for other in others[KEPT - 1 :]:
+        for other in others[VERSIONS_KEPT - 1 :]:
             shutil.rmtree(other, ignore_errors=True)

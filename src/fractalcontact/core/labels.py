@@ -1,7 +1,7 @@
-"""What every variable of the atlas says about itself, and how the texts of strangers are shown."""
+"""What every variable of the atlas says about itself, and how untrusted text is shown."""
 
 
-def cf_attrs(units, long_name):
+def cf_attrs(units: str, long_name: str) -> dict[str, str]:
     """Attributes of a variable, named as the CF conventions have them.
 
     Parameters
@@ -15,8 +15,8 @@ def cf_attrs(units, long_name):
     return {"units": units, "long_name": long_name}
 
 
-def printable(text, longest=None):
-    """Text of strangers on one line: control characters escaped, the middle left out if it is long.
+def printable(text: object, longest: int | None = None) -> str:
+    """Untrusted text on one line: control characters escaped, the middle left out if it is long.
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
 """Heights less their mean plane: what is left of a scan that was not mounted level."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
-def without_mean_plane(heights: np.ndarray) -> np.ndarray:
+def without_mean_plane(heights: ArrayLike) -> np.ndarray:
     """Heights less the least-squares plane through the cells that were measured.
 
     Parameters
@@ -17,17 +18,17 @@ def without_mean_plane(heights: np.ndarray) -> np.ndarray:
         All NaN where the measured cells do not span a plane: fewer than three, or in one line.
     """
     heights = np.asarray(heights, float)
-    known = np.isfinite(heights)
-    if known.all() and min(heights.shape) > 1:
+    measured = np.isfinite(heights)
+    if measured.all() and min(heights.shape) > 1:
         return without_mean_planes(heights)
-    if not known.any():
+    if not measured.any():
         return np.full(heights.shape, np.nan)
     y, x = np.indices(heights.shape, dtype=float)
-    y -= y[known].mean()
-    x -= x[known].mean()
-    mean = heights[known].mean()
+    y -= y[measured].mean()
+    x -= x[measured].mean()
+    mean = heights[measured].mean()
     # Sums, not a matrix product: the last bit must not depend on the number of cores.
-    dy, dx, dz = y[known], x[known], heights[known] - mean
+    dy, dx, dz = y[measured], x[measured], heights[measured] - mean
     yy, xx, xy = np.sum(dy * dy), np.sum(dx * dx), np.sum(dx * dy)
     determinant = yy * xx - xy**2
     if determinant <= 1e-12 * yy * xx or yy * xx == 0:
@@ -38,7 +39,7 @@ def without_mean_plane(heights: np.ndarray) -> np.ndarray:
     return heights - mean - slope_y * y - slope_x * x
 
 
-def without_mean_planes(heights):
+def without_mean_planes(heights: ArrayLike) -> np.ndarray:
     """Complete grids, each less its own mean plane: their rows are orthogonal to their columns.
 
     Parameters

@@ -6,6 +6,8 @@ the same configuration, scans, versions and machine give the same bytes.
 
 import json
 from importlib import metadata
+from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -19,7 +21,7 @@ _NUMBER_MAKERS = ("fractalcontact", "numpy", "scipy", "numba", "xarray")
 _VERSIONS = "made_with"
 
 
-def write(dataset, path):
+def write(dataset: xr.Dataset, path: Path | str) -> None:
     """Write a dataset as netCDF-4, compressed, whole or not at all, with the versions in use.
 
     Parameters
@@ -32,7 +34,7 @@ def write(dataset, path):
         marked.to_netcdf(temporary, engine="netcdf4", encoding=encoding(dataset))
 
 
-def read(path):
+def read(path: Path | str) -> xr.Dataset:
     """A dataset written by :func:`write`, in memory.
 
     How it was kept is forgotten: the length of its longest word would cut off those of others that
@@ -41,19 +43,19 @@ def read(path):
     return read_with_versions(path)[0]
 
 
-def read_with_versions(path):
+def read_with_versions(path: Path | str) -> tuple[xr.Dataset, dict[str, str]]:
     """A dataset written by :func:`write`, and the versions it was made with by library."""
     with xr.open_dataset(path, engine="netcdf4") as dataset:
         dataset = dataset.load().drop_encoding()
     return dataset, json.loads(dataset.attrs.pop(_VERSIONS, "{}"))
 
 
-def versions():
+def versions() -> dict[str, str]:
     """Versions of the libraries in use that can change a number, by name."""
     return {name: metadata.version(name) for name in _NUMBER_MAKERS}
 
 
-def encoding(dataset):
+def encoding(dataset: xr.Dataset) -> dict[Any, dict[str, Any]]:
     """How the variables of a dataset are kept: compressed, if they are numbers.
 
     Parameters

@@ -1,12 +1,14 @@
 """Ranges whose ends belong to them, but for rounding."""
 
+from typing import Any
+
 import numpy as np
 
 #: Relative: spacings, box sizes and loads are products, whose last digits are chance.
-ROUNDING = 1e-9
+RELATIVE_ROUNDING = 1e-9
 
 
-def within(values, low, high):
+def within(values: Any, low: float, high: float) -> Any:
     """Which of some positive values lie in a range, its ends included whatever their last digits.
 
     Parameters
@@ -21,4 +23,4 @@ def within(values, low, high):
         False where a value is NaN.
     """
     values = values if hasattr(values, "dims") else np.asarray(values)
-    return (values >= low * (1 - ROUNDING)) & (values <= high * (1 + ROUNDING))
+    return (values >= low * (1 - RELATIVE_ROUNDING)) & (values <= high * (1 + RELATIVE_ROUNDING))

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .fitting import fit_line
 from .intervals import jackknife_error
@@ -31,7 +32,7 @@ class Slope(NamedTuple):
     n: int
 
 
-NO_SLOPE = Slope(*[np.nan] * 5, 0)
+NO_SLOPE = Slope(**dict.fromkeys(Slope._fields[:5], np.nan), n=0)
 
 
 def wave_error(misfit: float, scales: np.ndarray) -> float:
@@ -52,9 +53,9 @@ def interval(value: float, others: list[float], error: float, wave: float) -> tu
     wave : float
         From :func:`wave_error`; added at both ends.
     """
-    known = np.array([value, *others])
-    known = known[np.isfinite(known)]
-    below, above = value - known.min(), known.max() - value
+    values = np.array([value, *others])
+    values = values[np.isfinite(values)]
+    below, above = value - values.min(), values.max() - value
     return value - np.hypot(error, below) - wave, value + np.hypot(error, above) + wave
 
 
@@ -65,8 +66,8 @@ def halves(n: int) -> tuple[slice, slice]:
 
 
 def slope_of_sums(
-    scales: np.ndarray,
-    parts: np.ndarray,
+    scales: ArrayLike,
+    parts: ArrayLike,
     statistic: Callable[[np.ndarray], np.ndarray],
     other: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Slope:
@@ -87,21 +88,21 @@ def slope_of_sums(
     Returns
     -------
     Slope
-        `NO_SLOPE` with less than `FEWEST_SCALES` scales.
+        `NO_SLOPE` with fewer than `FEWEST_SCALES` scales.
     """
     scales, parts = np.asarray(scales, float), np.asarray(parts, float)
     whole = parts.sum(axis=2)
     x, y = np.log(scales), _log(statistic(whole))
-    says = np.isfinite(y)
-    if says.sum() < FEWEST_SCALES:
+    positive = np.isfinite(y)
+    if positive.sum() < FEWEST_SCALES:
         return NO_SLOPE
-    x, y = x[says], y[says]
+    x, y = x[positive], y[positive]
     line = fit_line(x, y)
     others = [fit_line(x[part], y[part]).slope for part in halves(x.size)]
     if other is not None:
-        others.append(fit_line(x, _log(other(whole))[says]).slope)
-    filled = np.flatnonzero(parts[says].any(axis=(0, 1)))
-    left = [fit_line(x, _log(statistic(whole - parts[:, :, i]))[says]).slope for i in filled]
+        others.append(fit_line(x, _log(other(whole))[positive]).slope)
+    filled = np.flatnonzero(parts[positive].any(axis=(0, 1)))
+    left = [fit_line(x, _log(statistic(whole - parts[:, :, i]))[positive]).slope for i in filled]
     misfit = float(np.std(y - line.intercept - line.slope * x))
     low, high = interval(line.slope, others, jackknife_error(left), wave_error(misfit, np.exp(x)))
     return Slope(

@@ -10,6 +10,7 @@ import hashlib
 import os
 import re
 import sys
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -22,6 +23,8 @@ _STATEMENT = re.compile(
 _COMMENT = re.compile(rb"#[^\n]*")
 #: Line of a table in an `__init__` that imports names when they are first asked for.
 _LAZY = re.compile(rb'"(\w+)": "\.([\w.]+)"')
+#: Call that imports every module of a package, see :func:`core.modules.modules_of`.
+_ALL_OF = re.compile(rb"\bmodules_of\((\w+)\)")
 
 _OWN = __name__.partition(".")[0]
 #: Distributions that are not called what one imports.
@@ -30,7 +33,7 @@ _DISTRIBUTIONS = {"mpl_toolkits": "matplotlib", "yaml": "PyYAML"}
 _BROUGHT = {"numba": "llvmlite"}
 
 
-def source_files(paths, *, package):
+def source_files(paths: Iterable[Path | str], *, package: Path | str) -> list[Path]:
     """Files of source code, and all that they import, near or far, from a package or beside them.
 
     Parameters
@@ -43,21 +46,22 @@ def source_files(paths, *, package):
     -------
     list of pathlib.Path
         Absolute, sorted, each once. Imports inside functions count, and the ``__init__.py`` of
-        every package on the way. A module whose name is put together at run time is not seen.
+        every package on the way, and every module of a package given to `core.modules.modules_of`.
+        Other modules whose names are put together at run time are not seen.
     """
-    package, tree = os.path.abspath(package), _Tree()
+    package_folder, tree = os.path.abspath(package), _Tree()
     queue = [os.path.abspath(path) for path in paths]
-    seen = set()
+    seen: set[str] = set()
     while queue:
         path = queue.pop()
         if path not in seen:
             seen.add(path)
             queue += tree.passed_through(path)
-            queue += _followed(path, package, tree)
+            queue += _followed(path, package_folder, tree)
     return sorted(map(Path, seen))
 
 
-def libraries(paths):
+def libraries(paths: Iterable[Path | str]) -> list[str]:
     """Names of the top-level modules that files import from other projects.
 
     Parameters
@@ -69,7 +73,8 @@ def libraries(paths):
     list of str
         Sorted, without the standard library, this package and files beside the importing script.
     """
-    found, tree = set(), _Tree()
+    found: set[str] = set()
+    tree = _Tree()
     for path in map(os.path.abspath, paths):
         for module, _ in _imports(_read(path)):
             name = module.partition(".")[0]
@@ -78,7 +83,12 @@ def libraries(paths):
     return sorted(found - sys.stdlib_module_names - {_OWN})
 
 
-def digest(paths, *, root, versions=()):
+def digest(
+    paths: Iterable[Path | str],
+    *,
+    root: Path | str,
+    versions: Mapping[str, str] | None = None,
+) -> str:
     """Sixteen digits that change with the content or the name of any of these files.
 
     Parameters
@@ -99,21 +109,21 @@ def digest(paths, *, root, versions=()):
     ValueError
         If a file is not below ``root``.
     """
-    root = os.path.join(os.path.abspath(root), "")
+    top = os.path.join(os.path.abspath(root), "")
     named = {}
     for path in map(os.path.abspath, paths):
-        if not path.startswith(root):
-            raise ValueError(f"{path}: not below {root}; give a root that holds all files")
-        named[path.removeprefix(root)] = path
+        if not path.startswith(top):
+            raise ValueError(f"{path}: not below {top}; give a root that holds all files")
+        named[path.removeprefix(top)] = path
     total = hashlib.sha256()
     for name in sorted(named):
         total.update(f"{name} {hashlib.sha256(_read(named[name])).hexdigest()}\n".encode())
-    for name, version in sorted(dict(versions).items()):
+    for name, version in sorted((versions or {}).items()):
         total.update(f"{name}=={version}\n".encode())
     return total.hexdigest()[:16]
 
 
-def versions_of(names):
+def versions_of(names: Iterable[str]) -> dict[str, str]:
     """Installed versions of libraries.
 
     Parameters
@@ -144,24 +154,30 @@ def _version(name):
 class _Tree:
     """Which modules there are, as of now: every folder is looked into once."""
 
-    def __init__(self):
-        self._names = {}
+    def __init__(self) -> None:
+        self._names: dict[str, set[str]] = {}
 
     def _has(self, folder, name):
         if folder not in self._names:
             self._names[folder] = set(os.listdir(folder)) if os.path.isdir(folder) else set()
         return name in self._names[folder]
 
-    def is_package(self, folder):
+    def is_package(self, folder: str) -> bool:
         return self._has(folder, "__init__.py")
 
-    def module(self, folder, name):
+    def module(self, folder: str, name: str) -> str | None:
         """The file of a module in a folder, or None."""
         if self._has(folder, name) and self.is_package(inner := f"{folder}/{name}"):
             return f"{inner}/__init__.py"
         return f"{folder}/{name}.py" if self._has(folder, f"{name}.py") else None
 
-    def passed_through(self, path):
+    def modules(self, folder: str) -> list[str]:
+        """The files of all modules in a folder."""
+        self._has(folder, "")
+        names = (name.removesuffix(".py") for name in sorted(self._names[folder]))
+        return [file for name in names if (file := self.module(folder, name)) is not None]
+
+    def passed_through(self, path: str) -> list[str]:
         """The `__init__.py` of every package that a file is in."""
         found, folder = [], os.path.dirname(path)
         while self.is_package(folder):
@@ -173,7 +189,9 @@ class _Tree:
 def _followed(path, package, tree):
     """The files that one file imports."""
     found = []
-    for module, names in _imports(_read(path)):
+    content = _read(path)
+    whole = {name.decode() for name in _ALL_OF.findall(content)}
+    for module, names in _imports(content):
         inner = module.lstrip(".")
         level, parts = len(module) - len(inner), inner.split(".") if inner else []
         if level:
@@ -193,6 +211,8 @@ def _followed(path, package, tree):
         if not parts or file == f"{folder}/__init__.py":
             names = _names(_COMMENT.sub(b"", names).strip(b"() \n"))
             found += [tree.module(folder, name) or _lazily(folder, name, tree) for name in names]
+            for name in whole.intersection(names):
+                found += tree.modules(f"{folder}/{name}")
     return [file for file in found if file is not None]
 
 

@@ -5,12 +5,14 @@ ever waits for one: two threads may make the same thing at once, and all go on w
 """
 
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 from numba.core.compiler_lock import global_compiler_lock
 
 
-def count():
+def count() -> int:
     """Threads to use: OMP_NUM_THREADS where it is set, else every core this process may use."""
     stated = os.environ.get("OMP_NUM_THREADS", "")
     if stated.isdigit() and int(stated) > 0:
@@ -19,7 +21,7 @@ def count():
 
 
 # By the number of their threads.
-_POOLS = {}
+_POOLS: dict[int, ThreadPoolExecutor] = {}
 # A fork has the pools of its parent, but none of their threads: it would wait for ever.
 os.register_at_fork(after_in_child=_POOLS.clear)
 # Kernels are compiled, and read from disk, under one lock: a fork waits until no thread has it.
@@ -34,7 +36,7 @@ def _pool(workers):
     return _POOLS.get(workers) or _POOLS.setdefault(workers, ThreadPoolExecutor(workers))
 
 
-def in_parts(function, n, *, smallest):
+def in_parts(function: Callable[[int, int], object], n: int, *, smallest: int) -> None:
     """Call ``function(start, stop)`` for parts of range(n), side by side.
 
     Parameters
@@ -67,7 +69,7 @@ class computed_once:
         Takes the object; the same for equal objects, as several threads may call it at once.
     """
 
-    def __init__(self, make):
+    def __init__(self, make: Callable[[Any], Any]):
         self._make, self.__doc__ = make, make.__doc__
 
     def __set_name__(self, owner, name):

@@ -1,5 +1,7 @@
 """The tolerance of the solver that follows from the accuracy a study asks for."""
 
+from collections.abc import Mapping
+
 #: The solver's share of the errors asked for. At a tolerance of 1e-3 closures of 250 states of
 #: three twins were off by at most 7e-5 and Delta_sigma by 0.0017, at 1e-2 by 5e-4 (4 % where the
 #: pressure is capped) and 0.006. So 1e-3 leaves a factor of ten and more to 1 % and 0.02.
@@ -9,7 +11,7 @@ SHARE_OF_DIMENSION = 0.05
 LOOSEST = 1e-2
 
 
-def tolerance(accuracy):
+def tolerance(accuracy: Mapping[str, float]) -> float:
     """Tolerance of the solver that an accuracy asks for.
 
     Parameters

@@ -3,6 +3,7 @@
 import math
 import re
 from functools import cache
+from typing import Any
 
 import pint
 
@@ -32,7 +33,7 @@ def _registry() -> pint.UnitRegistry:
     return pint.UnitRegistry(cache_folder=None)
 
 
-def quantity(text, kind: str, where: str) -> float:
+def quantity(text: Any, kind: str, where: str) -> float:
     """Read one quantity with its unit.
 
     Parameters
@@ -83,7 +84,7 @@ def _article(noun):
     return "an" if noun[0] in "aeiou" else "a"
 
 
-def load(text, where: str) -> tuple[float, str]:
+def load(text: Any, where: str) -> tuple[float, str]:
     """Read a load given as a force or as a nominal pressure.
 
     Returns
@@ -110,7 +111,7 @@ def load(text, where: str) -> tuple[float, str]:
     )
 
 
-def share(value, where: str) -> float:
+def share(value: Any, where: str) -> float:
     """A share between 0 and 1, as a number or in per cent: 0.01 or "1 %".
 
     Raises

@@ -4,8 +4,11 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
+from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
-from .box_dimension import box_dimension, box_sizes, no_dimension
+from ..core.ranges import within
+from .box_counts import box_sizes
+from .box_dimension import contact_dimension
 from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .renormalisation import compare_dimensions, renormalisation
 
@@ -14,19 +17,40 @@ DOMAIN_FIELDS = {
     "delta_sigma": ("1", "box-counting dimension Delta_sigma of the contact domain"),
     "delta_sigma_low": ("1", "Delta_sigma, lower end of the 95 % interval"),
     "delta_sigma_high": ("1", "Delta_sigma, upper end of the 95 % interval"),
-    "delta_sigma_error": ("1", "Delta_sigma, error by the solver"),
+    "delta_sigma_error": ("1", "Delta_sigma, solver error bound"),
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
     "fit_n": ("1", "box sizes fitted"),
     **CLUSTER_FIELDS,
 }
 
-#: Why the contact domain of one node has no dimension.
-ONE_NODE = "one node is in contact, and what touches within its cell is not known"
 NOT_NEEDED = "not solved, since nothing shown needs it"
 
+#: Dimensions of the table of contact domains.
+_ORDER = ("direction", "offset", "resolution", "load")
 
-def analyse_domains(fields, spacing, *, fit_range=None, whole_cells=None):
+#: The table: dimensions, unit and long name.
+_TABLE = {
+    **{name: (_ORDER, *words) for name, words in DOMAIN_FIELDS.items()},
+    "cluster_octaves": (
+        (*_ORDER, "octave"),
+        "1",
+        "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k",
+    ),
+    "reason": (_ORDER, "1", "why there is no dimension"),
+    "box_count": ((*_ORDER, "scale"), "1", "occupied boxes N(r), minimal cover over grid origins"),
+    "box_used": ((*_ORDER, "scale"), "1", "box size used in the fit"),
+    "box_side": (("resolution", "scale"), "mm", "side of the boxes r"),
+}
+
+
+def analyse_domains(
+    fields: xr.Dataset,
+    spacing: float,
+    *,
+    fit_range: tuple[float, float] | None = None,
+    whole_cells: bool | None = None,
+) -> xr.Dataset:
     """Box counts, Delta_sigma and clusters of every contact domain.
 
     Parameters
@@ -38,7 +62,7 @@ def analyse_domains(fields, spacing, *, fit_range=None, whole_cells=None):
     spacing : float
         Of the scan, mm; a domain at resolution k has k times this.
     fit_range : (float, float), optional
-        Smallest and largest box of the fits, mm; by default all that say something.
+        Smallest and largest box of the fits, mm; by default all between the cut-offs.
     whole_cells : bool, optional
         What is known of the nodes, see :func:`domain.box_dimension.box_dimension`.
 
@@ -51,107 +75,95 @@ def analyse_domains(fields, spacing, *, fit_range=None, whole_cells=None):
 
     Notes
     -----
-    A contact domain of one node has no dimension here. To box counting it is a point, of dimension
-    0 without error; but the node stands for contact somewhere in a cell, and whether that is a
-    point, a line or the whole cell no count at this spacing can tell.
-
-    The error of Delta_sigma is the share of the nodes whose contact is undecided: in 95 to 98 % of
-    250 states of three twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
+    The dimension is that of :func:`domain.box_dimension.contact_dimension`. Its solver error bound
+    is the fraction of the nodes whose contact is ambiguous: in 95 to 98 % of 250 states of three
+    twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
     """
-    names = [name for name in fields.data_vars if name.startswith("in_contact_")]
-    factors = sorted(int(name.removeprefix("in_contact_")) for name in names)
+    names = [name for name in fields.data_vars if str(name).startswith("in_contact_")]
+    factors = sorted(int(str(name).removeprefix("in_contact_")) for name in names)
     domains = {k: fields[f"in_contact_{k}"].values for k in factors}
     sizes = {k: box_sizes(domains[k].shape[-2:]) for k in factors}
-    n_scales = max(len(s) for s in sizes.values())
-    n_direction, n_offset, n_load = domains[factors[0]].shape[:3]
-    order = ("direction", "offset", "resolution", "load")
+    n_direction, n_offset, n_load, *window = domains[factors[0]].shape
     shape = (n_direction, n_offset, len(factors), n_load)
-    if "solved" in fields:
-        solved = fields["solved"].transpose(*order).values
-        undecided = fields["nodes_error"].transpose(*order).values
-    else:
-        solved, undecided = np.ones(shape, bool), np.full(shape, np.nan)
-    table = {name: np.full(shape, np.nan) for name in DOMAIN_FIELDS}
     # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
-    n_octaves = int(domains[factors[0]][0, 0, 0].size).bit_length()
-    octaves = np.full((*shape, n_octaves), np.nan)
-    reason = np.full(shape, "", object)
-    count = np.full((*shape, n_scales), np.nan)
-    used = np.zeros(count.shape, bool)
-    for d, o, k, j in np.ndindex(shape):
-        if not solved[d, o, k, j]:
-            reason[d, o, k, j] = NOT_NEEDED
+    n_octaves = int(np.prod(window)).bit_length()
+    solved, ambiguous = _solver_state(fields, shape)
+    table = _empty_table(shape, max(len(s) for s in sizes.values()), n_octaves)
+    for place in np.ndindex(shape):
+        direction, offset, k, load = place
+        if not solved[place]:
+            table["reason"][place] = NOT_NEEDED
             continue
         factor = factors[k]
-        domain = domains[factor][d, o, j]
-        box = box_dimension(
-            domain,
+        row = _row(
+            domains[factor][direction, offset, load],
             factor * spacing,
+            ambiguous[place],
             fit_range=fit_range,
             sizes=sizes[factor],
             whole_cells=whole_cells,
         )
-        if domain.sum() == 1:
-            box = no_dimension(box.r, box.count, ONE_NODE)
-        found = cluster_statistics(domain, factor * spacing)
-        row = {
-            "delta_sigma": box.dimension,
-            "delta_sigma_low": box.low,
-            "delta_sigma_high": box.high,
-            "delta_sigma_error": np.nan
-            if np.isnan(box.dimension)
-            else undecided[d, o, k, j] / domain.sum(),
-            "fit_min": box.r_min,
-            "fit_max": box.r_max,
-            "fit_n": box.n,
-            **{name: found[name] for name in CLUSTER_FIELDS},
-        }
+        table["cluster_octaves"][place] = 0
         for name, value in row.items():
-            table[name][d, o, k, j] = value
-        sizes_found = found["cluster_octaves"]
-        octaves[d, o, k, j] = 0
-        octaves[d, o, k, j, : len(sizes_found)] = sizes_found
-        reason[d, o, k, j] = box.reason
-        count[d, o, k, j, : len(box.count)] = box.count
-        used[d, o, k, j, : len(box.used)] = box.used
-    return xr.Dataset(
-        {
-            **{
-                name: (order, values, cf_attrs(*DOMAIN_FIELDS[name]))
-                for name, values in table.items()
-            },
-            "cluster_octaves": (
-                (*order, "octave"),
-                octaves,
-                cf_attrs("1", "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k"),
-            ),
-            "reason": (order, reason.astype(str), cf_attrs("1", "why there is no dimension")),
-            "box_count": (
-                (*order, "scale"),
-                count,
-                cf_attrs("1", "boxes that meet the domain, N(r)"),
-            ),
-            "box_used": ((*order, "scale"), used, cf_attrs("1", "box size used in the fit")),
-            "box_side": (
-                ("resolution", "scale"),
-                padded([sizes[k] * k * spacing for k in factors]),
-                cf_attrs("mm", "side of the boxes r"),
-            ),
-        },
-        coords={
-            **{name: fields[name] for name in ("direction", "offset", "load")},
-            "resolution": (
-                "resolution",
-                factors,
-                cf_attrs("1", "multiple k of the scan's spacing"),
-            ),
-            "octave": ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes")),
-        },
-    )
+            if np.ndim(value):
+                table[name][place][: len(value)] = value
+            else:
+                table[name][place] = value
+    table["reason"] = table["reason"].astype(str)
+    table["box_side"] = padded([sizes[k] * k * spacing for k in factors])
+    multiples = ("resolution", factors, cf_attrs("1", "multiple k of the scan's spacing"))
+    octaves = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
+    coords = {name: fields[name] for name in ("direction", "offset", "load")}
+    coords |= {"resolution": multiples, "octave": octaves}
+    return labelled_dataset(_TABLE, table, coords=coords)
 
 
-def scaling_over_resolutions(curves, domains, spacing, *, fit_range=None):
-    """What changes with the resolution: Delta_sigma from A_r(s) beside that of the box counts.
+def _solver_state(fields, shape):
+    """Whether each domain was solved, and its ambiguous nodes; NaN of what was measured."""
+    if "solved" not in fields:
+        return np.ones(shape, bool), np.full(shape, np.nan)
+    return tuple(fields[name].transpose(*_ORDER).values for name in ("solved", "nodes_error"))
+
+
+def _empty_table(shape, n_scales, n_octaves) -> dict[str, np.ndarray]:
+    """Values of :data:`_TABLE` before any domain is measured, but the sides of the boxes."""
+    return {
+        **{name: np.full(shape, np.nan) for name in DOMAIN_FIELDS},
+        "cluster_octaves": np.full((*shape, n_octaves), np.nan),
+        "reason": np.full(shape, "", object),
+        "box_count": np.full((*shape, n_scales), np.nan),
+        "box_used": np.zeros((*shape, n_scales), bool),
+    }
+
+
+def _row(domain, spacing, ambiguous, **how) -> dict:
+    """What the table holds of one domain; ``how`` its dimension is to be found."""
+    box = contact_dimension(domain, spacing, **how)
+    clusters = cluster_statistics(domain, spacing)
+    has_dimension = not np.isnan(box.dimension)
+    return {
+        "delta_sigma": box.dimension,
+        "delta_sigma_low": box.low,
+        "delta_sigma_high": box.high,
+        "delta_sigma_error": ambiguous / domain.sum() if has_dimension else np.nan,
+        "fit_min": box.r_min,
+        "fit_max": box.r_max,
+        "fit_n": box.n,
+        **clusters,
+        "reason": box.reason,
+        "box_count": box.count,
+        "box_used": box.used,
+    }
+
+
+def scaling_over_resolutions(
+    curves: xr.Dataset,
+    domains: xr.Dataset,
+    spacing: float,
+    *,
+    fit_range: tuple[float, float] | None = None,
+) -> xr.Dataset:
+    """Renormalisation over resolutions: Delta_sigma from A_r(s) beside that of the box counts.
 
     Parameters
     ----------
@@ -174,8 +186,7 @@ def scaling_over_resolutions(curves, domains, spacing, *, fit_range=None):
     s = (curves["resolution"] * spacing).assign_attrs(cf_attrs("mm", "spacing s"))
     area = curves["area"]
     if fit_range is not None:
-        tolerance = 1e-9 * spacing
-        area = area.where((s >= fit_range[0] - tolerance) & (s <= fit_range[1] + tolerance))
+        area = area.where(within(s, *fit_range))
     result = renormalisation(s, area, curves["load"])
     finest = domains.sel(resolution=domains["resolution"].min())
     both = compare_dimensions(

@@ -1,4 +1,4 @@
-"""Boxes that meet a contact domain: the fewest over origins of the grid, and the mean of all."""
+"""Box counts of a contact domain: minimal cover over grid origins, and mean over grid origins."""
 
 import numpy as np
 
@@ -66,13 +66,29 @@ def boxes_along(n: int, sizes: np.ndarray) -> np.ndarray:
 
 def whole_sizes(largest: float) -> np.ndarray:
     """Whole box sides from 1 to a largest, `SIZES_PER_OCTAVE` in each doubling where there are."""
-    octaves = np.log2(max(largest, 1))
+    return np.unique(np.round(geometric_sizes(1, largest)).astype(np.int64))
+
+
+def geometric_sizes(smallest: float, largest: float) -> np.ndarray:
+    """Lengths from a smallest to a largest, `SIZES_PER_OCTAVE` in each doubling.
+
+    Parameters
+    ----------
+    smallest, largest : float
+        Positive, in one unit.
+
+    Returns
+    -------
+    (k,) float64
+        The smallest alone if the largest is no longer.
+    """
+    octaves = np.log2(max(largest / smallest, 1))
     steps = np.arange(int(SIZES_PER_OCTAVE * octaves + 1e-9) + 1)
-    return np.unique(np.round(2 ** (steps / SIZES_PER_OCTAVE)).astype(np.int64))
+    return smallest * 2 ** (steps / SIZES_PER_OCTAVE)
 
 
 def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) -> np.ndarray:
-    """Fewest boxes of each size that meet a domain, over origins of the grid of boxes.
+    """Minimal cover: fewest boxes of each size that meet a domain, over grid origins.
 
     Parameters
     ----------
@@ -96,7 +112,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     sizes = _checked_sizes(sizes)
     max_shifts = whole_number(max_shifts, "max_shifts", least=1, most=_MOST_CELLS)
     nodes = nodes_below(domain)
-    return np.array([_fewest_boxes(nodes, size, max_shifts) for size in sizes], dtype=np.int64)
+    return np.array([_minimal_cover(nodes, size, max_shifts) for size in sizes], dtype=np.int64)
 
 
 def nodes_below(domain: np.ndarray) -> np.ndarray:
@@ -168,7 +184,7 @@ def _edges(n, size, max_shifts):
 
 
 @njit(cache=True)
-def _fewest_boxes(nodes, size, max_shifts):
+def _minimal_cover(nodes, size, max_shifts):
     """N(r) over all pairs of origins along y and x."""
     edges_y = _edges(nodes.shape[0] - 1, size, max_shifts)
     edges_x = _edges(nodes.shape[1] - 1, size, max_shifts)
@@ -189,7 +205,7 @@ def _fewest_boxes(nodes, size, max_shifts):
 
 
 def mean_count(domain: np.ndarray, sizes: np.ndarray, *, blocks: int = 1) -> np.ndarray:
-    """Mean number of boxes that meet a domain, over all origins of the grid of boxes.
+    """Mean number of boxes of each size that meet a domain, over all grid origins.
 
     The places where a gliding box meets the domain, divided by its area: nothing depends on where
     a grid happens to lie. The domain ends where it ends, and boxes hang over that by up to their

@@ -1,24 +1,33 @@
-"""The dimension Delta_sigma of a contact domain, from its box counts."""
+"""Box-counting dimension Delta_sigma of a contact domain.
+
+The whole rule is here: the cut-offs of the box sizes, the three estimators and their interval. The
+counts themselves are those of :mod:`domain.box_counts`.
+"""
 
 import itertools
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
 from ..core.intervals import jackknife_error
+from ..core.ranges import within
 from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, interval, wave_error
 from .box_counts import RATIOS, box_count, box_sizes, boxes_along, mean_count, whole_sizes
-from .count_law import SMALLEST, SMALLEST_TOLD, Law, best_law, law_dimension
+from .count_law import SMALLEST, SMALLEST_SEPARATING, Law, best_law, law_dimension
 
-#: Scales with all but this share of the nodes alone, or of the boxes occupied, are saturated.
+#: Box sizes with all but this fraction of the nodes alone, or of the boxes occupied, are saturated.
 SATURATED = 0.02
 
-#: Largest box of the law of mean counts, as a share of the domain's extent.
+#: Largest box of the law of mean counts, as a fraction of the domain's extent.
 LARGEST_BOX = 1 / 3
 
 #: No set in the plane has another dimension, whatever a regression says.
 DIMENSIONS = (0.0, 2.0)
+
+#: Why the contact domain of one node has no dimension.
+ONE_NODE = "one node is in contact, and what touches within its cell is not known"
 
 
 @dataclass(frozen=True)
@@ -56,9 +65,9 @@ def box_dimension(
     spacing : float
         In mm.
     fit_range : (float, float), optional
-        Smallest and largest box side of the fit, mm; by default all that say something.
+        Smallest and largest box side of the fit, mm; by default all between the cut-offs.
     sizes : (k,) array_like, optional
-        Box sides in cells, ascending, of the fewest counts; by default `box_sizes` of the domain's
+        Box sides in cells, ascending, of the minimal cover; by default `box_sizes` of the domain's
         own extent. Give them where several domains are to share one axis.
     whole_cells : bool, optional
         Whether every cell is marked that holds some point of the set, as in a drawing, or those
@@ -68,50 +77,52 @@ def box_dimension(
     Returns
     -------
     BoxDimension
-        `dimension`, `low`, `high`; `r_min`, `r_max` of the fit in mm and its `n` scales; `r` (mm),
-        `count` (the fewest boxes) and `used` of all sizes; `reason` why there is no dimension
-        (NaN), else ""; `estimator`, "exact", "mean" or "fewest" (for "mean", `n` are the scales of
-        the law and `used` the fewest counts within its range); `misfit`, the root mean square of
-        the counts about the law, as a share of them.
+        `dimension`, `low`, `high`; `r_min`, `r_max` of the fit in mm and its `n` sizes; `r` (mm),
+        `count` (of the minimal cover) and `used` of all sizes; `reason` why there is no dimension
+        (NaN), else ""; `estimator`, "exact", "mean" or "cover" (for "mean", `n` are the sizes of
+        the law and `used` those of the minimal cover within its range); `misfit`, the root mean
+        square of the counts about the law, as a fraction of them.
 
     Notes
     -----
-    A scale says nothing where all but `SATURATED` of the nodes are alone in their box, or of the
-    boxes of the window occupied; such scales are left out, unless as much of the window touches
-    (then that is what all scales say: dimension 2) or a single node does (0). Fewer than
-    `FEWEST_SCALES` scales left, or different counts among them, are no dimension: a line through a
-    staircase of two or three treads tells where their edges happen to be, and through a single
-    tread it would claim 0 without error.
+    A box size lies beyond a cut-off where all but `SATURATED` of the nodes are alone in their box,
+    or of the boxes of the window occupied. Such sizes are left out, unless as much of the window
+    touches (then all sizes give dimension 2) or a single node does (0). Fewer than `FEWEST_SCALES`
+    sizes left, or different counts among them, are no dimension: a line through a staircase of two
+    or three treads shows where their edges happen to be, and through a single tread it would claim
+    0 without error.
 
     Three estimators, the first that can be had:
 
-    - "exact": the fewest boxes where they lie on a line but for rounding, at all sizes or at the
-      extent / ratio^k with one of `RATIOS`: squares, lines and sets that repeat themselves.
-    - "mean": the law of :mod:`domain.count_law` fitted to the mean counts over all origins,
+    - "exact": the minimal cover over grid origins where its counts lie on a line but for rounding,
+      at all sizes or at the extent / ratio^k with one of `RATIOS`: squares, lines and self-similar
+      sets.
+    - "mean": the law of :mod:`domain.count_law` fitted to the mean counts over grid origins,
       from the resolution to `LARGEST_BOX` of the extent. All rough contact domains.
-    - "fewest": the line through the fewest boxes, where the domain is too small for the law.
+    - "cover": the line through the minimal cover, where the domain is too small for the law.
 
     The interval spans: the t-interval of the value by the jackknife, `BLOCKS` x `BLOCKS` parts of
     the domain or strips of `BLOCKS` parts left out one by one, whichever is wider; the law on the
-    lower and the upper half of the scales, and by how much these differ; the other laws that fit
-    almost as well; and the slope of the fewest boxes. The scales are counts of one set and no
+    lower and the upper half of the sizes, and by how much these differ; the other laws that fit
+    almost as well; and the slope of the minimal cover. The counts belong to one set and are no
     independent points: the error of a regression alone is far too small. An exact value has the
     slopes of every run of sizes over half of the range or more instead.
 
     Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean. Sets marked
-    by whole cells read up to 0.1 high where their waves hide that, inside the interval: say
-    `whole_cells`. Levy dusts marked so and said to be read high, where chance bends what is no
+    by whole cells read up to 0.1 high where their waves hide that, inside the interval: state
+    `whole_cells`. Levy dusts marked and stated so read high, where chance bends what is no
     outline like one (indices of 1.2 and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04
     in windows of 512, by 0.02, 0.015 and 0.015 in windows of 2048; means of 120 to 400, known
     within 0.007.
 
     What one window cannot show is whether it was struck by chance more densely than others: where
-    parts fall on the same boxes, as those of flights or trails, the counts of scale r differ by a
-    random share of (r / L)^(2 - D), which is alike in all parts and nearly a power law. Such sets
-    of 1.5 are in 93 % of intervals; of 1.7, or trails that have not filled their window, in fewer.
+    parts fall on the same boxes, as those of flights or trails, the counts of size r differ by a
+    random fraction of (r / L)^(2 - D), which is alike in all parts and nearly a power law. Such
+    sets of 1.5 are in 93 % of intervals; of 1.7, or trails that have not filled their window, in
+    fewer.
 
     Figures apart, as two squares: once boxes are larger than a figure or than the gap, what is
-    counted is no outline any more. With more of it than `power_law.MOST_OUTLINE` allows they read
+    counted is no outline any more. With more of it than `count_law.MOST_OUTLINE` allows they read
     1.3 to 1.9, as a strip of 5 x 1 does, and their intervals reach 2 or nearly. Without that limit
     they are exact, but cascades of 1.2 read 0.12 high. So with a set that is cut off so that copies
     of several sizes are left: a dust of 650 of its 729 cells reads 0.09 low, inside its interval.
@@ -121,86 +132,110 @@ def box_dimension(
     # A single node has no extent to divide: it is seen at the scales of the window.
     shape = extent.shape if extent.size > 1 else domain.shape
     sizes = box_sizes(shape, min(domain.shape)) if sizes is None else np.asarray(sizes, dtype=float)
+    limits = (0, np.inf) if fit_range is None else np.asarray(fit_range) / spacing
     count = box_count(extent, sizes)
     r = sizes * float(spacing)
     nodes = int(extent.sum())
-    if nodes == 0:
-        return no_dimension(r, count, "no node is in contact")
+    used, reason = _between_cut_offs(domain, nodes, sizes, count, limits)
+    if reason:
+        return no_dimension(r, count, reason)
+    cover = _Cover(sizes, r, count, used)
+    ladder = _best_scales(cover, {max(extent.shape), max(domain.shape)})
+    if nodes in (1, domain.size) or _is_exact(cover, ladder):
+        return _of_cover(cover, ladder, "exact")
+    law = _law_of_means(extent, limits, -_line(sizes, count, used).slope, whole_cells)
+    return _of_cover(cover, ladder, "cover") if law is None else _of_law(cover, law, spacing)
 
-    boxes = np.prod([boxes_along(n, sizes) for n in domain.shape], axis=0)
-    alone, full = _saturated(count, sizes, nodes, boxes)
-    if nodes == 1 or nodes >= (1 - SATURATED) * domain.size:
-        alone[:] = full[:] = False
-        used = np.ones(sizes.size, dtype=bool)
-    else:
+
+def contact_dimension(
+    domain: np.ndarray,
+    spacing: float,
+    *,
+    fit_range: tuple[float, float] | None = None,
+    sizes: np.ndarray | None = None,
+    whole_cells: bool | None = None,
+) -> BoxDimension:
+    """Box-counting dimension of a contact domain whose nodes stand for cells.
+
+    Parameters and errors as :func:`box_dimension`, but a domain of one node has no dimension. To
+    box counting it is a point, of dimension 0 without error; the node, though, stands for contact
+    somewhere in a cell, and whether that is a point, a line or the whole cell no count at this
+    spacing can show.
+    """
+    box = box_dimension(domain, spacing, fit_range=fit_range, sizes=sizes, whole_cells=whole_cells)
+    return no_dimension(box.r, box.count, ONE_NODE) if np.sum(domain) == 1 else box
+
+
+class _Cover(NamedTuple):
+    """Boxes of the minimal cover at each size."""
+
+    sizes: np.ndarray
+    """(k,), cells."""
+    r: np.ndarray
+    """(k,), mm."""
+    count: np.ndarray
+    """(k,)"""
+    used: np.ndarray
+    """(k,) bool: between the cut-offs, and within the range asked for."""
+
+
+def _between_cut_offs(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, str]:
+    """Sizes at which the counts are not saturated, and why these are too few, or ""."""
+    used = np.ones(sizes.size, dtype=bool)
+    if nodes == 0:
+        return used, "no node is in contact"
+    alone, full = np.zeros((2, sizes.size), dtype=bool)
+    if 1 < nodes < (1 - SATURATED) * domain.size:
+        boxes = np.prod([boxes_along(n, sizes) for n in domain.shape], axis=0)
+        alone, full = _saturated(count, sizes, nodes, boxes)
         used = ~alone & ~full & (count > 1)
-    limits = (0, np.inf) if fit_range is None else np.asarray(fit_range) / spacing
-    used &= (sizes >= limits[0] - 1e-9) & (sizes <= limits[1] + 1e-9)
+    used &= within(sizes, *limits)
     if used.sum() < FEWEST_SCALES:
-        return no_dimension(
-            r,
-            count,
+        return used, (
             f"{used.sum()} of {sizes.size} scales say something, {FEWEST_SCALES} are needed "
-            f"({alone.sum()} with every node alone, {full.sum()} with every box occupied)",
+            f"({alone.sum()} with every node alone, {full.sum()} with every box occupied)"
         )
     distinct = np.unique(count[used]).size
     if nodes > 1 and distinct < FEWEST_SCALES:
-        return no_dimension(
-            r,
-            count,
-            f"{nodes} nodes give {distinct} different counts, {FEWEST_SCALES} are needed",
-        )
-
-    ladder = _best_scales(sizes, {max(extent.shape), max(domain.shape)}, count, used)
-    exact = nodes == 1 or nodes == domain.size or _is_exact(sizes, count, ladder)
-    law = (
-        None
-        if exact
-        else _law_of_means(extent, limits, -_line(sizes, count, used).slope, whole_cells)
-    )
-    if law is not None:
-        value, ends, scales, misfit = law
-        low, high = np.clip(ends, *DIMENSIONS)
-        inside = (sizes >= scales[0] - 1e-9) & (sizes <= scales[-1] + 1e-9)
-        return BoxDimension(
-            dimension=value,
-            low=float(low),
-            high=float(high),
-            r_min=float(scales[0] * spacing),
-            r_max=float(scales[-1] * spacing),
-            n=scales.size,
-            r=r,
-            count=count,
-            used=used & inside,
-            reason="",
-            estimator="mean",
-            misfit=misfit,
-        )
-    return _from_fewest(r, count, used, ladder, "exact" if exact else "fewest")
+        return used, f"{nodes} nodes give {distinct} different counts, {FEWEST_SCALES} are needed"
+    return used, ""
 
 
 def _saturated(count, sizes, nodes, boxes):
-    """Scales at which nearly every node is alone in its box, and nearly every box occupied."""
+    """Sizes at which nearly every node is alone in its box, and nearly every box occupied."""
     alone = (count >= (1 - SATURATED) * nodes) & (sizes > 1)
     alone |= (sizes == 1) & alone.any()
     return alone, count >= (1 - SATURATED) * boxes
 
 
-def _law_of_means(extent, limits, fewest, whole_cells):
-    """Dimension, ends of its interval, scales and misfit of the mean counts' law; None if few."""
+# -- by the law of the mean counts -----------------------------------------------------------------
+
+
+class _FittedLaw(NamedTuple):
+    """The law of the mean counts with the ends of its interval and the sizes it was fitted to."""
+
+    dimension: float
+    ends: tuple[float, float]
+    sizes: np.ndarray
+    """(k,), cells."""
+    misfit: float
+
+
+def _law_of_means(extent, limits, of_cover, whole_cells) -> _FittedLaw | None:
+    """The law fitted to the mean counts; None with too few box sizes between the cut-offs."""
     side = max(extent.shape)
     sizes = whole_sizes(LARGEST_BOX * side)
-    sizes = sizes[(sizes >= limits[0] - 1e-9) & (sizes <= limits[1] + 1e-9)]
+    sizes = sizes[within(sizes, *limits)]
     parts = mean_count(extent, sizes, blocks=BLOCKS)
     count = parts.sum(axis=(1, 2))
     all_boxes = np.prod([(n - 1) / sizes + 1 for n in extent.shape], axis=0)
     # What fills its own extent is dense at every scale: then no scale is saturated.
     nodes = np.count_nonzero(extent)
     filled = nodes >= (1 - SATURATED) * extent.size
-    says = count < (1 - SATURATED) * nodes
-    says &= filled | (count < (1 - SATURATED) * all_boxes)
-    says &= sizes >= SMALLEST_TOLD
-    sizes, parts, count = sizes[says].astype(float), parts[says], count[says]
+    between = count < (1 - SATURATED) * nodes
+    between &= filled | (count < (1 - SATURATED) * all_boxes)
+    between &= sizes >= SMALLEST_SEPARATING
+    sizes, parts, count = sizes[between].astype(float), parts[between], count[between]
     if np.count_nonzero(sizes >= SMALLEST) < FEWEST_SCALES:
         return None
     law, rivals = best_law(sizes, count, side, whole_cells)
@@ -208,7 +243,7 @@ def _law_of_means(extent, limits, fewest, whole_cells):
         return None
     kept = sizes >= SMALLEST
     sizes, parts, count = sizes[kept], parts[kept], count[kept]
-    slopes = [law.dimension, fewest, *(rival.dimension for rival in rivals)]
+    slopes = [law.dimension, of_cover, *(rival.dimension for rival in rivals)]
     if sizes.size // 2 >= FEWEST_SCALES:
         small, large = (
             law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
@@ -218,7 +253,7 @@ def _law_of_means(extent, limits, fewest, whole_cells):
         slopes += [small, large, law.dimension - drift, law.dimension + drift]
     error = _jackknife(law, sizes, parts, side)
     ends = interval(law.dimension, slopes, error, wave_error(law.misfit, sizes))
-    return law.dimension, ends, sizes, law.misfit
+    return _FittedLaw(law.dimension, ends, sizes, law.misfit)
 
 
 def _jackknife(law: Law, sizes, parts, side):
@@ -239,8 +274,31 @@ def _without_parts(law: Law, sizes, parts, side):
     return [law_dimension(law, sizes, count, side) for count in left.T]
 
 
-def _from_fewest(r, count, used, ladder, estimator):
-    """The line through the fewest boxes, and an interval that spans the choice of range."""
+def _of_law(cover: _Cover, law: _FittedLaw, spacing) -> BoxDimension:
+    """The dimension by the law of the mean counts."""
+    low, high = np.clip(law.ends, *DIMENSIONS)
+    return BoxDimension(
+        dimension=law.dimension,
+        low=float(low),
+        high=float(high),
+        r_min=float(law.sizes[0] * spacing),
+        r_max=float(law.sizes[-1] * spacing),
+        n=law.sizes.size,
+        r=cover.r,
+        count=cover.count,
+        used=cover.used & within(cover.sizes, law.sizes[0], law.sizes[-1]),
+        reason="",
+        estimator="mean",
+        misfit=law.misfit,
+    )
+
+
+# -- by the minimal cover --------------------------------------------------------------------------
+
+
+def _of_cover(cover: _Cover, ladder, estimator) -> BoxDimension:
+    """The line through the minimal cover, and an interval that spans the choice of range."""
+    r, count, used = cover.r, cover.count, cover.used
     line = _line(r, count, used)
     parts = _slopes_of_parts(np.log(r[used]), np.log(count[used]))
     slopes = [line.slope_low, line.slope_high, *parts]
@@ -268,23 +326,21 @@ def _line(r: np.ndarray, count: np.ndarray, used: np.ndarray) -> LineFit:
     return fit_line(np.log(r[used]), np.log(count[used]))
 
 
-def _best_scales(
-    sizes: np.ndarray, sides: set[int], count: np.ndarray, used: np.ndarray
-) -> np.ndarray:
+def _best_scales(cover: _Cover, sides: set[int]) -> np.ndarray:
     """All usable scales, or those side / ratio^k where they, unlike all, lie exactly on a line."""
-    if _is_exact(sizes, count, used):
-        return used
+    if _is_exact(cover, cover.used):
+        return cover.used
     for side, ratio in itertools.product(sorted(sides), RATIOS):
-        power = np.log(side / sizes) / np.log(ratio)
-        ladder = used & (np.abs(power - np.round(power)) < 1e-9)
-        if ladder.sum() >= FEWEST_SCALES and _is_exact(sizes, count, ladder):
+        power = np.log(side / cover.sizes) / np.log(ratio)
+        ladder = cover.used & (np.abs(power - np.round(power)) < 1e-9)
+        if ladder.sum() >= FEWEST_SCALES and _is_exact(cover, ladder):
             return ladder
-    return used
+    return cover.used
 
 
-def _is_exact(sizes: np.ndarray, count: np.ndarray, used: np.ndarray) -> bool:
+def _is_exact(cover: _Cover, used: np.ndarray) -> bool:
     """Whether counts lie on a line but for rounding; False where they are all the same."""
-    return _line(sizes, count, used).r2 > 1 - 1e-12
+    return _line(cover.sizes, cover.count, used).r2 > 1 - 1e-12
 
 
 def _cropped(domain: np.ndarray) -> np.ndarray:

@@ -4,9 +4,9 @@ import numpy as np
 from scipy import fft
 
 from ..core.slope_of_sums import BLOCKS, NO_SLOPE, Slope, slope_of_sums
-from .box_counts import SIZES_PER_OCTAVE
+from .box_counts import geometric_sizes
 
-#: Smallest and largest distance of the fit: cells, and share of the window's shorter side.
+#: Smallest and largest distance of the fit: cells, and fraction of the window's shorter side.
 SMALLEST_DISTANCE = 2
 LARGEST_DISTANCE = 1 / 8
 
@@ -25,8 +25,8 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
     Returns
     -------
     pairs : (k, 2, BLOCKS**2) float64
-        First with the translation correction: pairs at a lag h over the share of the window that h
-        leaves inside, as if the domain went on beyond the window. Then as they are.
+        First with the translation correction: pairs at a lag h over the fraction of the window that
+        h leaves inside, as if the domain went on beyond the window. Then as they are.
     lags : (k,) int64
         How many lags but 0 there are: pairs that a filled window has, for each of its nodes.
     """
@@ -82,7 +82,7 @@ def correlation_dimension(domain: np.ndarray, spacing: float) -> Slope:
     Notes
     -----
     Pairs are taken per lag of the grid and times r^2, so that a filled window has exactly 2 at any
-    distance. The interval is that of :mod:`resampling`: the jackknife over parts of
+    distance. The interval is that of :mod:`core.slope_of_sums`: the jackknife over parts of
     the window, the two halves of the range, and the value of a domain that ends at the window.
 
     References
@@ -92,9 +92,7 @@ def correlation_dimension(domain: np.ndarray, spacing: float) -> Slope:
     """
     domain = np.asarray(domain, dtype=bool)
     largest = LARGEST_DISTANCE * min(domain.shape)
-    octaves = np.log2(max(largest / SMALLEST_DISTANCE, 1))
-    steps = np.arange(int(SIZES_PER_OCTAVE * octaves + 1e-9) + 1)
-    distances = SMALLEST_DISTANCE * 2 ** (steps / SIZES_PER_OCTAVE)
+    distances = geometric_sizes(SMALLEST_DISTANCE, largest)
     if distances[-1] >= min(domain.shape) or not domain.any():
         return NO_SLOPE
     pairs, lags = pair_counts(domain, distances)

@@ -54,7 +54,7 @@ RIVAL = 2.0
 
 #: Smallest box, cells, by which forms of the law are told apart, and of the fit itself: the
 #: smaller the box, the more what a node stands for shows, which is wanted in the one only.
-SMALLEST_TOLD = 3
+SMALLEST_SEPARATING = 3
 SMALLEST = 4
 
 #: What a node can stand for: all of its cell, or its centre.

@@ -1,9 +1,10 @@
 """Zero-padded convolution of a real field with an even kernel, by Fourier transforms of its own.
 
-Sixteen transforms go on side by side, one in each lane of the processor's vectors (`lanes`), which
-libraries built for every processor do not use in full. What is known is left out: rows nobody wants
-are not transformed, and as the kernel's spectrum is put in the order in which the forward transform
-leaves its result and the inverse takes it, nothing is sorted.
+Sixteen transforms go on side by side, one in each lane of the processor's SIMD vectors (`simd`),
+which libraries built for every processor do not use in full. What is known is left out: rows nobody
+wants are not transformed, and as the kernel's spectrum is put in the order in which the forward
+transform leaves its result and the inverse takes it, nothing is sorted. `reference.convolution` is
+the same with scipy.fft.
 
 The transform along y comes first, of two real columns as one complex. Their spectra, for half the
 wave numbers, stand in blocks of sixteen wave numbers and are transformed along x, multiplied, and
@@ -23,7 +24,7 @@ ROW = 2 * WIDTH
 THREADED_CELLS = 150_000
 
 
-def fast_length(least):
+def fast_length(least: int) -> int:
     """The shortest length >= ``least`` and >= 2 without prime factors over 5."""
     length = max(least, 2)
     while _radices(length) is None:
@@ -61,7 +62,13 @@ class Convolution:
         If these do not go together.
     """
 
-    def __init__(self, spectrum, shape, padded, dtype):
+    def __init__(
+        self,
+        spectrum: np.ndarray,
+        shape: tuple[int, int],
+        padded: tuple[int, int],
+        dtype: type,
+    ):
         if dtype not in (np.float32, np.float64):
             raise ValueError(f"dtype {dtype}: expected float32 or float64")
         for n, length in zip(shape, padded, strict=True):
@@ -73,19 +80,19 @@ class Convolution:
         if np.shape(spectrum) != half:
             raise ValueError(f"spectrum {np.shape(spectrum)}: expected {half}")
         self._shape, self._dtype = tuple(shape), np.dtype(dtype)
-        (radices_y, roots_y, frequency_y) = _plan(padded[0], dtype)
-        (radices_x, roots_x, frequency_x) = _plan(padded[1], dtype)
+        (radices_y, twiddles_y, frequency_y) = _plan(padded[0], dtype)
+        (radices_x, twiddles_x, frequency_x) = _plan(padded[1], dtype)
         waves = padded[0] // 2 + 1
         self._blocks, self._waves = -(-shape[1] // ROW), -(-waves // WIDTH)
-        lanes = np.zeros((self._waves * WIDTH, spectrum.shape[1]), dtype)
-        lanes[:waves] = spectrum
-        lanes[:waves] /= padded[0] * padded[1]
-        lanes = lanes.reshape(self._waves, WIDTH, -1).transpose(0, 2, 1)
+        factors = np.zeros((self._waves * WIDTH, spectrum.shape[1]), dtype)
+        factors[:waves] = spectrum
+        factors[:waves] /= padded[0] * padded[1]
+        blocks = factors.reshape(self._waves, WIDTH, -1).transpose(0, 2, 1)
         mirrored = np.minimum(frequency_x, padded[1] - frequency_x)
-        self._along_y = radices_y, roots_y, np.argsort(frequency_y)
-        self._along_x = np.ascontiguousarray(lanes), mirrored, radices_x, roots_x
+        self._along_y = radices_y, twiddles_y, np.argsort(frequency_y)
+        self._along_x = np.ascontiguousarray(blocks), mirrored, radices_x, twiddles_x
 
-    def __call__(self, field):
+    def __call__(self, field: np.ndarray) -> np.ndarray:
         """The convolution of a field, (ny, nx), of this precision.
 
         Raises
@@ -125,7 +132,7 @@ def _in_parts(function, n, cells):
 
 
 def _plan(n, dtype):
-    """Radices, cos and -sin of the roots of unity, frequencies as the transform leaves them."""
+    """Radices, twiddle factors (cos, -sin), frequencies in the order the transform leaves them."""
     radices = np.array(_radices(n), np.int64)
     frequency = np.zeros(1, np.int64)
     for radix in radices[::-1]:
@@ -135,18 +142,18 @@ def _plan(n, dtype):
 
 
 @njit(cache=True)
-def _turned(re, im, roots, k):
-    """(re + i im) times root k."""
+def _twiddled(re, im, twiddles, k):
+    """(re + i im) times twiddle factor k."""
     if k == 0:
         return re, im
-    c, s = roots[k, 0], roots[k, 1]
+    c, s = twiddles[k, 0], twiddles[k, 1]
     return c * re - s * im, c * im + s * re
 
 
 @njit(cache=True)
-def _take(x, row, real, imag, roots, k):
-    """Real and imaginary parts of a row, times root k."""
-    return _turned(load(x, row * ROW + real), load(x, row * ROW + imag), roots, k)
+def _take(x, row, real, imag, twiddles, k):
+    """Real and imaginary parts of a row, times twiddle factor k."""
+    return _twiddled(load(x, row * ROW + real), load(x, row * ROW + imag), twiddles, k)
 
 
 @njit(cache=True)
@@ -155,52 +162,53 @@ def _put(x, row, real, imag, value):
     store(x, row * ROW + imag, value[1])
 
 
-# One radix of n = radix m rows from ``first`` on. Rows are turned by multiples of a root that is
-# ``before`` or ``after`` times their place (one of the two is 0); all are read before any is put.
+# Butterflies of one radix on radix * m rows from ``first`` on. Twiddle factors are multiples of
+# ``before`` or ``after`` times the place of a row (one of the two is 0); all rows are read before
+# any is put.
 
 
 @njit(cache=True)
-def _pass2(x, first, m, before, after, roots, real, imag):
+def _pass2(x, first, m, before, after, twiddles, real, imag):
     for p in range(m):
         row, k, q = first + p, before * p, after * p
-        ar, ai = _take(x, row, real, imag, roots, 0)
-        br, bi = _take(x, row + m, real, imag, roots, k)
-        second = _turned(ar - br, ai - bi, roots, q)
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        second = _twiddled(ar - br, ai - bi, twiddles, q)
         _put(x, row, real, imag, (ar + br, ai + bi))
         _put(x, row + m, real, imag, second)
 
 
 @njit(cache=True)
-def _pass3(x, first, m, before, after, roots, real, imag):
+def _pass3(x, first, m, before, after, twiddles, real, imag):
     half, height = x.dtype.type(0.5), x.dtype.type(np.sqrt(0.75))
     for p in range(m):
         row, k, q = first + p, before * p, after * p
-        ar, ai = _take(x, row, real, imag, roots, 0)
-        br, bi = _take(x, row + m, real, imag, roots, k)
-        cr, ci = _take(x, row + 2 * m, real, imag, roots, 2 * k)
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, twiddles, 2 * k)
         sr, si = br + cr, bi + ci
         dr, di = height * (br - cr), height * (bi - ci)
         er, ei = ar - half * sr, ai - half * si
-        second = _turned(er + di, ei - dr, roots, q)
-        third = _turned(er - di, ei + dr, roots, 2 * q)
+        second = _twiddled(er + di, ei - dr, twiddles, q)
+        third = _twiddled(er - di, ei + dr, twiddles, 2 * q)
         _put(x, row, real, imag, (ar + sr, ai + si))
         _put(x, row + m, real, imag, second)
         _put(x, row + 2 * m, real, imag, third)
 
 
 @njit(cache=True)
-def _pass4(x, first, m, before, after, roots, real, imag):
+def _pass4(x, first, m, before, after, twiddles, real, imag):
     for p in range(m):
         row, k, q = first + p, before * p, after * p
-        ar, ai = _take(x, row, real, imag, roots, 0)
-        br, bi = _take(x, row + m, real, imag, roots, k)
-        cr, ci = _take(x, row + 2 * m, real, imag, roots, 2 * k)
-        dr, di = _take(x, row + 3 * m, real, imag, roots, 3 * k)
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, twiddles, 2 * k)
+        dr, di = _take(x, row + 3 * m, real, imag, twiddles, 3 * k)
         er, ei, fr, fi = ar + cr, ai + ci, br + dr, bi + di
         gr, gi, hr, hi = ar - cr, ai - ci, br - dr, bi - di
-        second = _turned(gr + hi, gi - hr, roots, q)
-        third = _turned(er - fr, ei - fi, roots, 2 * q)
-        fourth = _turned(gr - hi, gi + hr, roots, 3 * q)
+        second = _twiddled(gr + hi, gi - hr, twiddles, q)
+        third = _twiddled(er - fr, ei - fi, twiddles, 2 * q)
+        fourth = _twiddled(gr - hi, gi + hr, twiddles, 3 * q)
         _put(x, row, real, imag, (er + fr, ei + fi))
         _put(x, row + m, real, imag, second)
         _put(x, row + 2 * m, real, imag, third)
@@ -208,26 +216,26 @@ def _pass4(x, first, m, before, after, roots, real, imag):
 
 
 @njit(cache=True)
-def _pass5(x, first, m, before, after, roots, real, imag):
+def _pass5(x, first, m, before, after, twiddles, real, imag):
     c1, s1 = x.dtype.type(np.cos(0.4 * np.pi)), x.dtype.type(np.sin(0.4 * np.pi))
     c2, s2 = x.dtype.type(np.cos(0.8 * np.pi)), x.dtype.type(np.sin(0.8 * np.pi))
     for p in range(m):
         row, k, q = first + p, before * p, after * p
-        ar, ai = _take(x, row, real, imag, roots, 0)
-        br, bi = _take(x, row + m, real, imag, roots, k)
-        cr, ci = _take(x, row + 2 * m, real, imag, roots, 2 * k)
-        dr, di = _take(x, row + 3 * m, real, imag, roots, 3 * k)
-        er, ei = _take(x, row + 4 * m, real, imag, roots, 4 * k)
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, twiddles, 2 * k)
+        dr, di = _take(x, row + 3 * m, real, imag, twiddles, 3 * k)
+        er, ei = _take(x, row + 4 * m, real, imag, twiddles, 4 * k)
         fr, fi, gr, gi = br + er, bi + ei, cr + dr, ci + di
         br, bi, cr, ci = br - er, bi - ei, cr - dr, ci - di
         hr, hi = ar + c1 * fr + c2 * gr, ai + c1 * fi + c2 * gi
         er, ei = ar + c2 * fr + c1 * gr, ai + c2 * fi + c1 * gi
         ur, ui = s1 * br + s2 * cr, s1 * bi + s2 * ci
         vr, vi = s2 * br - s1 * cr, s2 * bi - s1 * ci
-        second = _turned(hr + ui, hi - ur, roots, q)
-        third = _turned(er + vi, ei - vr, roots, 2 * q)
-        fourth = _turned(er - vi, ei + vr, roots, 3 * q)
-        fifth = _turned(hr - ui, hi + ur, roots, 4 * q)
+        second = _twiddled(hr + ui, hi - ur, twiddles, q)
+        third = _twiddled(er + vi, ei - vr, twiddles, 2 * q)
+        fourth = _twiddled(er - vi, ei + vr, twiddles, 3 * q)
+        fifth = _twiddled(hr - ui, hi + ur, twiddles, 4 * q)
         _put(x, row, real, imag, (ar + fr + gr, ai + fi + gi))
         _put(x, row + m, real, imag, second)
         _put(x, row + 2 * m, real, imag, third)
@@ -236,40 +244,40 @@ def _pass5(x, first, m, before, after, roots, real, imag):
 
 
 @njit(cache=True)
-def _transform(x, radices, roots, back):
+def _transform(x, radices, twiddles, back):
     """Transform the rows of x in place, leaving frequencies in the order of the plan; or ``back``.
 
-    Back, times n, is forward with real and imaginary parts exchanged, and the passes turned round.
+    Back, times n, is forward with real and imaginary parts exchanged, and the passes in reverse.
     """
-    n = roots.shape[0]
+    n = twiddles.shape[0]
     real, imag = (WIDTH, 0) if back else (0, WIDTH)
     size = 1 if back else n
     for number in range(radices.size):
         radix = radices[radices.size - 1 - number] if back else radices[number]
         m = size if back else size // radix
-        turn = n // (m * radix)
-        before, after = (turn, 0) if back else (0, turn)
+        stride = n // (m * radix)
+        before, after = (stride, 0) if back else (0, stride)
         for first in range(0, n, m * radix):
             if radix == 4:
-                _pass4(x, first, m, before, after, roots, real, imag)
+                _pass4(x, first, m, before, after, twiddles, real, imag)
             elif radix == 2:
-                _pass2(x, first, m, before, after, roots, real, imag)
+                _pass2(x, first, m, before, after, twiddles, real, imag)
             elif radix == 3:
-                _pass3(x, first, m, before, after, roots, real, imag)
+                _pass3(x, first, m, before, after, twiddles, real, imag)
             else:
-                _pass5(x, first, m, before, after, roots, real, imag)
+                _pass5(x, first, m, before, after, twiddles, real, imag)
         size = m * radix if back else m
 
 
 @njit(cache=True, nogil=True)
-def _forward_along_y(start, stop, field, spectra, radices, roots, place):
+def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
     """Spectra along y of some blocks of columns.
 
     The left half of a block are the real, the right half the imaginary parts of what is
     transformed: spectra a and b of the two are apart in even and odd part of the result.
     """
     ny, nx = field.shape
-    n = roots.shape[0]
+    n = twiddles.shape[0]
     numbers = field.reshape(-1)
     x = np.empty(n * ROW, field.dtype)
     tile = np.empty(2 * WIDTH * ROW, field.dtype)
@@ -285,7 +293,7 @@ def _forward_along_y(start, stop, field, spectra, radices, roots, place):
                 for lane in range(ROW):
                     x[y * ROW + lane] = field[y, left + lane] if left + lane < nx else 0
         x[ny * ROW :] = 0
-        _transform(x, radices, roots, False)
+        _transform(x, radices, twiddles, False)
         for waves in range(spectra.shape[0]):
             for lane in range(WIDTH):
                 # Lanes past the last wave number hold it again.
@@ -306,28 +314,28 @@ def _forward_along_y(start, stop, field, spectra, radices, roots, place):
 
 
 @njit(cache=True, nogil=True)
-def _multiply_along_x(start, stop, nx, spectra, kernel, mirrored, radices, roots):
+def _multiply_along_x(start, stop, nx, spectra, kernel, mirrored, radices, twiddles):
     """Convolve along x, for some blocks of wave numbers along y, in place."""
-    n = roots.shape[0]
+    n = twiddles.shape[0]
     x = np.empty(n * ROW, spectra.dtype)
     for waves in range(start, stop):
         x[: nx * ROW] = spectra[waves, : nx * ROW]
         x[nx * ROW :] = 0
-        _transform(x, radices, roots, False)
+        _transform(x, radices, twiddles, False)
         factors = kernel[waves].reshape(-1)
         for k in range(n):
             factor = load(factors, mirrored[k] * WIDTH)
             store(x, k * ROW, factor * load(x, k * ROW))
             store(x, k * ROW + WIDTH, factor * load(x, k * ROW + WIDTH))
-        _transform(x, radices, roots, True)
+        _transform(x, radices, twiddles, True)
         spectra[waves, : nx * ROW] = x[: nx * ROW]
 
 
 @njit(cache=True, nogil=True)
-def _back_along_y(start, stop, spectra, field, radices, roots, place):
+def _back_along_y(start, stop, spectra, field, radices, twiddles, place):
     """From spectra along y to some blocks of columns."""
     ny, nx = field.shape
-    n = roots.shape[0]
+    n = twiddles.shape[0]
     numbers = field.reshape(-1)
     x = np.empty(n * ROW, field.dtype)
     tile = np.empty(2 * WIDTH * ROW, field.dtype)
@@ -349,7 +357,7 @@ def _back_along_y(start, stop, spectra, field, radices, roots, place):
                 store(x, there + WIDTH, br - ai)
                 store(x, here, ar - bi)
                 store(x, here + WIDTH, ai + br)
-        _transform(x, radices, roots, True)
+        _transform(x, radices, twiddles, True)
         if left + ROW <= nx:
             for y in range(ny):
                 store(numbers, y * nx + left, load(x, y * ROW))

@@ -7,6 +7,7 @@ there are no periodic images.
 from functools import partial
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import fft
 
 from ..core.arguments import (
@@ -35,12 +36,14 @@ RIGID_PLATE_SELF_TERMS = {
 MOST_CELLS = 2**31 - 1
 
 
-def love_displacement(x, y, dx, dy):
+def love_displacement(
+    x: float | np.ndarray, y: float | np.ndarray, dx: float, dy: float
+) -> np.ndarray:
     """Displacement at (x, y) under uniform pressure on a rectangle centred at the origin.
 
     Parameters
     ----------
-    x, y : array_like
+    x, y : float or ndarray
         Where the displacement is wanted, mm.
     dx, dy : float
         Sides of the loaded rectangle, mm.
@@ -55,7 +58,7 @@ def love_displacement(x, y, dx, dy):
     A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377: pi E* u / p is the sum over the four
     corners, signed, of X asinh(Y/|X|) + Y asinh(X/|Y|).
     """
-    total = 0.0
+    total = np.zeros(())
     for sign_x in (1, -1):
         for sign_y in (1, -1):
             corner = _love_corner(x + sign_x * dx / 2, y + sign_y * dy / 2)
@@ -72,7 +75,7 @@ def _love_corner(x, y):
     return x * np.arcsinh(first) + y * np.arcsinh(second)
 
 
-def rectangle_mean_displacement(a, b):
+def rectangle_mean_displacement(a: float, b: float) -> float:
     """Mean of E* u / p over a uniformly loaded rectangle a x b, in the unit of a and b.
 
     Notes
@@ -114,7 +117,20 @@ class HalfSpace:
 
     _FIXED = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
 
-    def __init__(self, shape, spacing, modulus, *, kernel="love"):
+    shape: tuple[int, int]
+    spacing: tuple[float, float]
+    modulus: float
+    kernel: str
+    cell: float
+
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        spacing: tuple[float, float],
+        modulus: float,
+        *,
+        kernel: str = "love",
+    ):
         ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MOST_CELLS))
         if ny * nx > MOST_CELLS:
             raise ValueError(f"shape {(ny, nx)}: expected no more than {MOST_CELLS} cells")
@@ -153,11 +169,11 @@ class HalfSpace:
         return {name: vars(self)[name] for name in self._FIXED}
 
     @property
-    def cell_area(self):
+    def cell_area(self) -> float:
         """Area of one cell, mm2."""
         return self.spacing[0] * self.spacing[1]
 
-    def displacement(self, pressure):
+    def displacement(self, pressure: ArrayLike) -> np.ndarray:
         """Normal displacement of the surface under a pressure.
 
         Parameters
@@ -175,13 +191,13 @@ class HalfSpace:
         ValueError
             If the pressure is on another grid, or is not finite and real.
         """
-        pressure = field(pressure, "pressure", self.shape)
+        values = field(pressure, "pressure", self.shape)
         # Not so of a NaN either, which would be everywhere at once.
-        if not np.abs(pressure).max() <= MOST_RESULT:
+        if not np.abs(values).max() <= MOST_RESULT:
             raise ValueError(f"pressure: expected finite numbers, none over {MOST_RESULT:g} MPa")
-        return self.convolve(pressure) * (self.cell / self.modulus)
+        return self.convolve(values) * (self.cell / self.modulus)
 
-    def influence(self):
+    def influence(self) -> np.ndarray:
         """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only."""
         return self._influence
 
@@ -200,7 +216,7 @@ class HalfSpace:
         influence.flags.writeable = False
         return influence
 
-    def coarser(self, factor):
+    def coarser(self, factor: int) -> "HalfSpace":
         """The same half-space on cells ``factor`` times as long and as wide, covering the window.
 
         Distances counted in cells are the same, and so is the influence. Made once and kept.
@@ -222,8 +238,8 @@ class HalfSpace:
         factor = whole_number(factor, "factor", least=1, most=MOST_CELLS)
         if factor in self._coarser:
             return self._coarser[factor]
-        shape = tuple(-(-n // factor) for n in self.shape)
-        sides = tuple(factor * d for d in self.spacing)
+        shape = -(-self.shape[0] // factor), -(-self.shape[1] // factor)
+        sides = factor * self.spacing[0], factor * self.spacing[1]
         coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
         vars(coarse)["_influence"] = self.influence()[: shape[0], : shape[1]]
         return self._coarser.setdefault(factor, coarse)
@@ -232,7 +248,7 @@ class HalfSpace:
     def _coarser(self):
         return {}
 
-    def convolve(self, values):
+    def convolve(self, values: np.ndarray) -> np.ndarray:
         """The dimensionless operator K.
 
         Parameters

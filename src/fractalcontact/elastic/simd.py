@@ -1,4 +1,4 @@
-"""Several numbers at once, for numba: the processor's vectors, as values in compiled functions.
+"""SIMD vectors for numba: sixteen numbers at once, as values in compiled functions.
 
 The compiler does not find these by itself in a Fourier transform, where it would have to prove that
 none of many rows of numbers overlap. Supported are ``load``, ``store``, +, - and scaling.
@@ -10,49 +10,49 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic, models, overload, register_model
 
-#: Numbers in one; a whole line of the processor's cache in single precision.
+#: Lanes of a vector, a number in each; a whole line of the processor's cache in single precision.
 WIDTH = 16
 #: A product may be added without being rounded first.
 FUSED = ("contract",)
 
 
-class Lanes(types.Type):
+class Vector(types.Type):
     """Type of :data:`WIDTH` numbers of a ``dtype``."""
 
     def __init__(self, dtype):
-        super().__init__(name=f"Lanes({dtype})")
+        super().__init__(name=f"Vector({dtype})")
         self.dtype = dtype
 
 
-@register_model(Lanes)
-class _LanesModel(models.PrimitiveModel):
+@register_model(Vector)
+class _VectorModel(models.PrimitiveModel):
     def __init__(self, dmm, fe_type):
         number = dmm.lookup(fe_type.dtype).get_value_type()
         super().__init__(dmm, fe_type, ir.VectorType(number, WIDTH))
 
 
-def _pointer(context, builder, array_type, array, start, lanes):
+def _pointer(context, builder, array_type, array, start, vector):
     data = context.make_array(array_type)(context, builder, array).data
-    vector = context.get_value_type(lanes)
-    return builder.bitcast(builder.gep(data, [start]), vector.as_pointer())
+    kind = context.get_value_type(vector)
+    return builder.bitcast(builder.gep(data, [start]), kind.as_pointer())
 
 
 @intrinsic
 def load(typing_context, array, start):
     """The numbers of a flat contiguous array from ``start`` on; nothing checks its end."""
-    lanes = Lanes(array.dtype)
+    vector = Vector(array.dtype)
 
     def generate(context, builder, signature, args):
-        pointer = _pointer(context, builder, array, *args, lanes)
+        pointer = _pointer(context, builder, array, *args, vector)
         return builder.load(pointer, align=array.dtype.bitwidth // 8)
 
-    return lanes(array, types.intp), generate
+    return vector(array, types.intp), generate
 
 
 @intrinsic
 def store(typing_context, array, start, values):
     """Put them there."""
-    if not isinstance(values, Lanes):
+    if not isinstance(values, Vector):
         return None
 
     def generate(context, builder, signature, args):
@@ -78,7 +78,7 @@ _add, _subtract, _multiply = map(_elementwise, ("fadd", "fsub", "fmul"))
 
 
 @intrinsic
-def _spread(typing_context, number, like):
+def _broadcast(typing_context, number, like):
     """One number in every lane."""
 
     def generate(context, builder, signature, args):
@@ -93,29 +93,29 @@ def _spread(typing_context, number, like):
 
 
 @overload(operator.add)
-def _lanes_add(first, second):
-    if isinstance(first, Lanes) and first == second:
+def _vector_add(first, second):
+    if isinstance(first, Vector) and first == second:
         return lambda first, second: _add(first, second)
 
 
 @overload(operator.sub)
-def _lanes_subtract(first, second):
-    if isinstance(first, Lanes) and first == second:
+def _vector_subtract(first, second):
+    if isinstance(first, Vector) and first == second:
         return lambda first, second: _subtract(first, second)
 
 
 @overload(operator.mul)
-def _lanes_multiply(first, second):
-    if isinstance(first, Lanes) and first == second:
+def _vector_multiply(first, second):
+    if isinstance(first, Vector) and first == second:
         return lambda first, second: _multiply(first, second)
-    if isinstance(second, Lanes) and isinstance(first, types.Float):
-        return lambda first, second: _multiply(_spread(first, second), second)
+    if isinstance(second, Vector) and isinstance(first, types.Float):
+        return lambda first, second: _multiply(_broadcast(first, second), second)
 
 
 @intrinsic
 def transpose(typing_context, source, first, source_step, target, start, target_step):
     """Turn a square of :data:`WIDTH` x WIDTH numbers, rows of it being ``step`` numbers apart."""
-    lanes = Lanes(source.dtype)
+    vector = Vector(source.dtype)
 
     def generate(context, builder, signature, args):
         from_array, first, from_step, to_array, start, to_step = args
@@ -127,7 +127,7 @@ def transpose(typing_context, source, first, source_step, target, start, target_
         rows = []
         for k in range(WIDTH):
             at = row(first, from_step, k)
-            pointer = _pointer(context, builder, source, from_array, at, lanes)
+            pointer = _pointer(context, builder, source, from_array, at, vector)
             rows.append(builder.load(pointer, align=align))
         # Each round interleaves rows half the square apart; as many as halve it away turn it.
         picked = [place for k in range(WIDTH) for place in (k, k + WIDTH)]
@@ -140,7 +140,7 @@ def transpose(typing_context, source, first, source_step, target, start, target_
             rows = [builder.shuffle_vector(a, b, half) for a, b in pairs for half in halves]
         for k in range(WIDTH):
             at = row(start, to_step, k)
-            pointer = _pointer(context, builder, target, to_array, at, lanes)
+            pointer = _pointer(context, builder, target, to_array, at, vector)
             builder.store(rows[k], pointer, align=align)
         return context.get_dummy_value()
 

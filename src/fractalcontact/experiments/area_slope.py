@@ -1,42 +1,35 @@
-"""The area slope kappa at light load on made surfaces, where its right value is known to lie.
+"""The area slope kappa at light load on synthetic surfaces, where its right value is known to lie.
 
 Theories put kappa of A_r/A_0 = kappa p / (E* h'_rms) between Persson's sqrt(8/pi) and Bush, Gibson
 and Thomas' sqrt(2 pi) for a surface with many hills in the window. Whether the solver lands there
-is a check of the whole chain; how much single surfaces scatter tells what one scan can say.
+is a check of the whole chain; how much single surfaces scatter says what one scan can show.
 """
+
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..core.intervals import mean_interval
+from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
 from ..elastic.halfspace import HalfSpace
 from ..mechanics import theory
-from ..mechanics.area import corrected_area
+from ..mechanics.area import AREA_SLOPE, CORRECTED_AREA_SLOPE, corrected_area
 from ..mechanics.sweep import load_steps
 from ..roughness.dimension import slope_statistics
 from ..surface.synthesis import self_affine
-
-#: Kinds of surface: with a roll-off many hills share the load, without it a few carry all.
-SURFACES = ("with_roll_off", "without_roll_off")
-
-#: Root mean square height as a part of the window's side. The elastic problem is linear in heights,
-#: so that kappa does not depend on it.
-RMS_PART = 0.01
-
-#: kappa depends on F/E* alone, and on no length: both are units.
-SPACING = 1.0  # mm
-E_STAR = 1.0  # MPa
+from .units import E_STAR, RMS_FRACTION, SPACING, SURFACES
 
 
-def area_slope(recipe, rtol=1e-6):
-    """Area slopes of made surfaces, raw and corrected, with and without a roll-off.
+def area_slope(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
+    """Area slopes of synthetic surfaces, raw and corrected, with and without a roll-off.
 
     Parameters
     ----------
     recipe : mapping
-        ``dimension`` Delta_g, ``nodes`` a side, ``seeds``, ``roll_off_share`` (roll-off length as
-        a part of the side) and ``loads``, values of p / (E* h'_rms).
+        ``dimension`` Delta_g, ``nodes`` per side, ``seeds``, ``roll_off_share`` (roll-off length as
+        a fraction of the side) and ``loads``, values of p / (E* h'_rms).
     rtol : float
         Of the solves.
 
@@ -59,8 +52,8 @@ def area_slope(recipe, rtol=1e-6):
     side = nodes * SPACING
     space = HalfSpace((nodes, nodes), (SPACING, SPACING), E_STAR)
     nominal = side**2
-    share = np.full((2, len(SURFACES), len(seeds), len(loads)), np.nan)
-    slope = np.full(share.shape[1:3], np.nan)
+    fraction = np.full((2, len(SURFACES), len(seeds), len(loads)), np.nan)
+    slope = np.full(fraction.shape[1:3], np.nan)
     roll_offs = (recipe["roll_off_share"] * side, None)
     for i, roll_off in enumerate(roll_offs):
         for j, seed in enumerate(seeds):
@@ -68,30 +61,29 @@ def area_slope(recipe, rtol=1e-6):
                 (nodes, nodes),
                 SPACING,
                 3 - recipe["dimension"],
-                rms=RMS_PART * side,
+                rms=RMS_FRACTION * side,
                 seed=seed,
                 roll_off=roll_off,
             )
             slope[i, j] = slope_statistics(surface, SPACING)["rms_slope"]
             forces = loads * E_STAR * slope[i, j] * nominal
-            where = f"made surface, seed {seed}, roll-off {roll_off}"
+            where = f"synthetic surface, seed {seed}, roll-off {roll_off}"
             for k, state in enumerate(load_steps(surface, space, forces, {"rtol": rtol}, where)):
                 corrected = corrected_area(state.in_contact, space.spacing)
-                share[:, i, j, k] = state.area / nominal, corrected / nominal
-    result = _labelled(share, slope, loads, seeds)
+                fraction[:, i, j, k] = state.area / nominal, corrected / nominal
+    result = _labelled(fraction, slope, loads, seeds)
     result.attrs = {
         "nodes": nodes,
         "dimension": float(recipe["dimension"]),
         "roll_off_share": float(recipe["roll_off_share"]),
-        "persson_kappa": float(theory.PERSSON_KAPPA),
-        "bush_gibson_thomas_kappa": float(theory.BUSH_GIBSON_THOMAS_KAPPA),
-        "computed_kappa": list(theory.COMPUTED_KAPPA),
-    }
+    } | theory.KAPPA_ATTRS
     return result
 
 
-def _labelled(share, slope, loads, seeds):
-    """The dataset from the shares (raw and corrected) and slopes of all surfaces."""
+def _labelled(
+    fraction: np.ndarray, slope: np.ndarray, loads: np.ndarray, seeds: list[int]
+) -> xr.Dataset:
+    """The dataset from the area fractions (raw and corrected) and slopes of all surfaces."""
     dims = ("surface", "seed", "load")
     result = xr.Dataset(
         {"rms_slope": (dims[:2], slope, cf_attrs("1", "rms slope h'_rms of the surface"))},
@@ -101,23 +93,18 @@ def _labelled(share, slope, loads, seeds):
             "load": ("load", loads, cf_attrs("1", "p / (E* h'_rms)")),
         },
     )
-    ends = (
-        ("", "mean over seeds of"),
-        ("_low", "lower end of the 95 % interval of the mean of"),
-        ("_high", "upper end of the 95 % interval of the mean of"),
-    )
-    for prefix, shares, words in (
-        ("", share[0], "area slope kappa = (A_r/A_0) E* h'_rms / p"),
-        ("corrected_", share[1], "area slope kappa, corrected area"),
+    for prefix, fractions, words in (
+        ("", fraction[0], AREA_SLOPE),
+        ("corrected_", fraction[1], CORRECTED_AREA_SLOPE),
     ):
         name = f"{prefix}share" if prefix else "area_share"
-        result[name] = (dims, shares, cf_attrs("1", f"A_r/A_0 ({prefix.strip('_') or 'raw'})"))
-        kappa = shares / loads
+        result[name] = (dims, fractions, cf_attrs("1", f"A_r/A_0 ({prefix.strip('_') or 'raw'})"))
+        kappa = fractions / loads
         result[f"{prefix}kappa"] = (dims, kappa, cf_attrs("1", words))
         means = mean_interval(kappa, axis=1)[:3]
-        for (ending, of), values in zip(ends, means, strict=True):
-            key = f"{prefix}mean_kappa{ending}"
-            result[key] = (("surface", "load"), values, cf_attrs("1", f"{of} {words}"))
+        for (ending, of_end), values in zip(INTERVAL.items(), means, strict=True):
+            attrs = cf_attrs("1", f"mean over seeds of {words}{of_end}")
+            result[f"{prefix}mean_kappa{ending}"] = (("surface", "load"), values, attrs)
         result[f"{prefix}mean_kappa_deviation"] = result[f"{prefix}kappa"].std("seed", ddof=1)
         result[f"{prefix}mean_kappa_deviation"].attrs = cf_attrs(
             "1", f"standard deviation between seeds of {words}"

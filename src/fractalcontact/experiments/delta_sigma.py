@@ -1,4 +1,4 @@
-"""Whether the two estimators of Delta_sigma agree, on made surfaces against a plane.
+"""Whether the two estimators of Delta_sigma agree, on synthetic surfaces against a plane.
 
 Eq. 5 takes Delta_sigma from the real area over resolutions, A_r ~ s^(2 - Delta_sigma), and from box
 counts of the contact domain, as if they were one. At light load A_r = kappa F / (E* h'_rms(s)) with
@@ -7,9 +7,13 @@ is known of the second. Here both are taken from the same states, over many surf
 loads, and with a hardness up to where the whole window yields.
 """
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import labelled, labelled_dataset
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
@@ -22,18 +26,13 @@ from ..mechanics.joint import prefractal
 from ..mechanics.sweep import load_steps
 from ..roughness.dimension import slope_statistics
 from ..surface.synthesis import self_affine
-
-#: The problem depends on no length and no stress: both are units.
-SIDE = 1.0  # mm
-E_STAR = 1.0  # MPa
-#: Rms height as a part of the side; the elastic problem is linear in heights.
-RMS_PART = 0.01
+from .units import E_STAR, RMS_FRACTION, SIDE
 
 #: What the paper reads off its Fig. 8, of a surface of this dimension.
 PAPER_DELTA_SIGMA, PAPER_DIMENSION = 1.39, 2.1
 
-#: What is kept of every surface under every load.
-FIELDS = {
+#: What is kept of every surface under every load, without a unit.
+ESTIMATES = {
     "delta_area": "Delta_sigma from A_r(s) over the resolutions at one force",
     "delta_area_low": "Delta_sigma from A_r(s), lower end of its 95 % interval",
     "delta_area_high": "Delta_sigma from A_r(s), upper end of its 95 % interval",
@@ -48,13 +47,13 @@ FIELDS = {
 }
 
 
-def dimension_test(recipe, rtol=1e-6):
+def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     """Delta_sigma by both estimators over surfaces, sizes, seeds and loads.
 
     Parameters
     ----------
     recipe : mapping
-        ``dimensions`` Delta_g, ``sizes`` in nodes a side, ``seeds``, ``loads`` as values of
+        ``dimensions`` Delta_g, ``sizes`` in nodes per side, ``seeds``, ``loads`` as values of
         p / (E* h'_rms) and ``resolutions``, multiples k of the finest spacing. With
         ``same_pressure`` true the loads are those of the smallest size, and larger ones, which are
         the same surface seen more finely, get the same nominal pressure; else (the default)
@@ -66,8 +65,8 @@ def dimension_test(recipe, rtol=1e-6):
     Returns
     -------
     xr.Dataset
-        :data:`FIELDS`, ``difference`` (area less box) and ``boxes_per_node`` over (dimension, size,
-        seed, load); ``mean_delta_area``, ``mean_delta_box``, ``mean_delta_pairs`` and
+        :data:`ESTIMATES`, ``difference`` (area less box) and ``boxes_per_node`` over (dimension,
+        size, seed, load); ``mean_delta_area``, ``mean_delta_box``, ``mean_delta_pairs`` and
         ``mean_difference`` over the seeds with ``_low`` and ``_high`` (95 %, Student's t) and
         ``_n``; ``light_load_delta`` (dimension) = 4 - Delta_g; ``growth`` (dimension, load), change
         of the difference with each doubling of the size, ``decade`` (dimension, size) with each
@@ -77,49 +76,33 @@ def dimension_test(recipe, rtol=1e-6):
     Notes
     -----
     If a coarser pre-fractal's domain were that of the finer one seen through coarser boxes, the
-    boxes of side k s that meet the finest domain would be as many as the nodes that touch at
+    boxes of side k s that the finest domain occupies would be as many as the nodes that touch at
     resolution k: ``boxes_per_node`` (last dimension resolution) would be 1, and the two estimators
     the same. How it goes with k is how they differ.
     """
-    sizes = sorted(recipe["sizes"])
     factors = sorted(recipe["resolutions"])
     axes = {
         "dimension": list(recipe["dimensions"]),
-        "size": sizes,
+        "size": sorted(recipe["sizes"]),
         "seed": list(recipe["seeds"]),
         "load": np.unique(recipe["loads"]),
     }
-    shape = tuple(len(values) for values in axes.values())
-    table = {name: np.full(shape, np.nan) for name in FIELDS}
-    nodes, met = np.full((*shape, len(factors)), np.nan), np.full((*shape, len(factors)), np.nan)
-    slope = np.full(shape[:3], np.nan)
-    for i, j, k in np.ndindex(shape[:3]):
-        dimension, size, seed = axes["dimension"][i], sizes[j], axes["seed"][k]
-        surface = made_surface(dimension, size, seed)
-        slope[i, j, k] = slope_statistics(surface, SIDE / size)["rms_slope"]
-        finer = (sizes[0] / size) ** (dimension - 2) if recipe.get("same_pressure") else 1.0
-        forces = axes["load"] * finer * E_STAR * slope[i, j, k] * SIDE**2
-        found = _estimates(surface, forces, factors, rtol)
-        for name in FIELDS:
-            table[name][i, j, k] = found[name]
-        nodes[i, j, k], met[i, j, k] = found["nodes"], found["met"]
-    result = _labelled(axes, table)
-    result["rms_slope"] = (
-        tuple(axes)[:3],
-        slope,
-        cf_attrs("1", "rms slope h'_rms at the finest spacing"),
-    )
+    values = _uncapped(axes, factors, rtol, same_pressure=bool(recipe.get("same_pressure")))
+    result = _labelled(axes, {name: values[name] for name in ESTIMATES})
+    nodes, occupied = values["nodes"], values["occupied"]
     result = result.assign_coords(
         resolution=("resolution", factors, cf_attrs("1", "multiple k of the finest spacing"))
+    ).assign(
+        labelled(
+            _OF_SURFACES,
+            {
+                "rms_slope": values["rms_slope"],
+                "nodes": nodes,
+                "boxes_per_node": occupied / np.where(nodes > 0, nodes, np.nan),
+            },
+        )
     )
-    dims = (*axes, "resolution")
-    result["nodes"] = (dims, nodes, cf_attrs("1", "nodes in contact at each resolution"))
-    result["boxes_per_node"] = (
-        dims,
-        met / np.where(nodes > 0, nodes, np.nan),
-        cf_attrs("1", "boxes of side k s that meet the finest domain over nodes in contact at k"),
-    )
-    _add_means(result, "load")
+    _add_means(result)
     _add_trends(result)
     if "capped_loads" in recipe:
         result = result.merge(_capped(recipe, axes, factors, rtol))
@@ -132,22 +115,60 @@ def dimension_test(recipe, rtol=1e-6):
     return result.assign_attrs(summary=summary(result))
 
 
-def made_surface(dimension, size, seed):
+_AXES = ("dimension", "size", "seed", "load")
+_OF_SURFACES = {
+    "rms_slope": (_AXES[:3], "1", "rms slope h'_rms at the finest spacing"),
+    "nodes": ((*_AXES, "resolution"), "1", "nodes in contact at each resolution"),
+    "boxes_per_node": (
+        (*_AXES, "resolution"),
+        "1",
+        "boxes of side k s that the finest domain occupies over nodes in contact at k",
+    ),
+}
+
+
+def _uncapped(
+    axes: Mapping[str, Any], factors: Sequence[int], rtol: float, *, same_pressure: bool
+) -> dict[str, np.ndarray]:
+    """Both estimates without a hardness, over the axes, with nodes, occupied boxes and slopes."""
+    shape = tuple(len(along) for along in axes.values())
+    values = {name: np.full(shape, np.nan) for name in ESTIMATES}
+    values |= {name: np.full((*shape, len(factors)), np.nan) for name in ("nodes", "occupied")}
+    slope = np.full(shape[:3], np.nan)
+    sizes = axes["size"]
+    for i, j, k in np.ndindex(shape[:3]):
+        dimension, size, seed = axes["dimension"][i], sizes[j], axes["seed"][k]
+        surface = synthetic_surface(dimension, size, seed)
+        slope[i, j, k] = slope_statistics(surface, SIDE / size)["rms_slope"]
+        finer = (sizes[0] / size) ** (dimension - 2) if same_pressure else 1.0
+        forces = axes["load"] * finer * E_STAR * slope[i, j, k] * SIDE**2
+        for name, of_loads in _estimates(surface, forces, factors, rtol).items():
+            values[name][i, j, k] = of_loads
+    return values | {"rms_slope": slope}
+
+
+def synthetic_surface(dimension: float, size: int, seed: int) -> np.ndarray:
     """Heights (size, size) of a self-affine surface of side `SIDE` without a roll-off, mm."""
-    rms = RMS_PART * SIDE
+    rms = RMS_FRACTION * SIDE
     return self_affine((size, size), SIDE / size, 3 - dimension, rms=rms, seed=seed)
 
 
-def _estimates(surface, forces, factors, rtol, hardness=np.inf):
-    """Both estimates under rising forces: `FIELDS` by name, ``nodes`` and ``met`` (load, k)."""
+def _estimates(
+    surface: np.ndarray,
+    forces: np.ndarray,
+    factors: Sequence[int],
+    rtol: float,
+    hardness: float = np.inf,
+) -> dict[str, np.ndarray | list[float]]:
+    """`ESTIMATES` (load) under rising forces, ``nodes`` and ``occupied`` boxes (load, k)."""
     size = len(surface)
     spacing = SIDE / size
-    nodes, met = np.zeros((2, len(forces), len(factors)))
+    nodes, occupied = np.zeros((2, len(forces), len(factors)))
     boxes, pairs = [], []
     for j, factor in enumerate(factors):
         h = prefractal(surface, factor)
         space = HalfSpace(h.shape, (factor * spacing,) * 2, E_STAR)
-        where = f"made surface of {size} x {size} nodes, resolution {factor}"
+        where = f"synthetic surface of {size} x {size} nodes, resolution {factor}"
         solving = {"hardness": hardness, "rtol": rtol}
         states = load_steps(h, space, forces, solving, where)
         for i, state in enumerate(states):
@@ -155,7 +176,7 @@ def _estimates(surface, forces, factors, rtol, hardness=np.inf):
             if j == 0:
                 boxes.append(box_dimension(state.in_contact, spacing))
                 pairs.append(correlation_dimension(state.in_contact, spacing))
-                met[i] = box_count(state.in_contact, np.array(factors, float))
+                occupied[i] = box_count(state.in_contact, np.array(factors, float))
     s = xr.DataArray(spacing * np.array(factors), dims="resolution")
     area = xr.DataArray(nodes, dims=("load", "resolution")) * s**2
     by_area = renormalisation(s, area, xr.DataArray(forces, dims="load"))
@@ -170,33 +191,32 @@ def _estimates(surface, forces, factors, rtol, hardness=np.inf):
         "box_fit_min": [box.r_min / spacing for box in boxes],
         "box_fit_max": [box.r_max / spacing for box in boxes],
         "nodes": nodes,
-        "met": met,
+        "occupied": occupied,
     }
 
 
-def _capped(recipe, axes, factors, rtol):
+def _capped(
+    recipe: Mapping[str, Any], axes: Mapping[str, Any], factors: Sequence[int], rtol: float
+) -> xr.Dataset:
     """Both estimates with a hardness, up to where the whole window yields."""
     size = recipe["capped_size"]
-    parts = np.unique(recipe["capped_loads"])
+    loads = np.unique(recipe["capped_loads"])
     dimensions, seeds = axes["dimension"], axes["seed"]
-    shape = (len(dimensions), len(seeds), len(parts))
-    table = {name: np.full(shape, np.nan) for name in FIELDS}
-    share = np.full(shape, np.nan)
+    shape = (len(dimensions), len(seeds), len(loads))
+    table = {name: np.full(shape, np.nan) for name in ESTIMATES}
+    fraction = np.full(shape, np.nan)
     for i, j in np.ndindex(shape[:2]):
-        surface = made_surface(dimensions[i], size, seeds[j])
+        surface = synthetic_surface(dimensions[i], size, seeds[j])
         slope = float(slope_statistics(surface, SIDE / size)["rms_slope"])
         hardness = recipe["hardness"] * E_STAR * slope
-        found = _estimates(surface, parts * hardness * SIDE**2, factors, rtol, hardness)
-        for name in FIELDS:
-            table[name][i, j] = found[name]
-        share[i, j] = found["nodes"][:, 0] / size**2
-    capped = _labelled({"dimension": dimensions, "seed": seeds, "load": parts}, table)
-    capped["area_share"] = (
-        ("dimension", "seed", "load"),
-        share,
-        cf_attrs("1", "real contact area A_r / A_0"),
-    )
-    _add_means(capped, "load")
+        values = _estimates(surface, loads * hardness * SIDE**2, factors, rtol, hardness)
+        for name in ESTIMATES:
+            table[name][i, j] = values[name]
+        fraction[i, j] = np.asarray(values["nodes"])[:, 0] / size**2
+    capped = _labelled({"dimension": dimensions, "seed": seeds, "load": loads}, table)
+    attrs = cf_attrs("1", "real contact area A_r / A_0")
+    capped["area_share"] = (("dimension", "seed", "load"), fraction, attrs)
+    _add_means(capped)
     capped = capped.drop_vars("light_load_delta")
     names = {name: f"capped_{name}" for name in [*capped.data_vars, "load"]}
     capped = capped.rename(names)
@@ -205,21 +225,22 @@ def _capped(recipe, axes, factors, rtol):
     return capped
 
 
-def _labelled(axes, table):
-    """The dataset from the numbers of every surface and load."""
-    words = {
-        "dimension": "dimension Delta_g of the surface",
-        "size": "nodes a side",
-        "seed": "seed of the surface",
-        "load": "p / (E* h'_rms)",
-    }
-    coords = {name: (name, values, cf_attrs("1", words[name])) for name, values in axes.items()}
-    result = xr.Dataset(
-        {
-            name: (tuple(axes), values, cf_attrs("1", FIELDS[name]))
-            for name, values in table.items()
+_AXIS_WORDS = {
+    "dimension": "dimension Delta_g of the surface",
+    "size": "nodes per side",
+    "seed": "seed of the surface",
+    "load": "p / (E* h'_rms)",
+}
+
+
+def _labelled(axes: Mapping[str, Any], values: Mapping[str, np.ndarray]) -> xr.Dataset:
+    """The dataset from the `ESTIMATES` of every surface and load."""
+    result = labelled_dataset(
+        {name: (tuple(axes), "1", words) for name, words in ESTIMATES.items()},
+        values,
+        coords={
+            name: (name, along, cf_attrs("1", _AXIS_WORDS[name])) for name, along in axes.items()
         },
-        coords=coords,
     )
     result["difference"] = result["delta_area"] - result["delta_box"]
     result["difference"].attrs = cf_attrs("1", "Delta_sigma from A_r(s) less that from box counts")
@@ -228,19 +249,19 @@ def _labelled(axes, table):
     return result
 
 
-def _add_means(result, last):
+def _add_means(result: xr.Dataset) -> None:
     """Means over the seeds with their intervals, into ``result``."""
     for name in ("delta_area", "delta_box", "delta_pairs", "difference"):
         values = result[name]
         dims = tuple(dim for dim in values.dims if dim != "seed")
-        found = mean_interval(values.values, axis=values.dims.index("seed"))
-        for ending, mean in zip(INTERVAL, found[:3], strict=True):
+        means = mean_interval(values.values, axis=values.dims.index("seed"))
+        for ending, mean in zip(INTERVAL, means[:3], strict=True):
             words = f"mean over seeds of {values.attrs['long_name']}{INTERVAL[ending]}"
             result[f"mean_{name}{ending}"] = (dims, mean, cf_attrs("1", words))
-        result[f"mean_{name}_n"] = (dims, found.n, cf_attrs("1", "seeds that have it"))
+        result[f"mean_{name}_n"] = (dims, means.n, cf_attrs("1", "seeds that have it"))
 
 
-def _add_trends(result):
+def _add_trends(result: xr.Dataset) -> None:
     """How the difference goes with size and with load, over all surfaces, into ``result``."""
     values = result["difference"]
     doubling, decade = np.log2(result["size"].values), np.log10(result["load"].values)
@@ -252,13 +273,13 @@ def _add_trends(result):
     ):
         x = np.repeat(x, rows.shape[3])
         lines = [fit_line(x, rows[index].ravel()) for index in np.ndindex(rows.shape[:2])]
-        for ending, field in (("", "slope"), ("_low", "slope_low"), ("_high", "slope_high")):
-            fitted = np.reshape([getattr(line, field) for line in lines], rows.shape[:2])
-            text = f"change of the difference {words}{INTERVAL[ending]}"
+        for ending, of_end in INTERVAL.items():
+            fitted = np.reshape([getattr(line, f"slope{ending}") for line in lines], rows.shape[:2])
+            text = f"change of the difference {words}{of_end}"
             result[f"{name}{ending}"] = (dims, fitted, cf_attrs("1", text))
 
 
-def summary(result):
+def summary(result: xr.Dataset) -> str:
     """In words, by dimension: whether the two estimators agree, and where they tend.
 
     Parameters
@@ -289,10 +310,10 @@ def summary(result):
     return "; ".join(rows)
 
 
-def _trend(one, name, of):
+def _trend(one: xr.Dataset, name: str, of: str) -> str:
     low, high = one[f"{name}_low"].values, one[f"{name}_high"].values
     known = np.isfinite(low)
     if not known.any():
-        return "cannot be told to change"
+        return "shows no trend"
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     return f"falls at {falls} and rises at {rises} of {int(known.sum())} {of}"

@@ -4,26 +4,34 @@ One joint decides nothing. The dilatancy is a largest height, which scatters fro
 surface by more than it grows over the second half of the offsets.
 """
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import labelled_dataset
 from ..core.directions import DIRECTIONS
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
-from ..mechanics.joint import direction_spacing, face_correlation, rigid_dilatancy
+from ..mechanics.joint import (
+    RIGID_SLIDE,
+    direction_spacing,
+    face_correlation,
+    rigid_dilatancy,
+)
 from ..roughness.dimension import slope_statistics
 from ..study.embedded import embedded_surface
 from ..surface.specimen import faces, largest_offset, make_specimen, window_slices
+from .units import SURFACES
 
-SURFACES = ("with_roll_off", "without_roll_off")
-
-#: Offsets at which the joints are looked at.
-OFFSETS = 50
+#: Number of offsets, from zero to the largest.
+N_OFFSETS = 50
 
 
-def roll_off_effect(recipe, window, seeds):
+def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[int]) -> xr.Dataset:
     """Rigid dilatancy of embedded joints with their roll-off, and without.
 
     Parameters
@@ -48,14 +56,16 @@ def roll_off_effect(recipe, window, seeds):
     Without the roll-off the spectrum goes on to the longest wave. Heights are scaled to the rms
     slope that the same seed has with it, so that the short waves are as high.
     """
-    made = {
+    by_surface = {
         surface: [_slide(heights, recipe["spacing"], window) for heights in surfaces]
         for surface, surfaces in _surfaces(recipe, seeds).items()
     }
-    reach = min(len(slid["rigid_offset"]) for slides in made.values() for slid in slides)
+    reach = min(len(slid["rigid_offset"]) for slides in by_surface.values() for slid in slides)
     result = xr.concat(
         [
-            xr.concat([slid.isel(rigid_offset=slice(reach)) for slid in made[surface]], "seed")
+            xr.concat(
+                [slid.isel(rigid_offset=slice(reach)) for slid in by_surface[surface]], "seed"
+            )
             for surface in SURFACES
         ],
         "surface",
@@ -66,20 +76,20 @@ def roll_off_effect(recipe, window, seeds):
     second = v >= v[-1] / 2
     opened = result["rigid_dilatancy"].mean("direction").transpose("surface", "seed", ...).values
     slopes = [[fit_line(v[second], row[second]).slope for row in rows] for rows in opened]
-    found = mean_interval(slopes, axis=1)
-    for (ending, end), values in zip(INTERVAL.items(), found[:3], strict=True):
+    means = mean_interval(slopes, axis=1)[:3]
+    for (ending, end), values in zip(INTERVAL.items(), means, strict=True):
         words = f"slope of the rigid dilatancy over the second half of v, mean over seeds{end}"
         result[f"slope{ending}"] = ("surface", values, cf_attrs("1", words))
     result.attrs = {"roll_off": recipe["roll_off"], "window": window, "label": recipe["label"]}
     return result
 
 
-def _surfaces(recipe, seeds):
+def _surfaces(recipe: Mapping[str, Any], seeds: Sequence[int]) -> dict[str, list[np.ndarray]]:
     """Heights by surface, a list over the seeds."""
     with_it = [embedded_surface({**recipe, "seed": seed}) for seed in seeds]
     without = [embedded_surface({**recipe, "seed": seed, "roll_off": None}) for seed in seeds]
 
-    def slope(heights):
+    def slope(heights: np.ndarray) -> float:
         return float(slope_statistics(heights, recipe["spacing"])["rms_slope"])
 
     scaled = [
@@ -89,7 +99,13 @@ def _surfaces(recipe, seeds):
     return dict(zip(SURFACES, (with_it, scaled), strict=True))
 
 
-def _slide(heights, spacing, window):
+_TABLE = RIGID_SLIDE | {
+    "face_rms": ((), "mm", "standard deviation of a face's heights"),
+    "rms_slope": ((), "1", "rms slope of the surface"),
+}
+
+
+def _slide(heights: np.ndarray, spacing: float, window: float) -> xr.Dataset:
     """One joint over its offsets."""
     coords = [spacing * (np.arange(n) + 0.5) for n in heights.shape]
     scan = xr.DataArray(
@@ -98,42 +114,23 @@ def _slide(heights, spacing, window):
         coords=coords,
         attrs={"spacing_x": spacing, "spacing_y": spacing, "source": "made"},
     )
-    specimen = make_specimen(scan, window=window, name="made surface")
+    specimen = make_specimen(scan, window=window, name="synthetic surface")
     reach = min(largest_offset(specimen, direction) for direction in DIRECTIONS)
-    cells = np.unique(np.linspace(0, reach, OFFSETS).astype(int))
-    slid = {direction: rigid_dilatancy(specimen, direction, cells) for direction in DIRECTIONS}
-    of_slide = ("direction", "rigid_offset")
+    cells = np.unique(np.linspace(0, reach, N_OFFSETS).astype(int))
+    dilatancy, spread = zip(*(rigid_dilatancy(specimen, d, cells) for d in DIRECTIONS), strict=True)
     lower = without_mean_plane(faces(specimen)[0][window_slices(specimen)])
-    return xr.Dataset(
+    slid = cells * direction_spacing(specimen, "E")
+    return labelled_dataset(
+        _TABLE,
         {
-            "rigid_dilatancy": (
-                of_slide,
-                [slid[d][0] for d in DIRECTIONS],
-                cf_attrs("mm", "rigid dilatancy delta_r"),
-            ),
-            "composite_rms": (
-                of_slide,
-                [slid[d][1] for d in DIRECTIONS],
-                cf_attrs("mm", "standard deviation of the composite topography"),
-            ),
-            "face_correlation": (
-                of_slide,
-                [face_correlation(specimen, d, cells) for d in DIRECTIONS],
-                cf_attrs("1", "correlation of the two faces under the window"),
-            ),
-            "face_rms": ((), lower.std(), cf_attrs("mm", "standard deviation of a face's heights")),
-            "rms_slope": (
-                (),
-                slope_statistics(heights, spacing)["rms_slope"].item(),
-                cf_attrs("1", "rms slope of the surface"),
-            ),
+            "rigid_dilatancy": list(dilatancy),
+            "composite_rms": list(spread),
+            "face_correlation": [face_correlation(specimen, d, cells) for d in DIRECTIONS],
+            "face_rms": lower.std(),
+            "rms_slope": slope_statistics(heights, spacing)["rms_slope"].item(),
         },
         coords={
             "direction": list(DIRECTIONS),
-            "rigid_offset": (
-                "rigid_offset",
-                cells * direction_spacing(specimen, "E"),
-                cf_attrs("mm", "shear offset v"),
-            ),
+            "rigid_offset": ("rigid_offset", slid, cf_attrs("mm", "shear offset v")),
         },
     )

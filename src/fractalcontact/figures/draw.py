@@ -5,25 +5,22 @@ A module has ``draw(atlas, name)``: the atlas as an xarray DataTree and a specim
 """
 
 import importlib
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 from ..study.atlas import STAGES, read_atlas
-from ..study.figure_list import ACCURACY, EXPERIMENTS
-from .kit.drawing import print_style, save, uncollected
+from ..study.figure_list import all_figures
+from .kit.drawing import Drawing, garbage_collection_paused, print_style, save
 
-#: Of the scan itself, not of contact at the resolutions a warning is about.
-_OF_THE_SCAN = ("fig02_relief", "quality")
-
-#: Stages that figures of a whole study draw: to read the others takes long.
-_OF_A_STUDY = {"specimens", "joints", *EXPERIMENTS, *ACCURACY, "speed_growth", "elimination"}
+#: Stages of the scan itself, not of contact at the resolutions a warning is about.
+_OF_THE_SCAN = {"specimens", "quality", "surface_dimension"}
 
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
 
 
-def drawer_of(name):
-    """The function that draws a figure, by the figure's name.
+def drawer_of(name: str) -> Callable[..., Drawing]:
+    """Function that draws a figure, by the figure's name.
 
     Parameters
     ----------
@@ -34,9 +31,14 @@ def drawer_of(name):
     -------
     callable
         ``draw(atlas, subject)``, which gives a :class:`figures.kit.drawing.Drawing`.
+
+    Raises
+    ------
+    KeyError
+        If no figure has this name.
     """
-    (path,) = Path(__file__).parent.glob(f"*/{name}.py")
-    return importlib.import_module(f".{path.parent.name}.{name}", __package__).draw
+    _, group, module = all_figures()[name].module.split("/")
+    return importlib.import_module(f".{group}.{module}", __package__).draw
 
 
 def draw_figures(atlas_path, specimen, folder, names):
@@ -75,7 +77,9 @@ def draw_study_figures(atlas_path, specimens, folder, names):
     dict
         Figure name to caption.
     """
-    atlas = read_atlas(atlas_path, without=STAGES.keys() - _OF_A_STUDY)
+    # To read the stages that none of them draws takes long.
+    needs = {stage for name in names for stage in all_figures()[name].needs}
+    atlas = read_atlas(atlas_path, without=STAGES.keys() - needs)
     return _draw(atlas, list(specimens), folder, names)
 
 
@@ -83,9 +87,9 @@ def _draw(atlas, subject, folder, names, warning=""):
     captions = {}
     with print_style():
         for name in names:
-            with uncollected():
+            with garbage_collection_paused():
                 drawing = drawer_of(name)(atlas, subject)
-                if warning and name not in _OF_THE_SCAN:
+                if warning and not _OF_THE_SCAN.issuperset(all_figures()[name].needs):
                     drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
                 save(drawing, folder, name)
             captions[name] = drawing.caption

@@ -1,21 +1,26 @@
-"""Real contact area: its correction for the grid, its law, and the theories beside it."""
+"""Real contact area: its correction for the grid, its power law, and the theories beside it."""
+
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
+from ..core.datasets import labelled
 from ..core.fitting import FEWEST_POINTS, fit_line
-from ..core.intervals import mean_interval
+from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
 from ..roughness.dimension import slope_statistics
 from . import theory
 from .joint import composite_topography, direction_spacing
+from .states import error_attrs
 
 #: Area that the cells along the edge of contact have too much, as a part of cell side times
 #: staircase perimeter. Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161.
 EDGE_EXCESS = (np.pi - 1 + np.log(2)) / 24
 
-#: A domain of fewer nodes is left out of the fits of area: one node more or less is 10 % of it.
-FEWEST_NODES = 10
+#: Contact of fewer nodes is not resolved, and not fitted: one node more or less is 10 % of it.
+RESOLVED_NODES = 10
 
 #: Light load, on which the theories' straight lines are compared: largest p / (E* h'_rms).
 LIGHT_LOAD = 0.02
@@ -26,11 +31,15 @@ FLUSH = 1e-9
 #: What is kept of a composite topography, by its name in :func:`slope_statistics`.
 STATISTICS = ("rms_height", "rms_slope", "m0", "m2", "m4")
 
+#: kappa of the raw and of the corrected area.
+AREA_SLOPE = "area slope kappa = (A_r/A_0) E* h'_rms / p"
+CORRECTED_AREA_SLOPE = "area slope kappa, corrected area"
+
 #: Why there is no law of the area.
 FULL_CONTACT = "the faces touch everywhere at every load"
 
 
-def contact_perimeter(in_contact, spacing):
+def contact_perimeter(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
     """Length of the cell sides between contact and gap, inside the window, mm.
 
     Parameters
@@ -51,7 +60,7 @@ def contact_perimeter(in_contact, spacing):
     return above * dx + beside * dy
 
 
-def corrected_area(in_contact, spacing):
+def corrected_area(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
     """Real contact area without what the grid adds along its edge, mm2.
 
     Parameters
@@ -82,7 +91,7 @@ def corrected_area(in_contact, spacing):
     return np.maximum(nodes - EDGE_EXCESS * edges, 0.0) * dy * dx
 
 
-def _edges(in_contact):
+def _edges(in_contact: ArrayLike) -> tuple[np.ndarray, ...]:
     """Number of cell sides between contact and gap, along x (cells above each other) and y."""
     domain = np.asarray(in_contact, bool)
     return tuple(
@@ -94,7 +103,7 @@ def _edges(in_contact):
     )
 
 
-def composite_statistics(specimen, direction, cells):
+def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> xr.Dataset:
     """Heights, slopes and spectral moments of the composite topography at each offset.
 
     Parameters
@@ -116,18 +125,19 @@ def composite_statistics(specimen, direction, cells):
     differences give 0.93 to 0.94 of the slope of the waves themselves.
     """
     spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
-    made = np.asarray(cells, int) * direction_spacing(specimen, direction)
+    cells = np.asarray(cells, int)
     each = [
         slope_statistics(composite_topography(specimen, direction, n), spacing)[list(STATISTICS)]
         for n in cells
     ]
     result = xr.concat(each, "offset", combine_attrs="override")
-    result["offset"] = ("offset", made, cf_attrs("mm", "shear offset v"))
+    offset = cells * direction_spacing(specimen, direction)
+    result["offset"] = ("offset", offset, cf_attrs("mm", "shear offset v"))
     result.attrs = {"spacing_y": float(spacing[0]), "spacing_x": float(spacing[1])}
     return result
 
 
-def joint_statistics(specimen, joint):
+def joint_statistics(specimen: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     """`composite_statistics` of every direction whose contact is solved.
 
     Parameters
@@ -153,7 +163,9 @@ def joint_statistics(specimen, joint):
     return result.assign_coords(direction=directions)
 
 
-def area_laws(curves, statistics, e_star, dimension):
+def area_laws(
+    curves: xr.Dataset, statistics: xr.Dataset, e_star: float, dimension: float
+) -> xr.Dataset:
     """How the real contact area grows with the force, and what the theories make of the surface.
 
     Parameters
@@ -175,8 +187,8 @@ def area_laws(curves, statistics, e_star, dimension):
         deviation of A_r/F from its geometric mean over the loads fitted; means of kappa at light
         load; ``no_law`` and ``no_mean_kappa``, reasons; the asperities. Over (direction, offset,
         load): ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and
-        the shares A_r/A_0 of the theories. ``departure`` and the kappas have an ``_error``, by the
-        solver.
+        the fractions A_r/A_0 of the theories. ``departure`` and the kappas have an ``_error``, the
+        solver's.
 
     Notes
     -----
@@ -187,10 +199,11 @@ def area_laws(curves, statistics, e_star, dimension):
     finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
     finest, statistics = xr.align(finest, statistics, join="exact")
     spacing = statistics.attrs["spacing_y"], statistics.attrs["spacing_x"]
-    node_share = np.prod(spacing) * finest["nominal_pressure"] / finest["load"]
-    touching = finest["area_share"] > (FEWEST_NODES - 0.5) * node_share
+    # Fraction of the window that a node covers.
+    node = np.prod(spacing) * finest["nominal_pressure"] / finest["load"]
+    touching = finest["area_share"] > (RESOLVED_NODES - 0.5) * node
     result = statistics.copy()
-    result["fitted"] = touching & (finest["area_share"] < 1 - 0.5 * node_share)
+    result["fitted"] = touching & (finest["area_share"] < 1 - 0.5 * node)
     result["fitted"].attrs = cf_attrs("1", "load used in the fits of area against force")
     _add_laws(result, finest)
     _add_kappa(result, finest, e_star, touching)
@@ -204,8 +217,18 @@ LAW = (
     ("exponent_low", "slope_low", "1", "exponent m, lower end of the 95 % interval"),
     ("exponent_high", "slope_high", "1", "exponent m, upper end of the 95 % interval"),
     ("unit_area", "intercept", "mm2", "real contact area at 1 N by the fitted law"),
-    ("unit_area_low", "intercept_low", "mm2", "that area, lower end of the 95 % interval"),
-    ("unit_area_high", "intercept_high", "mm2", "that area, upper end of the 95 % interval"),
+    (
+        "unit_area_low",
+        "intercept_low",
+        "mm2",
+        "real contact area at 1 N, lower end of the 95 % interval",
+    ),
+    (
+        "unit_area_high",
+        "intercept_high",
+        "mm2",
+        "real contact area at 1 N, upper end of the 95 % interval",
+    ),
     ("force_low", "x_min", "N", "smallest force fitted"),
     ("force_high", "x_max", "N", "largest force fitted"),
     ("n", "n", "1", "loads fitted"),
@@ -215,7 +238,7 @@ LAW = (
 _LOGARITHMS = ("intercept", "intercept_low", "intercept_high", "x_min", "x_max")
 
 
-def _add_laws(result, curves):
+def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
     """Power laws of raw and corrected area, departure from linearity, reasons for none."""
     dims = ("direction", "offset")
     force = np.log(curves["load"].values)
@@ -230,122 +253,148 @@ def _add_laws(result, curves):
             values = np.exp(values) if field in _LOGARITHMS else values
             kind = ", corrected area" if prefix else ""
             result[prefix + key] = (dims, values, cf_attrs(units, words + kind))
+    _add_departure(result, curves)
+    result["no_law"] = (
+        dims,
+        _reasons_for_no_law(result, curves),
+        cf_attrs("1", "why there is no law of the area"),
+    )
 
-    log_ratio = np.log(curves["area"] / curves["load"]).where(result["fitted"])
-    deviation = np.exp(np.abs(log_ratio - log_ratio.mean("load")).max("load")) - 1
+
+def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
+    """Departure of area against force from a straight line, into ``result``."""
+    ratio = curves["area"] / curves["load"]
+    log_ratio = xr.apply_ufunc(np.log, ratio).where(result["fitted"])
+    largest = abs(log_ratio - log_ratio.mean("load")).max("load")
+    deviation = largest.pipe(np.exp) - 1
     result["departure"] = deviation.where(np.isfinite(result["exponent"]))
     result["departure"].attrs = cf_attrs(
-        "1", "largest deviation of A_r/F from its geometric mean, a part of it"
+        "1", "largest deviation of A_r/F from its geometric mean, a fraction of it"
     )
-    share = np.minimum(curves["area_error"] / curves["area"], 1)
+    uncertain = np.minimum(curves["area_error"] / curves["area"], 1)
     with np.errstate(divide="ignore"):  # a law of which nothing is sure
-        off = abs(np.log1p(-share)).where(result["fitted"])
+        off = abs(np.log1p(-uncertain)).where(result["fitted"])
     error = (1 + result["departure"]) * np.expm1(off.max("load") + off.mean("load"))
-    result["departure_error"] = error.assign_attrs(
-        cf_attrs("1", "largest deviation of A_r/F from its geometric mean, error by the solver")
-    )
+    result["departure_error"] = error.assign_attrs(error_attrs(result["departure"].attrs))
+
+
+def _reasons_for_no_law(result: xr.Dataset, curves: xr.Dataset) -> np.ndarray:
+    """Why a curve has no law of the area, (direction, offset); empty where it has one."""
     full = (curves["area_share"] > 0.5).all("load") & ~result["fitted"].any("load")
+    n = result["n"].values.astype(int)
     reasons = [
-        "" if n >= FEWEST_POINTS else FULL_CONTACT if whole else _too_few(n)
-        for n, whole in zip(
-            result["n"].values.ravel().astype(int), full.values.ravel(), strict=True
-        )
+        "" if loads >= FEWEST_POINTS else FULL_CONTACT if whole else _too_few(loads)
+        for loads, whole in zip(n.ravel(), full.values.ravel(), strict=True)
     ]
-    reasons = np.array(reasons).reshape(result["n"].shape)
-    result["no_law"] = (dims, reasons, cf_attrs("1", "why there is no law of the area"))
+    return np.array(reasons).reshape(n.shape)
 
 
-def _too_few(n):
-    return f"{n} of {FEWEST_POINTS} loads with {FEWEST_NODES} nodes in contact, but not all"
+def _too_few(n: int) -> str:
+    return f"{n} of {FEWEST_POINTS} loads with {RESOLVED_NODES} nodes in contact, but not all"
 
 
-def _add_kappa(result, curves, e_star, touching):
+def _add_kappa(
+    result: xr.Dataset, curves: xr.Dataset, e_star: float, touching: xr.DataArray
+) -> None:
     """kappa of A/A0 = kappa p / (E* h'_rms), raw and corrected, and its mean at light load."""
     slope = result["rms_slope"].where(result["rms_slope"] > FLUSH)
     reduced = curves["nominal_pressure"] / (e_star * slope)
     result["reduced_pressure"] = reduced.assign_attrs(cf_attrs("1", "p / (E* h'_rms)"))
     light = touching & (reduced <= LIGHT_LOAD)
     result["light"] = light.assign_attrs(
-        cf_attrs("1", f"{FEWEST_NODES} nodes or more touch and p / (E* h'_rms) <= {LIGHT_LOAD:g}")
+        cf_attrs("1", f"{RESOLVED_NODES} nodes or more touch and p / (E* h'_rms) <= {LIGHT_LOAD:g}")
     )
     nominal = curves["load"] / curves["nominal_pressure"]
     for prefix, name, words in (
-        ("", "area", "area slope kappa = (A_r/A_0) E* h'_rms / p"),
-        ("corrected_", "area_corrected", "area slope kappa, corrected area"),
+        ("", "area", AREA_SLOPE),
+        ("corrected_", "area_corrected", CORRECTED_AREA_SLOPE),
     ):
+        attrs = cf_attrs("1", words)
         kappa = curves[name] / nominal / reduced
-        result[f"{prefix}kappa"] = kappa.assign_attrs(cf_attrs("1", words))
-        result[f"{prefix}kappa_error"] = (curves[f"{name}_error"] / nominal / reduced).assign_attrs(
-            cf_attrs("1", f"{words}, error by the solver")
-        )
+        error = curves[f"{name}_error"] / nominal / reduced
+        result[f"{prefix}kappa"] = kappa.assign_attrs(attrs)
+        result[f"{prefix}kappa_error"] = error.assign_attrs(error_attrs(attrs))
         means = xr.apply_ufunc(
             lambda values: mean_interval(values, axis=-1)[:3],
             kappa.where(light),
             input_core_dims=[["load"]],
             output_core_dims=[[], [], []],
         )
-        ends = ("", ", lower end of the 95 % interval", ", upper end of the 95 % interval")
-        for key, mean, end in zip(("", "_low", "_high"), means, ends, strict=True):
-            text = f"mean of {words}, at light load{end}"
-            result[f"{prefix}mean_kappa{key}"] = mean.assign_attrs(cf_attrs("1", text))
+        for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
+            text = f"mean of {words}, at light load{of_end}"
+            result[f"{prefix}mean_kappa{ending}"] = mean.assign_attrs(cf_attrs("1", text))
     result["mean_kappa_n"] = light.sum("load").assign_attrs(cf_attrs("1", "loads in the mean"))
     reason = xr.where(
         np.isnan(slope),
         "the faces are flush and have no slope",
-        f"no load with p / (E* h'_rms) <= {LIGHT_LOAD:g} and {FEWEST_NODES} nodes in contact",
+        f"no load with p / (E* h'_rms) <= {LIGHT_LOAD:g} and {RESOLVED_NODES} nodes in contact",
     )
     reason = xr.where(result["mean_kappa_n"] > 0, "", reason)
     result["no_mean_kappa"] = reason.assign_attrs(cf_attrs("1", "why there is no mean of kappa"))
 
 
-def _add_theories(result, curves, e_star, dimension, spacing):
+#: What the theories make of every composite topography: unit, long name.
+_OF_THEORIES = {
+    "summit_density": ("mm-2", "summits per area"),
+    "summit_radius": ("mm", "mean radius R of the summits"),
+    "summit_deviation": ("mm", "standard deviation sigma_s of summit heights"),
+    "fractal_scale": ("mm", "Majumdar and Bhushan's G, from S at one cell's lag"),
+    "persson_share": ("1", "A_r/A_0 by Persson"),
+    "bush_gibson_thomas_share": ("1", "A_r/A_0 by Bush, Gibson and Thomas"),
+    "greenwood_williamson_share": ("1", "A_r/A_0 by Greenwood-Williamson"),
+    "majumdar_bhushan_share": ("1", "A_r/A_0 by Majumdar and Bhushan"),
+}
+
+#: What they say whatever the topography.
+_EXPONENTS = {
+    "profile_dimension": ((), "1", "D = Delta_g - 1 of the profiles"),
+    "majumdar_bhushan_exponent": (
+        (),
+        "1",
+        "exponent 2/(3-D) of area against force by Majumdar and Bhushan",
+    ),
+    "archard_exponent": (
+        "archard_level",
+        "1",
+        "exponent 1 - 3^-n of area against force by Archard",
+    ),
+    "archard_level": ("archard_level", "1", "generations n of spheres upon spheres"),
+}
+
+
+def _add_theories(
+    result: xr.Dataset, curves: xr.Dataset, e_star: float, dimension: float, spacing: float
+) -> None:
     """Asperities and fractal parameters of the surface, and the areas the theories make of them."""
     rough = result.where(result["rms_slope"] > FLUSH)
     force, pressure = curves["load"], curves["nominal_pressure"]
-    nominal = force / pressure
+    nominal, slope = force / pressure, rough["rms_slope"]
     summits = theory.asperities(rough["m0"], rough["m2"], rough["m4"])
     deviation = result["m0"].copy(data=summits.height_deviation)
     profile = float(dimension) - 1
     scale = theory.roughness_scale(rough["m2"] * spacing**2, spacing, profile)
-    bush = theory.linear_area(pressure, e_star, rough["rms_slope"], theory.BUSH_GIBSON_THOMAS_KAPPA)
     greenwood = theory.greenwood_williamson_area(force, e_star, summits.radius, deviation)
     majumdar = theory.majumdar_bhushan_area(force, e_star, profile, scale)
-    for name, values, units, words in (
-        ("summit_density", summits.density, "mm-2", "summits per area"),
-        ("summit_radius", summits.radius, "mm", "mean radius R of the summits"),
-        ("summit_deviation", deviation, "mm", "standard deviation sigma_s of summit heights"),
-        ("fractal_scale", scale, "mm", "Majumdar and Bhushan's G, from S at one cell's lag"),
-        (
-            "persson_share",
-            theory.persson_area(pressure, e_star, rough["rms_slope"]),
-            "1",
-            "A_r/A_0 by Persson",
+    values: dict[str, Any] = {
+        "summit_density": summits.density,
+        "summit_radius": summits.radius,
+        "summit_deviation": deviation,
+        "fractal_scale": scale,
+        "persson_share": theory.persson_area(pressure, e_star, slope),
+        "bush_gibson_thomas_share": theory.linear_area(
+            pressure, e_star, slope, theory.BUSH_GIBSON_THOMAS_KAPPA
         ),
-        ("bush_gibson_thomas_share", bush, "1", "A_r/A_0 by Bush, Gibson and Thomas"),
-        ("greenwood_williamson_share", greenwood / nominal, "1", "A_r/A_0 by Greenwood-Williamson"),
-        ("majumdar_bhushan_share", majumdar / nominal, "1", "A_r/A_0 by Majumdar and Bhushan"),
-    ):
-        result[name] = values.assign_attrs(cf_attrs(units, words))
-    result["profile_dimension"] = ((), profile, cf_attrs("1", "D = Delta_g - 1 of the profiles"))
-    result["majumdar_bhushan_exponent"] = (
-        (),
-        2 / (3 - profile) if 1 < profile < 1.5 else np.nan,
-        cf_attrs("1", "exponent 2/(3-D) of area against force by Majumdar and Bhushan"),
-    )
-    levels = np.arange(1, 4)
-    result["archard_exponent"] = (
-        "archard_level",
-        theory.archard_exponent(levels),
-        cf_attrs("1", "exponent 1 - 3^-n of area against force by Archard"),
-    )
-    result["archard_level"] = (
-        "archard_level",
-        levels,
-        cf_attrs("1", "generations n of spheres upon spheres"),
-    )
-    result.attrs |= {
-        "e_star": float(e_star),
-        "persson_kappa": float(theory.PERSSON_KAPPA),
-        "bush_gibson_thomas_kappa": float(theory.BUSH_GIBSON_THOMAS_KAPPA),
-        "computed_kappa": list(theory.COMPUTED_KAPPA),
+        "greenwood_williamson_share": greenwood / nominal,
+        "majumdar_bhushan_share": majumdar / nominal,
     }
+    for name, words in _OF_THEORIES.items():
+        result[name] = values[name].assign_attrs(cf_attrs(*words))
+    levels = np.arange(1, 4)
+    exponents = {
+        "profile_dimension": profile,
+        "majumdar_bhushan_exponent": 2 / (3 - profile) if 1 < profile < 1.5 else np.nan,
+        "archard_exponent": theory.archard_exponent(levels),
+        "archard_level": levels,
+    }
+    result.update(labelled(_EXPONENTS, exponents))
+    result.attrs |= {"e_star": float(e_star)} | theory.KAPPA_ATTRS

@@ -1,22 +1,26 @@
 """Closure and dilatancy of the joint from its contact states (paper, sect. 5)."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
 
 from ..core.fitting import fit_line
-from ..core.intervals import t_quantile
+from ..core.intervals import INTERVAL, t_quantile
 from ..core.labels import cf_attrs
+from ..core.ranges import within
 from ..elastic.halfspace import rectangle_mean_displacement
-from .area import FEWEST_NODES
+from .area import RESOLVED_NODES
 from .load_curve import left_out_misses
-from .states import OF_STATES, OFFSETS
+from .states import OF_STATES, OFFSETS, error_attrs
+from .theory import Numbers
 
 #: Points a hyperbola of two parameters needs before its interval means anything.
-FEWEST_POINTS = 4
+FEWEST_HYPERBOLA_POINTS = 4
 
 
-def bulk_settlement(force, e_star, side_y, side_x):
+def bulk_settlement(force: ArrayLike, e_star: float, side_y: float, side_x: float) -> np.ndarray:
     """w_b, mm: mean settlement under the force spread evenly over the nominal window.
 
     For a square of side b, w_b = 0.946402 F/(E* b).
@@ -34,10 +38,32 @@ def bulk_settlement(force, e_star, side_y, side_x):
     return np.asarray(force) / (side_y * side_x) * mean / e_star
 
 
+def interface_closure(closure: Numbers, settlement: Numbers, flush: Any = False) -> Any:
+    """Interface closure w_int = w - w_b, mm.
+
+    Parameters
+    ----------
+    closure : float, ndarray or xr.DataArray
+        w, mm.
+    settlement : float, ndarray or xr.DataArray
+        w_b, mm, from :func:`bulk_settlement`.
+    flush : bool, ndarray or xr.DataArray
+        Where faces match everywhere (a composite topography that is flat).
+
+    Returns
+    -------
+    ndarray or xr.DataArray
+        0 where faces are flush: they have nothing to close. The difference would be
+        -0.078 F/(E* b) there, because a flush window is loaded like a rigid punch and w_b belongs
+        to a uniform pressure.
+    """
+    return xr.where(flush, 0.0, closure - settlement)
+
+
 class Hyperbola(NamedTuple):
     """sigma = k_ni w / (1 - w/w_m) (Bandis et al. 1983), with 95 % intervals.
 
-    ``misfit`` is the rms of the residual closure as a share of the largest closure fitted;
+    ``misfit`` is the rms of the residual closure as a fraction of the largest closure fitted;
     ``reason`` says why there is no fit, else it is empty.
     """
 
@@ -52,7 +78,7 @@ class Hyperbola(NamedTuple):
     reason: str
 
 
-def fit_hyperbola(pressure, closure):
+def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
     """Fit the closure hyperbola, least squares in the closure.
 
     Parameters
@@ -77,9 +103,9 @@ def fit_hyperbola(pressure, closure):
     sigma, w = np.asarray(pressure, float), np.asarray(closure, float)
     usable = np.isfinite(sigma) & np.isfinite(w) & (sigma > 0) & (w > 0)
     sigma, w = sigma[usable], w[usable]
-    if sigma.size < FEWEST_POINTS:
+    if sigma.size < FEWEST_HYPERBOLA_POINTS:
         return _no_hyperbola(
-            sigma.size, f"{sigma.size} points with w_int > 0, {FEWEST_POINTS} needed"
+            sigma.size, f"{sigma.size} points with w_int > 0, {FEWEST_HYPERBOLA_POINTS} needed"
         )
 
     def law(sigma, log_k, log_wm):
@@ -98,18 +124,29 @@ def fit_hyperbola(pressure, closure):
     low, high = np.exp(best - half), np.exp(best + half)
     k_ni, w_m = np.exp(best)
     return Hyperbola(
-        *(float(x) for x in (k_ni, low[0], high[0], w_m, low[1], high[1])),
-        misfit,
-        sigma.size,
-        "",
+        k_ni=float(k_ni),
+        k_ni_low=float(low[0]),
+        k_ni_high=float(high[0]),
+        w_m=float(w_m),
+        w_m_low=float(low[1]),
+        w_m_high=float(high[1]),
+        misfit=misfit,
+        n=sigma.size,
+        reason="",
     )
 
 
-def _no_hyperbola(n, reason):
-    return Hyperbola(*[np.nan] * 7, n=n, reason=reason)
+def _no_hyperbola(n: int, reason: str) -> Hyperbola:
+    nan = np.nan
+    return Hyperbola(nan, nan, nan, nan, nan, nan, nan, n, reason)
 
 
-def closure_curves(states, window, e_star, fit_range=None):
+def closure_curves(
+    states: xr.Dataset,
+    window: tuple[float, float],
+    e_star: float,
+    fit_range: tuple[float, float] | None = None,
+) -> xr.Dataset:
     """Closure of the interface at the scan's own resolution, and its hyperbola.
 
     Parameters
@@ -131,55 +168,60 @@ def closure_curves(states, window, e_star, fit_range=None):
         ``closure_spacing_error`` and the numbers of the states over (direction, offset, resolution,
         load); the fits over (direction, offset, resolution); what
         :data:`mechanics.states.OFFSETS` names over (direction, offset).
-
-    Notes
-    -----
-    Faces that match everywhere (a composite topography that is flat) have nothing to close: their
-    w_int is 0. The difference w - w_b would be -0.078 F/(E* b) there, because a flush window is
-    pressed as a rigid punch and w_b belongs to a uniform pressure.
     """
-    force = states["load"]
-    result = states[[*OF_STATES, *OFFSETS]].copy()
-    settlement = bulk_settlement(force.values, e_star, *window)
     area = window[0] * window[1]
-    result["bulk_settlement"] = ("load", settlement, cf_attrs("mm", "bulk settlement w_b"))
-    result["nominal_pressure"] = ("load", force.values / area, cf_attrs("MPa", "F / A_0"))
-    flush = result["composite_spread"] == 0
-    closed = (result["closure"] - result["bulk_settlement"]).where(~flush, 0.0)
-    result["interface_closure"] = closed.transpose(*result["closure"].dims)
-    result["interface_closure"].attrs = cf_attrs("mm", "interface closure w_int = w - w_b")
-    result["area_share"] = result["area"] / area
-    result["area_share"].attrs = cf_attrs("1", "real contact area A_r / A_0")
-    stiffness = interface_stiffness(
-        result["stiffness"] / area, result["nominal_pressure"] / result["bulk_settlement"]
-    ).where(~flush)
-    result["interface_stiffness"] = stiffness.transpose(*result["closure"].dims)
-    result["interface_stiffness"].attrs = cf_attrs(
-        "MPa/mm", "stiffness of the interface d sigma / d w_int; none where faces are flush"
-    )
+    result = states[[*OF_STATES, *OFFSETS]].copy()
+    _add_interface(result, bulk_settlement(states["load"].values, e_star, *window), area)
     _add_conductance(result, e_star)
     _add_errors(result, area, e_star)
-
-    lowest, highest = fit_range or (force.values.min(), force.values.max())
-    fitted = (force.values >= lowest * (1 - 1e-9)) & (force.values <= highest * (1 + 1e-9))
-    dims = ("direction", "offset", "resolution")
-    fits = np.empty([result.sizes[dim] for dim in dims], object)
-    for index in np.ndindex(fits.shape):
-        curve = result["interface_closure"].transpose(*dims, "load").values[index]
-        fits[index] = fit_hyperbola(result["nominal_pressure"].values[fitted], curve[fitted])
-    for name, units, words in HYPERBOLA_FIELDS:
-        kind = str if name == "reason" else float
-        values = np.array([getattr(fit, name) for fit in fits.flat], kind).reshape(fits.shape)
-        result[f"hyperbola_{name}"] = (dims, values, cf_attrs(units, words))
-    result.attrs["hyperbola_force_low"] = float(force.values[fitted].min(initial=np.inf))
-    result.attrs["hyperbola_force_high"] = float(force.values[fitted].max(initial=-np.inf))
+    _add_hyperbolas(result, fit_range)
     return result
 
 
-def _add_errors(curves, area, e_star):
-    """Errors by the solver of what was made of the states, and by the spacing of the closures."""
-    share = (curves["interface_stiffness"] * area / curves["stiffness"]) ** 2
-    stiffness = curves["stiffness_error"] / area * share
+def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> None:
+    """Closure, stiffness and contact of the interface alone, into ``curves``."""
+    order = curves["closure"].dims
+    force = curves["load"].values
+    curves["bulk_settlement"] = ("load", settlement, cf_attrs("mm", "bulk settlement w_b"))
+    curves["nominal_pressure"] = ("load", force / area, cf_attrs("MPa", "F / A_0"))
+    flush = curves["composite_spread"] == 0
+    closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
+    curves["interface_closure"] = closing.transpose(*order)
+    curves["interface_closure"].attrs = cf_attrs("mm", "interface closure w_int = w - w_b")
+    curves["area_share"] = curves["area"] / area
+    curves["area_share"].attrs = cf_attrs("1", "real contact area A_r / A_0")
+    stiffness = interface_stiffness(
+        curves["stiffness"] / area, curves["nominal_pressure"] / curves["bulk_settlement"]
+    ).where(~flush)
+    curves["interface_stiffness"] = stiffness.transpose(*order)
+    curves["interface_stiffness"].attrs = cf_attrs(
+        "MPa/mm", "stiffness of the interface d sigma / d w_int; none where faces are flush"
+    )
+
+
+def _add_hyperbolas(curves: xr.Dataset, fit_range: tuple[float, float] | None) -> None:
+    """The hyperbola of every closure curve, into ``curves``."""
+    force = curves["load"].values
+    fitted = within(force, *(fit_range or (force.min(), force.max())))
+    dims = ("direction", "offset", "resolution")
+    fits = np.empty([curves.sizes[dim] for dim in dims], object)
+    closures = curves["interface_closure"].transpose(*dims, "load").values
+    for index in np.ndindex(fits.shape):
+        fits[index] = fit_hyperbola(
+            curves["nominal_pressure"].values[fitted], closures[index][fitted]
+        )
+    for name, units, words in HYPERBOLA_FIELDS:
+        kind = str if name == "reason" else float
+        values = np.array([getattr(fit, name) for fit in fits.flat], kind).reshape(fits.shape)
+        curves[f"hyperbola_{name}"] = (dims, values, cf_attrs(units, words))
+    curves.attrs["hyperbola_force_low"] = float(force[fitted].min(initial=np.inf))
+    curves.attrs["hyperbola_force_high"] = float(force[fitted].max(initial=-np.inf))
+
+
+def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
+    """Solver error bounds of what follows from the states, and the closures' by the spacing."""
+    fraction = (curves["interface_stiffness"] * area / curves["stiffness"]) ** 2
+    stiffness = curves["stiffness_error"] / area * fraction
     errors = {
         "interface_closure": curves["closure_error"],
         "area_share": curves["area_error"] / area,
@@ -187,15 +229,12 @@ def _add_errors(curves, area, e_star):
         "conductance": stiffness / e_star,
     }
     for name, error in errors.items():
-        told = curves[name].attrs
         curves[f"{name}_error"] = error.transpose(*curves["closure"].dims)
-        curves[f"{name}_error"].attrs = cf_attrs(
-            told["units"], f"{told['long_name']}, error by the solver"
-        )
+        curves[f"{name}_error"].attrs = error_attrs(curves[name].attrs)
     curves["closure_spacing_error"] = _spacing_error(curves["closure"])
 
 
-def _spacing_error(closure):
+def _spacing_error(closure: xr.DataArray) -> xr.DataArray:
     """What halving the spacing has changed in the closure, mm; NaN where it was not solved twice.
 
     It bounds what finer spacings would still change where closures approach their limit like s or
@@ -208,19 +247,19 @@ def _spacing_error(closure):
     return error.transpose(*closure.dims)
 
 
-def interface_stiffness(total, bulk):
+def interface_stiffness(total: xr.DataArray, bulk: xr.DataArray) -> xr.DataArray:
     """Stiffness of the interface alone, from that of the whole, of which the bulk is a part.
 
     The two compliances add up: 1/k = 1/k_int + 1/k_bulk.
 
     Parameters
     ----------
-    total, bulk : array_like
+    total, bulk : xr.DataArray
         d sigma / dw and sigma / w_b, MPa/mm.
 
     Returns
     -------
-    array_like
+    xr.DataArray
         d sigma / d w_int, MPa/mm; NaN where the whole is not more compliant than the bulk (contact
         so full that it answers like a punch).
     """
@@ -228,12 +267,12 @@ def interface_stiffness(total, bulk):
     return 1 / compliance.where(compliance > 0)
 
 
-def _add_conductance(curves, e_star):
+def _add_conductance(curves: xr.Dataset, e_star: float) -> None:
     """Conductance of the interface and its power of the pressure, into ``curves``.
 
     Barber (Proc. R. Soc. A 459 (2003) 53): 1/R = 2/(E* (rho_1 + rho_2)) dF/dw. Two blocks of one
     conductivity k = 1/rho, thermal or electrical, give h_c = k/E* d sigma/d w_int per nominal area.
-    Loads at which fewer than `FEWEST_NODES` touch are not fitted: they press punches of one cell.
+    Loads at which fewer than `RESOLVED_NODES` touch are not fitted: they act on single cells.
     """
     curves["conductance"] = curves["interface_stiffness"] / e_star
     curves["conductance"].attrs = cf_attrs(
@@ -242,21 +281,14 @@ def _add_conductance(curves, e_star):
     dims = ("direction", "offset", "resolution")
     log_pressure = np.log(curves["nominal_pressure"].values)
     with np.errstate(divide="ignore"):
-        resolved = curves["conductance"].where(curves["nodes"] >= FEWEST_NODES)
+        resolved = curves["conductance"].where(curves["nodes"] >= RESOLVED_NODES)
         log_conductance = np.log(resolved.transpose(*dims, "load").values)
     shape = log_conductance.shape[:-1]
     fits = [fit_line(log_pressure, row) for row in log_conductance.reshape(-1, len(log_pressure))]
-    for name, field, words in (
-        ("conductance_exponent", "slope", "exponent of conductance against pressure"),
-        ("conductance_exponent_low", "slope_low", "that exponent, lower end of its 95 % interval"),
-        (
-            "conductance_exponent_high",
-            "slope_high",
-            "that exponent, upper end of its 95 % interval",
-        ),
-    ):
-        values = np.array([getattr(fit, field) for fit in fits]).reshape(shape)
-        curves[name] = (dims, values, cf_attrs("1", words))
+    for ending, of_end in INTERVAL.items():
+        values = np.array([getattr(fit, f"slope{ending}") for fit in fits]).reshape(shape)
+        words = f"exponent of conductance against pressure{of_end}"
+        curves[f"conductance_exponent{ending}"] = (dims, values, cf_attrs("1", words))
     for name, field in (("low", "x_min"), ("high", "x_max")):
         values = np.exp([getattr(fit, field) for fit in fits]).reshape(shape)
         words = f"{name}est pressure of that fit"
@@ -271,13 +303,13 @@ HYPERBOLA_FIELDS = (
     ("w_m", "mm", "largest closure w_m, the asymptote"),
     ("w_m_low", "mm", "largest closure, lower end of the 95 % interval"),
     ("w_m_high", "mm", "largest closure, upper end of the 95 % interval"),
-    ("misfit", "1", "rms misfit as a share of the largest closure fitted"),
+    ("misfit", "1", "rms misfit as a fraction of the largest closure fitted"),
     ("n", "1", "points fitted"),
     ("reason", "1", "why there is no fit"),
 )
 
 
-def elastic_dilatancy(curves, joint):
+def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     """delta(F, v) = delta_r(v) - w_int(F, v) at the scan's own resolution (eq. 4).
 
     Parameters
@@ -308,9 +340,9 @@ def elastic_dilatancy(curves, joint):
     result["left_out_error"].attrs = cf_attrs(
         "mm", "error of delta when interpolated from the states at the loads beside this one"
     )
-    # Openings of rigid faces are read off the heights: they have no error of a solver.
+    # Openings of rigid faces are read off the heights: they have no solver error.
     error = finest["closure_error"].transpose(*result["elastic_dilatancy"].dims)
     result["elastic_dilatancy_error"] = error
-    error.attrs = cf_attrs("mm", "elastic dilatancy, error by the solver")
+    error.attrs = error_attrs(cf_attrs("mm", "elastic dilatancy"))
     result["offset_made"] = finest["offset_made"]
     return result

@@ -4,25 +4,31 @@ Signs are those of PHYSICS.md: the window stays with the upper block, which slid
 direction d; h(xi; v, d) = z_l(xi + v d) - z_u(xi), and the largest h touches first.
 """
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
+from ..core.datasets import labelled, labelled_dataset
 from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
+from ..roughness.dimension import surface_dimension
 from ..surface.specimen import faces, largest_offset, nominal_area, window_slices
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
 #: slide, a surface against a rigid plane.
-STEPS = {"E": (0, 1), "N": (1, 0), "W": (0, -1), "S": (-1, 0), "none": (0, 0)}
+DIRECTION_STEPS = {"E": (0, 1), "N": (1, 0), "W": (0, -1), "S": (-1, 0), "none": (0, 0)}
 
 #: How Delta_g of the composite topographies is measured: of the estimators with little bias the
 #: one that a tilt of the composite, which is part of the joint, does not touch.
 COMPOSITE_ESTIMATOR = "second_differences"
 
 
-def composite_topography(specimen, direction, cells):
+def composite_topography(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
     """Composite topography h of the window at an offset.
 
     Parameters
@@ -48,23 +54,30 @@ def composite_topography(specimen, direction, cells):
         raise InputError(_too_far(specimen, direction, cells))
     z_l, z_u = faces(specimen)
     window_y, window_x = window_slices(specimen)
-    step_y, step_x = (step * int(cells) for step in STEPS[direction])
+    step_y, step_x = (step * int(cells) for step in DIRECTION_STEPS[direction])
     slid_y = slice(window_y.start + step_y, window_y.stop + step_y)
     slid_x = slice(window_x.start + step_x, window_x.stop + step_x)
     return z_l[slid_y, slid_x] - z_u[window_y, window_x]
 
 
-def prefractal(composite, factor):
+def prefractal(composite: np.ndarray, factor: int) -> np.ndarray:
     """Every ``factor``-th node of a composite topography, as if scanned more coarsely."""
     return composite[::factor, ::factor]
 
 
-def direction_spacing(specimen, direction):
+def sliding_axis(direction: str) -> int:
+    """Axis of a grid (y, x) along which a direction goes: 0 or 1."""
+    return int(DIRECTION_STEPS[direction][1] != 0)
+
+
+def direction_spacing(specimen: xr.Dataset, direction: str) -> float:
     """Cell side along a direction, mm."""
-    return float(specimen.attrs["spacing_x" if direction in ("E", "W") else "spacing_y"])
+    return float(specimen.attrs[f"spacing_{'yx'[sliding_axis(direction)]}"])
 
 
-def choose_offsets(specimen, offsets, directions):
+def choose_offsets(
+    specimen: xr.Dataset, offsets: Sequence[float] | None, directions: Sequence[str]
+) -> dict[str, np.ndarray]:
     """Offsets in whole cells, for each direction.
 
     Parameters
@@ -103,7 +116,9 @@ def choose_offsets(specimen, offsets, directions):
     return chosen
 
 
-def rigid_dilatancy(specimen, direction, cells):
+def rigid_dilatancy(
+    specimen: xr.Dataset, direction: str, cells: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
     """Opening of the rigid joint, delta_r(v) = max h(v) - max h(0), and the spread of h.
 
     Parameters
@@ -122,22 +137,20 @@ def rigid_dilatancy(specimen, direction, cells):
     """
     mated = composite_topography(specimen, direction, 0).max()
     opened, spread = [], []
-    for n in cells:
+    for n in np.asarray(cells, int):
         composite = composite_topography(specimen, direction, n)
         opened.append(composite.max() - mated)
         spread.append(composite.std())
     return np.array(opened), np.array(spread)
 
 
-def face_correlation(specimen, direction, cells):
+def face_correlation(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> np.ndarray:
     """Correlation of the two faces under the window, each less its own mean plane.
 
     Parameters
     ----------
-    specimen, direction
-        As for :func:`composite_topography`.
-    cells : (n,) int array_like
-        Offsets in cells.
+    specimen, direction, cells
+        As for :func:`rigid_dilatancy`.
 
     Returns
     -------
@@ -147,16 +160,18 @@ def face_correlation(specimen, direction, cells):
     _, z_u = faces(specimen)
     upper = z_u[window_slices(specimen)]
     under = without_mean_plane(upper)
-    found = []
-    for n in cells:
+    correlation = []
+    for n in np.asarray(cells, int):
         above = without_mean_plane(composite_topography(specimen, direction, n) + upper)
         norm = np.sqrt(np.mean(above**2) * np.mean(under**2))
-        found.append(np.mean(above * under) / norm if norm > 0 else np.nan)
-    return np.array(found)
+        correlation.append(np.mean(above * under) / norm if norm > 0 else np.nan)
+    return np.array(correlation)
 
 
-def correlation_ranges(offset, correlation, area):
-    """Offsets at which the faces stop to resemble each other.
+def correlation_ranges(
+    offset: np.ndarray, correlation: np.ndarray, area: float
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Correlation lengths of the faces, and the offsets from which they are uncorrelated.
 
     Parameters
     ----------
@@ -200,13 +215,43 @@ def _first_below(offset, values, limit):
     return offset[below[0]] if below.size else np.nan
 
 
-def describe_joint(specimen, settings):
+#: What is kept of a rigid slide: dimensions, unit, long name.
+RIGID_SLIDE = {
+    "rigid_dilatancy": (("direction", "rigid_offset"), "mm", "rigid dilatancy delta_r"),
+    "composite_rms": (
+        ("direction", "rigid_offset"),
+        "mm",
+        "standard deviation of the composite topography",
+    ),
+    "face_correlation": (
+        ("direction", "rigid_offset"),
+        "1",
+        "correlation of the two faces under the window",
+    ),
+}
+
+_CORRELATION = {
+    "correlation_length": (
+        "direction",
+        "mm",
+        "first offset where the correlation is at most 1/e",
+    ),
+    "uncorrelated_offset": (
+        "direction",
+        "mm",
+        "first offset where the correlation does not differ from zero",
+    ),
+    "correlation_limit": ((), "1", "largest correlation that chance alone explains, 95 %"),
+}
+
+
+def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Dataset:
     """Offsets, rigid dilatancy and composite topographies of a specimen.
 
     Parameters
     ----------
     specimen : xr.Dataset
-    settings : dict
+    settings : mapping
         From :func:`study.configuration.resolve_settings`.
 
     Returns
@@ -224,91 +269,82 @@ def describe_joint(specimen, settings):
     InputError
         As :func:`choose_offsets`.
     """
-    from ..roughness.dimension import surface_dimension
-
-    directions = settings["directions"]
-    solved = settings["contact_directions"]
+    directions, solved = settings["directions"], settings["contact_directions"]
     every = list(dict.fromkeys([*directions, *solved]))
     chosen = choose_offsets(specimen, settings["offsets"], every)
     reference = solved[0]
-    spacing = direction_spacing(specimen, reference)
-    largest = int(max(chosen[reference]))
-    dilatancy = np.full((len(directions), largest + 1), np.nan)
+    cells, spacing = chosen[reference], direction_spacing(specimen, reference)
+    slide = _describe_slide(specimen, directions, np.arange(int(max(cells)) + 1), spacing)
+    composites = [composite_topography(specimen, reference, n) for n in cells]
+    window_y, window_x = window_slices(specimen)
+    table = {
+        "offset_cells": (("contact_direction", "offset"), "1", "offset in cells of the scan"),
+        "composite": (
+            ("offset", "window_y", "window_x"),
+            "mm",
+            f"composite topography h, direction {reference}",
+        ),
+    }
+    values = {
+        "offset_cells": np.array([chosen[direction] for direction in solved]),
+        "composite": np.array(composites),
+    }
+    return slide.assign(
+        _composite_dimensions(specimen, composites, settings["surface_range"])
+        | labelled(table, values)
+    ).assign_coords(
+        contact_direction=solved,
+        offset=("offset", cells * spacing, cf_attrs("mm", "shear offset v")),
+        window_y=("window_y", specimen.y.values[window_y], specimen.y.attrs),
+        window_x=("window_x", specimen.x.values[window_x], specimen.x.attrs),
+    )
+
+
+def _describe_slide(
+    specimen: xr.Dataset, directions: Sequence[str], cells: np.ndarray, spacing: float
+) -> xr.Dataset:
+    """Rigid dilatancy and correlation of the faces at every cell of the reference direction."""
+    dilatancy = np.full((len(directions), len(cells)), np.nan)
     spread, correlation = dilatancy.copy(), dilatancy.copy()
     for i, direction in enumerate(directions):
         ratio = spacing / direction_spacing(specimen, direction)
-        cells = np.round(np.arange(largest + 1) * ratio).astype(int)
-        dilatancy[i], spread[i] = rigid_dilatancy(specimen, direction, cells)
-        correlation[i] = face_correlation(specimen, direction, cells)
-    slid = np.arange(largest + 1) * spacing
+        own = np.round(cells * ratio).astype(int)
+        dilatancy[i], spread[i] = rigid_dilatancy(specimen, direction, own)
+        correlation[i] = face_correlation(specimen, direction, own)
+    slid = cells * spacing
     length, uncorrelated, limit = correlation_ranges(slid, correlation, nominal_area(specimen))
-    composites = [composite_topography(specimen, reference, n) for n in chosen[reference]]
+    table = RIGID_SLIDE | _CORRELATION
+    values = (dilatancy, spread, correlation, length, uncorrelated, limit)
+    return labelled_dataset(
+        table,
+        dict(zip(table, values, strict=True)),
+        coords={
+            "direction": directions,
+            "rigid_offset": ("rigid_offset", slid, cf_attrs("mm", "shear offset v")),
+        },
+    )
+
+
+def _composite_dimensions(
+    specimen: xr.Dataset,
+    composites: Sequence[np.ndarray],
+    fit_range: tuple[float, float] | None,
+) -> dict[str, tuple]:
+    """Variables Delta_g (offset) of composite topographies, with intervals and lengths fitted."""
+    spacing = tuple(specimen.attrs[f"spacing_{axis}"] for axis in "yx")
     dimensions = xr.concat(
         [
             surface_dimension(
-                composite,
-                tuple(specimen.attrs[f"spacing_{axis}"] for axis in "yx"),
-                fit_range=settings["surface_range"],
-                estimators=[COMPOSITE_ESTIMATOR],
+                composite, spacing, fit_range=fit_range, estimators=[COMPOSITE_ESTIMATOR]
             ).squeeze("estimator")
             for composite in composites
         ],
         "offset",
     )
-    window_y, window_x = window_slices(specimen)
-    of_slide = ("direction", "rigid_offset")
-    return xr.Dataset(
-        {
-            "rigid_dilatancy": (of_slide, dilatancy, cf_attrs("mm", "rigid dilatancy delta_r")),
-            "composite_rms": (
-                of_slide,
-                spread,
-                cf_attrs("mm", "standard deviation of the composite topography"),
-            ),
-            "face_correlation": (
-                of_slide,
-                correlation,
-                cf_attrs("1", "correlation of the two faces under the window"),
-            ),
-            "correlation_length": (
-                "direction",
-                length,
-                cf_attrs("mm", "first offset where the correlation is at most 1/e"),
-            ),
-            "uncorrelated_offset": (
-                "direction",
-                uncorrelated,
-                cf_attrs("mm", "first offset where the correlation does not differ from zero"),
-            ),
-            "correlation_limit": (
-                (),
-                limit,
-                cf_attrs("1", "largest correlation that chance alone explains, 95 %"),
-            ),
-            **{
-                f"composite_{name}": ("offset", dimensions[name].values, dimensions[name].attrs)
-                for name in ("dimension", "dimension_low", "dimension_high", "fit_min", "fit_max")
-            },
-            "offset_cells": (
-                ("contact_direction", "offset"),
-                np.array([chosen[direction] for direction in solved]),
-                cf_attrs("1", "offset in cells of the scan"),
-            ),
-            "composite": (
-                ("offset", "window_y", "window_x"),
-                np.array(composites),
-                cf_attrs("mm", f"composite topography h, direction {reference}"),
-            ),
-        },
-        coords={
-            "direction": directions,
-            "contact_direction": solved,
-            "rigid_offset": ("rigid_offset", slid, cf_attrs("mm", "shear offset v")),
-            "offset": ("offset", chosen[reference] * spacing, cf_attrs("mm", "shear offset v")),
-            "window_y": ("window_y", specimen.y.values[window_y], specimen.y.attrs),
-            "window_x": ("window_x", specimen.x.values[window_x], specimen.x.attrs),
-        },
-    )
+    return {
+        f"composite_{name}": ("offset", dimensions[name].values, dimensions[name].attrs)
+        for name in ("dimension", "dimension_low", "dimension_high", "fit_min", "fit_max")
+    }
 
 
 def _automatic_offsets(specimen, directions):

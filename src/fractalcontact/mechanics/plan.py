@@ -1,24 +1,36 @@
-"""No more than needed: what the accuracy a study asks for means for its solves, and why.
+"""The solve plan: which states a study solves, and how exactly, for the accuracy it requests.
 
 A study states how far off a closure and a Delta_sigma may be. From that follow the tolerance of the
-solver and which states are solved at all. What was chosen is kept with its reason and with the
-error it makes, as far as it can be estimated from the states themselves.
+solver and which states are solved at all. The plan is kept with its reasons and with the error it
+makes, as far as that can be estimated from the states themselves.
 """
+
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..core.labels import cf_attrs
+from ..core.datasets import labelled_dataset
 from ..core.tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
 from .states import forces_of
 
 
-def solved_loads(settings, forces, area, *, first, mapped, factor, everything):
-    """Which load steps of a curve are solved.
+def solved_loads(
+    settings: Mapping[str, Any],
+    forces: np.ndarray,
+    area: float,
+    *,
+    first: bool,
+    mapped: bool,
+    factor: int,
+    all_states: bool,
+) -> np.ndarray:
+    """Load steps of a curve that the plan solves.
 
     Parameters
     ----------
-    settings : dict
+    settings : mapping
         From :func:`study.configuration.resolve_settings`.
     forces : (n,) ndarray
         N, ascending.
@@ -30,8 +42,8 @@ def solved_loads(settings, forces, area, *, first, mapped, factor, everything):
         Whether it is at the offset of the contact maps.
     factor : int
         Its resolution k.
-    everything : bool
-        Whether the study asks for all.
+    all_states : bool
+        Whether the study requests all states.
 
     Returns
     -------
@@ -44,7 +56,7 @@ def solved_loads(settings, forces, area, *, first, mapped, factor, everything):
     at the finest resolution; how they change with the resolution, at the offset of the maps. In the
     other directions only the dilatancy under its loads is.
     """
-    if everything or (first and (mapped or factor == min(settings["resolutions"]))):
+    if all_states or (first and (mapped or factor == min(settings["resolutions"]))):
         return np.arange(len(forces))
     if factor != min(settings["resolutions"]):
         return np.arange(0)
@@ -52,8 +64,13 @@ def solved_loads(settings, forces, area, *, first, mapped, factor, everything):
     return np.flatnonzero(np.isin(forces, wanted))
 
 
-def choices(curves, dilatancy, settings, solver):
-    """What was chosen for a specimen, why, and what error it makes.
+def solve_plan(
+    curves: xr.Dataset,
+    dilatancy: xr.Dataset,
+    settings: Mapping[str, Any],
+    solver: Mapping[str, Any],
+) -> xr.Dataset:
+    """The solve plan of a specimen: quantity, value, reason and estimated error.
 
     Parameters
     ----------
@@ -61,84 +78,80 @@ def choices(curves, dilatancy, settings, solver):
         From :func:`mechanics.closure.closure_curves`.
     dilatancy : xr.Dataset
         From :func:`mechanics.closure.elastic_dilatancy`.
-    settings, solver : dict
+    settings, solver : mapping
         From :mod:`study.configuration`.
 
     Returns
     -------
     xr.Dataset
-        ``value``, ``reason``, ``error_of`` and ``error`` (a share; NaN where there is none) over
-        ``choice``; ``asked`` in the attributes.
+        ``value``, ``reason``, ``error_of`` and ``error`` (a fraction; NaN where there is none) over
+        ``choice``; the requested accuracy as attribute ``asked``.
     """
-    solved = curves["solved"]
-    asked = solver["accuracy"]
+    solved, requested = curves["solved"], solver["accuracy"]
     rows = [
-        _of_tolerance(curves, solver, asked),
-        _of_loads(curves, dilatancy, asked),
+        _of_tolerance(curves, solver, requested),
+        _of_loads(curves, dilatancy, requested),
         _of_directions(curves, settings),
         _of_resolutions(curves),
         _of_extent(curves),
     ]
-    columns = ("choice", "value", "reason", "error_of")
-    words = ("what was chosen", "how", "why", "what the error is of")
-    texts = {
-        column: ("choice", [row[i] for row in rows], cf_attrs("1", word))
-        for i, (column, word) in enumerate(zip(columns, words, strict=True))
-    }
-    return xr.Dataset(
-        {
-            **{name: texts[name] for name in columns[1:]},
-            "error": (
-                "choice",
-                np.array([row[-1] for row in rows], float),
-                cf_attrs("1", "largest error it is estimated to make, as a share"),
-            ),
-        },
-        coords={"choice": texts["choice"]},
+    columns = (list(column) for column in zip(*rows, strict=True))
+    return labelled_dataset(
+        _COLUMNS,
+        dict(zip(_COLUMNS, columns, strict=True)),
         attrs={
-            "asked": _asked(asked),
+            "asked": _requested(requested),
             "states": int(solved.size),
             "states_solved": int(solved.sum()),
         },
     )
 
 
-def _asked(accuracy):
+_COLUMNS = {
+    "choice": ("choice", "1", "quantity"),
+    "value": ("choice", "1", "value"),
+    "reason": ("choice", "1", "reason"),
+    "error_of": ("choice", "1", "quantity that the error is of"),
+    "error": ("choice", "1", "largest error it is estimated to make, a fraction"),
+}
+
+
+def _requested(accuracy: Mapping[str, float] | None) -> str:
     if accuracy is None:
         return "everything: all states, whatever it costs"
     return f"closure to {accuracy['closure']:.3g}, Delta_sigma to {accuracy['delta_sigma']:.3g}"
 
 
-def _largest(values):
-    """Largest value that is known, or NaN."""
+def _largest(values: xr.DataArray) -> float:
+    """Largest value that is not missing, or NaN."""
     known = values.values[np.isfinite(values.values)]
     return float(known.max(initial=-np.inf)) if known.size else np.nan
 
 
-def _of_tolerance(curves, solver, asked):
+def _of_tolerance(curves, solver, requested):
     reason = (
         "stated by the study"
-        if asked is None or solver["rtol"] != tolerance(asked)
+        if requested is None or solver["rtol"] != tolerance(requested)
         else f"{SHARE_OF_CLOSURE:g} of the closure and {SHARE_OF_DIMENSION:g} of the Delta_sigma "
         "asked for: tenfold and more below them where it was tried"
     )
-    share = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
-    return "solver tolerance", f"{solver['rtol']:.1g}", reason, "interface closure", _largest(share)
+    error = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
+    return "solver tolerance", f"{solver['rtol']:.1g}", reason, "interface closure", _largest(error)
 
 
-def _of_loads(curves, dilatancy, asked):
+def _of_loads(curves, dilatancy, requested):
     closure = curves["interface_closure"].sel(resolution=curves["resolution"].min())
     misses = dilatancy["left_out_error"].rename(contact_direction="direction")
-    shares = abs(misses / closure.where(closure != 0))
-    known = shares.values[np.isfinite(shares.values)]
+    errors = abs(misses / closure.where(closure != 0))
+    known = errors.values[np.isfinite(errors.values)]
     value = f"{closure.sizes['load']} in the first direction, none read between others"
     if not known.size:
         return "load steps", value, "too few to tell what lies between them", "", np.nan
-    within = np.mean(known <= asked["closure"]) if asked else np.nan
+    within = np.mean(known <= requested["closure"]) if requested else np.nan
     reason = (
         f"left out and read from its neighbours a closure would be wrong by {np.median(known):.1%} "
         f"(median) to {known.max():.0%} of itself"
-        + (f"; {within:.0%} would be within what is asked for" if asked else "")
+        + (f"; {within:.0%} would be within what is asked for" if requested else "")
     )
     return "load steps", value, reason, "interface closure, if every second were left out", np.nan
 

@@ -1,14 +1,16 @@
-"""Numbers kept of a state of contact, and how far off they may be."""
+"""Scalars of a contact state, and their solver error bounds."""
+
+from typing import Any
 
 import numpy as np
 
-from ..contact.solve import STIFFNESS_ERROR
+from ..contact.state import STIFFNESS_ERROR, ContactState
 from .area import EDGE_EXCESS, contact_perimeter, corrected_area
 from .states import SCALARS
 
 
-def numbers_of(state):
-    """What is kept of a state but its fields.
+def numbers_of(state: ContactState) -> dict[str, Any]:
+    """Scalars of a contact state: what is kept of it but its fields.
 
     Parameters
     ----------
@@ -25,7 +27,7 @@ def numbers_of(state):
         As :attr:`contact.solve.ContactState.stiffness`.
     """
     spacing = state.space.spacing
-    of_domain = {
+    of_domain: dict[str, Any] = {
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
         "perimeter": contact_perimeter(state.in_contact, spacing),
@@ -35,15 +37,15 @@ def numbers_of(state):
     return of_domain | of_state | state_errors(state)
 
 
-def _extent(in_contact):
-    """Share of the cells within the smallest rectangle around those in contact."""
+def _extent(in_contact: np.ndarray) -> float:
+    """Fraction of the cells within the smallest rectangle around those in contact."""
     touched = [np.flatnonzero(in_contact.any(axis=axis)) for axis in (0, 1)]
-    sides = [np.ptp(along) + 1 if along.size else 0 for along in touched]
+    sides = [int(np.ptp(along)) + 1 if along.size else 0 for along in touched]
     return float(np.prod(sides)) / in_contact.size
 
 
-def state_errors(state):
-    """How far off the scalars of a state may be because its conditions hold to a residual only.
+def state_errors(state: ContactState) -> dict[str, float]:
+    """Solver error bounds of a state's scalars: its KKT conditions hold to a residual only.
 
     Parameters
     ----------
@@ -56,23 +58,23 @@ def state_errors(state):
 
     Notes
     -----
-    A state that violates the conditions by a share r of its closure w is the exact one of a
+    A state that violates the conditions by a fraction r of its closure w is the exact one of a
     topography that differs by up to r w, and heights raised by no more than that change the closure
-    by no more. Area and perimeter change by the nodes whose contact that leaves undecided, each
-    with all its edges; so does the stiffness, in proportion to the nodes between the bounds.
+    by no more. Area and perimeter change by the nodes whose contact that leaves ambiguous, each
+    with all its edges; so does the stiffness, in proportion to the nodes with inactive bounds.
     """
-    space, undecided = state.space, state.undecided
+    space, ambiguous = state.space, state.ambiguous
     dy, dx = space.spacing
     hidden = state.residual * state.closure * space.modulus / space.cell
     below_cap = state.in_contact & (state.pressure < state.hardness)
     near_cap = below_cap & (state.pressure >= state.hardness - hidden)
-    loose = undecided + np.count_nonzero(near_cap)
-    share = STIFFNESS_ERROR + loose / max(np.count_nonzero(below_cap), 1)
+    loose = ambiguous + np.count_nonzero(near_cap)
+    fraction = STIFFNESS_ERROR + loose / max(np.count_nonzero(below_cap), 1)
     return {
         "closure_error": state.residual * state.closure,
-        "area_error": undecided * space.cell_area,
-        "nodes_error": undecided,
-        "perimeter_error": undecided * 2 * (dy + dx),
-        "area_corrected_error": undecided * (1 + 4 * EDGE_EXCESS) * space.cell_area,
-        "stiffness_error": share * state.stiffness,
+        "area_error": ambiguous * space.cell_area,
+        "nodes_error": ambiguous,
+        "perimeter_error": ambiguous * 2 * (dy + dx),
+        "area_corrected_error": ambiguous * (1 + 4 * EDGE_EXCESS) * space.cell_area,
+        "stiffness_error": fraction * state.stiffness,
     }

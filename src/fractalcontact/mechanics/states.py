@@ -3,8 +3,12 @@
 Apart from the solving, which takes the solver: most jobs of a study only read states.
 """
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
@@ -16,20 +20,22 @@ SCALARS = {
     "force": ("N", "normal force F"),
     "area": ("mm2", "real contact area A_r"),
     "nodes": ("1", "nodes in contact"),
-    "extent": ("1", "share of the window within the smallest rectangle around the contact"),
+    "extent": ("1", "fraction of the window within the smallest rectangle around the contact"),
     "perimeter": ("mm", "perimeter of the contact domain's cells inside the window"),
     "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
-    "residual": ("1", "largest violation of the contact conditions, share of the closure"),
+    "residual": ("1", "largest KKT residual, fraction of the closure"),
     "iterations": ("1", "applications of the elastic operator"),
 }
+
+#: Ends the long name of a bound on the error that the solver's tolerance leaves.
+SOLVER_ERROR = "solver error bound"
 
 #: Scalars that the tolerance of the solver leaves uncertain. The force is given.
 UNCERTAIN = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffness")
 #: Their errors: name, unit, long name.
 ERRORS = {
-    f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, error by the solver")
-    for name in UNCERTAIN
+    f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}") for name in UNCERTAIN
 }
 
 #: All that is kept of a state but its contact domain.
@@ -48,7 +54,12 @@ OFFSETS = {
 MAP_PRESSURE = "map_pressure"
 
 
-def forces_of(loads, area):
+def error_attrs(attrs: Mapping[str, str]) -> dict[str, str]:
+    """Attributes of the solver error bound of what has these attributes."""
+    return cf_attrs(attrs["units"], f"{attrs['long_name']}, {SOLVER_ERROR}")
+
+
+def forces_of(loads: Sequence[tuple[float, str]], area: float) -> np.ndarray:
     """Loads as forces, N, ascending: pressures are nominal, on ``area`` in mm2.
 
     Parameters
@@ -64,12 +75,14 @@ def forces_of(loads, area):
     return np.unique([value * area if kind == "pressure" else value for value, kind in loads])
 
 
-def force_range(loads, specimen):
+def force_range(
+    loads: Sequence[tuple[float, str]] | None, specimen: xr.Dataset
+) -> tuple[float, float] | None:
     """Smallest and largest force, N, of a range of loads; None for all."""
     return None if loads is None else tuple(forces_of(loads, nominal_area(specimen))[[0, -1]])
 
 
-def chosen_offset(wanted, offsets):
+def chosen_offset(wanted: float | None, offsets: ArrayLike) -> float:
     """The offset whose contact domains are looked at: the study's, else the third; mm.
 
     Parameters
@@ -79,12 +92,13 @@ def chosen_offset(wanted, offsets):
     offsets : (n,) array_like
         Those solved.
     """
+    offsets = np.asarray(offsets)
     if wanted is None:
         return float(offsets[min(2, len(offsets) - 1)])
     return float(min(offsets, key=lambda offset: abs(offset - wanted)))
 
 
-def hardness_of(settings, specimen):
+def hardness_of(settings: Mapping[str, Any], specimen: xr.Dataset) -> float:
     """Largest pressure of the material, MPa, or infinity.
 
     Raises
@@ -104,7 +118,7 @@ def hardness_of(settings, specimen):
     return hardness
 
 
-def combine(parts):
+def combine(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """One dataset from the parts that several jobs solved.
 
     Parameters
@@ -130,21 +144,21 @@ def combine(parts):
     ValueError
         If the directions do not have the same number of offsets.
     """
-    groups = {}
+    groups: dict[tuple, list[xr.Dataset]] = {}
     for part in parts:
         if part.sizes["offset"]:
             states = part.drop_vars(MAP_PRESSURE, errors="ignore")
             for i, direction in enumerate(part["direction"].values):
                 key = (direction, tuple(part["resolution"].values))
                 groups.setdefault(key, []).append(states.isel(direction=[i]))
-    by_direction = {}
+    by_direction: dict[str, list[xr.Dataset]] = {}
     for (direction, _), members in groups.items():
         whole = xr.concat(members, "offset", data_vars="minimal").sortby("offset")
         by_direction.setdefault(direction, []).append(whole)
     return side_by_side([_join_resolutions(members) for members in by_direction.values()])
 
 
-def side_by_side(directions):
+def side_by_side(directions: Sequence[xr.Dataset]) -> xr.Dataset:
     """One dataset of the states of several directions, at the offsets of the first."""
     states = [part.drop_vars(MAP_PRESSURE, errors="ignore") for part in directions]
     joined = xr.concat(states, "direction", data_vars="minimal", join="override")
@@ -154,14 +168,16 @@ def side_by_side(directions):
     return joined
 
 
-def domains_of(states):
-    """The contact domains alone, with what says which of them are known, and how well."""
+def domains_of(states: xr.Dataset) -> xr.Dataset:
+    """The contact domains alone, with which of them were solved, and their error bounds."""
     kept = ("solved", "nodes_error")
     return states.drop_vars([name for name in (*OF_STATES, *OFFSETS) if name not in kept])
 
 
-def map_pressure(pressures, offset, direction, factor):
-    """The variable :data:`MAP_PRESSURE` of a dataset, from what it says of itself.
+def map_pressure(
+    pressures: ArrayLike, offset: float, direction: str, factor: int
+) -> dict[str, tuple]:
+    """The variable :data:`MAP_PRESSURE` of a dataset; its attributes say where it was solved.
 
     Parameters
     ----------
@@ -178,7 +194,7 @@ def map_pressure(pressures, offset, direction, factor):
     return {MAP_PRESSURE: (("load", f"y_{factor}", f"x_{factor}"), np.array(pressures), labels)}
 
 
-def map_states(parts):
+def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Pressures of the states that are looked at closely, under every load.
 
     Parameters
@@ -210,7 +226,7 @@ def map_states(parts):
     )
 
 
-def _join_resolutions(parts):
+def _join_resolutions(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Parts that differ in resolution alone: scalars side by side, fields each their own."""
     scalars = xr.concat([part[OF_STATES] for part in parts], "resolution")
     fields = [part.drop_vars([*OF_STATES, "resolution"]) for part in parts]

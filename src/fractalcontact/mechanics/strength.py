@@ -6,40 +6,27 @@ asperities, the sum can pass the vertical, and what is stated as strength is hel
 :data:`mechanics.theory.LARGEST_FRICTION_ANGLE` as in Barton's law. What was held is counted.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
-from ..core.directions import DIRECTIONS
-from ..core.intervals import mean_interval
+from ..core.datasets import labelled
+from ..core.intervals import Mean, mean_interval
 from ..core.labels import cf_attrs
-from ..core.mean_plane import without_mean_plane
-from ..surface.specimen import faces, nominal_area, window_sides, window_slices
-from .joint import direction_spacing, rigid_dilatancy
-from .theory import (
-    LABORATORY_LENGTH,
-    LARGEST_FRICTION_ANGLE,
-    barton_strength,
-    joint_roughness,
-    scaled_joint,
-)
+from ..surface.specimen import nominal_area, window_sides
+from .joint import rigid_dilatancy, sliding_axis
+from .jrc import profile_roughness
+from .states import SOLVER_ERROR
+from .theory import LABORATORY_LENGTH, LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
 
-#: Residual strength is the mean over the intervals beyond this part of the largest offset.
+#: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
 RESIDUAL_FROM = 0.5
 
-#: Steps over which slopes are taken for Z2, mm, by name; None is the scan's own spacing. Tse &
-#: Cruden (1979) state 1.27 mm. Their profiles of 100 mm had 200 such steps, so that they must have
-#: been enlarged 2.5 times: a step of 0.508 mm on the rock, kept beside it.
-SAMPLINGS = {"scan": None, "0.508 mm": 0.508, "1.27 mm": 1.27}
-#: The one that JRC is taken from.
-JRC_SAMPLING = "1.27 mm"
-#: A window with fewer steps than this along it is called small for its sampling.
-FEWEST_STEPS = 10
 
-#: Barton's profiles go from 0 to 20 and his law was measured on them.
-JRC_RANGE = (0.0, 20.0)
-
-
-def from_flush(offset, dilatancy):
+def from_flush(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """A dilatancy curve of faces that match: it starts from v = 0 and delta = 0 under any load.
 
     Parameters
@@ -60,7 +47,7 @@ def from_flush(offset, dilatancy):
     return np.r_[0.0, offset[slid]], np.concatenate([flush, dilatancy[slid]])
 
 
-def dilatancy_angle(offset, dilatancy):
+def dilatancy_angle(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Dilatancy angle i = atan(d delta / dv) between successive offsets.
 
     Parameters
@@ -83,8 +70,10 @@ def dilatancy_angle(offset, dilatancy):
     return (offset[1:] + offset[:-1]) / 2, angle
 
 
-def angles_with_errors(offset, dilatancy, error):
-    """:func:`dilatancy_angle`, and how far off it may be where the dilatancies are.
+def angles_with_errors(
+    offset: ArrayLike, dilatancy: ArrayLike, error: ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Dilatancy angle by :func:`dilatancy_angle`, with its error bound.
 
     Parameters
     ----------
@@ -105,14 +94,14 @@ def angles_with_errors(offset, dilatancy, error):
     return midpoint, angle, abs(np.degrees(np.arctan(ends)) - angle).max(axis=0)
 
 
-def slopes_apart(offset, dilatancy, off):
+def slopes_apart(offset: ArrayLike, dilatancy: ArrayLike, off: ArrayLike) -> np.ndarray:
     """Slopes d delta/dv between successive offsets whose ends move apart by ``off``, mm."""
     dilatancy, off = np.asarray(dilatancy, float), np.asarray(off, float)
     step = np.diff(np.asarray(offset, float)).reshape(-1, *[1] * (dilatancy.ndim - 1))
     return (np.diff(dilatancy, axis=0) + off[1:] + off[:-1]) / step
 
 
-def shear_strength(pressure, friction_angle):
+def shear_strength(pressure: ArrayLike, friction_angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """tau = sigma_n tan(angle), the angle held between 0 and `LARGEST_FRICTION_ANGLE`.
 
     Parameters
@@ -132,11 +121,20 @@ def shear_strength(pressure, friction_angle):
     angle = np.asarray(friction_angle, float)
     held = (angle > LARGEST_FRICTION_ANGLE).astype(int) - (angle < 0)
     angle = np.clip(angle, 0.0, LARGEST_FRICTION_ANGLE)
-    return pressure * np.tan(np.radians(angle)), held
+    return np.asarray(pressure) * np.tan(np.radians(angle)), held
 
 
-def strength_with_error(pressure, friction_angle, off):
-    """:func:`shear_strength`, and how far off it may be where the angles are, by ``off`` degrees.
+def strength_with_error(
+    pressure: ArrayLike, friction_angle: np.ndarray, off: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shear strength by :func:`shear_strength`, with its error bound.
+
+    Parameters
+    ----------
+    pressure, friction_angle
+        As for :func:`shear_strength`.
+    off : ndarray
+        Bound on the error of the angles, degrees.
 
     Returns
     -------
@@ -149,7 +147,7 @@ def strength_with_error(pressure, friction_angle, off):
     return strength, held, abs(np.array(ends) - strength).max(axis=0)
 
 
-def peak(midpoint, values):
+def peak(midpoint: ArrayLike, values: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Largest value over the intervals (the first axis) and the offset where it is first reached.
 
     Returns
@@ -161,12 +159,12 @@ def peak(midpoint, values):
     if not len(values):
         return (np.full(values.shape[1:], np.nan),) * 2
     known = np.where(np.isfinite(values), values, -np.inf)
-    found = np.isfinite(known).any(axis=0)
-    highest = np.where(found, known.max(axis=0), np.nan)
-    return highest, np.where(found, np.asarray(midpoint)[known.argmax(axis=0)], np.nan)
+    any_known = np.isfinite(known).any(axis=0)
+    highest = np.where(any_known, known.max(axis=0), np.nan)
+    return highest, np.where(any_known, np.asarray(midpoint)[known.argmax(axis=0)], np.nan)
 
 
-def residual(midpoint, values, largest):
+def residual(midpoint: ArrayLike, values: ArrayLike, largest: float) -> Mean:
     """Mean over the intervals beyond `RESIDUAL_FROM` of the largest offset, with its interval.
 
     Returns
@@ -179,85 +177,12 @@ def residual(midpoint, values, largest):
     return mean_interval(np.asarray(values, float)[beyond])
 
 
-def profile_roughness(specimen, direction):
-    """Z2 and JRC of the faces under the window, along a direction of sliding.
-
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    direction : {"E", "N", "W", "S"}
-
-    Returns
-    -------
-    xr.Dataset
-        Over `sampling` (:data:`SAMPLINGS`): the `step` made of whole cells (mm), `z2` (rms slope
-        over that step, with every place of the first sample; both faces if two were scanned) and
-        `jrc` as Tse & Cruden's relation gives it. `jrc_used`, the one of :data:`JRC_SAMPLING` kept
-        within :data:`JRC_RANGE`, and `jrc_note`, what is to be known of it.
-
-    Notes
-    -----
-    Tse & Cruden's relation is a regression over Barton's ten profiles and leaves 0-20 as soon as a
-    face is steeper than they are. The law of strength was measured within, and its correction for
-    scale has the JRC in exponents, where values beyond make no sense: both get the value kept
-    within.
-    """
-    axis = "yx".index(DIRECTIONS[direction][0])
-    spacing = direction_spacing(specimen, direction)
-    window = window_slices(specimen)
-    levelled = [np.moveaxis(without_mean_plane(z[window]), axis, 0) for z in faces(specimen)]
-    cells = len(levelled[0])
-    lags = [1 if step is None else max(1, round(step / spacing)) for step in SAMPLINGS.values()]
-    z2 = np.array([_rms_slope(levelled, lag, spacing) for lag in lags])
-    jrc = np.array([joint_roughness(value) if value > 0 else np.nan for value in z2])
-    chosen = list(SAMPLINGS).index(JRC_SAMPLING)
-    note = _sampling_note(lags[chosen] * spacing, cells * spacing)
-    if not JRC_RANGE[0] <= jrc[chosen] <= JRC_RANGE[1]:
-        note.append(f"JRC {jrc[chosen]:.3g} lies outside of Barton's {_range_words()}")
-    return xr.Dataset(
-        {
-            "step": (
-                "sampling",
-                spacing * np.array(lags),
-                cf_attrs("mm", "step of Z2, whole cells"),
-            ),
-            "z2": ("sampling", z2, cf_attrs("1", "rms slope Z2 of profiles along the sliding")),
-            "jrc": ("sampling", jrc, cf_attrs("1", "JRC = 32.2 + 32.47 log10 Z2")),
-            "jrc_used": (
-                (),
-                np.clip(jrc[chosen], *JRC_RANGE),
-                cf_attrs("1", f"JRC at {JRC_SAMPLING}, kept within {_range_words()}"),
-            ),
-            "jrc_note": ((), "; ".join(note), cf_attrs("1", "what is to be known of the JRC used")),
-        },
-        coords={"sampling": list(SAMPLINGS)},
-    )
-
-
-def _rms_slope(profiles, lag, spacing):
-    """Rms slope over a step of ``lag`` cells along the first axis; NaN if it is too long."""
-    if lag >= len(profiles[0]):
-        return np.nan
-    squares = [np.mean((z[lag:] - z[:-lag]) ** 2) for z in profiles]
-    return np.sqrt(np.mean(squares)) / (lag * spacing)
-
-
-def _sampling_note(step, side):
-    """Where the step differs from what it should be, or the window is small for it."""
-    wanted = SAMPLINGS[JRC_SAMPLING]
-    note = []
-    if step > 1.25 * wanted:
-        note.append(f"the scan's spacing of {step:.3g} mm is coarser than the {wanted:g} mm wanted")
-    if side < FEWEST_STEPS * step:
-        note.append(f"the window of {side:.3g} mm holds fewer than {FEWEST_STEPS} steps")
-    return note
-
-
-def _range_words():
-    return f"{JRC_RANGE[0]:g}-{JRC_RANGE[1]:g}"
-
-
-def joint_strength(dilatancy, joint, specimen, settings):
+def joint_strength(
+    dilatancy: xr.Dataset,
+    joint: xr.Dataset,
+    specimen: xr.Dataset,
+    settings: Mapping[str, Any],
+) -> xr.Dataset:
     """Dilatancy angle, friction angle and shear strength over the offsets, peak and residual.
 
     Parameters
@@ -268,7 +193,7 @@ def joint_strength(dilatancy, joint, specimen, settings):
         From :func:`mechanics.joint.describe_joint`.
     specimen : xr.Dataset
         That slides: not one against a plane.
-    settings : dict
+    settings : mapping
         From :func:`study.configuration.resolve_settings`; its ``material`` gives
         ``basic_friction_angle`` (degrees) and ``joint_wall_strength`` (JCS, MPa), NaN where the
         study states none, and then what depends on them is NaN.
@@ -277,9 +202,10 @@ def joint_strength(dilatancy, joint, specimen, settings):
     -------
     xr.Dataset
         Over (contact_direction, interval, load), (contact_direction, load) and
-        (contact_direction, sampling): :data:`FIELDS` and :func:`profile_roughness`. What rests on
-        solved states has an ``_error``, the solver's. ``interval`` holds midpoints of the offsets
-        in the first direction, ``midpoint`` those of each.
+        (contact_direction, sampling): :data:`FIELDS` and what
+        :func:`mechanics.jrc.profile_roughness` gives. What rests on solved states has an
+        ``_error``, the solver's. ``interval`` holds midpoints of the offsets in the first
+        direction, ``midpoint`` those of each.
 
     Notes
     -----
@@ -309,7 +235,7 @@ def joint_strength(dilatancy, joint, specimen, settings):
     return result
 
 
-_FOUND = {
+_QUANTITIES = {
     "midpoint": ("mm", "middle of the interval of offsets"),
     "dilatancy_angle": ("degree", "dilatancy angle i"),
     "rigid_dilatancy_angle": ("degree", "dilatancy angle of the rigid joint, F = 0"),
@@ -333,7 +259,7 @@ _FOUND = {
     "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n"),
 }
 
-#: What rests on solved states, and says how far off it may be for that.
+#: What rests on solved states, and has a solver error bound for that.
 _SOLVED = (
     "dilatancy_angle",
     "friction_angle",
@@ -341,40 +267,30 @@ _SOLVED = (
     "peak_strength",
     "peak_dilatancy_angle",
 )
-#: What is found: name to unit and long name.
-FIELDS = _FOUND | {
-    f"{name}_error": (_FOUND[name][0], f"{_FOUND[name][1]}, error by the solver")
+#: Unit and long name of each quantity.
+FIELDS = _QUANTITIES | {
+    f"{name}_error": (_QUANTITIES[name][0], f"{_QUANTITIES[name][1]}, {SOLVER_ERROR}")
     for name in _SOLVED
 }
 
 
-def _one_direction(dilatancy, joint, specimen, material, direction, pressure):
+def _one_direction(
+    dilatancy: xr.Dataset,
+    joint: xr.Dataset,
+    specimen: xr.Dataset,
+    material: Mapping[str, float],
+    direction: str,
+    pressure: np.ndarray,
+) -> xr.Dataset:
     """All of :func:`joint_strength` for one direction."""
-    angle_b, wall = material["basic_friction_angle"], material["joint_wall_strength"]
-    curve = dilatancy.sel(contact_direction=direction)
-    offset = curve["offset_made"].values
-    elastic = curve["elastic_dilatancy"].transpose("offset", "load").values
-    cells = joint["offset_cells"].sel(contact_direction=direction).values
-    rigid, _ = rigid_dilatancy(specimen, direction, cells)
-    error = curve["elastic_dilatancy_error"].transpose("offset", "load").values
-    # Openings of rigid faces are read off the heights.
-    errors = np.column_stack([np.zeros_like(rigid), error])
-    both = np.column_stack([rigid, elastic])
-    largest = offset[-1]
-    if specimen.attrs["opposite"] == "match":
-        # Flush faces have no dilatancy, whatever the load: no error either.
-        _, errors = from_flush(offset, errors)
-        offset, both = from_flush(offset, both)
-    midpoint, angles, angles_off = angles_with_errors(offset, both, errors)
+    angle_b = material["basic_friction_angle"]
+    largest = dilatancy["offset_made"].sel(contact_direction=direction).values[-1]
+    curves = _curves_with_rigid(dilatancy, joint, specimen, direction)
+    midpoint, angles, angles_off = angles_with_errors(*curves)
     rigid_angle, angle, angle_off = angles[:, 0], angles[:, 1:], angles_off[:, 1:]
     tau, held, tau_off = strength_with_error(pressure, angle_b + angle, angle_off)
     stated = np.where(np.isfinite(angle_b), 1.0, np.nan)
-
-    roughness = profile_roughness(specimen, direction)
-    jrc = roughness["jrc_used"].item()
-    side = window_sides(specimen)["yx".index(DIRECTIONS[direction][0])]
-    scaled_jrc, scaled_wall = scaled_joint(jrc, wall, side)
-    found = {
+    values = {
         "midpoint": midpoint,
         "dilatancy_angle": angle,
         "rigid_dilatancy_angle": rigid_angle,
@@ -383,39 +299,69 @@ def _one_direction(dilatancy, joint, specimen, material, direction, pressure):
         "held_high": stated * (held > 0).sum(axis=0),
         "held_low": stated * (held < 0).sum(axis=0),
         "peak_dilatancy_angle": peak(midpoint, angle)[0],
-        "barton_strength": barton_strength(pressure, angle_b, jrc, wall),
-        "scaled_roughness": scaled_jrc,
-        "scaled_wall_strength": scaled_wall,
-        "barton_scaled_strength": barton_strength(pressure, angle_b, scaled_jrc, scaled_wall),
-    }
-    found["peak_strength"], found["peak_offset"] = peak(midpoint, tau)
-    # The largest of several values is off by no more than the one that is off most.
-    found |= {
         "dilatancy_angle_error": angle_off,
         "friction_angle_error": stated * angle_off,
         "shear_strength_error": tau_off,
+        # The largest of several values is off by no more than the one that is off most.
         "peak_strength_error": peak(midpoint, tau_off)[0],
         "peak_dilatancy_angle_error": peak(midpoint, angle_off)[0],
     }
-    for name, values in (("strength", tau), ("angle", angle)):
-        mean, low, high, n = residual(midpoint, values, largest)
-        found |= {
-            f"residual_{name}": mean,
-            f"residual_{name}_low": low,
-            f"residual_{name}_high": high,
-            "residual_n": n,
+    values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
+    for name, of_intervals in (("strength", tau), ("angle", angle)):
+        mean = residual(midpoint, of_intervals, largest)
+        values |= {
+            f"residual_{name}": mean.value,
+            f"residual_{name}_low": mean.low,
+            f"residual_{name}_high": mean.high,
+            "residual_n": mean.n,
         }
-    result = roughness.assign(
-        {
-            name: (_dims(name, values), values, cf_attrs(*FIELDS[name]))
-            for name, values in found.items()
-        }
-    )
+
+    roughness = profile_roughness(specimen, direction)
+    side = window_sides(specimen)[sliding_axis(direction)]
+    values |= _by_barton(roughness["jrc_used"].item(), material, side, pressure)
+    table = {name: (_dims(name, of_name), *FIELDS[name]) for name, of_name in values.items()}
+    result = roughness.assign(labelled(table, values))
     result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
     return result
 
 
-def _dims(name, values):
+def _curves_with_rigid(
+    dilatancy: xr.Dataset, joint: xr.Dataset, specimen: xr.Dataset, direction: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Offsets (n,), dilatancy and its error (n, 1 + load), mm, the rigid joint's first."""
+    curve = dilatancy.sel(contact_direction=direction)
+    cells = joint["offset_cells"].sel(contact_direction=direction).values
+    rigid, _ = rigid_dilatancy(specimen, direction, cells)
+    offset = curve["offset_made"].values
+    elastic, error = (
+        curve[name].transpose("offset", "load").values
+        for name in ("elastic_dilatancy", "elastic_dilatancy_error")
+    )
+    both = np.column_stack([rigid, elastic])
+    # Openings of rigid faces are read off the heights.
+    errors = np.column_stack([np.zeros_like(rigid), error])
+    if specimen.attrs["opposite"] == "match":
+        # Flush faces have no dilatancy, whatever the load: no error either.
+        _, errors = from_flush(offset, errors)
+        offset, both = from_flush(offset, both)
+    return offset, both, errors
+
+
+def _by_barton(
+    jrc: float, material: Mapping[str, float], side: float, pressure: np.ndarray
+) -> dict[str, Any]:
+    """Barton's law with the JRC and JCS as they are, and scaled to the side of the window."""
+    angle, wall = material["basic_friction_angle"], material["joint_wall_strength"]
+    scaled_jrc, scaled_wall = scaled_joint(jrc, wall, side)
+    return {
+        "barton_strength": barton_strength(pressure, angle, jrc, wall),
+        "scaled_roughness": scaled_jrc,
+        "scaled_wall_strength": scaled_wall,
+        "barton_scaled_strength": barton_strength(pressure, angle, scaled_jrc, scaled_wall),
+    }
+
+
+def _dims(name: str, values: ArrayLike) -> tuple[str, ...]:
     if name in ("midpoint", "rigid_dilatancy_angle"):
         return ("interval",)
     return {0: (), 1: ("load",), 2: ("interval", "load")}[np.ndim(values)]

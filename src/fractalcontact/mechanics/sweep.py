@@ -1,35 +1,38 @@
 """Contact states over offsets, loads and resolutions: what one job of a study computes."""
 
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from ..contact.solve import solve_contact
+from ..contact.state import ContactState
+from ..core.datasets import labelled_dataset
 from ..core.errors import NotConverged
 from ..core.labels import cf_attrs
 from ..elastic.halfspace import HalfSpace
-from ..surface.specimen import nominal_area
-from .closure import bulk_settlement
-from .joint import composite_topography, direction_spacing, prefractal, rigid_dilatancy
+from .closure import bulk_settlement, interface_closure
+from .joint import prefractal, rigid_dilatancy
+from .loading import JointLoading
 from .plan import solved_loads
 from .state_scalars import numbers_of
-from .states import (
-    ERRORS,
-    OFFSETS,
-    SCALARS,
-    chosen_offset,
-    forces_of,
-    hardness_of,
-    map_pressure,
-    side_by_side,
-)
+from .states import ERRORS, OFFSETS, SCALARS, chosen_offset, map_pressure, side_by_side
 
 #: Tolerances are tightened by so much where that of the study leaves too large an error.
 TIGHTENING = 10.0
-#: But to no less than this: nodes that just touch are undecided at any tolerance.
+#: But to no less than this: nodes that just touch are ambiguous at any tolerance.
 TIGHTEST = 1e-8
 
 
-def load_steps(composite, space, forces, solving, where):
+def load_steps(
+    composite: np.ndarray,
+    space: HalfSpace,
+    forces: ArrayLike,
+    solving: Mapping[str, Any],
+    where: str,
+) -> Iterator[ContactState]:
     """States under rising forces, each started from the one before.
 
     Parameters
@@ -39,10 +42,10 @@ def load_steps(composite, space, forces, solving, where):
     space : HalfSpace
     forces : (n,) array_like
         N, ascending.
-    solving : dict
+    solving : mapping
         Options of :func:`contact.solve.solve_contact`.
     where : str
-        What is pressed, for errors.
+        What is loaded, for errors.
 
     Yields
     ------
@@ -54,13 +57,20 @@ def load_steps(composite, space, forces, solving, where):
         If a state could not be verified; its note names it.
     """
     state = None
-    for force in forces:
+    for force in np.asarray(forces):
         state = _solved(composite, space, force, state, solving, where)
         yield state
 
 
-def _solved(composite, space, force, start, solving, where):
-    """The state of a force; a failure names what is pressed."""
+def _solved(
+    composite: np.ndarray,
+    space: HalfSpace,
+    force: float,
+    start: ContactState | None,
+    solving: Mapping[str, Any],
+    where: str,
+) -> ContactState:
+    """The state of a force; a failure names what is loaded."""
     try:
         return solve_contact(composite, space, force=force, start=start, **solving)
     except NotConverged as error:
@@ -68,20 +78,16 @@ def _solved(composite, space, force, start, solving, where):
         raise
 
 
-def map_place(joint, settings, direction):
+def map_place(joint: xr.Dataset, settings: Mapping[str, Any], direction: str) -> int:
     """Offset of the contact maps in cells of a direction.
 
     Parameters
     ----------
     joint : xr.Dataset
         From :func:`mechanics.joint.describe_joint`.
-    settings : dict
+    settings : mapping
         From :func:`study.configuration.resolve_settings`.
     direction : str
-
-    Returns
-    -------
-    int
     """
     offsets = joint["offset"].values
     offset = chosen_offset(settings["map_offset"], np.sort(offsets))
@@ -89,18 +95,28 @@ def map_place(joint, settings, direction):
     return cells[offsets == offset][0]
 
 
-def joint_states(specimen, joint, directions, offsets, settings, resolutions, solver):
-    """:func:`contact_states` of some directions and offsets of a joint.
+def joint_states(
+    specimen: xr.Dataset,
+    joint: xr.Dataset,
+    directions: Sequence[str],
+    offsets: slice,
+    settings: Mapping[str, Any],
+    resolutions: Sequence[int],
+    solver: Mapping[str, Any],
+) -> xr.Dataset:
+    """Contact states of a joint in some directions, at some of its offsets and resolutions.
 
     Parameters
     ----------
-    specimen, settings, resolutions, solver
-        As for :func:`contact_states`.
+    specimen, settings, solver
+        As for :class:`mechanics.loading.JointLoading`.
     joint : xr.Dataset
         From :func:`mechanics.joint.describe_joint`.
     directions : sequence of str
     offsets : slice
         Which of the joint's.
+    resolutions
+        As for :func:`contact_states`.
 
     Returns
     -------
@@ -112,33 +128,26 @@ def joint_states(specimen, joint, directions, offsets, settings, resolutions, so
     NotConverged, InputError
         As :func:`contact_states`.
     """
-    parts = []
+    states = []
     for direction in directions:
-        cells = joint["offset_cells"].sel(contact_direction=direction).values[offsets]
+        whole = JointLoading.of_joint(specimen, joint, direction, settings, solver)
         mapped = map_place(joint, settings, direction)
-        found = contact_states(
-            specimen, direction, cells, settings, resolutions, solver, mapped=mapped
-        )
-        parts.append(found)
-    return side_by_side(parts)
+        states.append(contact_states(whole.at(whole.cells[offsets]), resolutions, mapped=mapped))
+    return side_by_side(states)
 
 
-def contact_states(specimen, direction, cells, settings, resolutions, solver, *, mapped=None):
-    """Solve the contact at some offsets and resolutions, under the loads that are needed.
+def contact_states(
+    loading: JointLoading, resolutions: Sequence[int], *, mapped: int | None = None
+) -> xr.Dataset:
+    """Contact states at some offsets and resolutions, under the loads that are needed.
 
     Parameters
     ----------
-    specimen : xr.Dataset
-    direction : str
-    cells : (n,) int array_like
-        Offsets in cells; may be empty.
-    settings : dict
-        From :func:`study.configuration.resolve_settings`.
+    loading : JointLoading
+        Where the solver states an ``accuracy``, only those states are solved that
+        :func:`mechanics.plan.solved_loads` names, else all.
     resolutions : sequence of int
         Multiples k of the scan's spacing.
-    solver : dict
-        From :func:`study.configuration.solver_settings`. With an ``accuracy`` only those states
-        are solved that :func:`mechanics.plan.solved_loads` names, else all.
     mapped : int, optional
         Offset of the contact maps in cells, from :func:`map_place`.
 
@@ -156,70 +165,90 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
     NotConverged
         If any state could not be verified; the message names it.
     InputError
-        As :func:`hardness_of`.
+        As :func:`mechanics.states.hardness_of`.
     """
-    area = nominal_area(specimen)
-    forces = forces_of(settings["loads"], area)
-    solving = {"rtol": solver["rtol"], "hardness": hardness_of(settings, specimen)}
-    accuracy = solver.get("accuracy")
-    cells = np.asarray(cells, int)
-    offsets_made = cells * direction_spacing(specimen, direction)
+    settings, direction, cells = loading.settings, loading.direction, loading.cells
+    forces = loading.forces(settings["loads"])
     shape = (1, len(cells), len(resolutions), len(forces))
-    kept = SCALARS | ERRORS
-    scalars = {name: np.full(shape, np.nan) for name in kept}
+    scalars = {name: np.full(shape, np.nan) for name in SCALARS | ERRORS}
     solved = np.zeros(shape, bool)
-    fields = {}
-    first = direction == settings["contact_directions"][0]
+    fields: dict[str, tuple] = {}
     for k, factor in enumerate(resolutions):
-        space = _space(specimen, factor, settings, solver)
-        touching = np.zeros((1, len(cells), len(forces), *space.shape), bool)
+        grid = tuple(-(-n // factor) for n in loading.shape)
+        space = loading.half_space(grid, factor)
+        touching = np.zeros((1, len(cells), len(forces), *grid), bool)
         for i, n in enumerate(cells):
-            steps = solved_loads(
-                settings,
-                forces,
-                area,
-                first=first,
-                mapped=n == mapped,
-                factor=factor,
-                everything=accuracy is None,
-            )
-            composite = prefractal(composite_topography(specimen, direction, n), factor)
-            where = (
-                f"specimen {specimen.attrs['name']}, direction {direction}, offset {n} cells, "
-                f"resolution {factor}"
-            )
-            states = load_steps(composite, space, forces[steps], solving, where)
             pressures = []
-            for j, state in zip(steps, states, strict=True):
-                state = _exact_enough(state, composite, solving, accuracy, where)
+            for j, state in _load_curve(loading, n, factor, space, mapped=n == mapped):
                 pressures.append(state.pressure.astype(np.float32))
                 solved[0, i, k, j] = True
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state).items():
                     scalars[name][0, i, k, j] = value
-            if first and n == mapped and factor == min(settings["resolutions"]):
-                fields |= map_pressure(pressures, offsets_made[i], direction, factor)
+            if (
+                _in_first_direction(loading)
+                and n == mapped
+                and factor == min(settings["resolutions"])
+            ):
+                fields |= map_pressure(pressures, loading.offsets[i], direction, factor)
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "load", f"y_{factor}", f"x_{factor}"),
             touching,
             cf_attrs("1", f"contact domain at {factor} times the scan's spacing"),
         )
+    return _labelled_states(loading, resolutions, scalars | {"solved": solved}).assign(fields)
+
+
+def _in_first_direction(loading: JointLoading) -> bool:
+    return loading.direction == loading.settings["contact_directions"][0]
+
+
+def _load_curve(
+    loading: JointLoading, cells: int, factor: int, space: HalfSpace, *, mapped: bool
+) -> Iterator[tuple[int, ContactState]]:
+    """Places among the loads, and states, that are needed at one offset and resolution."""
+    settings, accuracy = loading.settings, loading.solver.get("accuracy")
+    forces = loading.forces(settings["loads"])
+    steps = solved_loads(
+        settings,
+        forces,
+        loading.area,
+        first=_in_first_direction(loading),
+        mapped=mapped,
+        factor=factor,
+        all_states=accuracy is None,
+    )
+    composite = prefractal(loading.composite(cells), factor)
+    where = (
+        f"specimen {loading.specimen.attrs['name']}, direction {loading.direction}, "
+        f"offset {cells} cells, resolution {factor}"
+    )
+    states = load_steps(composite, space, forces[steps], loading.solving, where)
+    for step, state in zip(steps, states, strict=True):
+        yield step, _exact_enough(state, composite, loading.solving, accuracy, where)
+
+
+def _labelled_states(
+    loading: JointLoading, resolutions: Sequence[int], of_states: Mapping[str, np.ndarray]
+) -> xr.Dataset:
+    """The dataset of :func:`contact_states` but for its fields."""
+    forces = loading.forces(loading.settings["loads"])
+    opened, spread = rigid_dilatancy(loading.specimen, loading.direction, loading.cells)
+    of_offsets = {
+        "offset_made": loading.offsets,
+        "rigid_opening": opened,
+        "composite_spread": spread,
+    }
     dims = ("direction", "offset", "resolution", "load")
-    opened, spread = rigid_dilatancy(specimen, direction, cells)
-    of_offsets = {"offset_made": offsets_made, "rigid_opening": opened, "composite_spread": spread}
-    return xr.Dataset(
-        {
-            **{name: (dims, values, cf_attrs(*kept[name])) for name, values in scalars.items()},
-            "solved": (dims, solved, cf_attrs("1", "whether the state was needed, and solved")),
-            **{
-                name: (("direction", "offset"), values[np.newaxis], cf_attrs(*OFFSETS[name]))
-                for name, values in of_offsets.items()
-            },
-            **fields,
-        },
+    table: dict[str, tuple] = {name: (dims, *words) for name, words in (SCALARS | ERRORS).items()}
+    table["solved"] = (dims, "1", "whether the state was needed, and solved")
+    table |= {name: (dims[:2], *words) for name, words in OFFSETS.items()}
+    return labelled_dataset(
+        table,
+        {**of_states, **{name: values[np.newaxis] for name, values in of_offsets.items()}},
         coords={
-            "direction": [direction],
-            "offset": ("offset", offsets_made, cf_attrs("mm", "shear offset v")),
+            "direction": [loading.direction],
+            "offset": ("offset", loading.offsets, cf_attrs("mm", "shear offset v")),
             "resolution": (
                 "resolution",
                 np.array(resolutions),
@@ -230,12 +259,18 @@ def contact_states(specimen, direction, cells, settings, resolutions, solver, *,
     )
 
 
-def _exact_enough(state, composite, solving, accuracy, where):
-    """The state, solved more tightly until its errors are within what is asked for.
+def _exact_enough(
+    state: ContactState,
+    composite: np.ndarray,
+    solving: Mapping[str, Any],
+    accuracy: Mapping[str, float] | None,
+    where: str,
+) -> ContactState:
+    """The state, solved more tightly until its errors are within the requested accuracy.
 
     They are those of the closure of the interface, which may be a small part of the whole closure,
-    and of Delta_sigma, estimated from the nodes that are undecided. Started from itself, a state is
-    soon better.
+    and of Delta_sigma, estimated from the ambiguous nodes. Started from itself, a state is soon
+    better.
     """
     if accuracy is None:
         return state
@@ -244,17 +279,11 @@ def _exact_enough(state, composite, solving, accuracy, where):
     sides = np.multiply(space.shape, space.spacing)
     settlement = bulk_settlement(state.force, space.modulus, *sides)
     # Faces that are flush have no interface to close.
-    interface = abs(state.closure - settlement) if np.ptp(composite) > 0 else state.closure
-    small = accuracy["closure"] * interface
-    while rtol > TIGHTEST and (state.undecided > few or state.residual * state.closure > small):
+    flush = np.ptp(composite) == 0
+    closing = state.closure if flush else abs(interface_closure(state.closure, settlement))
+    small = accuracy["closure"] * closing
+    while rtol > TIGHTEST and (state.ambiguous > few or state.residual * state.closure > small):
         rtol /= TIGHTENING
-        tighter = solving | {"rtol": rtol}
+        tighter = {**solving, "rtol": rtol}
         state = _solved(composite, space, state.force, state, tighter, where)
     return state
-
-
-def _space(specimen, factor, settings, solver):
-    attrs = specimen.attrs
-    shape = tuple(-(-attrs[f"window_n{axis}"] // factor) for axis in "yx")
-    spacing = tuple(attrs[f"spacing_{axis}"] * factor for axis in "yx")
-    return HalfSpace(shape, spacing, settings["material"]["e_star"], kernel=solver["kernel"])

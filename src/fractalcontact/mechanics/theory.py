@@ -6,7 +6,11 @@ Every function takes numbers or arrays and returns their common shape.
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from scipy import special
+
+#: What the functions take and return.
+Numbers = float | np.ndarray | xr.DataArray
 
 #: kappa of A/A0 = kappa p / (E* h'_rms). Persson, J. Chem. Phys. 115 (2001) 3840.
 PERSSON_KAPPA = np.sqrt(8 / np.pi)
@@ -14,6 +18,13 @@ PERSSON_KAPPA = np.sqrt(8 / np.pi)
 BUSH_GIBSON_THOMAS_KAPPA = np.sqrt(2 * np.pi)
 #: Where the values computed in the literature for many hills at light load lie.
 COMPUTED_KAPPA = (2.1, 2.3)
+
+#: The three as attributes of a dataset.
+KAPPA_ATTRS = {
+    "persson_kappa": float(PERSSON_KAPPA),
+    "bush_gibson_thomas_kappa": float(BUSH_GIBSON_THOMAS_KAPPA),
+    "computed_kappa": list(COMPUTED_KAPPA),
+}
 
 #: Ratio of successive frequencies of the Weierstrass-Mandelbrot profile, as Majumdar and Bhushan
 #: take it.
@@ -30,16 +41,16 @@ LABORATORY_LENGTH = 100.0
 class Asperities(NamedTuple):
     """Summits of a random surface as Greenwood and Williamson see them."""
 
-    density: float
+    density: Numbers
     """Summits per area, mm-2."""
-    radius: float
+    radius: Numbers
     """Mean radius R of the summits, mm."""
-    height_deviation: float
+    height_deviation: Numbers
     """Standard deviation sigma_s of summit heights, mm."""
 
 
-def linear_area(pressure, modulus, rms_slope, kappa):
-    """Part of the nominal area in contact at light load: kappa p / (E* h'_rms).
+def linear_area(pressure: Numbers, modulus: Numbers, rms_slope: Numbers, kappa: Numbers) -> Numbers:
+    """Fraction of the nominal area in contact at light load: kappa p / (E* h'_rms).
 
     Parameters
     ----------
@@ -55,8 +66,8 @@ def linear_area(pressure, modulus, rms_slope, kappa):
     return kappa * pressure / (modulus * rms_slope)
 
 
-def persson_area(pressure, modulus, rms_slope):
-    """Part of the nominal area in contact at any load: erf(sqrt 2 p / (E* h'_rms)).
+def persson_area(pressure: Numbers, modulus: Numbers, rms_slope: Numbers) -> Numbers:
+    """Fraction of the nominal area in contact at any load: erf(sqrt 2 p / (E* h'_rms)).
 
     Parameters as for `linear_area`, of which Persson's line is the tangent at zero load. Persson,
     J. Chem. Phys. 115 (2001) 3840; this form in Manners & Greenwood, Wear 261 (2006) 600.
@@ -64,7 +75,7 @@ def persson_area(pressure, modulus, rms_slope):
     return special.erf(np.sqrt(2) * pressure / (modulus * rms_slope))
 
 
-def asperities(m0, m2, m4) -> Asperities:
+def asperities(m0: Numbers, m2: Numbers, m4: Numbers) -> Asperities:
     """Summits of a Gaussian surface from the spectral moments of its profiles.
 
     Parameters
@@ -87,7 +98,9 @@ def asperities(m0, m2, m4) -> Asperities:
     )
 
 
-def greenwood_williamson_area(force, modulus, radius, height_deviation):
+def greenwood_williamson_area(
+    force: Numbers, modulus: Numbers, radius: Numbers, height_deviation: Numbers
+) -> Numbers:
     """Real contact area of exponentially distributed asperities: F sqrt(pi R / sigma_s) / E*, mm2.
 
     Parameters
@@ -106,7 +119,7 @@ def greenwood_williamson_area(force, modulus, radius, height_deviation):
     return force * np.sqrt(np.pi * radius / height_deviation) / modulus
 
 
-def roughness_scale(mean_square, lag, dimension):
+def roughness_scale(mean_square: Numbers, lag: Numbers, dimension: Numbers) -> Numbers:
     """Scale G of a fractal profile from its structure function S at one lag, mm.
 
     Parameters
@@ -132,7 +145,9 @@ def roughness_scale(mean_square, lag, dimension):
     return (mean_square / (constant * lag ** (4 - 2 * dimension))) ** (1 / (2 * (dimension - 1)))
 
 
-def majumdar_bhushan_area(force, modulus, dimension, scale):
+def majumdar_bhushan_area(
+    force: Numbers, modulus: Numbers, dimension: Numbers, scale: Numbers
+) -> Numbers:
     """Real contact area of a fractal surface without plasticity, mm2: A ~ F^(2/(3-D)).
 
     Parameters
@@ -162,7 +177,7 @@ def majumdar_bhushan_area(force, modulus, dimension, scale):
     return dimension / (2 - dimension) * largest_spot
 
 
-def archard_exponent(level):
+def archard_exponent(level: Numbers) -> Numbers:
     """Exponent of A ~ F^(1 - 3^-n) for spheres covered with spheres: 2/3 at level 1 (Hertz).
 
     Archard, Proc. R. Soc. A 243 (1957) 190.
@@ -175,7 +190,7 @@ def archard_exponent(level):
     return 1 - 3.0 ** -np.asarray(level)
 
 
-def joint_roughness(z2):
+def joint_roughness(z2: Numbers) -> Numbers:
     """JRC from the rms slope of profiles: 32.2 + 32.47 log10 Z2.
 
     Tse & Cruden, Int. J. Rock Mech. 16 (1979) 303, from profiles sampled at 1.27 mm. The relation
@@ -189,7 +204,9 @@ def joint_roughness(z2):
     return 32.2 + 32.47 * np.log10(z2)
 
 
-def scaled_joint(roughness, wall_strength, length):
+def scaled_joint(
+    roughness: Numbers, wall_strength: Numbers, length: Numbers
+) -> tuple[Numbers, Numbers]:
     """JRC and JCS of a joint of another length (Bandis, Lumsden & Barton 1981).
 
     Parameters
@@ -210,7 +227,9 @@ def scaled_joint(roughness, wall_strength, length):
     return roughness * ratio ** (-0.02 * roughness), wall_strength * ratio ** (-0.03 * roughness)
 
 
-def barton_strength(pressure, residual_angle, roughness, wall_strength):
+def barton_strength(
+    pressure: Numbers, residual_angle: Numbers, roughness: Numbers, wall_strength: Numbers
+) -> Numbers:
     """Peak shear strength tau = sigma tan(phi_r + JRC log10(JCS / sigma)), MPa.
 
     Barton & Choubey, Rock Mech. 10 (1977) 1. The angle in brackets is held between the residual

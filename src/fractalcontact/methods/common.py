@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact.solve import ContactState, checked_hardness, checked_problem, unloaded_state
+from ..contact.solve import checked_hardness, checked_problem
+from ..contact.state import ContactState, unloaded_state
 from ..core.errors import NotConverged
 from ..elastic.halfspace import HalfSpace
 

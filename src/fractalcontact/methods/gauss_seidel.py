@@ -6,7 +6,7 @@ the number of interpenetrating points. A pressure capped at a hardness is projec
 
 import numpy as np
 
-from ..contact.solve import ContactState
+from ..contact.state import ContactState
 from ..core.kernel_cache import njit
 from .common import ContactProblem, in_stress
 from .registry import Method

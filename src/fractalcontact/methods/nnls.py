@@ -10,7 +10,7 @@ takes as many factorisations as there are points in contact; the warm start of B
 import numpy as np
 from scipy import linalg
 
-from ..contact.solve import ContactState
+from ..contact.state import ContactState
 from .common import ContactProblem, influence_matrix
 from .registry import Method
 

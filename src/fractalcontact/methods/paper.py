@@ -9,7 +9,7 @@ With ``HalfSpace(..., kernel=...)`` the influence terms are Love's or a rigid pl
 
 import numpy as np
 
-from ..contact.solve import ContactState
+from ..contact.state import ContactState
 from ..core.kernel_cache import njit
 from .common import ContactProblem
 from .gauss_seidel import relieve

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact.solve import ContactState
+from ..contact.state import ContactState
 from ..core.child_process import in_child
 from ..core.errors import NotConverged
 from ..elastic.halfspace import HalfSpace

@@ -13,7 +13,7 @@ error; here the iteration ends when the contact conditions hold.
 
 import numpy as np
 
-from ..contact.solve import ContactState
+from ..contact.state import ContactState
 from .common import ContactProblem, in_stress
 from .registry import Method
 

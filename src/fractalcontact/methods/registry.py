@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..contact.solve import ContactState
+    from ..contact.state import ContactState
     from ..elastic.halfspace import HalfSpace
     from .peers import PublicCode
 

@@ -6,7 +6,7 @@ __getattr__, __dir__, __all__ = exports(
     __name__,
     {
         "AXES": ".quality_words",
-        "ESTIMATORS": ".estimators",
+        "ESTIMATORS": ".registry",
         "FIRST_CELLS": ".dimension",
         "LAST_PART": ".dimension",
         "best_dimension": ".dimension",

@@ -1,4 +1,4 @@
-"""How rough a surface is, and its dimension Delta_g = 3 - H by several estimators.
+"""Surface dimension Delta_g = 3 - H by several estimators, and roughness statistics.
 
 H comes from the slope of the line through the logarithms of each estimator's curve
 (:mod:`roughness.estimators`) over a stated range.
@@ -10,13 +10,17 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from ..core.arrays import padded
+from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
-from ..core.intervals import t_quantile
-from ..core.labels import cf_attrs
+from ..core.intervals import INTERVAL, t_quantile
 from ..core.mean_plane import without_mean_plane
-from .curves import Curve, roughness_length_curves
-from .estimators import ESTIMATORS, Estimator
+from ..core.ranges import within
+from .curves import Curve, jackknife_standard_error
+from .estimator import Estimator
+from .estimators.roughness_length import roughness_length_curves
 from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
+from .registry import ESTIMATORS
 from .spectrum_model import BAND_LIMITED
 
 #: Default fit range in cells and in parts of the smaller side. Below 4 cells interpolation and
@@ -30,10 +34,10 @@ FLATNESS = 1e-12
 SQUARENESS = 1e-3
 
 #: Those whose slope is H itself within 0.03 for H from 0.5 to 0.9, even without correction.
-LITTLE_BIASED = ("second_differences", "roughness_length", "power_spectrum")
+LITTLE_BIASED = tuple(name for name, of in ESTIMATORS.items() if of.little_biased)
 
-#: Added to either end of an interval for the bias that is left: at H from 0.5 to 0.9 that of made
-#: surfaces is at most twice this (roughness-length at H = 0.5), mostly below it.
+#: Added to either end of an interval for the bias that is left: at H from 0.5 to 0.9 on synthetic
+#: surfaces it is at most twice this (roughness-length at H = 0.5), mostly below it.
 BIAS_LEFT = 0.015
 
 #: Axes a measure is taken along, and the ending of the variables that go with them.
@@ -47,7 +51,7 @@ def surface_dimension(
     fit_range: tuple[float, float] | None = None,
     estimators: Sequence[str] | None = None,
 ) -> xr.Dataset:
-    """Measure the Hurst exponent and the dimension of a surface by several estimators.
+    """Hurst exponent and dimension Delta_g of a surface by several estimators.
 
     Parameters
     ----------
@@ -81,53 +85,79 @@ def surface_dimension(
     -----
     Known bias is taken off (:mod:`roughness.known_bias`): levelling takes a part of the long
     waves along with the plane, which lowers variogram and prisms by 0.1 at H = 0.9; cubes and
-    islands are corrected by what they find on made surfaces. Nothing is corrected for a roll-off:
+    islands are corrected by their mean on synthetic surfaces. Nothing is corrected for a roll-off:
     state a range well below it.
 
     The interval is the wider of the regression's and the jackknife's over parts of the surface (4 x
     4 blocks; 8 strips for the spectrum), the latter widened by the estimator's `spread`, because
     the parts of one surface share its long waves; and `BIAS_LEFT` beyond either end. What is not
     known is whether the nodes are points of a finer surface, or the surface lacks waves shorter
-    than two nodes, as made surfaces do: then all but cubes and islands find H too high, by up to
-    0.06 at 0.3, 0.025 at 0.5 and 0.005 at 0.8. The interval spans both.
+    than two nodes, as synthetic surfaces do: then all but cubes and islands give H too high, by up
+    to 0.06 at 0.3, 0.025 at 0.5 and 0.005 at 0.8. The interval spans both.
     :mod:`experiments.delta_g` measures bias, scatter and how often it holds the truth.
     """
     estimates = hurst_exponents(heights, spacing, fit_range=fit_range, estimators=estimators)
-    found = list(estimates.values())
-    scales = max(len(estimate.length) for estimate in found)
-    on_scale = {
-        name: np.full((len(found), scales), fill)
-        for name, fill in (("length", np.nan), ("measure", np.nan), ("used", False))
+    every, chosen = list(estimates.values()), [ESTIMATORS[name] for name in estimates]
+    length, measure = (padded([getattr(e, key) for e in every]) for key in ("length", "measure"))
+    used = np.zeros(length.shape, bool)
+    for row, estimate in zip(used, every, strict=True):
+        row[: estimate.used.size] = estimate.used
+    hurst = {
+        f"hurst{ending}{end}": np.array([estimate.hurst[axis][i] for estimate in every])
+        for axis, ending in AXES.items()
+        for i, end in enumerate(INTERVAL)
     }
-    for row, estimate in enumerate(found):
-        for name, values in on_scale.items():
-            values[row, : len(estimate.length)] = getattr(estimate, name)
-    result = xr.Dataset(
-        {name: (("estimator", "scale"), values) for name, values in on_scale.items()},
-        coords={"estimator": list(estimates), "scale": np.arange(scales)},
-    )
-    for axis, ending in AXES.items():
-        for i, end in enumerate(("", "_low", "_high")):
-            result[f"hurst{ending}{end}"] = "estimator", [e.hurst[axis][i] for e in found]
-    result["slope_hurst"] = "estimator", [e.slope_hurst for e in found]
-    result["dimension"] = 3 - result["hurst"]
-    result["dimension_low"] = 3 - result["hurst_high"]
-    result["dimension_high"] = 3 - result["hurst_low"]
-    fitted = result["length"].where(result["used"] & result["hurst"].notnull())
-    result["fit_min"], result["fit_max"] = fitted.min("scale"), fitted.max("scale")
-    result["n"] = result["used"].sum("scale")
-    chosen = [ESTIMATORS[name] for name in estimates]
-    for name, words, values in (
-        ("length_kind", "what the length is", [e.length for e in chosen]),
-        ("measure_kind", "what was measured", [e.measure for e in chosen]),
-        ("measure_units", "unit of what was measured", [e.units for e in chosen]),
-    ):
-        result[name] = ("estimator", values, cf_attrs("1", words))
-    return _described(result)
+    fitted = used & np.isfinite(hurst["hurst"])[:, np.newaxis]
+    values = {
+        "length": length,
+        "measure": measure,
+        "used": used,
+        **hurst,
+        "slope_hurst": [estimate.slope_hurst for estimate in every],
+        "dimension": 3 - hurst["hurst"],
+        "dimension_low": 3 - hurst["hurst_high"],
+        "dimension_high": 3 - hurst["hurst_low"],
+        "fit_min": _finite(np.min(length, axis=1, where=fitted, initial=np.inf)),
+        "fit_max": _finite(np.max(length, axis=1, where=fitted, initial=-np.inf)),
+        "n": used.sum(axis=1),
+        "length_kind": [estimator.length for estimator in chosen],
+        "measure_kind": [estimator.measure for estimator in chosen],
+        "measure_units": [estimator.units for estimator in chosen],
+    }
+    coords = {"estimator": list(estimates), "scale": np.arange(length.shape[1])}
+    return labelled_dataset(_DIMENSIONS, values, coords=coords)
+
+
+_DIMENSIONS = {
+    "length": (("estimator", "scale"), "mm", "length at which the measure was taken"),
+    "measure": (("estimator", "scale"), "see measure_units", "measured quantity"),
+    "used": (("estimator", "scale"), "1", "taken into the fit"),
+    **{
+        f"hurst{axis}{end}": ("estimator", "1", f"Hurst exponent H{where}{words}")
+        for axis, where in {"": "", "_x": " along x", "_y": " along y"}.items()
+        for end, words in INTERVAL.items()
+    },
+    "slope_hurst": ("estimator", "1", "Hurst exponent before the correction of known bias"),
+    **{
+        f"dimension{end}": ("estimator", "1", f"surface dimension Delta_g = 3 - H{words}")
+        for end, words in INTERVAL.items()
+    },
+    "fit_min": ("estimator", "mm", "shortest length fitted"),
+    "fit_max": ("estimator", "mm", "longest length fitted"),
+    "n": ("estimator", "1", "points fitted"),
+    "length_kind": ("estimator", "1", "what the length is"),
+    "measure_kind": ("estimator", "1", "what was measured"),
+    "measure_units": ("estimator", "1", "unit of what was measured"),
+}
+
+
+def _finite(values: np.ndarray) -> np.ndarray:
+    """Values, NaN where they are infinite."""
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 class Estimate(NamedTuple):
-    """What one estimator found."""
+    """Curve and Hurst exponent by one estimator."""
 
     length: np.ndarray
     """(k,), mm."""
@@ -148,7 +178,14 @@ def hurst_exponents(
     fit_range: tuple[float, float] | None = None,
     estimators: Sequence[str] | None = None,
 ) -> dict[str, Estimate]:
-    """What `surface_dimension` finds, as plain numbers by estimator; same parameters and errors."""
+    """Hurst exponent by estimator, as plain numbers.
+
+    Parameters and errors as :func:`surface_dimension`.
+
+    Returns
+    -------
+    dict of str to Estimate
+    """
     heights = np.asarray(heights, float)
     if heights.ndim != 2:
         raise ValueError(f"heights must be a (y, x) grid, not of shape {heights.shape}")
@@ -210,8 +247,7 @@ def _estimate(
     curves = estimator.curves(heights, spacing)
     length, measure = curves["both"].length, curves["both"].measure()
     shortest, longest = (estimator.factor * end for end in fit_range)
-    tolerance = 1e-9 * longest  # lengths are multiples of the spacing, ends often are too
-    used = (length >= shortest - tolerance) & (length <= longest + tolerance)
+    used = within(length, shortest, longest)
     measure = np.where(measure > 0, measure, np.nan)  # a flat surface has no logarithm, nor an H
     used &= np.isfinite(measure)
 
@@ -234,7 +270,7 @@ def _corrected(
     """H without known bias, and an interval that holds whatever the nodes stand for."""
     ends = np.array([slope, slope - half, slope + half])
     of_either = {
-        nodes: extended(ends, estimator.found(fit, nodes), HURST_GRID)
+        nodes: extended(ends, estimator.expected_hurst(fit, nodes), HURST_GRID)
         for nodes in (BAND_LIMITED, POINTS)
     }
     every = np.concatenate(list(of_either.values()))
@@ -252,30 +288,8 @@ def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tup
     parts = len(without)
     if not np.isfinite(of_regression) or parts < 2:
         return np.nan, np.nan
-    error = np.sqrt((parts - 1) / parts * np.sum((without - without.mean()) ** 2))
-    of_parts = t_quantile(parts - 1) * estimator.spread * error
+    of_parts = t_quantile(parts - 1) * estimator.spread * jackknife_standard_error(without)
     return every[0], max(of_regression, of_parts) + BIAS_LEFT
-
-
-def _described(result: xr.Dataset) -> xr.Dataset:
-    """The dataset with units and long names."""
-    ends = {"": "", "_low": ", lower end of 95 % interval", "_high": ", upper end of 95 % interval"}
-    along = {"": "", "_x": " along x", "_y": " along y"}
-    for end, words in ends.items():
-        for axis, where in along.items():
-            result[f"hurst{axis}{end}"].attrs = cf_attrs("1", f"Hurst exponent H{where}{words}")
-        result[f"dimension{end}"].attrs = cf_attrs("1", f"surface dimension Delta_g = 3 - H{words}")
-    for name, units, words in (
-        ("slope_hurst", "1", "Hurst exponent before the correction of known bias"),
-        ("fit_min", "mm", "shortest length fitted"),
-        ("fit_max", "mm", "longest length fitted"),
-        ("n", "1", "points fitted"),
-        ("length", "mm", "length at which the measure was taken"),
-        ("measure", "see measure_units", "measured quantity"),
-        ("used", "1", "taken into the fit"),
-    ):
-        result[name].attrs = cf_attrs(units, words)
-    return result
 
 
 def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
@@ -306,7 +320,7 @@ def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
 def roughness_length(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Rms height about the local mean plane (mm) in square windows of side b (mm): grows as b^H.
 
-    See :func:`roughness.curves.roughness_length_curves`.
+    See :func:`roughness.estimators.roughness_length.roughness_length_curves`.
     """
     curve = roughness_length_curves(np.asarray(heights, float), spacing)["both"]
     return curve.length, np.sqrt(curve.measure())
@@ -353,17 +367,23 @@ def slope_statistics(heights: np.ndarray, spacing: float | tuple[float, float]) 
     z2_y, z2_x = (np.sqrt(_mean_square([np.diff(z, axis=a)])) / d for a, d in enumerate(spacings))
     m4 = np.mean([_mean_square([np.diff(z, 2, axis=a)]) / d**4 for a, d in enumerate(spacings)])
     values = {
-        "rms_height": (np.sqrt(m0), "mm", "root mean square height"),
-        "z2_x": (z2_x, "1", "rms slope of profiles along x"),
-        "z2_y": (z2_y, "1", "rms slope of profiles along y"),
-        "rms_slope": (np.hypot(z2_x, z2_y), "1", "rms slope of the surface"),
-        "m0": (m0, "mm2", "mean square height"),
-        "m2": ((z2_x**2 + z2_y**2) / 2, "1", "mean square slope of profiles"),
-        "m4": (m4, "mm-2", "mean square second derivative of profiles"),
+        "rms_height": np.sqrt(m0),
+        "z2_x": z2_x,
+        "z2_y": z2_y,
+        "rms_slope": np.hypot(z2_x, z2_y),
+        "m0": m0,
+        "m2": (z2_x**2 + z2_y**2) / 2,
+        "m4": m4,
     }
-    return xr.Dataset(
-        {
-            name: ((), value, {"units": units, "long_name": words})
-            for name, (value, units, words) in values.items()
-        }
-    )
+    return labelled_dataset(_STATISTICS, values)
+
+
+_STATISTICS = {
+    "rms_height": ((), "mm", "root mean square height"),
+    "z2_x": ((), "1", "rms slope of profiles along x"),
+    "z2_y": ((), "1", "rms slope of profiles along y"),
+    "rms_slope": ((), "1", "rms slope of the surface"),
+    "m0": ((), "mm2", "mean square height"),
+    "m2": ((), "1", "mean square slope of profiles"),
+    "m4": ((), "mm-2", "mean square second derivative of profiles"),
+}

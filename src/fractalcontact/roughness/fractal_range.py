@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..core.intervals import t_quantile
-from .curves import Curve, ratio
+from .curves import Curve, jackknife_standard_error, ratio
 from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, named
 
 #: A feature must lower the score (BIC) by this beyond its share: "strong" in Kass & Raftery,
@@ -22,7 +22,7 @@ from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, name
 EVIDENCE = 6.0
 #: No bin of a spectrum is trusted better than this (relative): tapering and binning bend it.
 BIN_ERROR = 0.05
-#: Neighbouring strips of one surface share its long waves (`estimators.ESTIMATORS`).
+#: Neighbouring strips of one surface share its long waves (`estimator.Estimator.spread`).
 SPREAD = 1.2
 #: Slope 1 + 2H of a spectrum, between H = 0.2 and H = 1: flatter no rock is known, and what is
 #: flatter can hardly be told from noise.
@@ -89,7 +89,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     Parameters
     ----------
     curve : Curve
-        Of :func:`roughness.curves.profile_spectra`, mm and mm3.
+        Of :func:`roughness.spectra.profile_spectra`, mm and mm3.
     spacing : float
         Between the nodes of the profiles, mm.
 
@@ -130,7 +130,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     x = 2 * spacing / curve.length[known]
     parts = np.log(curve.without_each_part()[:, known])
     logs = np.log(level[known])
-    error = np.hypot(_jackknife(parts), BIN_ERROR)
+    error = np.hypot(jackknife_standard_error(parts), BIN_ERROR)
 
     form, fit, values = _most_likely(x, logs, error, parts)
     fitted = np.full(len(level), np.nan)
@@ -305,7 +305,7 @@ def _with_intervals(form: Form, fit, x, logs, parts, error) -> dict[str, tuple]:
             # The floor lies above the surface at all wavelengths seen: a bound, not an estimate.
             intervals[name] = (value, -np.inf, value)
             continue
-        half = quantile * max(SPREAD * float(_jackknife(values)[0]), of_fit)
+        half = quantile * max(SPREAD * float(jackknife_standard_error(values)[0]), of_fit)
         intervals[name] = (value, value - half, value + half)
     return intervals
 
@@ -315,11 +315,3 @@ def _gradient(form, parameters, x, name, value):
     step = 1e-6
     steps = parameters + step * np.eye(len(parameters))
     return np.array([features_of(form, p, x).get(name, value) - value for p in steps]) / step
-
-
-def _jackknife(without: np.ndarray) -> np.ndarray:
-    """Standard error of values of which those without each part are given, (parts, k)."""
-    parts = len(without)
-    if parts < 2:
-        return np.zeros(without.shape[1])
-    return np.sqrt((parts - 1) / parts * np.sum((without - without.mean(axis=0)) ** 2, axis=0))

@@ -1,4 +1,4 @@
-"""What the slopes of the estimators' curves say on average, of surfaces whose exponent is known.
+"""Known bias of the slopes of the estimators' curves: their mean on surfaces of known exponent.
 
 The slope of a curve would be that of a power law but for three things that are known beforehand:
 
@@ -7,31 +7,36 @@ The slope of a curve would be that of a power law but for three things that are 
   instrument, by averaging, or because a surface was made on the grid - all nodes lack their
   roughness, which makes the short end of a curve too low (`BAND_LIMITED`). Where single points of a
   finer surface were taken they are there in full, and look like longer waves in a spectrum
-  (`POINTS`). Nothing in heights alone tells for sure which of the two they are;
+  (`POINTS`). Nothing in heights alone decides for sure which of the two they are;
 - a column of few nodes misses peaks, and a small island has no lakes.
 
 All of it belongs to an isotropic surface that is self-affine at all lengths. Levelling and missing
-waves follow from the mean square difference h^(2H) of such a surface alone; the rest was found on
-made surfaces.
+waves follow from the mean square difference h^(2H) of such a surface alone; the rest was measured
+on synthetic surfaces. What holds of one estimator alone stands in its own file.
 """
 
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import special
 
 from .curves import ratio
-from .spectrum_model import ALIASED, BAND_LIMITED, sampled
+from .spectrum_model import ALIASED, BAND_LIMITED
 
-#: Exponents at which it is known what an estimator finds.
+#: Exponents at which the mean result of every estimator is known.
 HURST_GRID = np.linspace(0.02, 0.98, 97)
 
 #: The other thing nodes can stand for, beside `BAND_LIMITED`: see above.
 POINTS = ALIASED
 
-#: Exponents of the made surfaces on which cubes and islands were tried.
-MADE = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])
+#: Exponents of the synthetic surfaces from which the bias of cubes and islands was measured: means
+#: over 50 of 256 x 256 and 40 of 512 x 512, fitted over the default range; from a spectrum
+#: (`synthesis.self_affine`), and points of fractional Brownian surfaces (Stein, J. Comput. Graph.
+#: Stat. 11 (2002) 587). They differ by up to 0.03 between the two sizes, and will by more for a
+#: very different range.
+SYNTHETIC_HURST = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])
 
 
 class Fit(NamedTuple):
@@ -123,78 +128,46 @@ def unresolved() -> np.ndarray:
     return (outside / whole)[:, 0]
 
 
-# -- what is found ---------------------------------------------------------------------------------
+# -- mean exponents by the slope -------------------------------------------------------------------
 
 
-def found_by_variogram(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope of the variogram says on average, at `HURST_GRID`."""
-    return _found(fit, 1 - _plane(fit, levelled_slope()) - _short_waves(fit, sampling, 1))
+def levelled_fraction(fit: Fit, fraction: np.ndarray) -> np.ndarray:
+    """Fraction of the mean square that levelling took, (exponents, k): it grows as length^2.
 
-
-def found_by_second_differences(fit: Fit, sampling: str) -> np.ndarray:
-    """Of noise they are three times the differences; of the surface 4 - 4^H times."""
-    return _found(fit, 1 - _short_waves(fit, sampling, 3 / (4 - 4**HURST_GRID)))
-
-
-def found_by_roughness_length(fit: Fit, sampling: str) -> np.ndarray:
-    """All of the missing waves' mean square is about a window's plane, of the surface's a part."""
-    unit = square_about_plane() if fit.axis == "both" else square_about_line()
-    return _found(fit, 1 - _short_waves(fit, sampling, 1 / (2 * unit)))
-
-
-def found_by_power_spectrum(fit: Fit, sampling: str) -> np.ndarray:
-    """Profiles lack waves that are short across them, or have short waves along them folded back.
-
-    Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long.
+    Parameters
+    ----------
+    fit : Fit
+    fraction : (exponents,) ndarray
+        That of a length as long as the surface.
     """
-    return _found(fit, sampled(sampling, 1 + 2 * HURST_GRID[:, np.newaxis], 2 / fit.length))
+    return fraction[:, np.newaxis] * (fit.length / fit.side) ** (2 - 2 * HURST_GRID[:, np.newaxis])
 
 
-def found_by_prisms(fit: Fit, sampling: str) -> np.ndarray:
-    """A facet's mean square rise is 1 + 2^(H - 1) times the mean square difference.
+def short_wave_fraction(fit: Fit, sampling: str, fraction: ArrayLike) -> np.ndarray:
+    """Fraction of the mean square that missing short waves have, (exponents, k).
 
-    Levelling takes both axes' part from it, and of noise it is 1 1/2 times the difference.
+    Parameters
+    ----------
+    fit : Fit
+    sampling : str
+        None is missing but of a `BAND_LIMITED` surface.
+    fraction : float or (exponents,) ndarray
+        Mean square of noise over that of its differences, both in units of the surface's own.
     """
-    rise = 1 + 2 ** (HURST_GRID - 1)
-    plane = _plane(fit, 2 * levelled_slope() / rise)
-    return _found(fit, 1 - plane - _short_waves(fit, sampling, 1.5 / rise))
-
-
-def _plane(fit, share):
-    """Part of the mean square that levelling took: it grows as length^2."""
-    return share[:, np.newaxis] * (fit.length / fit.side) ** (2 - 2 * HURST_GRID[:, np.newaxis])
-
-
-def _short_waves(fit, sampling, share):
-    """Part of the mean square that missing short waves have: the same at all lengths."""
-    missing = share * unresolved() * (sampling == BAND_LIMITED)
+    missing = fraction * unresolved() * (sampling == BAND_LIMITED)
     return missing[:, np.newaxis] * fit.length ** (-2 * HURST_GRID[:, np.newaxis])
 
 
-def _found(fit, kept):
-    """Mean exponents found where this part of the power law of a mean square is left."""
+def hurst_of_mean_square(fit: Fit, kept: np.ndarray) -> np.ndarray:
+    """Mean exponents by the slope, where this fraction of the power law is left at each length.
+
+    Parameters
+    ----------
+    fit : Fit
+    kept : (exponents, k) ndarray
+
+    Returns
+    -------
+    (exponents,) ndarray
+    """
     return HURST_GRID + slopes(np.log(fit.length), np.log(np.maximum(kept, 1e-12))) / 2
-
-
-def found_by_cubes(fit: Fit, sampling: str) -> np.ndarray:
-    """A column of few nodes misses peaks between them; levelling takes from the widest columns."""
-    return extended(HURST_GRID, MADE, np.array(_CUBES[sampling]))
-
-
-def found_by_islands(fit: Fit, sampling: str) -> np.ndarray:
-    """Small islands have no lakes yet, and each coast alone is smoother than all of them."""
-    return extended(HURST_GRID, MADE, np.array(_ISLANDS[sampling]))
-
-
-# Means over made surfaces (`MADE`), 50 of 256 x 256 and 40 of 512 x 512, fitted over the default
-# range: from a spectrum (`synthesis.self_affine`), and points of fractional Brownian surfaces
-# (Stein, J. Comput. Graph. Stat. 11 (2002) 587). They differ by up to 0.03 between the two sizes,
-# and will by more for a very different range.
-_CUBES = {
-    BAND_LIMITED: (0.407, 0.500, 0.611, 0.730, 0.786, 0.836, 0.858),
-    POINTS: (0.311, 0.452, 0.587, 0.720, 0.781, 0.835, 0.859),
-}
-_ISLANDS = {
-    BAND_LIMITED: (0.411, 0.520, 0.633, 0.747, 0.794, 0.835, 0.857),
-    POINTS: (0.269, 0.456, 0.602, 0.731, 0.777, 0.827, 0.848),
-}

@@ -1,23 +1,24 @@
-"""How good a scan is: relief, missing cells, noise floor, and which resolutions go below it."""
+"""Quality of a scan: relief, missing cells, noise floor, and the resolutions that go below it."""
 
 import json
 import math
+from collections.abc import Sequence
+from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
-import scipy.fft
 import xarray as xr
 
 from ..core.arrays import padded
+from ..core.datasets import labelled
 from ..core.intervals import INTERVAL
-from ..core.labels import cf_attrs
-from ..core.mean_plane import without_mean_plane
+from ..surface.grid import spacing_of
 from ..surface.specimen import cell_side
-from ..surface.window import hole_free_square
-from .curves import FIRST_ORDER, LENGTHS_PER_OCTAVE, SHORTEST_SEGMENT, STRIPS, profile_spectra
 from .fractal_range import FractalRange, find_fractal_range
 from .quality_words import AXES, interval_words
+from .spectra import STRIPS, profile_spectra, radial_spectrum
 
-#: Shares of the cells below a height, in percent.
+#: Fractions of the cells below a height, in percent.
 PERCENTILES = (0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9)
 #: Bins of the histogram, between the outer two percentiles and a quarter beyond on either side.
 BINS = 60
@@ -30,8 +31,8 @@ STEP_TOLERANCE = 0.05
 ROUNDING = 1e-13
 
 
-def scan_quality(specimen: xr.Dataset, resolutions) -> xr.Dataset:
-    """Measure relief, spectra and noise of each scanned face.
+def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset:
+    """Relief, spectra and noise of each scanned face.
 
     Parameters
     ----------
@@ -44,10 +45,10 @@ def scan_quality(specimen: xr.Dataset, resolutions) -> xr.Dataset:
     -------
     Dataset
         On `face`: relief and histogram (`edge`, `bin`), `missing_share`, `height_step`, radially
-        averaged spectrum. On `face` and `axis`: spectra of profiles and what
-        :mod:`roughness.fractal_range` finds in them. `range_end` (mm), the shortest wavelength
-        of the fractal range over all of them, with what it comes from as attribute ``ended_by``;
-        `below_range` on `resolution`. Attribute ``warning``: a sentence, "" if all is well.
+        averaged spectrum. On `face` and `axis`: spectra of profiles and the fractal range by
+        :mod:`roughness.fractal_range`. `range_end` (mm), the shortest wavelength of the fractal
+        range over all of them, with its cause as attribute ``ended_by``; `below_range` on
+        `resolution`. Attribute ``warning``: a sentence, "" if all is well.
 
     Notes
     -----
@@ -55,60 +56,79 @@ def scan_quality(specimen: xr.Dataset, resolutions) -> xr.Dataset:
     lies below the fractal range where 2 s < `range_end`.
     """
     faces = [face for face in ("lower", "upper") if face in specimen]
-    spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
-    heights = {face: specimen[face].values.astype(float) for face in faces}
-    result = xr.Dataset(coords={"face": faces, "axis": list(AXES)})
-    _add_relief(result, list(heights.values()))
-    result["height_step"] = (
-        "face",
-        [height_step(z + _removed_plane(specimen)) for z in heights.values()],
-        cf_attrs("mm", "step of quantised heights, missing if none is seen"),
+    spacing = spacing_of(specimen)
+    heights = [specimen[face].values.astype(float) for face in faces]
+    plane = _removed_plane(specimen)
+    points = {
+        "height_step": [height_step(z + plane) for z in heights],
+        "point_pitch": [_point_pitch(specimen, face) for face in faces],
+    }
+    result = xr.Dataset(
+        {
+            **_relief(heights),
+            **labelled(_POINTS, points),
+            **_profile_spectra(heights, spacing),
+            **_radial_spectra(heights, spacing),
+        },
+        coords={"face": faces, "axis": list(AXES)},
     )
-    _add_profile_spectra(result, list(heights.values()), spacing)
-    _add_radial_spectra(result, list(heights.values()), spacing)
-    pitch = [_point_pitch(specimen, face) for face in faces]
-    result["point_pitch"] = "face", pitch, cf_attrs("mm", "mean distance of the points measured")
-    _add_range_end(result, np.array(resolutions), cell_side(specimen))
+    side = cell_side(specimen)
+    end = _range_end(result, side)
+    result = result.assign(_compared_with_range(end, np.array(resolutions), side))
+    result.attrs = {"ended_by": end.cause}
+    result.attrs["warning"] = _warning(result)
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result
 
 
+_POINTS = {
+    "height_step": ("face", "mm", "step of quantised heights, missing if none is seen"),
+    "point_pitch": ("face", "mm", "mean distance of the points measured"),
+}
+
+
 # -- relief ----------------------------------------------------------------------------------------
 
+_RELIEF = {
+    "missing_share": ("face", "1", "fraction of cells not measured"),
+    "rms": ("face", "mm", "root mean square height"),
+    "skewness": ("face", "1", "skewness of the heights"),
+    "kurtosis": ("face", "1", "kurtosis of the heights, 3 if Gaussian"),
+    "lowest": ("face", "mm", "smallest height"),
+    "highest": ("face", "mm", "largest height"),
+    "percentile": ("percentile", "%", "fraction of cells below"),
+    "height": (("face", "percentile"), "mm", "height"),
+    "edge": ("edge", "mm", "edges of the bins of heights"),
+    "density": (
+        ("face", "bin"),
+        "mm-1",
+        "fraction of cells in a bin, over its width; some heights lie beyond all bins",
+    ),
+}
 
-def _add_relief(result, heights):
+
+def _relief(heights):
     """Statistics about the mean plane, and histograms of all faces over the same bins."""
     known = [z[np.isfinite(z)] for z in heights]
     centred = [z - z.mean() for z in known]
     rms = np.array([np.sqrt(np.mean(z**2)) for z in centred])
-    moments = {
-        "missing_share": (
-            "1",
-            "share of cells not measured",
-            [np.isnan(z).mean() for z in heights],
-        ),
-        "rms": ("mm", "root mean square height", rms),
-        "skewness": ("1", "skewness of the heights", _moment(centred, 3) / rms**3),
-        "kurtosis": ("1", "kurtosis of the heights, 3 if Gaussian", _moment(centred, 4) / rms**4),
-        "lowest": ("mm", "smallest height", [z.min() for z in known]),
-        "highest": ("mm", "largest height", [z.max() for z in known]),
-    }
-    for name, (units, words, values) in moments.items():
-        result[name] = "face", np.asarray(values, float), cf_attrs(units, words)
-    result["percentile"] = "percentile", list(PERCENTILES), cf_attrs("%", "share of cells below")
     percentiles = np.array([np.percentile(z, PERCENTILES) for z in known])
-    result["height"] = ("face", "percentile"), percentiles, cf_attrs("mm", "height")
     low, high = percentiles[:, 0].min(), percentiles[:, -1].max()
     edges = np.linspace(low - (high - low) / 4, high + (high - low) / 4, BINS + 1)
     counts = np.array([np.histogram(z, edges)[0] for z in known])
-    result["edge"] = "edge", edges, cf_attrs("mm", "edges of the bins of heights")
-    result["density"] = (
-        ("face", "bin"),
-        counts / (np.array([[z.size] for z in known]) * np.diff(edges)),
-        cf_attrs(
-            "mm-1", "share of cells in a bin, over its width; some heights lie beyond all bins"
-        ),
-    )
+    values = {
+        "missing_share": [np.isnan(z).mean() for z in heights],
+        "rms": rms,
+        "skewness": _moment(centred, 3) / rms**3,
+        "kurtosis": _moment(centred, 4) / rms**4,
+        "lowest": [z.min() for z in known],
+        "highest": [z.max() for z in known],
+        "percentile": list(PERCENTILES),
+        "height": percentiles,
+        "edge": edges,
+        "density": counts / (np.array([[z.size] for z in known]) * np.diff(edges)),
+    }
+    return labelled(_RELIEF, values)
 
 
 def _moment(centred, order):
@@ -150,59 +170,82 @@ def height_step(heights: np.ndarray) -> float:
 # -- spectra ---------------------------------------------------------------------------------------
 
 
-def _add_profile_spectra(result, heights, spacing):
-    """Spectra of profiles along x and y, and where their fractal range ends."""
-    curves = [list(profile_spectra(z, spacing).values()) for z in heights]  # x, then y
-    found = [
-        [find_fractal_range(c, d) for c, d in zip(row, spacing[::-1], strict=True)]
-        for row in curves
-    ]
-    dims = ("face", "axis", "wave")
-    for name, units, words, values in (
-        ("wavelength", "mm", "wavelength", [[c.length for c in row] for row in curves]),
-        (
-            "spectrum",
-            "mm3",
-            "two-sided power spectral density of profiles",
-            [[r.level for r in row] for row in found],
-        ),
-        (
-            "spectrum_model",
-            "mm3",
-            "its model: self-affine, with what else was seen",
-            [[r.fitted for r in row] for row in found],
-        ),
-    ):
-        result[name] = dims, _table(values), cf_attrs(units, words)
-    for name, units, words in _RANGE_VARIABLES:
-        values = np.array([[getattr(r, name) for r in row] for row in found])
-        for i, (ending, of) in enumerate(INTERVAL.items()):
-            result[name + ending] = ("face", "axis"), values[..., i], cf_attrs(units, words + of)
-    for name, units, words, take in _RANGE_NUMBERS:
-        values = [[take(r) for r in row] for row in found]
-        result[name] = ("face", "axis"), values, cf_attrs(units, words)
+_AXIS = ("face", "axis")
 
+_PROFILES = {
+    "wavelength": ((*_AXIS, "wave"), "mm", "wavelength"),
+    "spectrum": ((*_AXIS, "wave"), "mm3", "two-sided power spectral density of profiles"),
+    "spectrum_model": (
+        (*_AXIS, "wave"),
+        "mm3",
+        "its model: self-affine, with what else was seen",
+    ),
+}
 
-_RANGE_VARIABLES = (
-    ("noise_rms", "mm", "noise floor: standard deviation of independent errors of the nodes"),
-    ("noise_wavelength", "mm", "wavelength where the self-affine line meets the noise floor"),
-    ("filter_wavelength", "mm", "wavelength where a low-pass filter halves the spectrum"),
-    ("roll_off_wavelength", "mm", "wavelength above which the spectrum is flat"),
-    ("end", "mm", "shortest wavelength of the fractal range along one axis"),
-)
-_RANGE_NUMBERS = (
-    ("noise_limit", "mm", "what the noise floor can be at most", lambda r: r.noise_limit),
-    (
-        "strips_left_out",
+#: Estimates with their intervals.
+_ESTIMATES = {
+    "noise_rms": ("mm", "noise floor: standard deviation of independent errors of the nodes"),
+    "noise_wavelength": ("mm", "wavelength where the self-affine line meets the noise floor"),
+    "filter_wavelength": ("mm", "wavelength where a low-pass filter halves the spectrum"),
+    "roll_off_wavelength": ("mm", "wavelength above which the spectrum is flat"),
+    "end": ("mm", "shortest wavelength of the fractal range along one axis"),
+}
+
+_INTERVALS = {
+    name + ending: (_AXIS, units, words + end)
+    for name, (units, words) in _ESTIMATES.items()
+    for ending, end in INTERVAL.items()
+}
+
+_NUMBERS = {
+    "noise_limit": (_AXIS, "mm", "what the noise floor can be at most"),
+    "strips_left_out": (
+        _AXIS,
         "1",
         f"strips of profiles, of {STRIPS}, left out for spikes or steps, mean over the wavelengths",
-        lambda r: r.left_out,
     ),
-    ("misfit", "1", "rms logarithm of measured over modelled spectrum", lambda r: r.misfit),
-    ("line_level", "mm3", "self-affine line at a wavelength of 1 mm", lambda r: r.line[0]),
-    ("line_exponent", "1", "exponent 1 + 2H of the self-affine line", lambda r: r.line[1]),
-    ("form", "1", "parts of the model of the spectrum", lambda r: _form_words(r)),
-)
+    "misfit": (_AXIS, "1", "rms logarithm of measured over modelled spectrum"),
+    "line_level": (_AXIS, "mm3", "self-affine line at a wavelength of 1 mm"),
+    "line_exponent": (_AXIS, "1", "exponent 1 + 2H of the self-affine line"),
+    "form": (_AXIS, "1", "parts of the model of the spectrum"),
+}
+
+
+def _profile_spectra(heights, spacing):
+    """Spectra of profiles along x and y, and where their fractal range ends."""
+    curves = [list(profile_spectra(z, spacing).values()) for z in heights]  # x, then y
+    ranges = [
+        [find_fractal_range(curve, d) for curve, d in zip(row, spacing[::-1], strict=True)]
+        for row in curves
+    ]
+
+    def of_range(value):
+        return [[value(found) for found in row] for row in ranges]
+
+    profiles = {
+        "wavelength": _padded_rows([[curve.length for curve in row] for row in curves]),
+        "spectrum": _padded_rows(of_range(lambda found: found.level)),
+        "spectrum_model": _padded_rows(of_range(lambda found: found.fitted)),
+    }
+    estimates = {name: np.array(of_range(attrgetter(name))) for name in _ESTIMATES}
+    intervals = {
+        name + ending: values[..., i]
+        for name, values in estimates.items()
+        for i, ending in enumerate(INTERVAL)
+    }
+    numbers = {
+        "noise_limit": of_range(lambda found: found.noise_limit),
+        "strips_left_out": of_range(lambda found: found.left_out),
+        "misfit": of_range(lambda found: found.misfit),
+        "line_level": of_range(lambda found: found.line[0]),
+        "line_exponent": of_range(lambda found: found.line[1]),
+        "form": of_range(_form_words),
+    }
+    return {
+        **labelled(_PROFILES, profiles),
+        **labelled(_INTERVALS, intervals),
+        **labelled(_NUMBERS, numbers),
+    }
 
 
 def _form_words(found: FractalRange) -> str:
@@ -215,56 +258,27 @@ def _form_words(found: FractalRange) -> str:
     return " + ".join(parts + ([f"{form.filtering} low-pass"] if form.filtering else []))
 
 
-def _table(values):
+def _padded_rows(values):
     """Rows of rows of arrays of different length as one array (face, axis, wave)."""
     flat = padded([array for row in values for array in row])
     return flat.reshape(len(values), len(AXES), -1)
 
 
-def _add_radial_spectra(result, heights, spacing):
-    found = [radial_spectrum(z, spacing) for z in heights]
-    for i, (name, units, words) in enumerate(
-        (
-            ("radial_wavelength", "mm", "wavelength"),
-            ("radial_spectrum", "mm4", "radially averaged power spectral density"),
-        )
-    ):
-        values = padded([curve[i] for curve in found])
-        result[name] = ("face", "radial_wave"), values, cf_attrs(units, words)
+_RADIAL = {
+    "radial_wavelength": (("face", "radial_wave"), "mm", "wavelength"),
+    "radial_spectrum": (
+        ("face", "radial_wave"),
+        "mm4",
+        "radially averaged power spectral density",
+    ),
+}
 
 
-def radial_spectrum(heights: np.ndarray, spacing) -> tuple[np.ndarray, np.ndarray]:
-    """Radially averaged spectrum of the largest hole-free square, levelled and tapered (Hann).
-
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : (float, float)
-        (dy, dx), mm.
-
-    Returns
-    -------
-    wavelength, density : (k,) ndarray
-        mm, ascending; mm4, two-sided: independent errors of variance v have v dx dy everywhere.
-        Empty where the square has fewer than `curves.SHORTEST_SEGMENT` cells along a side.
-    """
-    z = heights[hole_free_square(np.isfinite(heights), spacing)]
-    if min(z.shape) < SHORTEST_SEGMENT:
-        return np.empty(0), np.empty(0)
-    taper = np.outer(*(np.hanning(n + 1)[:-1] for n in z.shape))
-    power = np.abs(scipy.fft.fft2(without_mean_plane(z) * taper, workers=1)) ** 2
-    power *= spacing[0] * spacing[1] / np.sum(taper**2)
-    waves = [scipy.fft.fftfreq(n, d) for n, d in zip(z.shape, spacing, strict=True)]
-    number = np.hypot(waves[0][:, np.newaxis], waves[1])
-    longest = FIRST_ORDER / min(n * d for n, d in zip(z.shape, spacing, strict=True))
-    seen = (number >= longest) & (number < 0.5 / max(spacing))  # a full circle of directions
-    bins = np.round(np.log2(number[seen] / longest) * LENGTHS_PER_OCTAVE).astype(int)
-    members = np.bincount(bins)
-    held = members > 0
-    density = np.bincount(bins, power[seen])[held] / members[held]
-    mean_number = np.exp(np.bincount(bins, np.log(number[seen]))[held] / members[held])
-    return (1 / mean_number)[::-1], density[::-1]
+def _radial_spectra(heights, spacing):
+    wavelengths, densities = zip(*(radial_spectrum(z, spacing) for z in heights), strict=True)
+    return labelled(
+        _RADIAL, {"radial_wavelength": padded(wavelengths), "radial_spectrum": padded(densities)}
+    )
 
 
 # -- where the fractal range ends ------------------------------------------------------------------
@@ -279,42 +293,54 @@ def _point_pitch(specimen, face):
     return cell_side(specimen) * math.sqrt(float(specimen[face].notnull().sum()) / points)
 
 
-def _add_range_end(result, resolutions, side):
-    """The end of the range over faces and axes, and the resolutions that go below it."""
-    candidates = [
-        (
-            float(result["end"][i, j]),
-            [float(result[f"end{e}"][i, j]) for e in ("_low", "_high")],
-            f"{_cause(result, i, j)} along {axis}, {face} face",
+class _RangeEnd(NamedTuple):
+    """Shortest wavelength of the fractal range, mm, its 95 % interval, and what ends it there."""
+
+    value: float
+    low: float
+    high: float
+    cause: str
+
+
+_RANGE = {
+    **{
+        f"range_end{ending}": ((), "mm", f"shortest wavelength of the fractal range{end}")
+        for ending, end in INTERVAL.items()
+    },
+    "resolution": ("resolution", "mm", "spacing s of the nodes"),
+    "multiple": ("resolution", "1", "multiple k of the scan's spacing"),
+    "below_range": ("resolution", "1", "shortest wave 2 s lies below the fractal range"),
+}
+
+
+def _range_end(result, side) -> _RangeEnd:
+    """The end of the range over faces and axes; points farther apart than the nodes end it too."""
+    ends = [
+        _RangeEnd(
+            *(float(result[f"end{ending}"][i, j]) for ending in INTERVAL),
+            cause=f"{_cause(result, i, j)} along {axis}, {face} face",
         )
         for i, face in enumerate(result["face"].values)
         for j, axis in enumerate(AXES)
     ]
-    candidates += [
-        (2 * float(pitch), [math.nan] * 2, f"distance of the points, {face} face")
+    ends += [
+        _RangeEnd(2 * float(pitch), math.nan, math.nan, f"distance of the points, {face} face")
         for face, pitch in zip(result["face"].values, result["point_pitch"], strict=True)
         if pitch > side
     ]
-    found = [candidate for candidate in candidates if math.isfinite(candidate[0])]
-    end, bounds, cause = max(found, default=(math.nan, [math.nan] * 2, ""))
-    words = "shortest wavelength of the fractal range"
-    for (ending, of), value in zip(INTERVAL.items(), (end, *bounds), strict=True):
-        result[f"range_end{ending}"] = (), value, cf_attrs("mm", words + of)
-    result.attrs["ended_by"] = cause
-    result["resolution"] = (
-        "resolution",
-        resolutions * side,
-        cf_attrs("mm", "spacing s of the nodes"),
-    )
-    result["multiple"] = (
-        "resolution",
-        resolutions,
-        cf_attrs("1", "multiple k of the scan's spacing"),
-    )
-    below = 2 * result["resolution"].values < end
-    words = "shortest wave 2 s lies below the fractal range"
-    result["below_range"] = "resolution", below, cf_attrs("1", words)
-    result.attrs["warning"] = _warning(result)
+    known = [end for end in ends if math.isfinite(end.value)]
+    return max(known, default=_RangeEnd(math.nan, math.nan, math.nan, ""))
+
+
+def _compared_with_range(end: _RangeEnd, resolutions, side):
+    """The end of the range, and the resolutions that go below it."""
+    values = {
+        **{f"range_end{ending}": value for ending, value in zip(INTERVAL, end, strict=False)},
+        "resolution": resolutions * side,
+        "multiple": resolutions,
+        "below_range": 2 * (resolutions * side) < end.value,
+    }
+    return labelled(_RANGE, values)
 
 
 def _cause(result, i, j):

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import INTERVAL
-from .curves import STRIPS
 from .fractal_range import NO_POWER_LAW
+from .spectra import STRIPS
 
 AXES = ("x", "y")
 #: Noise along one axis this many times that along the other belongs to the scan's lines.

@@ -1,4 +1,4 @@
-"""Zip archives from strangers (.npz, .x3p, .plux, ...), checked before any library opens them.
+"""Zip archives (.npz, .x3p, .plux, ...) as untrusted input, checked before any library opens them.
 
 Nothing is ever unpacked to disk; the checks on names refuse files that were made to do harm there.
 """

@@ -1,4 +1,4 @@
-"""Scan files come from strangers: each is read in a process of its own, within limits.
+"""Scan files are untrusted input: each is read in a process of its own, within limits.
 
 A library that meets a damaged or hostile file may hang, take all memory or crash. It then does so
 in a fork of the reader process (`reader_process`), and the user gets one clear error.

@@ -1,58 +1,64 @@
-"""Which reader takes which file: by its extension, and by content where that is not enough."""
+"""All scan formats, as their readers declare them, and which of them takes a file.
+
+A format is one module in `readers` that declares its `Format`; nothing else names it.
+"""
 
 from pathlib import Path
 
 from ..core.errors import InputError
-from . import tiff
+from ..core.modules import modules_of
+from . import readers
 from .archives import check_archive
-from .arrays import read_npy, read_npz
-from .gwyddion import read_gwyddion
-from .instruments import instrument_formats, read_instrument
-from .labelled import read_labelled
-from .matlab import read_mat
-from .mesh import read_mesh
+from .format import Format
 from .options import ScanOptions
 from .raw import RawScan
-from .text import is_text, read_text
-from .x3p import read_x3p
 
-_TEXT = (".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz")
-_MESH = (".obj", ".ply", ".stl")
-_TIFF = (".tif", ".tiff")
-#: Containers of matrices and others with one reader an extension.
-_READERS = {
-    ".npy": read_npy,
-    ".npz": read_npz,
-    ".x3p": read_x3p,
-    ".h5": read_labelled,
-    ".hdf5": read_labelled,
-    ".nc": read_labelled,
-    ".mat": read_mat,
-    ".gwy": read_gwyddion,
-}
+#: By the name of the reader's module.
+FORMATS: dict[str, Format] = {name: module.FORMAT for name, module in modules_of(readers).items()}
+
+
+#: Those that learn further endings from a library.
+_OPEN_ENDED = [form for form in FORMATS.values() if form.more_endings is not None]
 
 
 def known_extensions() -> list[str]:
     """Endings of the files that can be read, with their dot, in lower case."""
-    instruments = (f".{extension}" for extension in instrument_formats())
-    return sorted({*_TEXT, *_MESH, *_TIFF, *_READERS, *instruments})
+    declared = (form.endings for form in FORMATS.values())
+    learned = (form.more_endings() for form in _OPEN_ENDED)
+    return sorted({ending for endings in (*declared, *learned) for ending in endings})
+
+
+def likely_formats(extension: str) -> list[Format]:
+    """Formats that a file may have by its ending, those that look at its content first.
+
+    Where none declares the ending, those that learn further ones from a library.
+    """
+    return _declared(extension) or _OPEN_ENDED
+
+
+def _declared(extension: str) -> list[Format]:
+    declared = (form for form in FORMATS.values() if extension in form.endings)
+    return sorted(declared, key=lambda form: form.takes is None)
 
 
 def read_raw(path: Path, options: ScanOptions) -> RawScan:
-    """Choose the reader by extension, and by content where one extension serves two formats."""
+    """Read a file by the format that takes it; called in the reader process alone.
+
+    Raises
+    ------
+    InputError
+        If no format has the file's ending, or none takes its content; or as the reader.
+    """
     check_archive(path)
     extension = path.suffix.lower()
-    if extension in _READERS:
-        return _READERS[extension](path, options)
-    if extension in _MESH:
-        return read_mesh(path)
-    if extension in _TIFF and not tiff.is_park_systems(path):
-        return tiff.read_tiff(path, options)
-    if extension in _TEXT and is_text(path):
-        return read_text(path, options)
-    if extension.lstrip(".") in instrument_formats():
-        return read_instrument(path, options)
-    if extension in _TEXT:
-        raise InputError(f"{path}: not a text file; damaged, or the wrong extension?")
+    for form in _declared(extension):
+        if form.takes is None or form.takes(path):
+            return form.read(path, options)
+    for form in _OPEN_ENDED:
+        if extension in form.more_endings():
+            return form.read(path, options)
+    for form in _declared(extension):
+        if form.refusal:
+            raise InputError(f"{path}: {form.refusal}")
     known = " ".join(known_extensions())
     raise InputError(f"{path}: unknown extension {extension!r}; known: {known}")

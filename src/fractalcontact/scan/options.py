@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields
 
 from ..core.errors import InputError
 from ..core.units import length_factor, quantity
-from .registration import MODES
 
 
 @dataclass(frozen=True)
@@ -27,6 +26,8 @@ class ScanOptions:
     mirror_upper: str | None = None
 
 
+#: How the upper face of a pair may be brought to the lower one.
+REGISTRATIONS = ("rigid", "translation", "none")
 #: Keys that say how two faces lie to each other.
 PAIR_KEYS = ("registration", "mirror_upper")
 #: Keys that mean nothing for the other layout, and what is meant by them.
@@ -59,7 +60,7 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
             length_factor(unit, f"{where}: {key}")
     _one_of(options, "layout", ("matrix", "points"), where)
     _one_of(options, "first_row", ("bottom", "top"), where)
-    _one_of(options, "registration", MODES, where)
+    _one_of(options, "registration", REGISTRATIONS, where)
     _one_of(options, "mirror_upper", ("x", "y"), where)
     if (variable := options.get("variable")) is not None:
         _require(isinstance(variable, str), where, "variable", variable, "the name of an array")

@@ -15,6 +15,7 @@ import socket
 import struct
 import sys
 import traceback
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -22,34 +23,19 @@ from pathlib import Path
 from ..core.errors import InputError
 from ..core.labels import printable
 from .files import inflated_size, regular_file
+from .format import Format
 from .options import ScanOptions
 from .raw import RawScan
 from .transfer import from_text, send_scan, to_text
 
-#: Beyond what the process has at the start. Heights deflate to a third, double in size as float64,
-#: and are copied two or three times on their way.
+#: Bytes beyond what the process has at the start, for a file of any size.
 BASE_MEMORY = 1024**3
-MEMORY_PER_BYTE = 24
-#: Seconds of processor time, many times what the slowest sound file takes.
+#: Seconds of processor time, likewise.
 BASE_SECONDS = 8
-SECONDS_PER_MEGABYTE = 2
 #: A machine shared with others, or a slow disc, may take so many times longer by the clock.
 PATIENCE = 4
 _MOST_FILES = 64
 _LONGEST_MESSAGE = 800  # characters
-
-#: Libraries that take long to import, by the extensions they read. What is not named here is
-#: imported by every fork anew: that costs time, nothing else.
-_LIBRARIES = {
-    **dict.fromkeys((".npy", ".npz", ".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz"), ()),
-    **dict.fromkeys((".obj", ".ply", ".stl"), ("trimesh", "trimesh.exchange.load")),
-    **dict.fromkeys((".h5", ".hdf5"), ("h5py",)),
-    ".nc": ("h5py", "scipy.io"),
-    **dict.fromkeys((".tif", ".tiff"), ("tifffile",)),
-    ".mat": ("scipy.io", "h5py"),
-    ".x3p": ("x3pio", "defusedxml.ElementTree"),
-}
-_FOR_INSTRUMENTS = ("netCDF4", "SurfaceTopography.IO")
 
 REQUEST_LENGTH = struct.Struct("!I")
 #: How the fork ended, as `os.wait4` gives it; the most memory it had (kB, on macOS bytes); its
@@ -66,10 +52,19 @@ class Limits:
     seconds: int
 
 
-def limits_for(size: int) -> Limits:
-    """Limits for a file of so many bytes, inflated where it is an archive."""
-    seconds = BASE_SECONDS + SECONDS_PER_MEGABYTE * size // 10**6
-    return Limits(BASE_MEMORY + MEMORY_PER_BYTE * size, seconds, PATIENCE * seconds)
+def limits_for(size: int, formats: Sequence[Format]) -> Limits:
+    """Limits for a file of so many bytes, inflated where it is an archive.
+
+    Parameters
+    ----------
+    size : int
+    formats : sequence of Format
+        Those it may have, one at least: the most generous counts.
+    """
+    memory_per_byte = max(form.memory_per_byte for form in formats)
+    seconds_per_megabyte = max(form.seconds_per_megabyte for form in formats)
+    seconds = BASE_SECONDS + seconds_per_megabyte * size // 10**6
+    return Limits(BASE_MEMORY + memory_per_byte * size, seconds, PATIENCE * seconds)
 
 
 def serve() -> None:
@@ -104,9 +99,12 @@ def _receive(control: socket.socket) -> dict | None:
 
 def _import_libraries(extension: str) -> None:
     """Import what reading such a file takes, once here and not again in every fork."""
-    for name in _LIBRARIES.get(extension, _FOR_INSTRUMENTS):
-        with contextlib.suppress(ImportError):  # the fork meets it too, and reports it
-            import_module(name)
+    from .formats import likely_formats
+
+    for form in likely_formats(extension):
+        for name in form.libraries:
+            with contextlib.suppress(ImportError):  # the fork meets it too, and reports it
+                import_module(name)
     gc.freeze()  # what the forks share is not gone through, and so not copied
 
 
@@ -126,15 +124,16 @@ def _read_and_exit(request: dict, writable: int) -> None:
 
 
 def _read(request: dict, stream) -> None:
-    from .formats import read_raw
+    from .formats import likely_formats, read_raw
 
     def allow(size: int) -> None:
-        limits = limits_for(size)
+        limits = limits_for(size, formats)
         stream.write(to_text({"outcome": "limits", **vars(limits)}))
         stream.flush()
         _confine(limits, already)
 
     path = Path(request["path"])
+    formats = likely_formats(path.suffix.lower())
     already = _address_space()
     try:
         os.chdir(request["folder"])

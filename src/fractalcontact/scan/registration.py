@@ -9,7 +9,6 @@ from ..surface.cleaning import find_outliers
 from .face_match import ROTATIONS, averaged, best_match, for_comparison, match
 from .surface_motion import Motion, Surface, grid_nodes
 
-MODES = ("rigid", "translation", "none")
 #: A match found further away must be better by this much than the nearest one.
 _CLEARLY_BETTER = 0.05
 #: Cells along the longer side of the finest grid the motion is sought on; finer scans are averaged.

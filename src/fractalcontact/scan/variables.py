@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
-from .arrays import choose_array, is_table
 from .raw import refuse_larger
+from .tables import choose_array, is_table
 
 MASK = "mask"
 _ATTRIBUTES = (
@@ -120,7 +120,7 @@ def _dimension(axis) -> str:
 
 
 def _read_hdf5(dataset, path: Path) -> np.ndarray:
-    """The numbers, unless they lie in other files: a stranger may name any file there."""
+    """The numbers, unless they lie in other files: untrusted input may name any file there."""
     if dataset.external or dataset.is_virtual:
         raise InputError(
             f"{path}: dataset {dataset.name!r} lies in another file; store the numbers in this one"

@@ -3,22 +3,24 @@
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
+from ..core.ranges import within
 
 #: How the whole window is predicted from smaller ones; the middle ones are eq. 6 with Delta_sigma
 #: by each estimator.
 PREDICTORS = ("power_law", "eq6_area", "eq6_box", "eq6_box_sizes", "no_size_effect")
 
 
-def predict_whole(pressed, delta_sigma, fewest_nodes):
+def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: int) -> xr.Dataset:
     """Closure and real area of the whole window, from smaller windows and as solved.
 
     Parameters
     ----------
-    pressed : xr.Dataset
-        From :func:`size_effect.load_ladder.press_parts`.
+    states : xr.Dataset
+        From :func:`size_effect.load_ladder.solve_sub_windows`.
     delta_sigma : xr.DataArray (estimator, load)
         Of the whole window.
     fewest_nodes : int
@@ -39,16 +41,12 @@ def predict_whole(pressed, delta_sigma, fewest_nodes):
     taken. That they close as much then, too, is what "governing parameter" is taken to mean here;
     the paper does not say it. Without a size effect the whole is as its parts at the same sigma_0.
     """
-    b, pressures = pressed["side"].values, pressed["ladder_pressure"].values
-    nodes = pressed["nodes"].isel(resolution=0).mean("window").transpose("part", "step").values
-    enough = nodes >= fewest_nodes - 1e-9
-    share = np.where(enough, nodes, np.nan)
-    share = share * pressed["spacing"].values[0] ** 2 / b[:, np.newaxis] ** 2
-    mean = pressed["interface_closure"].mean("window").transpose("part", "step").values
-    closure = np.where(enough & (mean > 0), mean, np.nan)
-    loads = pressures[: pressed.sizes["load"]]
+    b, pressures = states["side"].values, states["ladder_pressure"].values
+    loads = pressures[: states.sizes["load"]]
+    powers = [*(2 - delta_sigma.values), np.zeros(len(loads))]
+    fraction, closure = _mean_curves(states, fewest_nodes)
 
-    def at_equal_star(curves, powers):
+    def at_equal_star(curves: np.ndarray, powers: np.ndarray) -> np.ndarray:
         """Curves over pressure of smaller sizes, each at the pressure eq. 6 has for it."""
         return np.array(
             [
@@ -57,24 +55,49 @@ def predict_whole(pressed, delta_sigma, fewest_nodes):
             ]
         )
 
+    by_eq6 = {
+        "closure": [at_equal_star(closure, power) for power in powers],
+        # Equal sigma_n at other sigma_0: the fractions differ as the sigma_0 do.
+        "area": [
+            at_equal_star(fraction, power) / (b[0] / b[1:]) ** power[:, np.newaxis]
+            for power in powers
+        ],
+    }
     result = xr.Dataset(coords={"predictor": list(PREDICTORS)})
     for name, curves, units, words in (
         ("closure", closure, "mm", "interface closure w_int"),
-        ("area", share, "1", "real contact area A_r/A_0"),
+        ("area", fraction, "1", "real contact area A_r/A_0"),
     ):
-        found = [_power_law(b, curves[:, : len(loads)])]
-        for powers in [*(2 - delta_sigma.values), np.zeros(len(loads))]:
-            if name == "area":
-                # Equal sigma_n at other sigma_0: the shares differ as the sigma_0 do.
-                factor = (b[0] / b[1:]) ** powers[:, np.newaxis]
-                found.append(_mean(at_equal_star(curves, powers) / factor))
-            else:
-                found.append(_mean(at_equal_star(curves, powers)))
-        _add(result, name, np.array(found), curves[0, : len(loads)], "load", units, words)
+        by_law = _power_law(b, curves[:, : len(loads)])
+        predictions = np.array([by_law, *(_mean(each) for each in by_eq6[name])])
+        _add(result, name, predictions, curves[0, : len(loads)], "load", units, words)
     return result
 
 
-def predict_whole_strength(laws, delta_sigma):
+def _mean_curves(states: xr.Dataset, fewest_nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Mean A_r/A_0 and w_int (part, step) of the windows of each size, where nodes are enough."""
+    b = states["side"].values
+    nodes, closing = (
+        mean.mean("window").transpose("part", "step").values
+        for mean in (states["nodes"].isel(resolution=0), states["interface_closure"])
+    )
+    enough = within(nodes, fewest_nodes, np.inf)
+    fraction = np.where(enough, nodes, np.nan)
+    fraction = fraction * states["spacing"].values[0] ** 2 / b[:, np.newaxis] ** 2
+    return fraction, np.where(enough & (closing > 0), closing, np.nan)
+
+
+_STRENGTH = {
+    "strength_share": ((), "1", "v/b at which strengths are compared"),
+    "strength_held": (
+        "dilatancy_load",
+        "1",
+        "largest fraction of windows of any size whose angle was held",
+    ),
+}
+
+
+def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Dataset:
     """Shear strength of the whole window at v/b as small windows predict it, and as solved.
 
     Parameters
@@ -89,15 +112,15 @@ def predict_whole_strength(laws, delta_sigma):
     xr.Dataset
         ``predicted_strength`` (predictor, dilatancy_load), ``direct_strength`` (dilatancy_load),
         ``strength_error``; ``strength_share``, the v/b at which most sizes can be compared;
-        ``strength_held`` (dilatancy_load), the largest part of windows of any size whose angle was
-        held there. NaN where the study states no basic friction angle.
+        ``strength_held`` (dilatancy_load), the largest fraction of windows of any size whose angle
+        was held there. NaN where the study states no basic friction angle.
 
     Notes
     -----
     Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0 fall as
     b^-(2 - Delta).
     """
-    at = int(np.argmax(np.isfinite(laws["similar_slope"]).all("load").sum("part").values))
+    at = int(np.argmax(laws["similar_slope"].notnull().all("load").sum("part").values))
     chosen = laws.isel(share=at)
     strength = chosen["similar_strength"].transpose("part", "load").values
     strength = np.where(strength > 0, strength, np.nan)
@@ -105,33 +128,27 @@ def predict_whole_strength(laws, delta_sigma):
     delta = delta_sigma.sel(load=forces, method="nearest").values
     ratio = b[1:] / b[0]
     smaller = strength[1:].T
-    found = [_power_law(b, strength)]
+    predictions = [_power_law(b, strength)]
     for powers in [*(2 - delta), np.zeros(len(forces))]:
-        found.append(_mean(smaller * ratio ** powers[:, np.newaxis]))
+        predictions.append(_mean(smaller * ratio ** powers[:, np.newaxis]))
     dim = "dilatancy_load"
-    result = xr.Dataset(
+    result = labelled_dataset(
+        _STRENGTH,
         {
-            "strength_share": (
-                (),
-                float(chosen["share"]),
-                cf_attrs("1", "v/b at which strengths are compared"),
-            ),
-            "strength_held": (
-                dim,
-                chosen["similar_held"].max("part").values,
-                cf_attrs("1", "largest part of windows of any size whose angle was held"),
-            ),
+            "strength_share": float(chosen["share"]),
+            "strength_held": chosen["similar_held"].max("part").values,
         },
         coords={
             "predictor": list(PREDICTORS),
             dim: (dim, forces, cf_attrs("N", "force on the whole window")),
         },
     )
-    _add(result, "strength", np.array(found), strength[0], dim, "MPa", "shear strength at v/b")
+    words = "shear strength at v/b"
+    _add(result, "strength", np.array(predictions), strength[0], dim, "MPa", words)
     return result
 
 
-def _power_law(b, values):
+def _power_law(b: np.ndarray, values: np.ndarray) -> np.ndarray:
     """(3, n) prediction for the first size, with its interval, by the line through the others."""
     logs = np.log(values[1:])
     lines = [fit_line(np.log(b[1:] / b[0]), column) for column in logs.T]
@@ -139,33 +156,38 @@ def _power_law(b, values):
     return np.exp([[getattr(line, field) for line in lines] for field in fields])
 
 
-def _mean(predictions):
+def _mean(predictions: np.ndarray) -> np.ndarray:
     """(3, n) geometric mean over sizes of (n, size) predictions, with its interval."""
     return np.exp(mean_interval(np.log(predictions), axis=1)[:3])
 
 
-def _on_curve(at, pressures, curves):
+def _on_curve(at: np.ndarray, pressures: np.ndarray, curves: np.ndarray) -> np.ndarray:
     """Each curve at its own pressure, by lines between the logarithms; NaN beyond its ends."""
-    found = np.full(len(curves), np.nan)
+    values = np.full(len(curves), np.nan)
     for i, (p, curve) in enumerate(zip(at, curves, strict=True)):
         known = np.isfinite(curve)
         if known.any() and np.isfinite(p):
             x, y = np.log(pressures[known]), np.log(curve[known])
-            found[i] = np.exp(np.interp(np.log(p), x, y, left=np.nan, right=np.nan))
-    return found
+            values[i] = np.exp(np.interp(np.log(p), x, y, left=np.nan, right=np.nan))
+    return values
 
 
-def _add(result, name, found, direct, dim, units, words):
+def _add(
+    result: xr.Dataset,
+    name: str,
+    predictions: np.ndarray,
+    direct: np.ndarray,
+    dim: str,
+    units: str,
+    words: str,
+) -> None:
     """Predictions (predictor, 3, n), the value solved and the errors, into ``result``."""
-    for i, (ending, more) in enumerate(INTERVAL.items()):
-        text = f"{words} of the whole window, predicted from smaller ones{more}"
-        result[f"predicted_{name}{ending}"] = (
-            ("predictor", dim),
-            found[:, i],
-            cf_attrs(units, text),
-        )
+    for i, (ending, of_end) in enumerate(INTERVAL.items()):
+        text = f"{words} of the whole window, predicted from smaller ones{of_end}"
+        attrs = cf_attrs(units, text)
+        result[f"predicted_{name}{ending}"] = (("predictor", dim), predictions[:, i], attrs)
     text = f"{words} of the whole window, solved"
     result[f"direct_{name}"] = (dim, direct, cf_attrs(units, text))
-    error = found[:, 0] / direct - 1
+    error = predictions[:, 0] / direct - 1
     text = f"predicted over solved {words}, less one"
     result[f"{name}_error"] = (("predictor", dim), error, cf_attrs("1", text))

@@ -1,51 +1,30 @@
-"""The atlas: everything a study made in one netCDF-4 file, a group for each stage and specimen."""
+"""Atlas of a study: all its results in one netCDF-4 file, a group for each stage and specimen."""
 
 import json
+from collections.abc import Collection, Hashable, Mapping
+from pathlib import Path
 
 import xarray as xr
 
 from ..core.atomic import atomic_write
 from ..core.netcdf import encoding, versions
-
-#: Stages of the atlas, one group each, holding one group a specimen; strength only of joints
-#: that slide, roll_off and area_slope one of made surfaces where the study asks.
-STAGES = {
-    "specimens": "levelled faces, mask, window and where they came from",
-    "quality": "relief, spectra and noise floor of each face, and where its fractal range ends",
-    "surface_dimension": "Delta_g of each face by several estimators",
-    "joints": "offsets and composite topographies",
-    "contact": "contact domains",
-    "closure": "closure curves, stiffness, real contact area",
-    "dilatancy": "rigid and elastic dilatancy",
-    "choices": "what was solved and how exactly, why, and the errors that makes",
-    "area": "laws of the real contact area, and the classical theories beside it",
-    "strength": "dilatancy and friction angles, shear strength",
-    "windows": "closure, roughness and strength of parts of the window",
-    "domains": "box counts, Delta_sigma and clusters of the contact domains",
-    "scaling": "renormalisation over resolutions",
-    "domain_measures": "lacunarity and generalised dimensions of the contact at the map offset",
-    "size_test": "the direct test of eq. 6, and the whole predicted from its parts",
-    "contact_maps": "measured contact maps, one group a map",
-    "statements": "what the paper says, and whether it holds here",
-    "roll_off": "rigid dilatancy of made joints with and without a roll-off",
-    "dimension_test": "both estimates of Delta_sigma on made surfaces",
-    "estimator_bias": "estimators of Delta_g on surfaces of known dimension",
-    "area_slope": "real contact area at light load, on surfaces with and without a roll-off",
-    "speed": "error against time of solvers and cheaper models, one group a scene",
-    "speed_growth": "time and memory of the solvers over sizes",
-    "convergence": "error against spacing where the solution is known, and Richardson's",
-    "stability": "verdicts on the solvers by kind of scene",
-    "elimination": "whether dropping points alone reaches the right contact set",
-}
+from .stages import STAGES
 
 
-def write_atlas(parts, path, *, study, configuration, made_with=None):
-    """Put everything a study made into one file.
+def write_atlas(
+    parts: Mapping[str, Mapping[str, xr.Dataset]],
+    path: Path | str,
+    *,
+    study: str,
+    configuration: Mapping,
+    made_with: Mapping[str, Mapping[str, dict]] | None = None,
+) -> dict[str, list[str]]:
+    """Write all results of a study into one file.
 
     Parameters
     ----------
     parts : mapping of str to mapping of str to xr.Dataset
-        Stage to specimen to dataset; stages are those of :data:`STAGES`.
+        Stage to specimen to dataset; stages are those of :data:`study.stages.STAGES`.
     path : path-like
     study : str
         Its name.
@@ -53,7 +32,7 @@ def write_atlas(parts, path, *, study, configuration, made_with=None):
         The study's configuration, kept word for word as JSON.
     made_with : mapping of str to mapping of str to dict, optional
         Stage to specimen to the versions each part was made with, from
-        :func:`read_with_versions`; those in use by default.
+        :func:`core.netcdf.read_with_versions`; those in use by default.
 
     Returns
     -------
@@ -80,7 +59,7 @@ def write_atlas(parts, path, *, study, configuration, made_with=None):
         root.attrs["versions_differ"] = json.dumps(differing, sort_keys=True)
     groups = {"/": root}
     for stage, specimens in parts.items():
-        groups[f"/{stage}"] = xr.Dataset(attrs={"description": STAGES[stage]})
+        groups[f"/{stage}"] = xr.Dataset(attrs={"description": STAGES[stage].title})
         for name, dataset in specimens.items():
             _demand_labels(dataset, f"{stage}/{name}")
             groups[f"/{stage}/{name}"] = dataset
@@ -91,32 +70,34 @@ def write_atlas(parts, path, *, study, configuration, made_with=None):
 
 def _by_versions(made_with):
     """Names of parts by the versions they were made with; none if all are those in use."""
-    found = {}
+    parts: dict[str, list[str]] = {}
     for stage, specimens in made_with.items():
-        for name, known in specimens.items():
-            words = ", ".join(f"{library} {version}" for library, version in sorted(known.items()))
-            found.setdefault(words or "unknown versions", []).append(f"{stage}/{name}")
-    current = ", ".join(f"{library} {version}" for library, version in sorted(versions().items()))
-    return {} if set(found) <= {current} else found
+        for name, used in specimens.items():
+            parts.setdefault(_words(used) or "unknown versions", []).append(f"{stage}/{name}")
+    return {} if set(parts) <= {_words(versions())} else parts
 
 
-class _LastOfAll:
-    """Takes note of what is to be written, and writes once every variable of a file is declared.
+def _words(used):
+    return ", ".join(f"{library} {version}" for library, version in sorted(used.items()))
+
+
+class _DeferredWriter:
+    """Keeps what is to be written, and writes once every variable of a file is declared.
 
     Each change from declaring to writing makes the netCDF library go through the whole file: with
     two thousand variables that was nine tenths of the time.
     """
 
     def __init__(self):
-        self.noted = []
+        self.pending = []
 
     def add(self, source, target, region=None):
         """Called by xarray for each variable."""
-        self.noted.append((source, target))
+        self.pending.append((source, target))
 
     def write(self):
-        """Write everything noted."""
-        for source, target in self.noted:
+        """Write all that was kept."""
+        for source, target in self.pending:
             target[...] = source
 
 
@@ -128,21 +109,38 @@ def _write_groups(groups, path):
     import netCDF4
 
     with netCDF4.Dataset(path, "w") as file:
-        writer = _LastOfAll()
+        writer = _DeferredWriter()
         for name, dataset in groups.items():
             group = file if name == "/" else file.createGroup(name)
             backend = xr.backends.NetCDF4DataStore(group)
-            dataset.dump_to_store(backend, encoding=encoding(dataset), writer=writer)
+            stored_as = encoding(dataset) | _as_characters(dataset)
+            dataset.dump_to_store(backend, encoding=stored_as, writer=writer)
         writer.write()
 
 
-def read_atlas(path, without=()):
-    """The atlas as an xarray DataTree, in memory.
+def _as_characters(dataset: xr.Dataset) -> dict[Hashable, dict]:
+    """How words are kept: as arrays of characters, which every reader may open again and again.
+
+    As strings of variable length, netCDF's usual way, they end a process with a segmentation fault
+    that opens the file, or any group of it, while it holds the file open already, closes one of the
+    two and opens it once more: HDF5 keeps the type of such strings once for a file, with a pointer
+    to the handle that was open first (netcdf4-python issues 261 and 1444, xarray issue 9093).
+    A notebook does that easily, with ``open_datatree`` in a cell that runs twice.
+    """
+    return {
+        name: {"dtype": "S1"}
+        for name, variable in dataset.variables.items()
+        if variable.dtype.kind in "UO"
+    }
+
+
+def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
+    """Atlas as an xarray DataTree, in memory.
 
     Parameters
     ----------
     path : path-like
-    without : sequence of str
+    without : collection of str
         Stages to leave out.
 
     Returns
@@ -151,9 +149,9 @@ def read_atlas(path, without=()):
 
     Notes
     -----
-    Group by group, from a file opened once. xarray's ``open_datatree`` ends in a segmentation fault
-    inside netCDF4 where a process has opened the same file before, and to open every group for
-    itself takes a quarter of a second each, because all the others are gone through.
+    Group by group, from a file that is opened once and closed: to open every group for itself takes
+    a quarter of a second each, because all the others are gone through. What the process has
+    opened before, with this or with xarray's ``open_datatree``, makes no difference.
     """
     import netCDF4
 
@@ -161,10 +159,10 @@ def read_atlas(path, without=()):
         groups = {"/": file}
         for name, stage in file.groups.items():
             if name not in without:
-                groups |= {g.path: g for g in (stage, *stage.groups.values())}
+                groups |= {group.path: group for group in (stage, *stage.groups.values())}
         loaded = {
-            name: xr.open_dataset(xr.backends.NetCDF4DataStore(found)).load()
-            for name, found in groups.items()
+            name: xr.open_dataset(xr.backends.NetCDF4DataStore(group)).load()
+            for name, group in groups.items()
         }
     return xr.DataTree.from_dict(loaded)
 

@@ -1,62 +1,115 @@
-"""Which figures there are: what the workflow must know of them before anything is drawn.
+"""Register of the figures: what the workflow must know of them before anything is drawn.
 
-Apart from :mod:`figures.draw`, whose import brings matplotlib and xarray into every
-process that reads the workflow.
+A figure registers itself: its module ``figures/GROUP/NAME.py`` states, each in a line that begins
+with the constant's name and holds literals alone,
+
+``TITLE``
+    What it shows, for the report.
+``SUBJECT``
+    Of what it is drawn: "specimen" for every specimen, "joint" for those that slide, "study" for
+    a study as a whole, "accuracy" for measurements of accuracy and speed.
+``NEEDS``
+    Stages of the atlas that it reads.
+``ORDER``
+    Its place among the others of the same subjects.
+``KEY``
+    Of the study and of accuracy alone: the key of the configuration that asks for it.
+
+The constants are read without importing the module, which would bring matplotlib and xarray into
+every process that reads the workflow.
 """
 
-#: Figures of a joint that slides, and of a surface against a plane: module names, in order.
-FIGURES = (
-    "fig01_strength",
-    "fig02_relief",
-    "quality",
-    "fig03_composite",
-    "fig04_05_closure",
-    "area_theories",
-    "compliance",
-    "conductance",
-    "window_size",
-    "fig06_07_dilatancy",
-    "strength",
-    "clusters",
-    "fig08_prefractals",
-    "fig09_box_counting",
-    "domain_measures",
-    "fig10_scaling",
-    "size_test",
-    "fig11_slope_angle",
-    "fig12_evolution",
-    "fig13_size_effect",
-    "statements",
-    "choices",
-)
-_NEEDS_SLIDING = (
-    "fig11_slope_angle",
-    "fig01_strength",
-    "fig03_composite",
-    "compliance",
-    "fig06_07_dilatancy",
-    "strength",
-    "clusters",
+import ast
+import re
+from collections.abc import Container
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+#: Folder of the figures, one folder a group; what they share is in :mod:`figures.kit`.
+FOLDER = Path(__file__).parents[1] / "figures"
+_SHARED = "kit"
+
+SPECIMEN, JOINT, STUDY, ACCURACY = "specimen", "joint", "study", "accuracy"
+#: Subjects that only some configurations ask for, by a key.
+_ASKED_FOR = (STUDY, ACCURACY)
+
+#: A constant and its value, which may go on in indented lines and end in a closing bracket.
+_CONSTANT = re.compile(
+    r"^(TITLE|SUBJECT|NEEDS|ORDER|KEY) = (.*\n(?:(?:[ \t]+.*|[)\]}].*)\n)*)", re.MULTILINE
 )
 
-#: Experiments on made surfaces that a study may ask for, with the figure of each: stage and key of
-#: the configuration to module name. Their ``draw(atlas, names)`` takes all specimens of the study.
-EXPERIMENTS = {
-    "roll_off": "plateau",
-    "area_slope": "area_slope",
-    "dimension_test": "dimension_test",
-    "estimator_bias": "estimator_bias",
-}
-#: Measurements of accuracy and speed that a study may ask for, with the figures of each: key of the
-#: configuration to module names. They are drawn from an atlas of their own, as EXPERIMENTS are.
-ACCURACY = {
-    "speed": ("error_time", "error_time_fields", "time_size", "cheaper_models"),
-    "convergence": ("convergence",),
-    "stability": ("stability", "elimination"),
-}
+
+@dataclass(frozen=True)
+class Figure:
+    """What a figure's module states.
+
+    Attributes
+    ----------
+    name : str
+        Of its module, and of its files.
+    module : str
+        Path of its module within the package, without ending: "figures/joint/strength".
+    title : str
+    subject : str
+        "specimen", "joint", "study" or "accuracy".
+    needs : tuple of str
+        Stages of the atlas.
+    order : float
+    key : str
+        Of the configuration; empty where no key asks for it.
+    """
+
+    name: str
+    module: str
+    title: str
+    subject: str
+    needs: tuple[str, ...]
+    order: float
+    key: str = ""
 
 
-def figures_of(opposite):
+def read_figure(path: Path | str) -> Figure:
+    """What the module of a figure states of itself, read without importing it.
+
+    Parameters
+    ----------
+    path : path-like
+        ``GROUP/NAME.py``.
+
+    Raises
+    ------
+    ValueError
+        If a constant is missing or is no literal, or if the subject is none of those known.
+    """
+    path = Path(path)
+    stated = {}
+    for name, value in _CONSTANT.findall(path.read_text(encoding="utf-8")):
+        try:
+            stated[name.lower()] = ast.literal_eval(value.strip())
+        except (ValueError, SyntaxError) as error:
+            raise ValueError(f"{path}: {name} is no literal") from error
+    wanted = ["title", "subject", "needs", "order"]
+    if stated.get("subject") in _ASKED_FOR:
+        wanted.append("key")
+    missing = [name.upper() for name in wanted if name not in stated]
+    if missing:
+        raise ValueError(f"{path}: a figure states {', '.join(missing)}")
+    if stated["subject"] not in (SPECIMEN, JOINT, *_ASKED_FOR):
+        raise ValueError(f"{path}: SUBJECT {stated['subject']!r} is none of those known")
+    module = f"{FOLDER.name}/{path.parent.name}/{path.stem}"
+    return Figure(path.stem, module, **stated)
+
+
+@cache
+def all_figures() -> dict[str, Figure]:
+    """Every figure by name, in order."""
+    paths = [path for path in FOLDER.glob("*/[!_]*.py") if path.parent.name != _SHARED]
+    figures = sorted(map(read_figure, paths), key=lambda figure: (figure.order, figure.name))
+    return {figure.name: figure for figure in figures}
+
+
+def figures_of(opposite: str) -> list[str]:
     """Names of the figures that make sense for a specimen.
 
     Parameters
@@ -64,27 +117,35 @@ def figures_of(opposite):
     opposite : str
         "flat" for a surface against a plane; anything else slides.
     """
-    return [name for name in FIGURES if opposite != "flat" or name not in _NEEDS_SLIDING]
+    subjects = {SPECIMEN} if opposite == "flat" else {SPECIMEN, JOINT}
+    return [name for name, figure in all_figures().items() if figure.subject in subjects]
 
 
-def study_figures_of(experiments):
+def study_figures_of(experiments: Container[str]) -> list[str]:
     """Names of the figures of a whole study.
 
     Parameters
     ----------
     experiments : container of str
-        Those of :data:`EXPERIMENTS` it asks for, other names do not matter: its configuration.
+        Keys of the experiments it asks for, other names do not matter: its configuration.
     """
-    return [figure for experiment, figure in EXPERIMENTS.items() if experiment in experiments]
+    return _asked_for(STUDY, experiments)
 
 
-def accuracy_figures_of(measurements):
+def accuracy_figures_of(measurements: Container[str]) -> list[str]:
     """Names of the figures of accuracy and speed.
 
     Parameters
     ----------
     measurements : container of str
-        Those of :data:`ACCURACY` it asks for, other names do not matter: its configuration.
+        Keys of the measurements it asks for, other names do not matter: its configuration.
     """
-    asked = [figures for key, figures in ACCURACY.items() if key in measurements]
-    return [name for figures in asked for name in figures]
+    return _asked_for(ACCURACY, measurements)
+
+
+def _asked_for(subject, keys):
+    return [
+        name
+        for name, figure in all_figures().items()
+        if figure.subject == subject and figure.key in keys
+    ]

@@ -15,6 +15,7 @@ __getattr__, __dir__, __all__ = exports(
         "make_specimen": ".specimen",
         "nominal_area": ".specimen",
         "self_affine": ".synthesis",
+        "spacing_of": ".grid",
         "window_sides": ".specimen",
         "window_slices": ".specimen",
     },

@@ -1,10 +1,12 @@
-"""Spikes and holes of a scan: found by a stated rule, altered only when the study asks for it."""
+"""Outliers and holes of a scan: marked by a stated rule, altered only when the study asks."""
 
 import numpy as np
+import xarray as xr
 from scipy import ndimage
 
 from ..core.errors import InputError
 from ..core.mean_plane import without_mean_plane
+from .grid import spacing_of
 
 OUTLIERS = ("keep", "mask")
 #: A cell is compared with the 7 x 7 cells around it, of which a cluster of 3 x 3 spikes is a
@@ -23,8 +25,14 @@ _NORMAL = 1.4826  # standard deviation of a normal distribution / its median abs
 _BLOCK = 4_000_000  # numbers sorted at once, to bound memory
 
 
-def clean_faces(scans, *, outliers="keep", largest_hole=0, name="specimen"):
-    """Count or mask the outliers of the scanned faces, and fill their small holes.
+def clean_faces(
+    scans: list[xr.DataArray],
+    *,
+    outliers: str = "keep",
+    largest_hole: int = 0,
+    name: str = "specimen",
+) -> tuple[list[xr.DataArray], dict[str, np.ndarray], dict]:
+    """Outliers of the scanned faces counted or masked, and their small holes filled.
 
     Parameters
     ----------
@@ -61,8 +69,7 @@ def clean_faces(scans, *, outliers="keep", largest_hole=0, name="specimen"):
     for scan in scans:
         found = find_outliers(scan.values)
         heights = np.where(found, np.nan, scan.values) if outliers == "mask" else scan.values
-        spacing = (scan.attrs["spacing_y"], scan.attrs["spacing_x"])
-        heights, filled = fill_holes(heights, spacing, largest_hole)
+        heights, filled = fill_holes(heights, spacing_of(scan), largest_hole)
         cells["outlier"] |= found
         cells["filled"] |= filled
         faces.append(scan.copy(data=heights))
@@ -162,7 +169,9 @@ def _surroundings(z: np.ndarray, present: np.ndarray):
     return found
 
 
-def fill_holes(heights: np.ndarray, spacing, largest: int) -> tuple[np.ndarray, np.ndarray]:
+def fill_holes(
+    heights: np.ndarray, spacing: tuple[float, float], largest: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Fill small holes with the harmonic surface that continues their rims.
 
     A hole is a set of missing cells connected along rows and columns. It is filled if it does not

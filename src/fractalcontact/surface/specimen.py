@@ -2,34 +2,44 @@
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import labelled_dataset
 from ..core.directions import axis_and_sign
 from ..core.errors import InputError
 from .cleaning import clean_faces
-from .window import place_window
+from .grid import spacing_of
+from .window import WindowRequest, place_window
 
 OPPOSITES = ("match", "flat")
 #: Above this, subtracting the mean plane (a shear) departs from turning the specimen by 0.4 %.
 STEEP_TILT = 5.0  # degrees
 
 
+#: Variables of a specimen: dimensions, unit, long name.
+_VARIABLES = {
+    "lower": (("y", "x"), "mm", "height of the lower face, mean plane removed"),
+    "upper": (("y", "x"), "mm", "height of the upper face, mean plane removed"),
+    "valid": (("y", "x"), "1", "cell present in every scanned face"),
+    "outlier": (("y", "x"), "1", "outlying cell of any scanned face"),
+    "filled": (("y", "x"), "1", "harmonically filled cell of any scanned face"),
+}
+
+
 def make_specimen(
-    lower,
-    upper=None,
+    lower: xr.DataArray,
+    upper: xr.DataArray | None = None,
     *,
-    opposite="match",
-    outliers="keep",
-    fill_holes=0,
-    window=None,
-    window_centre=None,
-    multiple=1,
-    reach=0.0,
-    name="specimen",
+    opposite: str = "match",
+    outliers: str = "keep",
+    fill_holes: int = 0,
+    name: str = "specimen",
+    **window: Any,
 ) -> xr.Dataset:
-    """Clean and level the faces, mark the cells present in all of them and place the window.
+    """Specimen of one or two scanned faces: cleaned, levelled, with its window.
 
     Parameters
     ----------
@@ -42,19 +52,11 @@ def make_specimen(
         Whether outlying cells stay as they are or become missing, see `cleaning.find_outliers`.
     fill_holes : int
         Rows and columns of the largest hole that is filled, see `cleaning.fill_holes`; 0 for none.
-    window : float, (float, float) or None
-        Side in mm, or sides (y, x). None: half the largest hole-free square, in its middle, so
-        that it can slide by a quarter of that square; the whole square against a plane.
-    window_centre : (float, float), optional
-        (y, x) in mm; default the middle of the scan. A window that meets a hole there moves to the
-        nearest hole-free place; without a given centre also where it could not slide by ``reach``.
-    multiple : int
-        Cells along each side are rounded down to a multiple of it, so that keeping every k-th node
-        covers the same area for every k that divides it.
-    reach : float or dict
-        Offset in mm the lower window should be able to slide, in all directions or by direction.
     name : str
         For errors and attributes.
+    **window
+        Size and place of the window: ``window``, ``window_centre``, ``multiple`` and ``reach`` as
+        :class:`surface.window.WindowRequest` describes them.
 
     Returns
     -------
@@ -68,47 +70,48 @@ def make_specimen(
     InputError
         If the faces have different grids, or the window is too large or finds no hole-free place.
     """
+    request = WindowRequest(**window)
     if opposite not in OPPOSITES:
         raise InputError(f"{name}: key 'opposite' is {opposite!r}; expected 'match' or 'flat'")
-    scans = [lower] if upper is None else [lower, upper]
     if upper is not None and not (lower.x.equals(upper.x) and lower.y.equals(upper.y)):
         raise InputError(f"{name}: the two faces are not on one grid; read them together")
-    attributes = [dict(scan.attrs) for scan in scans]
-    scans, cells, cleaning = clean_faces(
-        scans, outliers=outliers, largest_hole=fill_holes, name=name
+    scans = {"lower": lower} if upper is None else {"lower": lower, "upper": upper}
+    cleaned, cells, cleaning = clean_faces(
+        list(scans.values()), outliers=outliers, largest_hole=fill_holes, name=name
     )
-    valid = np.logical_and.reduce([np.isfinite(scan.values) for scan in scans])
+    valid = np.logical_and.reduce([np.isfinite(scan.values) for scan in cleaned])
     if valid.sum() < 3:
         raise InputError(f"{name}: the faces have no cells in common; they must share one frame")
-    plane, levelling = _mean_plane(scans, valid)
-
-    specimen = xr.Dataset(coords={"y": lower.y, "x": lower.x})
-    for face, scan in zip(("lower", "upper"), scans, strict=False):
-        attrs = {"units": "mm", "long_name": f"height of the {face} face, mean plane removed"}
-        specimen[face] = (("y", "x"), scan.values - plane, attrs)
-    specimen["valid"] = (
-        ("y", "x"),
-        valid,
-        {"units": "1", "long_name": "cell present in every scanned face"},
+    plane, levelling = _mean_plane(cleaned, valid)
+    heights = {face: scan.values - plane for face, scan in zip(scans, cleaned, strict=True)}
+    values = {**heights, "valid": valid, **cells}
+    specimen = labelled_dataset(
+        {key: _VARIABLES[key] for key in values}, values, coords={"y": lower.y, "x": lower.x}
     )
-    for key, words in (("outlier", "outlying cell"), ("filled", "harmonically filled cell")):
-        in_any = {"units": "1", "long_name": f"{words} of any scanned face"}
-        specimen[key] = (("y", "x"), cells[key], in_any)
+    spacing_y, spacing_x = spacing_of(lower)
     specimen.attrs = {
         "name": name,
         "faces": len(scans),
         "opposite": opposite if upper is None else "scanned",
-        "spacing_x": float(lower.attrs["spacing_x"]),
-        "spacing_y": float(lower.attrs["spacing_y"]),
+        "spacing_x": spacing_x,
+        "spacing_y": spacing_y,
         **cleaning,
         **levelling,
+        **_provenance(scans),
     }
-    for face, attrs in zip(("lower", "upper"), attributes, strict=False):
-        if "registration" in attrs:
-            specimen.attrs["registration"] = attrs.pop("registration")
-        specimen.attrs[f"{face}_scan"] = json.dumps(attrs, sort_keys=True)
-    specimen.attrs |= place_window(specimen, window, window_centre, multiple, reach)
+    specimen.attrs |= place_window(specimen, request)
     return specimen
+
+
+def _provenance(scans) -> dict:
+    """Where the faces came from and how they were registered, as attributes of the specimen."""
+    provenance = {}
+    for face, scan in scans.items():
+        attrs = dict(scan.attrs)
+        if "registration" in attrs:
+            provenance["registration"] = attrs.pop("registration")
+        provenance[f"{face}_scan"] = json.dumps(attrs, sort_keys=True)
+    return provenance
 
 
 def faces(specimen: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
@@ -130,17 +133,20 @@ def window_slices(specimen: xr.Dataset) -> tuple[slice, slice]:
     return slice(y0, y0 + ny), slice(x0, x0 + nx)
 
 
-def window_sides(specimen):
+def window_sides(specimen: xr.Dataset) -> tuple[float, float]:
     """Sides (y, x) of the window, mm."""
-    return tuple(specimen.attrs[f"window_n{a}"] * specimen.attrs[f"spacing_{a}"] for a in "yx")
+    cells = (specimen.attrs[f"window_n{axis}"] for axis in "yx")
+    side_y, side_x = (n * s for n, s in zip(cells, spacing_of(specimen), strict=True))
+    return side_y, side_x
 
 
-def cell_side(specimen):
+def cell_side(specimen: xr.Dataset) -> float:
     """s, mm: side of the square as large as a cell, so that N nodes cover N s^2."""
-    return float(np.sqrt(specimen.attrs["spacing_y"] * specimen.attrs["spacing_x"]))
+    spacing_y, spacing_x = spacing_of(specimen)
+    return float(np.sqrt(spacing_y * spacing_x))
 
 
-def nominal_area(specimen):
+def nominal_area(specimen: xr.Dataset) -> float:
     """A_0 of the window, mm2."""
     side_y, side_x = window_sides(specimen)
     return side_y * side_x

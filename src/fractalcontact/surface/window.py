@@ -2,25 +2,59 @@
 
 import json
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from ..core.directions import DIRECTIONS, axis_and_sign
 from ..core.errors import InputError
+from .grid import spacing_of
 
 #: A side given in mm holds a whole number of cells within this fraction of one.
 _ROUNDING = 1e-6
 
+#: One number for both axes, or a pair (y, x); mm.
+Length = float | tuple[float, float]
 
-def place_window(specimen, window, centre, multiple, reach) -> dict:
-    """Choose size and place of the window of :func:`surface.specimen.make_specimen`.
+
+@dataclass(frozen=True)
+class WindowRequest:
+    """Size and place that a study asks for its window."""
+
+    window: Length | None = None
+    """Side in mm, or sides (y, x). None: half the largest hole-free square, in its middle, so that
+    it can slide by a quarter of that square; the whole square against a plane."""
+    window_centre: tuple[float, float] | None = None
+    """(y, x) in mm; by default the middle of the scan. A window that meets a hole there moves to
+    the nearest hole-free place; without a given centre also where it could not slide by `reach`."""
+    multiple: int = 1
+    """Cells along each side are rounded down to a multiple of it, so that keeping every k-th node
+    covers the same area for every k that divides it."""
+    reach: float | Mapping[str, float] = 0.0
+    """Offset in mm the lower window should be able to slide, in all directions or by direction."""
+
+
+class _Wanted(NamedTuple):
+    """A window before it is rounded and has found its place; lengths in cells, (y, x)."""
+
+    cells: tuple[int, int]
+    sides: tuple[float, float]
+    """mm."""
+    middle: tuple[float, float]
+    reach: float | Mapping[str, float]
+
+
+def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
+    """Size and place of a window: hole-free, whole cells, where it can slide.
 
     Parameters
     ----------
     specimen : xr.Dataset
         Without a window.
-    window, centre, multiple, reach
-        As there.
+    request : WindowRequest
 
     Returns
     -------
@@ -33,56 +67,23 @@ def place_window(specimen, window, centre, multiple, reach) -> dict:
     InputError
         If there is no place for it.
     """
-    name = specimen.attrs["name"]
+    name, multiple = specimen.attrs["name"], request.multiple
     if not (isinstance(multiple, int) and multiple >= 1):
         raise InputError(f"{name}: 'multiple' is {multiple!r}; expected a whole number from 1")
-    spacing = (specimen.attrs["spacing_y"], specimen.attrs["spacing_x"])
-    valid = specimen["valid"].values
-    automatic = window is None
-    middle = tuple((n - 1) / 2 for n in valid.shape)  # in cells, as all places below
-    if automatic:
-        square = _largest_square(valid, spacing)
-        corner = _nearest(_free_places(valid, square), square, middle)
-        middle = tuple(c + (n - 1) / 2 for c, n in zip(corner, square, strict=True))
-        part = 1 if specimen.attrs["opposite"] == "flat" else 2
-        asked = tuple(n // part for n in square)
-        sides = tuple(n * s for n, s in zip(asked, spacing, strict=True))
-        reach = 0.0  # the half square has its quarter all around
-    else:
-        sides = _pair(window, name, "window")
-        if not all(math.isfinite(side) and side > 0 for side in sides):
-            raise InputError(f"{name}: key 'window' is {window!r}; expected a length above zero")
-        asked = tuple(
-            math.floor(side / s + _ROUNDING) for side, s in zip(sides, spacing, strict=True)
-        )
-    if centre is not None:
-        starts = (float(specimen.y[0]), float(specimen.x[0]))
-        middle = tuple(
-            (c - start) / s
-            for c, start, s in zip(
-                _pair(centre, name, "window_centre"), starts, spacing, strict=True
-            )
-        )
-    shape = tuple(n // multiple * multiple for n in asked)
-    extent = [n * s for n, s in zip(valid.shape, spacing, strict=True)]
-    if any(n > total for n, total in zip(shape, valid.shape, strict=True)):
-        raise InputError(
-            f"{name}: key 'window' asks for {sides[0]:.4g} x {sides[1]:.4g} mm (y, x), the scan "
-            f"covers {extent[0]:.4g} x {extent[1]:.4g} mm; write at most "
-            f"'window: {_rounded_down(min(extent)):.6g} mm'"
-        )
-    if min(shape) < 1:
-        raise InputError(
-            f"{name}: a window of {sides[0]:.4g} x {sides[1]:.4g} mm holds {asked[0]} x {asked[1]} "
-            f"cells, fewer than the multiple of {multiple} that the resolutions need; write "
-            "a larger 'window' or fewer resolutions"
-        )
-    corner, place_note = _find_place(specimen, shape, middle, reach, centre is not None, spacing)
+    spacing = spacing_of(specimen)
+    automatic = request.window is None
+    wanted = _half_of_largest_square(specimen) if automatic else _stated(specimen, request)
+    if request.window_centre is not None:
+        middle = _in_cells(specimen, _pair(request.window_centre, name, "window_centre"))
+        wanted = wanted._replace(middle=middle)
+    shape = tuple(n // multiple * multiple for n in wanted.cells)
+    _require_room(specimen, wanted, shape, multiple)
+    corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
     notes = [place_note] if place_note else []
-    if shape != asked:
+    if shape != wanted.cells:
         notes.append(
-            f"{asked[0]} x {asked[1]} cells rounded down to {shape[0]} x {shape[1]}, multiples of "
-            f"{multiple}"
+            f"{wanted.cells[0]} x {wanted.cells[1]} cells rounded down to {shape[0]} x {shape[1]}, "
+            f"multiples of {multiple}"
         )
     if automatic:
         notes.append("size chosen from the largest hole-free square")
@@ -96,35 +97,94 @@ def place_window(specimen, window, centre, multiple, reach) -> dict:
     }
 
 
-def _find_place(specimen, shape, middle, reach, centre_given: bool, spacing):
+def _half_of_largest_square(specimen) -> _Wanted:
+    """Half the largest hole-free square, about its middle; all of it against a plane."""
+    valid, spacing = specimen["valid"].values, spacing_of(specimen)
+    square = _largest_square(valid, spacing)
+    corner = _nearest(_free_places(valid, square), square, _middle(valid.shape))
+    middle = tuple(c + (n - 1) / 2 for c, n in zip(corner, square, strict=True))
+    part = 1 if specimen.attrs["opposite"] == "flat" else 2
+    cells = tuple(n // part for n in square)
+    sides = tuple(n * s for n, s in zip(cells, spacing, strict=True))
+    return _Wanted(cells, sides, middle, 0.0)  # the half square has its quarter all around
+
+
+def _stated(specimen, request) -> _Wanted:
+    """The window of the sides that the study states, about the middle of the scan."""
+    sides = _pair(request.window, specimen.attrs["name"], "window")
+    if not all(math.isfinite(side) and side > 0 for side in sides):
+        raise InputError(
+            f"{specimen.attrs['name']}: key 'window' is {request.window!r}; expected a length "
+            "above zero"
+        )
+    cells = tuple(
+        math.floor(side / s + _ROUNDING)
+        for side, s in zip(sides, spacing_of(specimen), strict=True)
+    )
+    return _Wanted(cells, sides, _middle(specimen["valid"].shape), request.reach)
+
+
+def _middle(shape) -> tuple[float, ...]:
+    """Of a grid, in cells."""
+    return tuple((n - 1) / 2 for n in shape)
+
+
+def _in_cells(specimen, place) -> tuple[float, ...]:
+    """A place (y, x) in mm, in cells from the first one."""
+    starts = (float(specimen.y[0]), float(specimen.x[0]))
+    spacing = spacing_of(specimen)
+    return tuple((c - start) / s for c, start, s in zip(place, starts, spacing, strict=True))
+
+
+def _require_room(specimen, wanted: _Wanted, shape, multiple) -> None:
+    """Refuse a window that is larger than the scan, or smaller than the resolutions need."""
+    name, total = specimen.attrs["name"], specimen["valid"].shape
+    sides, cells = wanted.sides, wanted.cells
+    if any(n > limit for n, limit in zip(shape, total, strict=True)):
+        extent = [n * s for n, s in zip(total, spacing_of(specimen), strict=True)]
+        raise InputError(
+            f"{name}: key 'window' asks for {sides[0]:.4g} x {sides[1]:.4g} mm (y, x), the scan "
+            f"covers {extent[0]:.4g} x {extent[1]:.4g} mm; write at most "
+            f"'window: {_rounded_down(min(extent)):.6g} mm'"
+        )
+    if min(shape) < 1:
+        raise InputError(
+            f"{name}: a window of {sides[0]:.4g} x {sides[1]:.4g} mm holds {cells[0]} x {cells[1]} "
+            f"cells, fewer than the multiple of {multiple} that the resolutions need; write "
+            "a larger 'window' or fewer resolutions"
+        )
+
+
+def _find_place(specimen, shape, wanted: _Wanted, centre_given: bool):
     """First cell of the window, and a note if it is not where it was wanted."""
-    valid = specimen["valid"].values
+    valid, spacing = specimen["valid"].values, spacing_of(specimen)
     free = _free_places(valid, shape)
     if not free.any():
-        raise _no_place(specimen, shape, spacing)
-    wanted = tuple(
+        raise _no_place(specimen, shape)
+    first = tuple(
         min(max(math.floor(m - (n - 1) / 2 + 0.5), 0), total - n)
-        for m, n, total in zip(middle, shape, valid.shape, strict=True)
+        for m, n, total in zip(wanted.middle, shape, valid.shape, strict=True)
     )
-    sliding = free & _reachable_places(specimen, shape, reach, spacing)
-    if free[wanted] and (centre_given or sliding[wanted] or not sliding.any()):
-        return wanted, ""
-    corner = _nearest(sliding if sliding.any() else free, shape, middle)
-    moved = [(c - w) * s for c, w, s in zip(corner, wanted, spacing, strict=True)]
-    why = "a hole" if not free[wanted] else "the offsets asked for"
+    sliding = free & _reachable_places(specimen, shape, wanted.reach)
+    if free[first] and (centre_given or sliding[first] or not sliding.any()):
+        return first, ""
+    corner = _nearest(sliding if sliding.any() else free, shape, wanted.middle)
+    moved = [(c - w) * s for c, w, s in zip(corner, first, spacing, strict=True)]
+    why = "a hole" if not free[first] else "the offsets asked for"
     return (
         corner,
         f"window moved by {moved[0]:.4g} mm in y, {moved[1]:.4g} mm in x because of {why}",
     )
 
 
-def _reachable_places(specimen, shape, reach, spacing) -> np.ndarray:
+def _reachable_places(specimen, shape, reach) -> np.ndarray:
     """Places from which the lower window can slide by ``reach`` without meeting a hole."""
+    spacing = spacing_of(specimen)
     present = np.isfinite(specimen["lower"].values)
     places = np.ones([total - n + 1 for total, n in zip(present.shape, shape, strict=True)], bool)
     if specimen.attrs["opposite"] == "flat":
         return places
-    reaches = reach if isinstance(reach, dict) else dict.fromkeys(DIRECTIONS, reach)
+    reaches = reach if isinstance(reach, Mapping) else dict.fromkeys(DIRECTIONS, reach)
     for direction, distance in reaches.items():
         axis_name, sign = axis_and_sign(direction)
         axis = "yx".index(axis_name)
@@ -187,16 +247,17 @@ def hole_free_square(valid: np.ndarray, spacing) -> tuple[slice, slice]:
         (dy, dx), mm: it is square in mm.
     """
     shape = _largest_square(valid, spacing)
-    corner = _nearest(_free_places(valid, shape), shape, tuple((n - 1) / 2 for n in valid.shape))
+    corner = _nearest(_free_places(valid, shape), shape, _middle(valid.shape))
     return tuple(slice(start, start + n) for start, n in zip(corner, shape, strict=True))
 
 
-def _no_place(specimen, shape, spacing) -> InputError:
-    valid = specimen["valid"].values
+def _no_place(specimen, shape) -> InputError:
+    """What is in the way of a window, and what would fit."""
+    valid, spacing = specimen["valid"].values, spacing_of(specimen)
     rows, columns = np.nonzero(~valid)
     y, x = specimen.y.values, specimen.x.values
     square = _largest_square(valid, spacing)
-    corner = _nearest(_free_places(valid, square), square, tuple((n - 1) / 2 for n in valid.shape))
+    corner = _nearest(_free_places(valid, square), square, _middle(valid.shape))
     centre = [
         c + (n - 1) / 2 * s
         for c, n, s in zip((y[corner[0]], x[corner[1]]), square, spacing, strict=True)

@@ -6,8 +6,16 @@ from matplotlib.figure import Figure
 
 from ...accuracy.convergence import QUANTITIES
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import estimate
+from ..kit.words import estimate, supplementary
 
+TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
+SUBJECT = "accuracy"
+NEEDS = ("convergence",)
+KEY = "convergence"
+ORDER = 90
+
+#: Endings of an interval.
+_ENDS = ("", "_low", "_high")
 _TITLES = {"hertz": "paraboloid (Hertz)", "punch": "flat circular punch"}
 
 
@@ -103,31 +111,23 @@ def _table(found, trials):
 
 def _caption(found, trials):
     orders = [
-        f"{problem} {name.replace('_', ' ')} "
-        + estimate(*(float(result[f"{name}_order{end}"]) for end in ("", "_low", "_high")))
+        f"{problem} {estimate(*(float(result[f'force_order{end}']) for end in _ENDS))}"
         for problem, result in found.items()
-        for name in QUANTITIES[problem]
+        if "force" in QUANTITIES[problem]
     ]
     cases = trials.sizes["case"]
-    error, finest = (np.sqrt((trials[name] ** 2).mean("case")) for name in ("error", "finest"))
-    within = [
-        f"{name} {int(one['within'])} (order {one['order'].item():g} assumed; "
-        f"{'closer' if error.sel(quantity=name) < finest.sel(quantity=name) else 'no closer'} than "
-        "the finest value)"
-        for name in trials["quantity"].values
-        for one in [trials.sel(quantity=name)]
-    ]
+    within = ", ".join(
+        f"{name} {int(trials['within'].sel(quantity=name))}" for name in trials["quantity"].values
+    )
     short_of = [
         str(name)
         for name in trials["quantity"].values
         if trials["within"].sel(quantity=name) < 0.9 * cases
     ]
-    verdict = (
-        f"fewer than 9 of 10 for {', '.join(short_of)}" if short_of else "9 of 10 or more each"
-    )
+    verdict = f"fewer than 9 of 10 for {', '.join(short_of)}" if short_of else "9 of 10 or more"
+    of_force = f" (of the force: {', '.join(orders)})" if orders else ""
     return (
-        "In no figure of the paper: relative errors against the exact solutions as the spacing "
-        f"falls, with the order of each and its 95 % interval: {', '.join(orders)}. (c) Values "
-        "extrapolated from s, 2 s and 4 s at random places and ratios a/s: within their own bar of "
-        f"the exact value in, of {cases} cases, {', '.join(within)}; {verdict}."
+        f"{supplementary()} Relative errors against exact solutions as the spacing falls, with "
+        f"their orders{of_force}. (c) Richardson extrapolation from s, 2 s and 4 s lies within its "
+        f"own error bar, of {cases} trials, in: {within}; {verdict}."
     )

@@ -1,11 +1,10 @@
 """Error of the force against time on the rough scenes, with the Pareto front."""
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from ...accuracy.speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
 from ..kit.drawing import WIDTH, Drawing, letter
-from ..kit.words import short
+from ..kit.words import short, supplementary
 from ._speed import (
     AXES,
     draw_points,
@@ -17,6 +16,12 @@ from ._speed import (
     table_of,
     values_of,
 )
+
+TITLE = "Error of the force against wall time on rough surfaces, with the Pareto front"
+SUBJECT = "accuracy"
+NEEDS = ("speed",)
+KEY = "speed"
+ORDER = 50
 
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
@@ -53,70 +58,46 @@ def draw(atlas, names):
     for axes in panels[-1]:
         axes.set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
-    return Drawing(figure, table_of(scenes), caption(scenes, "force_error", "force"))
+    words = (
+        f"{supplementary()} Error of the force against wall time on self-affine surfaces "
+        f"({_runs_words(scenes)}). {caption(scenes, 'force_error')}"
+    )
+    return Drawing(figure, table_of(scenes), words)
 
 
-def caption(scenes, quantity, words):
-    """Whether ours is on the front at every error below `LEADS_BELOW`, scene by scene.
+def caption(scenes, quantity):
+    """Whether ours is on the front at every error below `LEADS_BELOW`, and what counts as equal.
 
     Parameters
     ----------
     scenes : dict
     quantity : str
         ``force_error`` or ``pressure_error``.
-    words : str
-        What it is the error of.
 
     Returns
     -------
     str
     """
-    runs = int(max(scene["runs"].max() for scene in scenes.values()))
+    leads = sum(
+        not ahead_of_ours(scene, quantity=quantity, models=False).sizes["point"]
+        for scene in scenes.values()
+    )
+    models = sum(
+        bool((ahead_of_ours(scene, quantity=quantity)["kind"] == MODEL).any())
+        for scene in scenes.values()
+    )
     alike = max(scene.attrs["told_apart_to"] for scene in scenes.values())
     worst = max(scene.attrs["reference_error"] for scene in scenes.values())
     return (
-        f"In no figure of the paper: error of the {words} against wall time on self-affine "
-        f"surfaces pressed by a closure from a cold start, medians of up to {runs} runs taken in "
-        f"turn, {next(iter(scenes.values())).attrs['threads']} thread(s) of ours. "
-        f"{_solvers(scenes, quantity)}. {_models(scenes, quantity)}. "
-        f"Errors below {short(alike)} count as alike. The references' own error of the force is at "
-        f"most {short(worst)}."
+        f"{OURS} is on the solvers' Pareto front at every error below {LEADS_BELOW:g} on {leads} "
+        f"of {len(scenes)} test problems; a cheaper model is the fastest way to some such error on "
+        f"{models}. Errors below {short(alike)} count as equal; the references' own error of the "
+        f"force is at most {short(worst)}."
     )
 
 
-def _solvers(scenes, quantity):
-    """On how many scenes ours is on the front of the solvers at every error below the limit."""
-    ahead = [ahead_of_ours(scene, quantity=quantity, models=False) for scene in scenes.values()]
-    behind = [points for points in ahead if points.sizes["point"]]
-    leads = [points.attrs["scene"] for points in ahead if not points.sizes["point"]]
-    return (
-        f"Among the solvers {OURS} is on the Pareto front at every error below {LEADS_BELOW:g} on "
-        f"{len(leads)} of {len(scenes)} scenes (nodes a side, H, share in contact)"
-        + (f": {'; '.join(leads)}" if leads else "")
-        + (f". Not on: {_listed(behind, quantity)}" if behind else "")
-    )
-
-
-def _models(scenes, quantity):
-    """Where a cheaper model is on the front below the limit."""
-    ahead = [ahead_of_ours(scene, quantity=quantity) for scene in scenes.values()]
-    models = [points.isel(point=np.flatnonzero(points["kind"] == MODEL)) for points in ahead]
-    models = [points for points in models if points.sizes["point"]]
-    return f"A cheaper model is the fastest way to some such error on {len(models)} scenes" + (
-        f": {_listed(models, quantity)}" if models else ""
-    )
-
-
-def _listed(scenes, quantity):
-    return "; ".join(_others(points, quantity) for points in scenes)
-
-
-def _others(points, quantity):
-    """The methods ahead of ours on a scene, with the error and the seconds of each point."""
-    told = ", ".join(
-        f"{method} {short(error)} in {short(1e3 * seconds)} ms"
-        for method, error, seconds in zip(
-            points["method"].values, points[quantity].values, points["seconds"].values, strict=True
-        )
-    )
-    return f"{points.attrs['scene']}, {points.attrs['overlapping']} nodes overlapping ({told})"
+def _runs_words(scenes):
+    """How the times were taken."""
+    runs = int(max(scene["runs"].max() for scene in scenes.values()))
+    threads = next(iter(scenes.values())).attrs["threads"]
+    return f"cold solves, medians of up to {runs} runs, threads: {threads}"

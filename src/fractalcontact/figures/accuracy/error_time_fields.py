@@ -3,6 +3,7 @@
 from matplotlib.figure import Figure
 
 from ..kit.drawing import WIDTH, Drawing, letter
+from ..kit.words import supplementary
 from ._speed import (
     AXES,
     draw_points,
@@ -16,6 +17,12 @@ from ._speed import (
     values_of,
 )
 from .error_time import caption
+
+TITLE = "Errors of contact area, Delta_sigma and pressure against wall time"
+SUBJECT = "accuracy"
+NEEDS = ("speed",)
+KEY = "speed"
+ORDER = 60
 
 QUANTITIES = ("area_error", "delta_error", "pressure_error")
 
@@ -51,10 +58,8 @@ def draw(atlas, names):
         panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
     words = (
-        f"Errors of the real contact area, of Delta_sigma from box counts and of the pressure, at "
-        f"{size} x {size} nodes and {100 * contact:g} % in contact; an error of zero, the domain "
-        "being that of the reference to the node, stands at the foot of the axis. "
+        f"{supplementary()} Errors of the real contact area, of Delta_sigma from box counts and of "
+        f"the pressure against wall time, {size} x {size} nodes, {100 * contact:g} % in contact; "
+        f"zeros stand at the foot. For the pressure {caption(scenes, 'pressure_error')}"
     )
-    return Drawing(
-        figure, table_of(scenes), words + caption(scenes, "pressure_error", "pressure field")
-    )
+    return Drawing(figure, table_of(scenes), words)

@@ -1,4 +1,4 @@
-"""Which solver takes which kind of scene: one row a kind, one column a solver."""
+"""Verdicts on the solvers by kind of test problem: one row a kind, one column a solver."""
 
 import re
 
@@ -11,6 +11,13 @@ from ...accuracy.speed import OURS
 from ...accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
 from ...methods.registry import METHODS
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group
+from ..kit.words import supplementary
+
+TITLE = "Verdicts on every solver by kind of test problem"
+SUBJECT = "accuracy"
+NEEDS = ("stability",)
+KEY = "stability"
+ORDER = 100
 
 #: Colour and hatching of each verdict: what must not happen is the darkest.
 _STYLE = {
@@ -23,7 +30,7 @@ _ROW = 0.145  # inches
 
 
 def draw(atlas, names):
-    """Shares of the verdicts, kind by kind and solver by solver.
+    """Fractions of the verdicts, kind by kind and solver by solver.
 
     Parameters
     ----------
@@ -54,7 +61,7 @@ def draw(atlas, names):
     names = [_wrapped(name) for name in solvers]
     axes.set_xticks(np.arange(len(solvers)) + 0.47, names, fontsize=6.5)
     axes.xaxis.tick_top()
-    axes.set_xlabel("share of the scenes of a kind, each bar one solver's (1)")
+    axes.set_xlabel("fraction of the test problems of a kind, each bar one solver's (1)")
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
     for column in range(1, len(solvers)):
@@ -111,21 +118,16 @@ def _unmeasured(said):
 
 def _caption(stability, counts):
     totals = counts.sum(axis=1)
-    tried = stability.sizes["kind"] * stability.sizes["draw"]
-    by_solver = "; ".join(
-        _words(*row) for row in zip(stability["solver"].values, totals, strict=True)
+    by_solver = ", ".join(
+        f"{solver} {row[RIGHT]}/{row[[RIGHT, HONEST, SILENT]].sum()} ({row[SILENT]})"
+        for solver, row in zip(stability["solver"].values, totals, strict=True)
     )
     return (
-        f"In no figure of the paper: {stability.sizes['kind']} kinds of scene, "
-        f"{stability.sizes['draw']} drawn of each, {tried} in all. A state is right if it violates "
-        f"the contact conditions, judged in double precision by a convolution of the judge's own, "
-        f"by no more than {stability.attrs['margin']:g} times the tolerance of "
-        f"{stability.attrs['rtol']:g} beyond the rounding of the heights, and if its force (its "
-        "closure, where the force was given) is that of direct elimination to "
-        f"{stability.attrs['agreement']:g}. Where no state exists, only saying so is right. "
-        f"{_of_peers(stability)}{by_solver}. {_silent(stability)} Every scene not solved stands in "
-        "the table beside the figure, kind and draw: hard_problem(kind, draw) of "
-        "fractalcontact.accuracy.hard_problems makes it again."
+        f"{supplementary()} Verdicts on {stability.sizes['draw']} draws of each of "
+        f"{stability.sizes['kind']} kinds of test problem. Right of those offered (silently "
+        f"wrong): {by_solver}. A state is right within {stability.attrs['margin']:g} times the "
+        f"tolerance {stability.attrs['rtol']:g} of the KKT conditions"
+        f"{_of_peers(stability)}; hard_problem(kind, draw) repeats any."
     )
 
 
@@ -133,28 +135,4 @@ def _of_peers(stability):
     """How public codes are judged, where there are any."""
     if set(stability["solver"].values) <= {OURS, *METHODS}:
         return ""
-    return (
-        "A public code, whose tolerance is on a quantity of its own, is asked for a tighter one, "
-        f"down to {stability.attrs['tightest']:g}, before it counts as silently wrong; an error it "
-        "raises, a crash and too long a time are honest failures. "
-    )
-
-
-def _silent(stability):
-    """Every silent error, by kind and draw."""
-    found = []
-    for solver in stability["solver"].values:
-        wrong = stability.sel(solver=solver)
-        wrong = wrong.isel(kind=np.flatnonzero((wrong["verdict"] == SILENT).any("draw")))
-        kinds = [f"{k} ({_draws(wrong.sel(kind=k), SILENT)})" for k in wrong["kind"].values]
-        if kinds:
-            found.append(f"{solver} on {'; '.join(kinds)}")
-    return f"Silently wrong, with the draws: {'. '.join(found)}." if found else "None is silent."
-
-
-def _words(solver, totals):
-    offered = totals[[RIGHT, HONEST, SILENT]].sum()
-    return (
-        f"{solver}: {totals[RIGHT]} of {offered} right, {totals[HONEST]} honest failures, "
-        f"{totals[SILENT]} silently wrong"
-    )
+    return f", public codes at tolerances down to {stability.attrs['tightest']:g}"

@@ -1,4 +1,4 @@
-"""Time and memory against the size of the grid, with exponents: one figure a study."""
+"""Wall time and memory against the size of the grid, with exponents."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -6,8 +6,14 @@ from matplotlib.lines import Line2D
 
 from ...accuracy.speed import OURS
 from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import estimate, short
+from ..kit.words import estimate, short, supplementary
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles
+
+TITLE = "Wall time and memory against the size of the grid"
+SUBJECT = "accuracy"
+NEEDS = ("speed", "speed_growth")
+KEY = "speed"
+ORDER = 70
 
 _ROWS = {"seconds": ("wall time (s)", 1.0), "memory": ("peak memory (MB)", 1e6)}
 
@@ -37,7 +43,7 @@ def draw(atlas, names):
             _draw_growth(panels[i, j], one, name, looks)
             letter(panels[i, j], "abcdefgh"[i * len(columns) + j], surface)
         _draw_bounds(panels[0, j], one)
-        panels[-1, j].set_xlabel("nodes a side (1)")
+        panels[-1, j].set_xlabel("nodes per side (1)")
     for i, (label, _) in enumerate(_ROWS.values()):
         panels[i, 0].set_ylabel(label)
         label_short_span(panels[i, 0].yaxis)
@@ -84,30 +90,18 @@ def _table(growth):
 
 
 def _caption(growth, columns):
-    error = growth.attrs["error"]
-    told = []
+    words = []
     for surface in columns:
-        one = growth.sel(surface=surface)
-        ours = one.sel(solver=OURS)
-        exponents = [
-            f"{solver} {_exponent(one.sel(solver=solver), 'seconds')}"
-            for solver in one["solver"].values
-            if np.isfinite(one["seconds_exponent"].sel(solver=solver))
-        ]
-        share = ours["bound"] / ours["seconds"]
-        told.append(
-            f"{surface}: time grows with the number of nodes to the power "
-            f"{', '.join(exponents) or 'that two sizes cannot tell'}; our memory to "
-            f"{_exponent(ours, 'memory')}; the applications of the operator alone are "
-            f"{100 * float(share.min()):.0f} to {100 * float(share.max()):.0f} % of our time"
+        ours = growth.sel(surface=surface, solver=OURS)
+        part = ours["bound"] / ours["seconds"]
+        words.append(
+            f"{surface}: {_exponent(ours, 'seconds')} (memory {_exponent(ours, 'memory')}), the "
+            f"operator alone {100 * float(part.min()):.0f} to {100 * float(part.max()):.0f} % of it"
         )
     return (
-        "In no figure of the paper: wall time and peak memory of a cold solve against size, every "
-        f"solver at the tolerance that brings its force within {short(error)} of the reference "
-        "soonest; a solver stands only where it does. Dashed: the applications of the operator by "
-        "FFT that ours takes at this tolerance, in single precision, and nothing else. "
-        + ". ".join(told)
-        + "."
+        f"{supplementary()} Wall time and peak memory of cold solves within "
+        f"{short(growth.attrs['error'])} of the reference force. Our time grows with the nodes to "
+        f"the power, {'; '.join(words)}."
     )
 
 

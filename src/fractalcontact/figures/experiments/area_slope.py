@@ -1,4 +1,4 @@
-"""Area slope kappa of made surfaces at light load, beside the theories: one figure a study."""
+"""Area slope kappa of synthetic surfaces at light load, beside the theories."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,16 +16,24 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.words import number
+from ..kit.words import number, supplementary
+
+TITLE = "Real contact area of synthetic surfaces at light load, with and without a roll-off"
+SUBJECT = "study"
+NEEDS = ("area_slope",)
+KEY = "area_slope"
+ORDER = 20
 
 _TITLES = {
     "with_roll_off": "with a roll-off at {share} of the side",
     "without_roll_off": "without a roll-off",
 }
+#: Theories between which kappa is expected, the lower first.
+_THEORIES = ("persson", "bush_gibson_thomas")
 
 
 def draw(atlas, names):
-    """kappa of every made surface against load, raw and corrected, with and without a roll-off.
+    """kappa of every synthetic surface against load, with and without a roll-off.
 
     Parameters
     ----------
@@ -54,7 +62,8 @@ def draw(atlas, names):
     legends_below(figure, [heading("corrected for the perimeter (hollow: raw)"), *seeds], theories)
     nodes, dimension = slopes.attrs["nodes"], slopes.attrs["dimension"]
     figure.suptitle(
-        rf"made surfaces of {nodes} $\times$ {nodes} nodes, $\Delta_g$ = {dimension:g}", fontsize=9
+        rf"synthetic surfaces of {nodes} $\times$ {nodes} nodes, $\Delta_g$ = {dimension:g}",
+        fontsize=9,
     )
     return Drawing(figure, _table(slopes), _caption(slopes))
 
@@ -119,29 +128,25 @@ def _table(slopes):
 
 
 def _caption(slopes):
-    many, few = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
+    with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
+    low, high = (number(slopes.attrs[f"{name}_kappa"], 3) for name in _THEORIES)
     loads = slopes["load"].values
     return (
-        "In no figure of the paper: area slope kappa of A_r/A_0 = kappa p/(E* h'_rms) on "
-        f"{slopes.sizes['seed']} made surfaces (by seed) of Delta_g = "
-        f"{slopes.attrs['dimension']:g}, raw (hollow) and corrected for the perimeter of the "
-        f"discretised contact (filled), p/(E* h'_rms) from {loads[0]:g} to {loads[-1]:g} with "
-        f"h'_rms of differences between neighbouring nodes. With a roll-off {many}. Without one a "
-        f"few hills carry the load: {few}. {_scatter_words(slopes)}"
+        f"{supplementary()} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces of "
+        f"Delta_g = {slopes.attrs['dimension']:g}, raw (hollow) and corrected, at reduced "
+        f"pressures {loads[0]:g} to {loads[-1]:g}. Corrected kappa is {with_one} with a roll-off "
+        f"and {without} without, where few hills carry the load. Persson has {low}, Bush {high}. "
+        f"{_scatter_words(slopes)}"
     )
 
 
 def _range_words(chosen):
-    """Ranges of raw and corrected kappa, and whether the corrected lies between the theories."""
-    low, high = chosen.attrs["persson_kappa"], chosen.attrs["bush_gibson_thomas_kappa"]
-    raw, corrected = chosen["kappa"].values, chosen["corrected_kappa"].values
+    """Range of the corrected kappa, and how many values lie between the theories."""
+    low, high = (chosen.attrs[f"{name}_kappa"] for name in _THEORIES)
+    corrected = chosen["corrected_kappa"].values
     within = int(np.sum((corrected >= low) & (corrected <= high)))
-    verdict = "all" if within == corrected.size else f"{within} of {corrected.size} values"
-    return (
-        f"the corrected kappa is {number(corrected.min())} to {number(corrected.max())}, {verdict} "
-        f"between Persson's {number(low, 3)} and Bush, Gibson and Thomas' {number(high, 3)}, and "
-        f"the raw one {number(raw.min())} to {number(raw.max())}"
-    )
+    verdict = "all" if within == corrected.size else f"{within} of {corrected.size}"
+    return f"{number(corrected.min())} to {number(corrected.max())} ({verdict} between theories)"
 
 
 def _scatter_words(slopes):
@@ -149,8 +154,5 @@ def _scatter_words(slopes):
     deviation = slopes["corrected_mean_kappa_deviation"].max("load")
     with_one, without = (float(deviation.sel(surface=kind)) for kind in _TITLES)
     if not np.isfinite([with_one, without]).all():
-        return "One seed tells nothing of the scatter between surfaces."
-    return (
-        "The standard deviation of the corrected kappa between surfaces is at most "
-        f"{number(with_one)} with and {number(without)} without a roll-off."
-    )
+        return "One seed has no scatter."
+    return f"Scatter is at most {number(with_one)} and {number(without)}."

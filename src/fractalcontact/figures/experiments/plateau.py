@@ -28,7 +28,13 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
-from ..kit.words import PAPER, estimate, percent, short
+from ..kit.words import PAPER, estimate, short
+
+TITLE = "Rigid dilatancy of all joints, with and without a roll-off of the spectrum"
+SUBJECT = "study"
+NEEDS = ("specimens", "joints", "roll_off")
+KEY = "roll_off"
+ORDER = 10
 
 #: Specimens whose largest offsets differ by more than this are drawn in decades.
 WIDE = 5
@@ -39,6 +45,8 @@ COLUMN = 4
 #: A change over the second half of v below this share of the mean is called level.
 LEVEL = 0.1
 
+_PLATEAU = "reaches a plateau"
+
 #: How what explains the curves is drawn.
 _EXPECTED = {"lw": 3, "alpha": 0.35, "ls": "-"}
 _ROLL_OFF, _UNCORRELATED = "v", "o"
@@ -47,13 +55,13 @@ _MARK = {"mfc": "white", "ms": 6, "zorder": 3}
 
 @dataclass(frozen=True)
 class Slide:
-    """What one specimen, or many made ones, do as they slide, mm.
+    """Dilatancy of one specimen, or of many synthetic joints, as they slide, mm.
 
     Attributes
     ----------
     label : str
     rows : list of str
-        Directions of the specimen, or seeds of the made joints: what means and bands are over.
+        Directions of the specimen, or seeds of the synthetic joints: what means and bands are over.
     v : (n,) ndarray
         Offsets.
     opened, spread : (rows, n) ndarray
@@ -111,8 +119,8 @@ class Slide:
         )
 
     @classmethod
-    def made(cls, atlas, surface):
-        """The slides of the joints made with, or without, a roll-off; means of their directions."""
+    def synthetic(cls, atlas, surface):
+        """Slides of synthetic joints with, or without, a roll-off; means of their directions."""
         joints = group(atlas, "roll_off", "surfaces")
         joints = joints.sel(surface=surface).transpose("seed", "direction", "rigid_offset")
         expected = joints["face_rms"] * np.sqrt(np.maximum(2 - 2 * joints["face_correlation"], 0))
@@ -120,7 +128,7 @@ class Slide:
         words = f"with a roll-off at {short(roll_off)} mm" if roll_off else "without a roll-off"
         mean = joints.mean("direction")
         return cls(
-            label=f"{joints.sizes['seed']} made joints {words}",
+            label=f"{joints.sizes['seed']} synthetic joints {words}",
             rows=[f"seed {seed}" for seed in joints["seed"].values],
             v=joints["rigid_offset"].values,
             opened=mean["rigid_dilatancy"].values,
@@ -152,7 +160,7 @@ def draw(atlas, names):
     Parameters
     ----------
     atlas : xr.DataTree
-        Of a study that makes joints with and without a roll-off.
+        Of a study that has synthetic joints with and without a roll-off.
     names : sequence of str
         Its specimens; those that do not slide are passed over.
 
@@ -160,9 +168,9 @@ def draw(atlas, names):
     -------
     Drawing
     """
-    made = [Slide.made(atlas, surface) for surface in SURFACES]
+    synthetic = [Slide.synthetic(atlas, surface) for surface in SURFACES]
     sliding = [name for name in names if settings_of(atlas, name)["opposite"] != "flat"]
-    slides = made + [Slide.of(atlas, name) for name in sliding]
+    slides = synthetic + [Slide.of(atlas, name) for name in sliding]
     figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
     panels = figure.subplots(1, 3, sharex=True)
     _prepare(panels, slides)
@@ -214,7 +222,7 @@ def _draw_slide(panels, n, slide):
 def _marks():
     """Entries of the legend for what is marked on every curve."""
     return [
-        heading("bands: from the least to the most of the joints, or directions"),
+        heading("bands: from least to most of the joints or directions"),
         Line2D([], [], color="0.3", label=r"(b) $\sqrt{2}\,\sigma\,\sqrt{1-\rho(v)}$", **_EXPECTED),
         Line2D([], [], ls="none", marker=_ROLL_OFF, color="0.3", label="roll-off length", **_MARK),
         Line2D(
@@ -259,7 +267,7 @@ def _start_at_zero(panels):
 
 
 def _table(slide):
-    """Every direction of one specimen, or every made joint."""
+    """Every direction of one specimen, or every synthetic joint."""
     rows, n = slide.opened.shape
     return pd.DataFrame(
         {
@@ -303,65 +311,45 @@ class Trend(NamedTuple):
 
 
 def _caption(slides):
-    return (
-        f"Why rigid dilatancy has a plateau (Figs. 6a and 7a of {PAPER}). "
-        f"(a) Rigid dilatancy, mean of the made joints or of a specimen's directions; (b) standard "
-        f"deviation of the composite topography, with sqrt(2) sigma sqrt(1 - rho(v)) from the "
-        f"heights sigma of the faces and their correlation rho; (c) their ratio. "
-        f"{_explanation(slides[: len(SURFACES)])} Over the second half of v, with intervals from "
-        f"how joints or directions differ: {'; '.join(_slope_words(slide) for slide in slides)}."
+    synthetic = slides[: len(SURFACES)]
+    others = slides[len(SURFACES) :]
+    words = (
+        f"After Figs. 6a and 7a of {PAPER}. (a) Rigid dilatancy delta_r, (b) deviation sigma_z of "
+        "the composite topography, (c) their ratio, for synthetic joints and the study's "
+        f"specimens. {_explanation(synthetic)}"
     )
+    levels = [_level(slide) for slide in others]
+    flat = levels.count(_PLATEAU)
+    return f"{words} {flat} of {len(levels)} specimens reach one." if levels else words
 
 
-def _slope_words(slide):
-    opened, spread = (Trend.of(slide, values) for values in (slide.opened, slide.spread))
-    roll_off = (
-        "no roll-off"
-        if slide.roll_off is None
-        else "roll-off not known"
-        if np.isnan(slide.roll_off)
-        else f"roll-off {short(slide.roll_off)} mm"
-    )
-    if not np.isfinite(opened.slope):
-        return f"{slide.label} ({roll_off}): too few offsets"
-    half = slide.spread[:, slide.second_half].mean()
-    return (
-        f"{slide.label} ({roll_off}): delta_r {estimate(opened.slope, opened.low, opened.high)} "
-        f"mm/mm, {percent(opened.change, '+')} of its mean, sigma_z "
-        f"{estimate(spread.slope, spread.low, spread.high)} mm/mm, {percent(spread.change, '+')}, "
-        f"there {half / (np.sqrt(2) * slide.face):.2g} of sqrt(2) sigma"
-    )
-
-
-def _explanation(made):
+def _explanation(synthetic):
     """Whether delta_r follows sigma_z, and what the roll-off does to both."""
-    with_it, without = made
-    ratios = [slide.ratio.mean(axis=0)[slide.v > 0] for slide in made]
-    grown = [slide.spread.mean(axis=0)[-1] / slide.spread.mean(axis=0)[1] for slide in made]
+    with_it, without = synthetic
+    ratios = np.concatenate([slide.ratio.mean(axis=0)[slide.v > 0] for slide in synthetic])
     return (
-        f"delta_r follows sigma_z: while sigma_z grows {grown[0]:.3g} times with the roll-off and "
-        f"{grown[1]:.3g} times without, their ratio stays between "
-        f"{_span(np.concatenate(ratios), ' and ')}. With the roll-off the faces lose all "
-        f"correlation (rho {_span(with_it.correlation[:, with_it.second_half].mean(axis=1))} over "
-        f"the second half of v), sigma_z follows from it to {percent(_missed(with_it))} (rms) "
-        f"and stays at sqrt(2) sigma, and delta_r {_level(with_it)}. Without, waves as long as the "
-        f"window are left: sigma_z goes on growing, and delta_r {_level(without)}."
+        f"delta_r / sigma_z stays {_span(ratios)}. Over the second half of v, delta_r with the "
+        f"roll-off {_level(with_it)} ({_change(with_it)}), without it {_level(without)} "
+        f"({_change(without)})."
     )
 
 
-def _missed(slide):
-    """Root mean square of what the correlation alone does not explain of sigma_z, as a part."""
-    return np.sqrt(np.mean((slide.expected - slide.spread) ** 2) / np.mean(slide.spread**2))
+def _change(slide):
+    """Slope of delta_r over the second half of v, with its interval."""
+    trend = Trend.of(slide, slide.opened)
+    if not np.isfinite(trend.slope):
+        return "too few offsets"
+    return f"{estimate(trend.slope, trend.low, trend.high)} mm/mm"
 
 
 def _level(slide):
     """Whether the dilatancy levels off, by its change over the second half of v."""
     trend = Trend.of(slide, slide.opened)
     if abs(trend.change) <= LEVEL:
-        return "reaches a plateau"
+        return _PLATEAU
     if trend.low > 0:
         return "keeps rising"
-    return "falls" if trend.high < 0 else "shows no trend beyond its interval"
+    return "falls" if trend.high < 0 else "shows no trend"
 
 
 def _span(values, joint=" to "):

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ...mechanics.area import FEWEST_NODES, LIGHT_LOAD
+from ...mechanics.area import LIGHT_LOAD
 from ...mechanics.states import chosen_offset
 from ..experiments.area_slope import kappa_lines
 from ..kit.drawing import (
@@ -21,7 +21,12 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
-from ..kit.words import estimate, number, opening, percent, place, short
+from ..kit.words import estimate, number, opening, place, short
+
+TITLE = "Real contact area compared with the classical theories of section 2"
+SUBJECT = "specimen"
+NEEDS = ("closure", "area")
+ORDER = 60
 
 #: Theories of panel (a): variable, name, colour, line; the full line first, lest it hide others.
 THEORIES = (
@@ -66,7 +71,7 @@ def draw(atlas, name):
     letter(right, "b", r"area slope $\kappa$")
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
     headline(figure, settings["label"], where)
-    return Drawing(figure, _table(curve, law), _caption(settings["label"], where, curve, law))
+    return Drawing(figure, _table(curve, law), _caption(settings["label"], where, law))
 
 
 def _drawn_offset(settings, laws):
@@ -203,81 +208,43 @@ def _table(curve, law):
     return pd.DataFrame(columns | {name: law[name].values for name, *_ in THEORIES})
 
 
-def _caption(label, where, curve, law):
-    return " ".join(
-        [
-            f"{opening('Fig. 5', label, where)} (a) Real contact area, raw (hollow) and corrected "
-            "for the perimeter of the discretised contact (filled), and what the classical "
-            "theories make of the same composite topography at the scan's spacing. (b) Its slope "
-            f"kappa where {FEWEST_NODES} nodes or more touch.",
-            _law_words(law),
-            _between_words(law),
-            _theory_words(curve, law),
-        ]
+def _caption(label, where, law):
+    return (
+        f"{opening('Fig. 5', label, where)} (a) Real contact area, raw (hollow) and corrected, "
+        f"with classical theories; (b) its slope kappa. {_law_words(law)} {_between_words(law)}"
     )
 
 
 def _law_words(law):
+    """The exponent of the area, beside the paper's linear law and Archard's levels."""
     reason = str(law["no_law"].values)
     if reason:
         return f"No power law could be fitted ({reason})."
     low, high = float(law["exponent_low"]), float(law["exponent_high"])
     fit = estimate(float(law["exponent"]), low, high)
-    held = [
+    levels = [
         f"{level}"
         for level, exponent in zip(
             law["archard_level"].values, law["archard_exponent"].values, strict=True
         )
         if low <= exponent <= high
     ]
-    levels = "level" if len(held) == 1 else "levels"
-    archard = (
-        f"agrees with Archard's {levels} {', '.join(held)}"
-        if held
-        else "agrees with none of Archard's levels 1 to 3"
-    )
-    linear = (
-        "includes 1, the paper's linear law,"
-        if low <= 1 <= high
-        else "leaves out 1, the paper's linear law,"
-    )
+    linear = "includes" if low <= 1 <= high else "leaves out"
+    archard = f"Archard's level {', '.join(levels)}" if levels else "none of Archard's levels"
     return (
-        f"A_r grows as F to the power {fit} over {int(law['n'])} loads, which {linear} and "
-        f"{archard}; A_r/F departs from its mean by up to {percent(law['departure'])}."
+        f"A_r ~ F^m, m = {fit} over {int(law['n'])} loads, {linear} the paper's 1, fits {archard}."
     )
 
 
 def _between_words(law):
+    """Where the mean kappa lies between the theories."""
     reason = str(law["no_mean_kappa"].values)
     if reason:
         return f"There is no kappa at light load: {reason}."
     value = float(law["corrected_mean_kappa"])
     low, high = law.attrs["persson_kappa"], law.attrs["bush_gibson_thomas_kappa"]
-    side = (
-        "between Persson's"
-        if low <= value <= high
-        else "below both Persson's"
-        if value < low
-        else "above both Persson's"
-    )
+    side = "between" if low <= value <= high else "below both" if value < low else "above both"
     return (
-        f"At light load the mean kappa is {_mean(law, 'corrected_')} corrected and "
-        f"{_mean(law, '')} raw (over the loads of this one surface); the corrected one "
-        f"lies {side} {number(low, 3)} and Bush, Gibson and Thomas' {number(high, 3)}."
-    )
-
-
-def _theory_words(curve, law):
-    """How far the theories are from the corrected area under the largest load."""
-    computed = _share_corrected(curve)[-1]
-    ratios = [
-        f"{words} {short(float(law[variable][-1]) / computed)}"
-        for variable, words, *_ in THEORIES
-        if np.isfinite(law[variable][-1])
-    ]
-    if not ratios:
-        return "None of the theories has an area for it."
-    return (
-        "Under the largest load the theories give, as parts of the corrected area: "
-        f"{', '.join(ratios)}."
+        f"Corrected kappa at light load, {_mean(law, 'corrected_')}, lies {side} Persson's "
+        f"{number(low, 3)} and Bush's {number(high, 3)}."
     )

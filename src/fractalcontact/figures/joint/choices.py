@@ -18,13 +18,18 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
-from ..kit.words import opening, percent, place, short
+from ..kit.words import percent, place, short, supplementary
 
-#: Columns of the table: where they begin, as shares of the width, and how many letters they hold.
+TITLE = "States solved, their accuracy and its reasons, and the errors stated"
+SUBJECT = "specimen"
+NEEDS = ("choices", "closure", "domains")
+ORDER = 220
+
+#: Columns of the table: where they begin, in fractions of the width, and the letters they hold.
 COLUMNS = {"choice": (0.0, 18), "value": (0.16, 34), "reason": (0.45, 62), "error": (0.93, 9)}
-HEADS = {"choice": "What", "value": "Chosen", "reason": "Because", "error": "Error"}
+HEADS = {"choice": "Quantity", "value": "Value", "reason": "Reason", "error": "Error"}
 
-#: Errors drawn: stage, variable, its error, whether as a share of it, and the words of the legend.
+#: Errors drawn: stage, variable, its error, whether relative to it, and the words of the legend.
 ERRORS = (
     ("closure", "interface_closure", "interface_closure_error", True, "interface closure"),
     ("closure", "area", "area_error", True, "real contact area"),
@@ -37,7 +42,7 @@ LEAST = 1e-8
 
 
 def draw(atlas, name):
-    """The choices as a table, and the errors stated for the states over the load.
+    """The solve plan as a table, and the errors stated for the states over the load.
 
     Parameters
     ----------
@@ -51,16 +56,16 @@ def draw(atlas, name):
         Its data are the rows of the table ("choice") and the errors drawn ("error").
     """
     settings = settings_of(atlas, name)
-    made = group(atlas, "choices", name)
+    plan = group(atlas, "choices", name)
     direction = settings["contact_directions"][0]
-    table = _table(made)
+    table = _table(plan)
     errors = _errors(atlas, name, direction)
     texts, lines = wrap_rows(table, COLUMNS)
     height = LINE_HEIGHT * (sum(lines) + 2.5)
     figure = Figure(figsize=(WIDTH, height + 3.4))
     above, below = figure.subplots(2, 1, height_ratios=(height, 3.0))
     above.set_ylim(height / LINE_HEIGHT, 0)
-    letter(above, "a", "what was chosen")
+    letter(above, "a", "solve plan")
     draw_rows(above, texts, lines, COLUMNS, HEADS, 0.4)
     _draw_errors(below, errors)
     legends_below(figure, entries(below)[::2], entries(below)[1::2])
@@ -68,19 +73,19 @@ def draw(atlas, name):
     data = pd.concat(
         [pd.DataFrame(table).assign(kind="choice"), errors.assign(kind="error")], ignore_index=True
     )
-    return Drawing(figure, data, _caption(settings["label"], made, errors, direction))
+    return Drawing(figure, data, _caption(settings["label"], plan, errors, direction))
 
 
-def _table(made):
+def _table(plan):
     """Rows of the table, all as text."""
     rows = []
-    for i, choice in enumerate(made["choice"].values):
-        error = float(made["error"][i])
+    for i, choice in enumerate(plan["choice"].values):
+        error = float(plan["error"][i])
         rows.append(
             {
                 "choice": str(choice),
-                "value": str(made["value"].values[i]),
-                "reason": str(made["reason"].values[i]),
+                "value": str(plan["value"].values[i]),
+                "reason": str(plan["reason"].values[i]),
                 "error": f"{float(f'{error:.1g}'):g}" if np.isfinite(error) else "–",
             }
         )
@@ -90,10 +95,10 @@ def _table(made):
 def _errors(atlas, name, direction):
     """Median and largest error over the offsets under each load, at the finest resolution."""
     rows = []
-    for stage, variable, key, as_share, words in ERRORS:
-        found = group(atlas, stage, name)[[variable, key]].sel(direction=direction)
-        found = found.sel(resolution=found["resolution"].min())
-        errors = found[key] / abs(found[variable]) if as_share else found[key]
+    for stage, variable, key, relative, words in ERRORS:
+        states = group(atlas, stage, name)[[variable, key]].sel(direction=direction)
+        states = states.sel(resolution=states["resolution"].min())
+        errors = states[key] / abs(states[variable]) if relative else states[key]
         for load in errors["load"].values:
             here = errors.sel(load=load).values
             known = here[np.isfinite(here)]
@@ -111,23 +116,22 @@ def _draw_errors(axes, errors):
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("normal force $F$ (N)")
-    axes.set_ylabel("largest error stated,\nas a share (1)")
+    axes.set_ylabel("largest error stated,\nrelative (1)")
     letter(axes, "b", f"errors stated in the atlas (those of {LEAST:g} and less at the bottom)")
 
 
-def _caption(label, made, errors, direction):
-    by_solver = errors[errors["quantity"] != ERRORS[-1][-1]]
-    worst = by_solver.loc[by_solver["largest"].idxmax()]
+def _caption(label, plan, errors, direction):
+    solver = errors[errors["quantity"] != ERRORS[-1][-1]]
+    worst = solver.loc[solver["largest"].idxmax()]
     spacing = errors[errors["quantity"] == ERRORS[-1][-1]]["largest"]
     by_spacing = ""
     if len(spacing):
         least, most = percent(spacing.min()), percent(spacing.max())
         by_spacing = f"; twice the spacing changes the closure by {least} to {most}"
     return (
-        f"{opening('no figure', label, place(direction))} Asked for: {made.attrs['asked']}. "
-        f"{made.attrs['states_solved']} of {made.attrs['states']} states were solved; the others "
-        "are shown nowhere and missing in the atlas. (a) What was chosen, and the largest error it "
-        "makes as a share, where there is one. (b) Largest error stated at the finest resolution: "
-        f"the largest by the solver is {worst['largest']:.2g}, of the {worst['quantity']} at "
-        f"F = {short(worst['force_N'])} N{by_spacing}."
+        f"{supplementary(label, place(direction))} (a) Solve plan for the requested accuracy "
+        f"({plan.attrs['asked']}); (b) largest errors stated. {plan.attrs['states_solved']} of "
+        f"{plan.attrs['states']} states were solved; the others are missing in the atlas. The "
+        f"largest solver error is {worst['largest']:.2g}, of the {worst['quantity']} at "
+        f"{short(worst['force_N'])} N{by_spacing}."
     )

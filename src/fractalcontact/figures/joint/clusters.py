@@ -5,8 +5,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ...core.fitting import FEWEST_POINTS, fit_line
-from ...domain.clusters import QUADRATS, follows_law
-from ...mechanics.area import FEWEST_NODES
+from ...domain.clusters import follows_law
+from ...mechanics.area import RESOLVED_NODES
 from ...surface.specimen import cell_side
 from ..kit.drawing import (
     LINES,
@@ -28,7 +28,12 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.words import estimate, force_label, opening, percent, place, short, slope_text
+from ..kit.words import estimate, force_label, opening, place, short, slope_text
+
+TITLE = "Figs. 6 and 7: clusters of the contact domains, and their localisation with the offset"
+SUBJECT = "joint"
+NEEDS = ("specimens", "closure", "domains")
+ORDER = 120
 
 #: Offsets whose size distribution is drawn: the first, the middle and the last.
 DISTRIBUTIONS = 3
@@ -106,7 +111,7 @@ def _domain_table(domains, nodes, shown):
         row |= {column: domains[key].isel(load=j).values for key, column in COLUMNS.items()}
         rows.append(pd.DataFrame(row))
     table = pd.concat(rows, ignore_index=True)
-    return table.assign(in_trend=(table["nodes"] >= FEWEST_NODES) & (table["offset_mm"] > 0))
+    return table.assign(in_trend=(table["nodes"] >= RESOLVED_NODES) & (table["offset_mm"] > 0))
 
 
 def _size_table(domains, cell):
@@ -130,7 +135,7 @@ def _size_table(domains, cell):
 def _draw_domains(panels, table):
     number, share, localised = panels
     for n, (force, points) in enumerate(table.groupby("force_N")):
-        v, many = points["offset_mm"], (points["nodes"] >= FEWEST_NODES).values
+        v, many = points["offset_mm"], (points["nodes"] >= RESOLVED_NODES).values
         style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)]}
         for axes, column in (
             (number, "clusters"),
@@ -195,64 +200,48 @@ def _trend(points, column):
 
 def _caption(label, direction, table, sizes):
     return (
-        f"{opening('Figs. 6 and 7', label, place(direction))} Clusters of nodes in contact "
-        f"(neighbours by side or corner): (a) number, (b) largest, (c) localisation by Morisita's "
-        f"index over {QUADRATS} x {QUADRATS} parts of the window, 1 for nodes spread at random "
-        f"(bands: 95 % of as many random nodes), (d) sizes with the law a^-beta by maximum "
-        f"likelihood over octaves. {_localisation_words(table)} {_size_words(sizes)}"
+        f"{opening('Figs. 6 and 7', label, place(direction))} Contact clusters: (a) number, "
+        f"(b) largest, (c) localisation (Morisita's index, random nodes 1), (d) sizes with "
+        f"a^-beta. {_localisation_words(table)} {_size_words(sizes)}"
     )
 
 
 def _localisation_words(table):
     """Whether the domains become less homogeneous with v, under every load drawn."""
-    lines = {
-        force: (_trend(points, "morisita"), points) for force, points in table.groupby("force_N")
-    }
-    known = {force: fit for force, fit in lines.items() if np.isfinite(fit[0].slope)}
+    lines = {force: _trend(points, "morisita") for force, points in table.groupby("force_N")}
+    known = {force: line for force, line in lines.items() if np.isfinite(line.slope)}
     if not known:
         return (
-            f"Too few offsets with {FEWEST_NODES} nodes in contact ({FEWEST_POINTS} needed) to "
-            "tell whether the domains become less homogeneous with v."
+            f"Too few offsets with {RESOLVED_NODES} nodes in contact ({FEWEST_POINTS} needed) for "
+            "a trend of the index."
         )
-    grows = sum(line.slope_low > 0 for line, _ in known.values())
-    falls = sum(line.slope_high < 0 for line, _ in known.values())
+    grows = sum(line.slope_low > 0 for line in known.values())
+    falls = sum(line.slope_high < 0 for line in known.values())
     verdict = (
-        "the domains become less homogeneous with v, as the paper says"
+        "less homogeneous with v, as the paper says"
         if grows == len(known)
-        else "the domains become more homogeneous with v, unlike the paper's"
+        else "more homogeneous with v, unlike in the paper"
         if falls == len(known)
-        else f"they become less homogeneous with v under {grows} of {len(known)} loads only, "
-        "where the paper has it in general"
+        else f"less homogeneous with v under {grows} of {len(known)} loads (paper: in general)"
         if grows
-        else "no trend beyond the intervals, where the paper has the domains become less "
-        "homogeneous with v"
+        else "no trend (paper: less homogeneous with v)"
     )
-    powers = "; ".join(
-        f"{slope_text(line)} at {force_label(force)}" for force, (line, _) in known.items()
-    )
-    force, (_, points) = list(known.items())[-1]
-    used = points[points["in_trend"]]
-    first, last = used.iloc[0], used.iloc[-1]
-    return (
-        f"The index goes as v to the power {powers}: {verdict}. Under F = {force_label(force)} "
-        f"half of the contact lies in {percent(first['half_share'])} of the window at "
-        f"v = {short(first['offset_mm'])} mm and in {percent(last['half_share'])} at "
-        f"{short(last['offset_mm'])} mm (as many random nodes: "
-        f"{percent(first['half_share_random'])} and {percent(last['half_share_random'])})."
-    )
+    force, line = list(known.items())[-1]
+    return f"Index ~ v^e, e = {slope_text(line)} at {force_label(force)}: {verdict}."
 
 
 def _size_words(sizes):
+    """The exponents of the sizes of clusters, and whether the sizes follow the law."""
     laws = sizes.drop_duplicates("offset_mm")
     fitted = laws[np.isfinite(laws["exponent"])]
     if fitted.empty:
-        return "Too few clusters, or over too few octaves, for a law of their sizes."
-    parts = []
-    for law in fitted.itertuples():
-        followed = follows_law(law.fit_clusters, law.fit_distance)
-        parts.append(
-            f"{estimate(law.exponent, law.exponent_low, law.exponent_high)} from "
-            f"{short(law.fit_min_mm2)} to {short(law.fit_max_mm2)} mm2 at v = "
-            f"{short(law.offset_mm)} mm" + ("" if followed else ", where sizes do not follow it")
-        )
-    return f"Beta is {'; '.join(parts)}."
+        return "Too few clusters for a law of sizes."
+    low, high = (short(end) for end in (fitted["fit_min_mm2"].min(), fitted["fit_max_mm2"].max()))
+    if len(fitted) == 1:
+        law = fitted.iloc[0]
+        values = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+    else:
+        values = f"{short(fitted['exponent'].min())} to {short(fitted['exponent'].max())}"
+    broken = sum(not follows_law(law.fit_clusters, law.fit_distance) for law in fitted.itertuples())
+    words = f"Beta is {values} ({low}–{high} mm2)"
+    return f"{words}, not followed at {broken} of {len(fitted)} offsets." if broken else f"{words}."

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from ...statements.judge import UNKNOWN
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -21,6 +22,11 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.words import TOWARDS, force_label, opening, place, short
+
+TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
+SUBJECT = "joint"
+NEEDS = ("specimens", "joints", "closure", "statements")
+ORDER = 70
 
 #: What the paper says of the stages of sliding (:mod:`statements.judge`).
 STAGES = ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again")
@@ -111,7 +117,7 @@ def _draw_correlation(axes, joint):
             if np.isfinite(uncorrelated)
             else "always correlated"
             if np.isfinite(joint["correlation_limit"])
-            else "window too small to tell when lost"
+            else "window too small to see it lost"
         )
         v, rho = joint["rigid_offset"].values, points["face_correlation"].values
         # The marks are for prints in grey; at every offset they would hide the line.
@@ -179,31 +185,28 @@ def _ends_of_correlation(joint, direction):
 
 def _caption(label, direction, joint, judged):
     ends = _ends_of_correlation(joint, direction)
-    told = np.isfinite(float(joint["correlation_limit"]))
-    stages = [judged.sel(statement=name) for name in STAGES]
-    verdicts = [f"{stage['verdict'].item()} ({stage['numbers'].item()})" for stage in stages]
+    verdicts = [judged["verdict"].sel(statement=name).item() for name in STAGES]
+    verdicts = ["undetermined" if verdict == UNKNOWN else verdict for verdict in verdicts]
     return (
-        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the two faces "
-        f"under the window, each less its mean plane; (b) closure and (c) compliance of the "
-        f"interface at the same offsets. {_correlation_words(direction, ends, told)} The paper "
-        f"has the joint more compliant with v at first, then curves that overlap, then a joint "
-        f"more compliant again once all correlation is lost. Under "
-        f"F = {force_label(judged.attrs['force'])} the first {'; the second '.join(verdicts[:2])}; "
-        f"the third {verdicts[2]}."
+        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the faces, "
+        f"(b) closure and (c) compliance of the interface. "
+        f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))} The paper: "
+        f"more compliant with v at first ({verdicts[0]}), then overlapping curves ({verdicts[1]}), "
+        f"then more compliant again ({verdicts[2]}) at "
+        f"{force_label(judged.attrs['force'])}."
     )
 
 
-def _correlation_words(direction, ends, told):
+def _correlation_words(ends, decidable):
+    """Where the correlation of the faces has fallen to 1/e, and where it is lost."""
     length, uncorrelated = ends
     if not np.isfinite(length):
-        return f"Towards {TOWARDS[direction]} the correlation does not fall to 1/e."
+        return "The correlation does not fall to 1/e."
     lost = (
-        f"no longer differs from zero from {short(uncorrelated)} mm"
+        f"lost from {short(uncorrelated)} mm"
         if np.isfinite(uncorrelated)
-        else "differs from zero at all offsets"
-        if told
-        else "where it vanishes a window of so few correlation lengths cannot tell"
+        else "never lost"
+        if decidable
+        else "the window too small to see it lost"
     )
-    return (
-        f"Towards {TOWARDS[direction]} the correlation is 1/e at v = {short(length)} mm and {lost}."
-    )
+    return f"The correlation is 1/e at v = {short(length)} mm, {lost}."

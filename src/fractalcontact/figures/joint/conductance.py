@@ -18,12 +18,18 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.words import estimate, place, short
+from ..kit.words import estimate, place, short, supplementary
+
+TITLE = "Thermal or electrical conductance of the interface against pressure"
+SUBJECT = "specimen"
+NEEDS = ("closure",)
+ORDER = 80
 
 CURVES = 5
 
 #: Exponents that theories and experiments give: Persson's and Greenwood and Williamson's are 1,
 #: Cooper, Mikic and Yovanovich (Int. J. Heat Mass Transf. 12 (1969) 279) and most tests 0.95.
+#: Windows that hold few hills show lower ones (Pastewka et al., Phys. Rev. E 87 (2013) 062809).
 THEORY = (0.95, 1.0)
 
 
@@ -141,14 +147,13 @@ def _draw_theory(axes, table):
 
 def _caption(label, direction, table):
     return (
-        f"{label}, {place(direction)}: conductance of the interface h_c, thermal or electrical, "
-        f"for two blocks of one conductivity k, from the normal stiffness of the interface (Barber "
-        f"2003); k/h_c is the thickness of solid material with the same resistance. "
-        f"{_exponent_words(table)}"
+        f"{supplementary(label, place(direction))} Conductance of the interface over "
+        f"conductivity, h_c/k, from its normal stiffness (Barber 2003). {_exponent_words(table)}"
     )
 
 
 def _exponent_words(table):
+    """The powers of the pressure, beside those of theory."""
     laws = table.drop_duplicates("offset_mm")
     fitted = laws[np.isfinite(laws["exponent"])]
     if fitted.empty:
@@ -157,7 +162,7 @@ def _exponent_words(table):
     reached = int(((fitted["exponent_low"] <= high) & (fitted["exponent_high"] >= low)).sum())
     below = int((fitted["exponent_high"] < low).sum())
     above = len(fitted) - reached - below
-    ranged = table[table["fitted"]]["nominal_pressure_MPa"]
+    pressure = table[table["fitted"]]["nominal_pressure_MPa"]
     law = fitted.iloc[0]
     values = (
         f"a power {estimate(law['exponent'], law['exponent_low'], law['exponent_high'])}"
@@ -165,18 +170,15 @@ def _exponent_words(table):
         else f"powers from {fitted['exponent'].min():.3g} to {fitted['exponent'].max():.3g}"
     )
     verdict = (
-        f"as the theories have it, which give {low:g} to {high:g}"
+        f"as theory has it ({low:g} to {high:g})"
         if reached == len(fitted)
-        else f"the intervals of {reached} of {len(fitted)} reach the {low:g} to {high:g} of the "
-        f"theories, those of {below} lie below and of {above} above"
+        else f"{reached} of {len(fitted)} intervals reach theory's {low:g} to {high:g}, {below} "
+        f"lie below and {above} above"
     )
     finite_size = (
-        " Powers below come with windows that hold few hills, a finite-size effect (Pastewka et "
-        "al., Phys. Rev. E 87 (2013) 062809)."
-        if below
-        else ""
+        " Lower powers are a finite-size effect of windows with few hills." if below else ""
     )
     return (
-        f"It grows as {values} of the pressure (fitted from {short(ranged.min())} to "
-        f"{short(ranged.max())} MPa): {verdict}.{finite_size}"
+        f"It grows as {values} of the pressure ({short(pressure.min())}–{short(pressure.max())} "
+        f"MPa): {verdict}.{finite_size}"
     )

@@ -20,6 +20,11 @@ from ..kit.drawing import (
 )
 from ..kit.words import force_label, interval, opening, place, short
 
+TITLE = "Local slopes, lacunarity and generalised dimensions of the contact"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "domain_measures")
+ORDER = 150
+
 #: Loads drawn, the map load among them.
 MOST_LOADS = 4
 
@@ -140,36 +145,31 @@ def _draw_spectrum(axes, table, mapped):
 
 def _caption(state, table):
     words = (
-        "(a) Local slope of the box counts over a doubling of r, under several loads. "
-        "(b) Lacunarity of gliding boxes; 1 where all boxes hold the same contact. (c) Generalised "
-        "dimensions of the pressure, of ten nodes or more; negative q weigh the rims of contact. "
-        "Shaded: 95 % intervals at the map load. "
+        "(a) Local slopes of box counts, (b) gliding-box lacunarity, (c) generalised dimensions of "
+        f"pressure. At F = {force_label(float(state['load']))} "
     )
-    at = f"At F = {force_label(float(state['load']))} "
-    found = [
-        f"{label} = {_interval(state, key)}"
-        for key, label in (
-            ("box_dimension", "Delta_sigma from boxes"),
-            ("correlation_dimension", "from pairs"),
-        )
+    dimensions = [
+        f"{_interval(state, key)} from {label}"
+        for key, label in (("box_dimension", "boxes"), ("correlation_dimension", "pairs"))
         if np.isfinite(state[key])
     ]
-    if not found:
-        return f"{words}{at}the domain is too small for a dimension."
+    if not dimensions:
+        return f"{words}the domain is too small for a dimension."
     span = state["generalised_dimension"].sel(order=[0.0, 4.0]).values
     spectrum = ""
     if np.isfinite(span).all():
         low = state["generalised_dimension_low"].sel(order=0.0).item()
         high = state["generalised_dimension_high"].sel(order=4.0).item()
-        apart = "plainly more than one dimension" if high < low else "within their intervals"
-        spectrum = f"; D_0 = {span[0]:.2f} and D_4 = {span[1]:.2f}: {apart}"
-    return f"{words}{at}{', '.join(found)}{spectrum}. {_law(state, table)}"
+        apart = "separated" if high < low else "not separated"
+        spectrum = f"; D_0 = {span[0]:.2f}, D_4 = {span[1]:.2f}, {apart}"
+    return f"{words}Delta_sigma is {', '.join(dimensions)}{spectrum}. {_law(state, table)}"
 
 
 def _interval(state, key):
+    """A dimension with its interval and the range of its fit."""
     ends = (state[f"{key}{end}"].item() for end in ("", "_low", "_high"))
     r = (short(state[f"{key}_r_{end}"].item()) for end in ("min", "max"))
-    return f"{interval(*ends)} ({' to '.join(r)} mm)"
+    return f"{interval(*ends)} ({'–'.join(r)} mm)"
 
 
 def _law(state, table):
@@ -178,8 +178,5 @@ def _law(state, table):
     low, high = state["box_dimension_r_min"].item(), state["box_dimension_r_max"].item()
     inside = points[(points["box_side_mm"] >= low) & (points["box_side_mm"] <= high)]["value"]
     if inside.size < 2:
-        return "Too few local slopes lie in the range fitted to tell whether one law holds."
-    return (
-        f"Over that range local slopes go from {inside.min():.2f} to {inside.max():.2f}, where a "
-        "single power law would have one."
-    )
+        return "Too few local slopes to test for one power law."
+    return f"Local slopes go from {inside.min():.2f} to {inside.max():.2f}."

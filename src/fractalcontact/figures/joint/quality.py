@@ -22,9 +22,14 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
-from ..kit.words import length_unit, percent
+from ..kit.words import length_unit, percent, supplementary
 from ..paper.fig02_relief import draw_faces
 from ._history import history
+
+TITLE = "Quality of the scan: relief, missing cells, spectra, noise floor and fractal range"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "quality")
+ORDER = 30
 
 #: Outliers up to this many are ringed, so that single cells can be seen.
 FEW_OUTLIERS = 400
@@ -155,7 +160,7 @@ def _draw_histogram(axes, quality, faces):
     axes.plot(
         z, np.exp(-((z / rms) ** 2) / 2) / rms / np.sqrt(2 * np.pi), color="0.6", lw=0.8, ls="--"
     )
-    axes.set(xlabel=f"height ({unit})", ylabel=f"share of cells (1/{unit})", ylim=(0, None))
+    axes.set(xlabel=f"height ({unit})", ylabel=f"fraction of cells (1/{unit})", ylim=(0, None))
     words = "\n".join(
         f"{face}: rms {length_words(q['rms'])}\nskew {q['skewness']:.2f}, kurt. {q['kurtosis']:.1f}"
         for face, q in ((face, quality.sel(face=face)) for face in faces)
@@ -321,29 +326,29 @@ def _found_words(specimen, quality, faces):
     for face in faces:
         words = "; ".join(filter(None, (noise_words(quality, face), range_words(quality, face))))
         sentences.append(f"{face.capitalize()} face: {words}.")
-    share = ", ".join(percent(quality["missing_share"].sel(face=f)) for f in faces)
-    cells = f"{share} of the cells missing"
+    return [*sentences, _cells_words(specimen, quality, faces)]
+
+
+def _cells_words(specimen, quality, faces):
+    """A sentence on cells missing, outlying and filled."""
+    missing = ", ".join(percent(quality["missing_share"].sel(face=f)) for f in faces)
+    cells = f"{missing} of the cells missing"
     if "outlier_count" in specimen.attrs:
-        done = {"keep": "kept", "mask": "masked"}.get(specimen.attrs.get("outliers"), "")
-        cells += f", {specimen.attrs['outlier_count']} outliers {done}".rstrip()
+        treated = {"keep": "kept", "mask": "masked"}.get(specimen.attrs.get("outliers"), "")
+        cells += f", {specimen.attrs['outlier_count']} outliers {treated}".rstrip()
     if specimen.attrs.get("filled_count"):
         cells += f", {specimen.attrs['filled_count']} cells filled"
-    return [*sentences, f"{cells}."]
+    return f"{cells}."
 
 
 def _caption(label, specimen, quality):
     faces = [str(face) for face in quality["face"].values]
-    end = (
-        quality.attrs["warning"] or "all resolutions of the study lie within the fractal range seen"
-    )
-    found = " ".join(_found_words(specimen, quality, faces))
+    end = quality.attrs["warning"] or "all resolutions of the study lie within the fractal range"
     return (
-        f"Quality of the scan: {label}. Shaded relief and mask with the window; histogram of the "
-        "heights with a Gaussian of the lower face's rms (dashed grey); profiles through the "
-        "middle of the window; power spectra of profiles and radially averaged, with the "
-        "self-affine line, noise floor and end of the fractal range where they are seen, and the "
-        f"shortest wave 2 s of each resolution s. {found} {end[0].upper()}{end[1:]}. "
-        + " ".join(history(specimen, faces))
+        f"{supplementary('quality of the scan', label)} Relief, mask, heights, profiles and "
+        "spectra, with the noise floor, the end of the fractal range and the shortest wave 2 s of "
+        f"each resolution s where they exist. {_cells_words(specimen, quality, faces)} "
+        f"{end[0].upper()}{end[1:]}."
     )
 
 

@@ -22,7 +22,12 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.sizes import nothing_in, plain_decades, size_axis
-from ..kit.words import PAPER, estimate, interval, place, short
+from ..kit.words import estimate, interval, place, short, supplementary
+
+TITLE = "Direct test of eq. 6 on parts of the window"
+SUBJECT = "specimen"
+NEEDS = ("size_test",)
+ORDER = 170
 
 #: Loads shown in (a).
 _LOADS = 4
@@ -30,13 +35,15 @@ _LOADS = 4
 _ESTIMATORS = {
     "area": ("-", "$A_r(s)$"),
     "box": ("--", "box counting"),
-    "box_sizes": (":", "windows met"),
+    "box_sizes": (":", "occupied windows"),
 }
+#: Estimates of Delta_sigma in words.
+_BY = {"area": "by A_r(s)", "box": "by box counting", "box_sizes": "by occupied windows"}
 _PREDICTORS = {
     "power_law": "power law of small windows",
     "eq6_area": r"eq. 6, $\Delta_\sigma$ from $A_r(s)$",
     "eq6_box": r"eq. 6, $\Delta_\sigma$ from box counting",
-    "eq6_box_sizes": r"eq. 6, $\Delta_\sigma$ from windows met",
+    "eq6_box_sizes": r"eq. 6, $\Delta_\sigma$ from occupied windows",
     "no_size_effect": "no size effect",
 }
 _QUANTITIES = {
@@ -81,7 +88,7 @@ def _draw_equal(axes, test):
     b = test["side"].values
     fitted = np.flatnonzero(np.isfinite(test["slope"].values))
     loads = fitted[spread(len(fitted), _LOADS)] if len(fitted) else fitted
-    handles = [heading(r"(a): $\sigma_0$ of the whole, slope found")]
+    handles = [heading(r"(a): $\sigma_0$ of the whole, measured slope")]
     for n, i in enumerate(loads):
         style = {"color": COLOURS[n], "marker": MARKERS[n]}
         pressure = test["equal_pressure"].values[i]
@@ -100,7 +107,7 @@ def _draw_equal(axes, test):
     axes.set_ylabel(r"$\sigma_0$ at the same $\sigma^*$ (MPa)")
     letter(axes, "a", r"equal $\sigma^*$")
     if not len(loads):
-        nothing_in(axes, "no load at which three sizes\nhold nodes enough")
+        nothing_in(axes, "no load at which three sizes\nhold enough nodes")
         return handles[:1]
     axes.set_yscale("log")
     drawn = test["equal_pressure"].values[loads]
@@ -131,7 +138,7 @@ def _draw_slopes(axes, test):
     known = np.isfinite(slope)
     low, high = test["slope_low"].values[known], test["slope_high"].values[known]
     axes.vlines(pressure[known], low, high, color="k", lw=0.8)
-    axes.plot(pressure[known], slope[known], "ko", label="(b): found, all windows")
+    axes.plot(pressure[known], slope[known], "ko", label="(b): measured, all windows")
     beyond = pressure[test["beyond_study"].values.astype(bool)]
     if len(beyond):
         axes.axvspan(
@@ -253,61 +260,32 @@ def _table(test):
 
 
 def _caption(settings, test, where):
-    counts = ", ".join(str(n) for n in test["windows"].values)
     return (
-        f"The direct test of eq. 6 of {PAPER}, beside its Figs. 10b and 13 and in none of them: "
-        f"{settings['label']}, {where}. (a) Nominal pressure at which {counts} windows (from the "
-        "largest down) reach the sigma* of the whole window: equal sigma* is equal real mean "
-        "pressure, whatever Delta_sigma is. (b) Measured slope, and -(2 - Delta_sigma): "
-        f"{test.attrs['summary']}. {_why_words(test)} (c), (d) {_error_words(test)}"
+        f"{supplementary(settings['label'], where)} Direct test of eq. 6 on parts: (a) pressure at "
+        "the sigma* of the whole, (b) slopes over b, (c), (d) predictions of the whole. "
+        f"{_verdict_words(test)} {_slope_words(test)}"
     )
 
 
-def _why_words(test):
-    """What the slope comes from: how sigma* goes with the load, and the area with b."""
+def _verdict_words(test):
+    """At how many loads eq. 6 agrees with the slope measured, by each estimate of Delta_sigma."""
+    verdicts = test["verdict"].transpose("estimator", ...).values
+    loads = int(np.isfinite(test["slope"].values).sum())
+    words = ", ".join(
+        f"{int((row == 'agrees').sum())} {_BY[str(name)]}"
+        for name, row in zip(test["estimator"].values, verdicts, strict=True)
+    )
+    return f"Of {loads} loads eq. 6 agrees at {words}."
+
+
+def _slope_words(test):
+    """Slope measured under the smallest and the largest load."""
     known = np.flatnonzero(np.isfinite(test["slope"].values))
     if not len(known):
-        return "Small windows hold too few nodes in contact."
-    first, last = known[0], known[-1]
-    sensitivity = test["sensitivity"].values[known]
-    words = (
-        f"d log sigma*/d log sigma_0 is {short(np.nanmin(sensitivity))} to "
-        f"{short(np.nanmax(sensitivity))}: sigma* hardly tells sigma_0 where A_r ~ F"
-    )
-    values = [
-        estimate(*(float(test[f"slope{end}"][i]) for end in ("", "_low", "_high")))
-        for i in (first, last)
+        return "Parts hold too few nodes in contact."
+    ends = [
+        f"{estimate(*(float(test[f'slope{end}'][i]) for end in ('', '_low', '_high')))} at "
+        f"{short(test['nominal_pressure'][i])} MPa"
+        for i in (known[0], known[-1])
     ]
-    pressures = [short(test["nominal_pressure"][i]) for i in (first, last)]
-    return (
-        f"{words}. The slope is {values[0]} at {pressures[0]} MPa and {values[1]} at "
-        f"{pressures[1]} MPa."
-    )
-
-
-def _error_words(test):
-    rows = []
-    for quantity, words in (("closure", "closure"), ("area", "area"), ("strength", "strength")):
-        if f"{quantity}_error" not in test:
-            continue
-        errors = test[f"{quantity}_error"]
-        typical = {
-            str(p): float(np.nanmedian(np.abs(errors.sel(predictor=p))))
-            for p in errors["predictor"].values
-            if np.isfinite(errors.sel(predictor=p)).any()
-        }
-        if typical:
-            told = ", ".join(f"{_PLAIN[p]} {100 * v:.0f} %" for p, v in typical.items())
-            rows.append(f"{words}: {told}")
-    if not rows:
-        return "Nothing can be predicted."
-    return f"Median error of what small windows predict for the whole, {'; '.join(rows)}."
-
-
-_PLAIN = {
-    "power_law": "power law",
-    "eq6_area": "eq. 6 by A_r(s)",
-    "eq6_box": "eq. 6 by box counting",
-    "eq6_box_sizes": "eq. 6 by windows met",
-    "no_size_effect": "no size effect",
-}
+    return f"Slope: {', '.join(dict.fromkeys(ends))}."

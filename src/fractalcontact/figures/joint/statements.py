@@ -8,11 +8,16 @@ from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, group, label_in_l
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
 from ..kit.words import force_label, opening, place
 
+TITLE = "Statements of the paper, and whether they hold"
+SUBJECT = "specimen"
+NEEDS = ("statements",)
+ORDER = 210
+
 #: A sign for each verdict, so that the table can be read without its colours.
 SIGNS = {HOLDS: ("●", COLOURS[3]), PARTLY: ("◐", COLOURS[5])}
 SIGNS |= {FAILS: ("○", COLOURS[2]), UNKNOWN: ("–", "0.4")}
 
-#: Where the columns begin, as shares of the width, and how many letters they hold.
+#: Where the columns begin, as fractions of the width, and how many letters they hold.
 COLUMNS = {"figure": (0.01, 8), "claim": (0.065, 46), "verdict": (0.44, 24), "numbers": (0.575, 60)}
 
 
@@ -30,8 +35,8 @@ def draw(atlas, name):
     Drawing
     """
     label = settings_of(atlas, name)["label"]
-    found = group(atlas, "statements", name)
-    table = pd.DataFrame({key: found[key].values.astype(str) for key in COLUMNS})
+    judged = group(atlas, "statements", name)
+    table = pd.DataFrame({key: judged[key].values.astype(str) for key in COLUMNS})
     texts, lines = wrap_rows(table.to_dict("records"), COLUMNS)
     title = label_in_lines(label, width=WIDTH)
     top = 1.3 * title.count("\n")
@@ -41,27 +46,27 @@ def draw(atlas, name):
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_ylim(height / LINE_HEIGHT, 0)
     axes.text(0.5, 0.8, title, ha="center", va="top", fontsize=TITLE_SIZE)
-    heads = {"figure": "Fig.", "claim": "The paper says", "verdict": "Here", "numbers": "Because"}
+    heads = {"figure": "Fig.", "claim": "The paper states", "verdict": "Here", "numbers": "Reason"}
     places = draw_rows(axes, texts, lines, COLUMNS, heads, top + 2.6)
     for y, verdict in zip(places, table["verdict"], strict=True):
         sign, colour = SIGNS[verdict]
         axes.text(0.42, y, sign, va="top", color=colour, fontsize=8, family="DejaVu Sans")
-    return Drawing(figure, table, _caption(label, found, table))
+    return Drawing(figure, table, _caption(label, judged, table))
 
 
-def _caption(label, found, table):
+def _caption(label, judged, table):
     counts = table["verdict"].value_counts()
     summary = ", ".join(
         f"{counts[key]} {_noun(key, counts[key])}" for key in SIGNS if key in counts
     )
     return (
-        f"{opening('the statements', label, place(found.attrs['direction']))} Of {len(table)} "
-        f"statements {summary}. Judged by rules of our own, which the paper does not give, and "
-        f"where a load is needed at F = {force_label(found.attrs['force'])}."
+        f"{opening('the statements', label, place(judged.attrs['direction']))} Of {len(table)} "
+        f"statements {summary}. The rules that judge them are ours, for the paper gives none; "
+        f"where a load is needed, F = {force_label(judged.attrs['force'])}."
     )
 
 
 def _noun(verdict, count):
-    words = {HOLDS: "hold", PARTLY: "hold in part", FAILS: "do not hold", UNKNOWN: "cannot be told"}
+    words = {HOLDS: "hold", PARTLY: "hold in part", FAILS: "do not hold", UNKNOWN: "undetermined"}
     single = {HOLDS: "holds", PARTLY: "holds in part", FAILS: "does not hold"}
     return single.get(verdict, words[verdict]) if count == 1 else words[verdict]

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ...mechanics.strength import JRC_SAMPLING
+from ...mechanics.jrc import JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
     LINES,
@@ -21,7 +21,12 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.sizes import draw_bars, logarithmic, nothing_in, plain_decades
-from ..kit.words import PAPER, estimate, place, short
+from ..kit.words import estimate, opening, place, short
+
+TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
+SUBJECT = "joint"
+NEEDS = ("specimens", "strength")
+ORDER = 110
 
 
 def draw(atlas, name):
@@ -181,15 +186,14 @@ def _summary_table(strength):
 
 def _caption(settings, direction, strength, shown):
     return (
-        f"{settings['label']}, {place(direction)}: shear strength as sect. 5 of {PAPER} has it. "
-        "(a) Dilatancy angle between successive offsets, rigid and by pressure; right axis, with "
-        "the basic angle added. (b) Strength sigma_n tan(phi_b + i), the angle held between 0 and "
-        f"{LARGEST_FRICTION_ANGLE:g} degrees. (c) Its peak and residual value, with Barton's law. "
+        f"{opening('section 5', settings['label'], place(direction))} (a) Dilatancy angle i, "
+        "(b) strength sigma_n tan(phi_b + i), (c) peak and residual. "
         f"{_strength_words(strength, shown)} {_barton_words(strength)}"
     )
 
 
 def _strength_words(strength, shown):
+    """The residual angle, after the warning that peaks held at their bound are no result."""
     if not strength.sizes["interval"]:
         return "One offset alone: there is no angle."
     if not np.isfinite(float(strength["basic_friction_angle"])):
@@ -200,33 +204,24 @@ def _strength_words(strength, shown):
         )
     held = strength["held_high"].values[shown].astype(int)
     n = strength.sizes["interval"]
-    words = []
+    words = "No interval had to be held."
     if (held > 0).any():
-        words.append(
-            f"Nothing breaks in the model: {_counts(held)} of {n} intervals were held at "
-            f"{LARGEST_FRICTION_ANGLE:g} degrees, "
-            + (
-                "so that every peak is the bound and no result"
-                if (held > 0).all()
-                else "where the peak is the bound and no result"
-            )
+        words = (
+            f"{_counts(held)} of {n} intervals were held at {LARGEST_FRICTION_ANGLE:g} degrees: "
+            "peaks there are no result."
         )
-    else:
-        words.append("No interval had to be held")
     j = shown[-1]
-    ends = [float(strength[f"residual_angle{end}"][j]) for end in ("", "_low", "_high")]
-    count = int(strength["residual_n"][j])
-    if count > 1:
-        residual = f"{estimate(*ends)} degrees over {count} intervals"
-    elif count == 1:
-        residual = f"{short(ends[0])} degrees over one interval, whose scatter is not known"
-    else:
-        residual = "not known, no interval lies there"
     pressure = short(strength["nominal_pressure"][j])
-    words.append(
-        f"the dilatancy angle beyond half of the largest offset at {pressure} MPa is {residual}"
-    )
-    return "; ".join(words) + "."
+    return f"{words} Residual i at {pressure} MPa: {_residual_words(strength.isel(load=j))}."
+
+
+def _residual_words(strength):
+    """The dilatancy angle beyond half of the largest offset, under one load."""
+    ends = [float(strength[f"residual_angle{end}"]) for end in ("", "_low", "_high")]
+    count = int(strength["residual_n"])
+    if count > 1:
+        return f"{estimate(*ends)} degrees ({count} intervals)"
+    return f"{short(ends[0])} degrees (one interval)" if count else "none"
 
 
 def _counts(held):
@@ -235,22 +230,14 @@ def _counts(held):
 
 
 def _barton_words(strength):
+    """The computed peaks over those of Barton's law, with its roughness."""
     jrc = strength["jrc"].sel(sampling=JRC_SAMPLING)
     step = float(strength["step"].sel(sampling=JRC_SAMPLING))
-    fine = float(strength["jrc"].sel(sampling="0.508 mm"))
-    words = f"JRC is {short(jrc)} from Z2 over steps of {short(step)} mm"
-    if float(strength["step"].sel(sampling="0.508 mm")) != step:
-        words += f" ({short(fine)} from the step nearest to 0.508 mm)"
+    words = f"JRC {short(jrc)} ({short(step)} mm steps)"
     if float(strength["jrc_used"]) != float(jrc):
         words += f", {short(strength['jrc_used'])} used"
-    note = str(strength["jrc_note"].values)
-    if note:
-        words += f"; {note}"
     ratio = (strength["peak_strength"] / strength["barton_strength"]).values
     ratio = ratio[np.isfinite(ratio)]
     if not ratio.size:
-        return f"{words}; no Barton's law without a basic friction angle and a wall strength."
-    return (
-        f"{words}. The computed peaks, bounds included, are {short(ratio.min())} to "
-        f"{short(ratio.max())} times those of Barton's law, in which asperities break."
-    )
+        return f"{words}; no Barton's law without friction angle and wall strength."
+    return f"{words}: peaks {short(ratio.min())} to {short(ratio.max())} times Barton's."

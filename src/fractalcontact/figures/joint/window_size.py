@@ -19,7 +19,12 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
-from ..kit.words import PAPER, estimate, place, short
+from ..kit.words import estimate, opening, place, short
+
+TITLE = "Roughness (eq. 2) and closure (section 5) against the size of the window"
+SUBJECT = "specimen"
+NEEDS = ("windows",)
+ORDER = 90
 
 #: Offsets whose composite topography is shown in (a).
 _OFFSETS = 3
@@ -55,7 +60,7 @@ def draw(atlas, name):
         [_roughness_table(laws, shown), _closure_table(laws)],
         ignore_index=True,
     )
-    return Drawing(figure, table, _caption(settings, laws, mapped, flat))
+    return Drawing(figure, table, _caption(settings, laws, mapped))
 
 
 def _draw_roughness(axes, laws, shown):
@@ -165,46 +170,31 @@ def _closure_table(laws):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, laws, mapped, flat):
-    counts = ", ".join(str(n) for n in laws["windows"].values)
+def _caption(settings, laws, mapped):
     return (
-        f"{settings['label']}: eq. 2 and the size effect on closure of {PAPER}, sects. 3 and 5. "
-        "(a) Standard deviation of the heights in sub-windows of side b, each about its own mean "
-        f"plane; bars are 95 % intervals of the mean. {_hurst_words(laws, flat)} (b) Closure "
-        f"of the interface in sub-windows pressed on their own ({counts} of them, from the "
-        "largest down), their composite topography left as it lies in the whole window. "
-        f"{_closure_words(laws, mapped, flat)}"
+        f"{opening('eq. 2 and section 5', settings['label'])} (a) sigma_z of sub-windows of side b "
+        f"about their own planes; (b) their interface closure. {_hurst_words(laws)} "
+        f"{_closure_words(laws, mapped)}"
     )
 
 
-def _hurst_words(laws, flat):
+def _hurst_words(laws):
+    """H of the face, beside that expected of its dimension."""
     hurst = [float(laws[f"face_hurst{end}"]) for end in ("", "_low", "_high")]
     expected = [float(laws[f"expected_hurst{end}"]) for end in ("", "_low", "_high")]
     if not np.isfinite(hurst[0]):
         return "No fit of eq. 2: fewer than three sizes lie in its range."
     low, high = (short(laws[f"face_hurst_b_{end}"]) for end in ("min", "max"))
-    words = f"From {low} to {high} mm the face has H = {estimate(*hurst)}, "
-    if np.isfinite(expected[0]):
-        agree = hurst[1] <= expected[2] and expected[1] <= hurst[2]
-        verdict = "the intervals overlap" if agree else "the intervals do not overlap"
-        words += f"and Delta_g lets expect {estimate(*expected)}: {verdict}."
-    else:
-        words += "and there is no Delta_g to compare with."
-    if flat or not np.isfinite(laws["hurst"]).any():
-        return words
-    first, last = (float(laws["hurst"][i]) for i in (0, -1))
-    v = laws["offset"].values
-    return words + (
-        f" The composite topography has {short(first)} at v = {short(v[0])} mm and {short(last)} "
-        f"at v = {short(v[-1])} mm: faces slid by v still match in waves longer than v, and eq. 2 "
-        "is that of their difference only in windows smaller than that."
-        if first < last
-        else f" The composite topography has {short(first)} at v = {short(v[0])} mm and "
-        f"{short(last)} at v = {short(v[-1])} mm."
-    )
+    words = f"H = {estimate(*hurst)} ({low}–{high} mm)"
+    if not np.isfinite(expected[0]):
+        return f"{words}."
+    agree = hurst[1] <= expected[2] and expected[1] <= hurst[2]
+    verb = "agrees" if agree else "disagrees"
+    return f"{words} {verb} with 3 - Delta_g = {estimate(*expected)}."
 
 
-def _closure_words(laws, mapped, flat):
+def _closure_words(laws, mapped):
+    """Whether larger windows close more, as the paper has it."""
     exponent = laws["closure_exponent"]
     known = np.isfinite(exponent)
     if not known.any():
@@ -212,24 +202,11 @@ def _closure_words(laws, mapped, flat):
     larger = int((laws["closure_exponent_low"] > 0).sum())
     smaller = int((laws["closure_exponent_high"] < 0).sum())
     total = int(known.sum())
-    over = "loads" if flat else "offsets and loads"
-    here = exponent.values[mapped]
-    words = (
-        f"The paper says that larger samples close more: w_int grows with b beyond the interval in "
-        f"{larger} of {total} cases over the {over}"
-    )
-    words += f", and falls in {smaller}" if smaller else ""
-    verdict = (
-        "the claim holds"
-        if larger == total
-        else "the claim holds in part"
-        if larger
-        else "the claim does not hold"
-    )
-    return (
-        f"{words}: {verdict}. With the exponents shown, {_range(here)}, doubling b multiplies "
-        f"w_int by {_range(2**here)}; similarity (sect. 3) would need 2 and sigma_z ~ b."
-    )
+    words = f"w_int grows with b beyond its interval in {larger} of {total} cases"
+    words += f", falls in {smaller}" if smaller else ""
+    verdict = "holds" if larger == total else "holds in part" if larger else "does not hold"
+    here = _range(exponent.values[mapped])
+    return f"{words}, exponents in (b) {here}: the paper's claim {verdict}."
 
 
 def _range(values):

@@ -10,7 +10,7 @@ from ...domain.renormalisation import RESOLUTION
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
-from .words import force_label, interval, number, opening, place, short
+from .words import interval, opening, place, short
 
 
 @dataclass(frozen=True)
@@ -165,23 +165,22 @@ class Loading:
         )
 
     def fit_ranges(self, load=None):
-        """In words: what the estimates are fitted over, under one load, or the widest of all."""
+        """Words on what the estimates are fitted over, under one load, or the widest of all."""
         which = slice(None) if load is None else [load]
         scaling = self.scaling.isel(load=which)
         box = self.counts.isel(load=which)
         used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")
         spacing = scaling["spacing"].where(used)
         spans = (
-            ("A_r(s) over s", spacing, spacing),
-            ("box counts over r", box.fit_min, box.fit_max),
+            ("s", spacing, spacing),
+            ("r", box.fit_min, box.fit_max),
         )
         words = [
-            f"{what} = {short(low.min())} to {short(high.max())} mm"
+            f"{what} = {short(low.min())}–{short(high.max())} mm"
             for what, low, high in spans
             if np.isfinite(low).any()
         ]
-        widest = ", at most" if load is None else ""
-        return f"fitted{widest}: {' and '.join(words)}" if words else "no fits"
+        return f"fit: {', '.join(words)}" if words else "no fits"
 
     def domain(self, factor, load):
         """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""
@@ -201,7 +200,7 @@ class Loading:
 
 
 def trend(forces, value, low, high, *, rising):
-    """In words: whether a value rises, or falls, with the load as the paper claims.
+    """Words on whether a value rises, or falls, with the load as the paper claims.
 
     Parameters
     ----------
@@ -217,34 +216,24 @@ def trend(forces, value, low, high, *, rising):
     """
     known = np.flatnonzero(np.isfinite(value))
     if len(known) < 2:
-        return "this cannot be told, as fewer than two loads have a value"
+        return "undetermined (fewer than two loads)"
     first, last = known[0], known[-1]
-    steps = np.diff(np.asarray(value)[known]) * (1 if rising else -1)
-    ends = " to ".join(
-        f"{interval(value[i], low[i], high[i])} at {force_label(forces[i])}" for i in (first, last)
-    )
+    ends = " to ".join(interval(value[i], low[i], high[i]) for i in (first, last))
     up, down = low[last] > high[first], high[last] < low[first]
-    verdict = "this is not established, the intervals overlap"
+    verdict = "not established"
     if up or down:
-        verdict = "this holds" if up == rising else "this does not hold"
-    every = "every step" if (steps > 0).all() else f"{(steps > 0).sum()} of {len(steps)} steps"
-    return f"{verdict} ({ends}; {'up' if rising else 'down'} at {every})"
+        verdict = "holds" if up == rising else "does not hold"
+    return f"{ends} ({verdict})"
 
 
 def disagreement(scaling):
-    """In words: how far the two estimates of Delta_sigma are apart, under one load or several."""
+    """Words on how far the estimates of Delta_sigma are apart, under one load or several."""
     compared = scaling.where(np.isfinite(scaling["difference"]))
     difference = np.atleast_1d(compared["difference"].values)
     n = int(np.isfinite(difference).sum())
     if n == 0:
-        return "The two estimates cannot be compared, one of them is missing."
+        return "One estimate is missing."
     disagree = int(np.sum(compared["disagree"].values == 1))
     if difference.size == 1:
-        ends = (compared[f"difference{end}"].item() for end in ("", "_low", "_high"))
-        verdict = "they disagree" if disagree else "their intervals do not tell them apart"
-        return f"A_r(s) less box counting is {interval(*ends)}: {verdict}."
-    return (
-        f"A_r(s) less box counting is {number(np.nanmin(difference))} to "
-        f"{number(np.nanmax(difference))}; the two disagree, beyond their intervals, at {disagree} "
-        f"of the {n} loads where both exist."
-    )
+        return "They disagree." if disagree else "Their intervals overlap."
+    return f"They disagree at {disagree} of {n} loads."

@@ -4,6 +4,7 @@ import contextlib
 import gc
 import json
 import textwrap
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -85,8 +86,8 @@ def print_style():
 
 
 @contextlib.contextmanager
-def uncollected():
-    """No search for garbage meanwhile.
+def garbage_collection_paused() -> Iterator[None]:
+    """Garbage collection paused meanwhile.
 
     A figure is some 100 000 objects that live as long as it does: to go through them while it is
     drawn finds nothing and takes a tenth of the time.

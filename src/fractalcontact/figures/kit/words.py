@@ -4,7 +4,7 @@ import textwrap
 
 import numpy as np
 
-PAPER = "Borri-Brunetto, Carpinteri and Chiaia (1999)"
+PAPER = "Borri-Brunetto et al. (1999)"
 
 TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
 
@@ -12,9 +12,15 @@ TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
 _FORCE_UNITS = (("GN", 1e9), ("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
 
 
-def opening(figures, label, where=""):
+def opening(figures: str, label: str, where: str = "") -> str:
     """First words of a caption: "Fig. 2", a specimen's label, the place of its contact."""
     return f"After {figures} of {PAPER}: {', '.join(filter(None, (label, where)))}."
+
+
+def supplementary(*subject: str) -> str:
+    """First words of the caption of a figure that the paper does not have, and its subject."""
+    words = ", ".join(filter(None, subject))
+    return f"Supplementary figure: {words}." if words else "Supplementary figure."
 
 
 def place(direction, offset=None):

@@ -33,8 +33,11 @@ from ..kit.sizes import (
 )
 from ..kit.words import opening, place, short
 
-#: Joints that Bandis et al. (1981) sheared, mm.
-_MEASURED = (50.0, 400.0)
+TITLE = "Fig. 1b: peak shear strength against the size of the joint, computed"
+SUBJECT = "joint"
+NEEDS = ("windows",)
+ORDER = 10
+
 #: Sizes a comparison needs.
 _FEWEST_SIZES = 3
 
@@ -90,7 +93,7 @@ def _draw_strength(axes, laws, share):
     else:
         nothing_in(axes, NO_STRENGTH)
     if np.isfinite(laws["barton_strength"]).any():
-        axes.plot([], [], "k--", lw=0.8, label="Barton and Bandis' scale law")
+        axes.plot([], [], "k--", lw=0.8, label="Barton and Bandis (joints of 50 to 400 mm)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     letter(axes, "a", f"strength at $v$ = {share_words(laws, share)} of $b$")
 
@@ -167,82 +170,39 @@ def _table(laws):
 def _caption(settings, laws, share):
     where = place(str(laws["direction"].values))
     return (
-        f"{opening('Fig. 1b', settings['label'], where)} Computed, without laboratory points. "
-        f"(a) Shear strength of sub-windows at v = {share_words(laws, share)} of their side, mean "
-        "with its 95 % interval; open markers: most of them held at "
-        f"{LARGEST_FRICTION_ANGLE:g} degrees. (b) Slope of their dilatancy curve there, which "
-        f"nothing holds. {_similar_words(laws, share)} {_same_offset_words(laws)} "
-        f"{_barton_words(laws)}"
-    ).replace("  ", " ")
+        f"{opening('Fig. 1b', settings['label'], where)} (a) Computed shear strength and (b) slope "
+        f"of dilatancy of sub-windows at v = {share_words(laws, share)} of their side b, 95 % "
+        f"intervals. {_similar_words(laws, share)}{_limit_words(laws, share)}"
+    )
 
 
 def _similar_words(laws, share):
+    """Whether slope and strength fall with size, as the paper has it."""
     slope = laws["similar_slope_exponent"][share]
-    strength = laws["similar_strength_exponent"][share]
     known = np.isfinite(slope)
     if not known.any():
         return "Too few sizes can be compared at one v/b."
     falls = int((laws["similar_slope_exponent_high"][share] < 0).sum())
-    total = int(known.sum())
-    words = f"At one v/b the slope falls with size beyond its interval under {falls} of {total}"
     rises = int((laws["similar_slope_exponent_low"][share] > 0).sum())
-    words += f" pressures{f' (rises under {rises})' if rises else ''}"
+    total = int(known.sum())
+    words = f"The slope falls with b beyond its interval under {falls} of {total} pressures"
+    words += f" (rises under {rises})" if rises else ""
     decides = falls
-    if np.isfinite(strength).any():
+    if np.isfinite(laws["similar_strength_exponent"][share]).any():
         decides = int((laws["similar_strength_exponent_high"][share] < 0).sum())
-        words += f" and the strength under {decides}"
-    verdict = (
-        "as in the paper's Fig. 1b"
-        if decides == total
-        else "so the paper's Fig. 1b is met in part"
-        if decides
-        else "so the paper's Fig. 1b is met by the slope alone"
-        if falls
-        else "so the paper's Fig. 1b is not met"
-    )
-    words += f", {verdict}"
+        words += f", the strength under {decides}"
+    if decides == total:
+        return f"{words}, as in the paper."
+    if decides:
+        return f"{words}: the paper's fall holds in part."
+    if falls:
+        return f"{words}: the paper's fall holds for slope alone."
+    return f"{words}: the paper's fall does not hold."
+
+
+def _limit_words(laws, share):
+    """The one warning: strengths held at their bound, or mean slopes that no logarithm has."""
     if (laws["similar_held"].values[share] > 0).any():
-        words += "; what is held flattens (a)"
+        return f" Strengths held at {LARGEST_FRICTION_ANGLE:g} degrees flatten (a)."
     lost = int((laws["similar_slope"].values[share] <= 0).sum())
-    if lost:
-        words += f"; {lost} mean slopes that are not positive are left out of (b) and its fits"
-    return f"{words}."
-
-
-def _peak_words(laws):
-    held = float(np.nanmean(laws["held_share"]))
-    words = f"The peak over all offsets is held in {short(100 * held)} % of the sub-windows"
-    if held > MOSTLY:
-        return f"{words}, which says nothing of size"
-    low, high = (laws[f"strength_exponent_{end}"].values for end in ("low", "high"))
-    return (
-        f"{words}; it falls with size beyond its interval under {int((high < 0).sum())} of "
-        f"{len(low)} pressures and rises under {int((low > 0).sum())}"
-    )
-
-
-def _same_offset_words(laws):
-    words = [_peak_words(laws)] if np.isfinite(laws["held_share"]).any() else []
-    low, high = laws["shear_exponent_low"].values, laws["shear_exponent_high"].values
-    value = laws["shear_exponent"].values
-    # Strength that is held in all sizes is the same in all: no exponent.
-    told = np.isfinite(value) & (np.abs(value) > 1e-9)
-    if told.any():
-        rises, falls = int((low[told] > 0).sum()), int((high[told] < 0).sum())
-        words.append(
-            f"at one v, not one v/b, strength rises with size beyond its interval in {rises} of "
-            f"{int(told.sum())} cases and falls in {falls}"
-        )
-    return ("; ".join(words) + ".") if words else ""
-
-
-def _barton_words(laws):
-    if not np.isfinite(laws["barton_strength"]).any():
-        return "No Barton's law: it needs a basic friction angle and a wall strength."
-    low, high = (short(jrc) for jrc in np.sort(laws["barton_roughness"].values)[[0, -1]])
-    words = f"Barton and Bandis' law has JRC_n from {low} to {high} here"
-    first, last = _MEASURED
-    beyond = (laws["side"] < first) | (laws["side"] > last)
-    if beyond.any():
-        words += f"; it was measured on joints of {first:g} to {last:g} mm and is extrapolated"
-    return f"{words}."
+    return f" {lost} mean slopes that are not positive are left out." if lost else ""

@@ -10,13 +10,17 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 
 from ...roughness.dimension import dimension_table
-from ...surface.specimen import window_sides
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.words import interval, length_unit, opening, percent
 
+TITLE = "Fig. 2: shaded relief of the levelled faces, and the surface dimension"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "surface_dimension")
+ORDER = 20
+
 COLOUR_MAP = "cividis"
-#: Share of the heights beyond each end of the colours, so that a spike does not take them all.
+#: Fraction of the heights beyond each end of the colours, so that a spike does not take them all.
 CLIPPED = 0.002
 #: Heights are stretched for the light so that their rms slope becomes this; not in the colours.
 LIT_SLOPE = 0.7
@@ -58,7 +62,7 @@ def draw(atlas, name):
     handles = [outline, *([missing_patch()] if any(missing) else []), *mean]
     figure.legend(handles=handles, loc="outside lower left", ncols=3)
     headline(figure, label, below=_size_words(specimen, sides))
-    return Drawing(figure, _table(dimension), _caption(label, specimen, faces, sides, dimension))
+    return Drawing(figure, _table(dimension), _caption(label, specimen, faces, dimension))
 
 
 def draw_faces(figure, panels, specimen, faces, sides):
@@ -138,11 +142,11 @@ def _draw_dimensions(axes, dimension):
         return []
     errors = np.stack([values - low, high - values])[:, fitted]
     axes.errorbar(values[fitted], rows[fitted], xerr=errors, fmt="o", color=COLOURS[1], capsize=2)
-    found = dimension_table(dimension)
-    mean = axes.axvline(found["mean"], color=COLOURS[2], ls="--", lw=0.8)
+    estimates = dimension_table(dimension)
+    mean = axes.axvline(estimates["mean"], color=COLOURS[2], ls="--", lw=0.8)
     mean.set_label(
-        rf"mean $\Delta_g$ {found['mean']:.2f}, "
-        f"range {found['lowest']:.2f} to {found['highest']:.2f}"
+        rf"mean $\Delta_g$ {estimates['mean']:.2f}, "
+        f"range {estimates['lowest']:.2f} to {estimates['highest']:.2f}"
     )
     axes.grid(axis="x", color="0.9", lw=0.5)
     return [mean]
@@ -179,19 +183,12 @@ def _size_words(specimen, sides):
     )
 
 
-def _caption(label, specimen, faces, sides, dimension):
-    shape, window = specimen["lower"].shape, window_sides(specimen)
-    spacing = specimen.attrs["spacing_x"], specimen.attrs["spacing_y"]
-    ranges = {face: (float(specimen[face].min()), float(specimen[face].max())) for face in faces}
-    heights = "; ".join(
-        f"{face} face from {low:.3g} to {high:.3g} mm" for face, (low, high) in ranges.items()
-    )
-    absent = 1 - float(specimen["valid"].mean())
+def _caption(label, specimen, faces, dimension):
+    absent = percent(1 - float(specimen["valid"].mean()))
+    what = "levelled face" if len(faces) == 1 else "levelled faces"
     return (
-        f"{opening('Fig. 2', label)} Shaded relief about the mean plane, lit from the "
-        f"North-West: {shape[1]} x {shape[0]} cells of {spacing[0]:.4g} x {spacing[1]:.4g} mm, "
-        f"{sides[1]:.4g} x {sides[0]:.4g} mm (x, y), {percent(absent)} of them not measured; "
-        f"window {window[1]:.4g} x {window[0]:.4g} mm; {heights}. {_words(dimension)}"
+        f"{opening('Fig. 2', label)} Shaded relief of the {what}, {absent} not measured. "
+        f"{_words(dimension)}"
     )
 
 
@@ -204,27 +201,23 @@ def _words(dimension):
         dimension[key].values[known]
         for key in ("dimension_low", "dimension_high", "fit_min", "fit_max")
     )
-    agree = (
-        "their 95 % intervals have a value in common"
-        if low.max() <= high.min()
-        else "their 95 % intervals have no value in common: they do not measure the same"
-    )
-    found = dimension_table(dimension)
+    agree = "which overlap" if low.max() <= high.min() else "which have no value in common"
+    estimates = dimension_table(dimension)
     return (
-        f"Delta_g of the lower face by {found['n']} estimators is {found['lowest']:.2f} to "
-        f"{found['highest']:.2f}, mean {found['mean']:.2f} (dashed), fitted over {first.min():.3g} "
-        f"to {last.max():.3g} mm; {agree}. {_self_affine_words(found, low, high)} "
-        f"{_axes_words(dimension)}"
+        f"{estimates['n']} estimators, fitted over {first.min():.3g} to {last.max():.3g} mm, give "
+        f"the lower face Delta_g {estimates['lowest']:.2f} to {estimates['highest']:.2f}, mean "
+        f"{estimates['mean']:.2f}, {_self_affine_words(estimates, low, high)} their 95 % "
+        f"intervals, {agree}. {_axes_words(dimension)}"
     )
 
 
-def _self_affine_words(found, low, high):
+def _self_affine_words(estimates, low, high):
     """Whether the estimates and their intervals lie where a self-affine surface's must."""
-    if not (found["lowest"] > 2 and found["highest"] < 3):
-        return "Not all lie between 2 and 3: not every estimator shows a self-affine surface."
+    if not (estimates["lowest"] > 2 and estimates["highest"] < 3):
+        return "not all between 2 and 3, with"
     if (low > 2).all() and (high < 3).all():
-        return "All lie between 2 and 3 with their intervals, as a self-affine surface's must."
-    return "All lie between 2 and 3, as a self-affine surface's must, but not all their intervals."
+        return "all between 2 and 3, with"
+    return "all between 2 and 3, but not all"
 
 
 def _axes_words(dimension):
@@ -232,15 +225,9 @@ def _axes_words(dimension):
     along = [dimension[f"hurst_{axis}"].values for axis in "xy"]
     both = np.isfinite(along).all(axis=0)
     if not both.any():
-        return "No estimator could tell the axes apart."
-    mean_x, mean_y = (values[both].mean() for values in along)
+        return "No estimator separates the axes."
     apart = (dimension["hurst_x_low"] > dimension["hurst_y_high"]) | (
         dimension["hurst_y_low"] > dimension["hurst_x_high"]
     )
-    apart = int(apart.values[both].sum())
-    verdict = (
-        f"{apart} of {both.sum()} estimators tell them apart by their 95 % intervals"
-        if apart
-        else "no estimator tells them apart by its 95 % intervals"
-    )
-    return f"H of profiles is {mean_x:.2f} along x and {mean_y:.2f} along y (means): {verdict}."
+    separated = int(apart.values[both].sum())
+    return f"{separated} of {both.sum()} separate the axes by H."

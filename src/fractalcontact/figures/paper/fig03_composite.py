@@ -7,11 +7,16 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ...mechanics.joint import STEPS
+from ...mechanics.joint import DIRECTION_STEPS
 from ...surface.specimen import faces, window_sides, window_slices
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
 from ..kit.words import length_unit, opening, place
+
+TITLE = "Fig. 3: the joint slid to its largest offset, dilatancy and composite topography"
+SUBJECT = "joint"
+NEEDS = ("specimens", "joints")
+ORDER = 40
 
 _TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
 
@@ -71,12 +76,12 @@ class Slid:
     @property
     def slid(self):
         """How far (y, x) the upper block has slid, mm."""
-        return tuple(self.offset * step for step in STEPS[self.direction])
+        return tuple(self.offset * step for step in DIRECTION_STEPS[self.direction])
 
     @property
     def axis(self):
         """Axis along which it slides."""
-        return "y" if STEPS[self.direction][0] else "x"
+        return "y" if DIRECTION_STEPS[self.direction][0] else "x"
 
     def profiles(self):
         """Both faces along the line of sliding through the point of first touch.
@@ -230,17 +235,14 @@ def _draw_composite(figure, axes, slid):
 
 def _caption(label, slid):
     if np.isnan(slid.chance):
-        verdict = "the window is too small to tell that from chance"
+        verdict = "cannot be separated from chance in so small a window"
     elif slid.correlation <= slid.chance:
-        verdict = "no more than chance gives, as the paper says of its largest offset"
+        verdict = "is no more than chance gives, as the paper says"
     else:
-        verdict = "some correlation is left, unlike in the paper at its largest offset"
+        verdict = "shows some correlation left, unlike in the paper"
     return (
-        f"{opening('Fig. 3', label, place(slid.direction))} (a) Window before and after "
-        f"an offset v = {slid.offset:.3g} mm, the largest solved. (b) The faces along the line of "
-        f"sliding through the point of first touch, the upper one lifted by the rigid dilatancy "
-        f"delta_r = {slid.dilatancy:.3g} mm; heights are stretched. (c) Composite topography h "
-        f"over the window, its largest value touching first; standard deviation "
-        f"{slid.composite.std():.3g} mm. The heights of the two faces under the window correlate "
-        f"with r = {slid.correlation:.2f}: {verdict}."
+        f"{opening('Fig. 3', label, place(slid.direction))} (a) Window before and after the "
+        f"largest v solved, {slid.offset:.3g} mm; (b) profile through the first touch, lifted by "
+        f"delta_r = {slid.dilatancy:.3g} mm; (c) composite topography, standard deviation "
+        f"{slid.composite.std():.3g} mm. The faces' correlation, {slid.correlation:.2f}, {verdict}."
     )

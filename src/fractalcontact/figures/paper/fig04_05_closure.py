@@ -5,7 +5,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ...core.fitting import fit_line
-from ...mechanics.area import FEWEST_NODES
 from ...surface.specimen import nominal_area
 from ..kit.drawing import (
     LINES,
@@ -30,15 +29,19 @@ from ..kit.words import (
     percent,
     place,
     short,
-    slope_text,
 )
+
+TITLE = "Figs. 4 and 5: closure curves with their hyperbolas, and real contact area against force"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "closure", "area")
+ORDER = 50
 
 CURVES = 5
 
 #: An exponent this near to 1 is what a plot shows as "nearly linear", the paper's words.
 NEARLY = 0.1
 
-#: An asymptote beyond this many times the largest closure is told, not drawn.
+#: An asymptote beyond this many times the largest closure is stated, not drawn.
 FARTHEST_ASYMPTOTE = 1.5
 
 
@@ -194,78 +197,52 @@ def _table(curves, drawn, laws):
 
 
 def _caption(label, direction, curves, laws, drawn):
-    ends = (force_label(curves.attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
-    where = f"{place(direction)}, at the finest resolution"
-    sentences = [
-        f"{opening('Figs. 4 and 5', label, where)} "
-        f"(a) Force against interface closure; lines are hyperbolas fitted from "
-        f"{' to '.join(ends)}, dotted their asymptotes w_m with 95 % intervals. (b) Real contact "
-        f"area against force and power laws fitted to the domains of {FEWEST_NODES} nodes or more "
-        f"(filled).",
-        _hyperbola_words(curves.isel(offset=drawn)),
-        _linearity_words(laws.isel(offset=drawn)),
-    ]
+    first, last = (force_label(curves.attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
+    words = [_hyperbola_words(curves.isel(offset=drawn)), _linearity_words(laws.isel(offset=drawn))]
     if direction != "none":
-        sentences.append(_compliance_words(curves))
-    return " ".join(sentences)
+        words.append(_compliance_words(curves))
+    return (
+        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Closure, hyperbolas fitted from "
+        f"{first} to {last}; (b) contact area, power laws. {'. '.join(words)}."
+    )
 
 
 def _hyperbola_words(curves):
+    """How well the hyperbolas of the paper fit."""
     fitted = np.isfinite(curves["hyperbola_w_m"].values)
     if not fitted.any():
-        return f"No hyperbola could be fitted ({curves['hyperbola_reason'].values[0]})."
+        return f"No hyperbola could be fitted ({curves['hyperbola_reason'].values[0]})"
     largest = curves["interface_closure"].max("load")
-    beyond, clearly = (
-        int((largest > curves[f"hyperbola_w_m{end}"]).values[fitted].sum()) for end in ("", "_high")
-    )
+    beyond = int((largest > curves["hyperbola_w_m"]).values[fitted].sum())
     misfit = percent(curves["hyperbola_misfit"].max())
-    words = f"The hyperbolas miss the closures by up to {misfit} of the largest (rms)"
-    if beyond:
-        return (
-            f"{words}, and {beyond} of {fitted.sum()} computed curves pass beyond their own "
-            f"asymptote ({clearly} of them beyond its interval), which is then no complete closure."
-        )
-    return f"{words}; no computed curve passes its asymptote."
+    return f"{beyond} of {fitted.sum()} curves pass their asymptote (rms misfit within {misfit})"
 
 
 def _linearity_words(laws):
+    """Whether the area is nearly proportional to the force, as the paper has it."""
     known = laws.isel(offset=np.isfinite(laws["exponent"].values))
     if not known.sizes["offset"]:
-        return "Too few domains are large enough to tell whether A_r grows as F."
+        return "Too few domains are large enough for a power law"
     slopes = known["exponent"].values
-    low, high = known["exponent_low"].values, known["exponent_high"].values
-    holding = int(((low <= 1) & (high >= 1)).sum())
-    verdict = (
-        "nearly linear, as the paper says"
-        if (abs(slopes - 1) <= NEARLY).all()
-        else f"not all within {NEARLY:g} of 1, where the paper has a nearly linear law"
-    )
+    verdict = "near" if (abs(slopes - 1) <= NEARLY).all() else "not all near"
     if len(slopes) == 1:
-        held = "includes" if holding else "leaves out"
-        power = _exponent(known.isel(offset=0))
-        return f"A_r grows as F to the power {power}: {verdict}; its interval {held} 1."
-    return (
-        f"A_r grows as F to powers from {min(slopes):.3g} to {max(slopes):.3g}: "
-        f"{verdict}; the intervals "
-        f"of {holding} of {len(slopes)} include 1."
-    )
+        verdict = verdict.replace("all ", "")
+        return f"A_r ~ F^m, m = {_exponent(known.isel(offset=0))}, {verdict} the paper's 1"
+    return f"A_r ~ F^m, m = {min(slopes):.3g} to {max(slopes):.3g}, {verdict} the paper's 1"
 
 
 def _compliance_words(curves):
     """Whether the joint closes more, under the largest load, the farther it has slid."""
     slid = curves.isel(load=-1, offset=curves["offset"].values > 0)
     line = fit_line(np.log(slid["offset"].values), slid["interface_closure"].values)
-    load = f"F = {force_label(float(curves['load'][-1]))}"
+    load = force_label(float(curves["load"][-1]))
     if not np.isfinite(line.slope):
-        return f"Too few offsets to tell how closure under {load} changes with v."
-    closures = slid["interface_closure"].values
-    trend = "rises" if line.slope_low > 0 else "falls" if line.slope_high < 0 else None
-    words = (
-        f"Over all {line.n} offsets the closure under {load} changes by "
-        f"{slope_text(line, 'mm')} for each e-fold of v"
+        return f"Too few offsets for a trend of the closure at {load}"
+    trend = (
+        "rises with v, as in the paper"
+        if line.slope_low > 0
+        else "falls with v, unlike in the paper"
+        if line.slope_high < 0
+        else "has no trend with v (paper: rises)"
     )
-    if trend is None:
-        return f"{words}: no trend beyond its interval, where the paper has it rise."
-    as_paper = "as in the paper" if trend == "rises" else "unlike the paper's"
-    peak = slid["offset"].values[closures.argmax()]
-    return f"{words}: it {trend}, {as_paper}, with its largest value at v = {peak:.3g} mm."
+    return f"Closure at {load} {trend}"

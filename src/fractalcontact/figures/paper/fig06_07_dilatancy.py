@@ -26,6 +26,11 @@ from ..kit.drawing import (
 from ..kit.maps import HALO, draw_domain
 from ..kit.words import TOWARDS, force_label, opening, percent, place, short, slope_text
 
+TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
+SUBJECT = "joint"
+NEEDS = ("specimens", "dilatancy", "closure", "contact")
+ORDER = 100
+
 DOMAINS, COLUMNS = 6, 3
 #: (b) shows the offsets up to this part of the largest, and at least so many, apart from the rest.
 INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
@@ -212,50 +217,38 @@ def _table(dilatancy, direction, shown, share):
 
 def _caption(label, direction, force, share, plateaus):
     return (
-        f"{opening('Figs. 6 and 7', label)} (a) Rigid dilatancy, with straight lines over "
-        f"the second half of the offsets. (b) Elastic dilatancy, {place(direction)}; letters stand "
-        f"at F = {force_label(force)}. (c) Contact domains there. {_plateau_words(plateaus)} "
-        f"{_area_words(share, force)}"
+        f"{opening('Figs. 6 and 7', label)} (a) Rigid and (b) elastic dilatancy, the latter "
+        f"{place(direction)}; (c) contact domains at F = {force_label(force)}. "
+        f"{_plateau_words(plateaus)} {_area_words(share)}"
     )
 
 
 def _plateau_words(plateaus):
-    fitted = {d: fit for d, fit in plateaus.items() if np.isfinite(fit[0].slope)}
-    if not fitted:
-        return "Too few offsets to tell whether there is a plateau."
-    parts = [
-        f"{TOWARDS[direction]} {slope_text(line)}, {percent(change, '+')} of the mean"
-        for direction, (line, change) in fitted.items()
-    ]
-    level = sum(line.slope_low <= 0 <= line.slope_high for line, _ in fitted.values())
-    flat = [TOWARDS[d] for d, (_, change) in fitted.items() if abs(change) <= NEARLY_FLAT]
-    rising = [TOWARDS[d] for d, (_, change) in fitted.items() if change > NEARLY_FLAT]
-    falling = [TOWARDS[d] for d, (_, change) in fitted.items() if change < -NEARLY_FLAT]
-    words = [f"{len(flat)} of {len(fitted)} directions stay within {100 * NEARLY_FLAT:g} %"]
-    words += [f"it keeps rising towards {' and '.join(rising)}"] if rising else []
-    words += [f"it falls towards {' and '.join(falling)}"] if falling else []
-    return (
-        f"Slopes there in mm/mm, and the change they make: {'; '.join(parts)}. By that measure a "
-        f"plateau: {', '.join(words)} (the paper: all four for its rock, two of four for its "
-        f"concrete). {level} of the {len(fitted)} intervals include zero; they take neighbouring "
-        "offsets as independent, which they are not, and are too narrow."
-    )
+    """Which directions have a plateau over the second half of the offsets."""
+    changes = {d: change for d, (line, change) in plateaus.items() if np.isfinite(line.slope)}
+    if not changes:
+        return "Too few offsets to decide whether there is a plateau."
+    flat = sum(abs(change) <= NEARLY_FLAT for change in changes.values())
+    rising = [TOWARDS[d] for d, change in changes.items() if change > NEARLY_FLAT]
+    falling = [TOWARDS[d] for d, change in changes.items() if change < -NEARLY_FLAT]
+    words = f"{flat} of {len(changes)} directions have a plateau over the second half of v"
+    words += f" (rising: {', '.join(rising)})" if rising else ""
+    words += f" (falling: {', '.join(falling)})" if falling else ""
+    return f"{words}; paper: four (rock), two (concrete)."
 
 
-def _area_words(share, force):
-    slid = share["offset"].values > 0
-    area = share.values[slid]
-    line = fit_line(np.log(share["offset"].values[slid]), np.log(area))
+def _area_words(share):
+    """Whether the contact area falls as the joint slides, as the paper has it."""
+    v = share["offset"].values
+    slid = v > 0
+    line = fit_line(np.log(v[slid]), np.log(share.values[slid]))
     if not np.isfinite(line.slope):
-        return "Too few offsets to tell whether the contact area falls with v."
+        return "Too few offsets for a trend of the contact area."
     verdict = (
-        "it falls, as in the paper"
+        "falls, as in the paper"
         if line.slope_high < 0
-        else "it rises, unlike the paper's"
+        else "rises, unlike in the paper"
         if line.slope_low > 0
-        else "no trend beyond the interval, where the paper has it fall"
+        else "no trend (paper: falls)"
     )
-    return (
-        f"At F = {force_label(force)} A_r goes as v to the power {slope_text(line)} over "
-        f"{line.n} offsets from {percent(area[0])} to {percent(area[-1])}: {verdict}."
-    )
+    return f"A_r ~ v^e, e = {slope_text(line)}: {verdict}."

@@ -6,10 +6,15 @@ from matplotlib.figure import Figure
 
 from ...core.fitting import fit_line
 from ...domain.box_dimension import local_slopes, spans
-from ..kit.domains import Loading, disagreement
+from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
 from ..kit.maps import draw_domain
 from ..kit.words import force_label, interval, short
+
+TITLE = "Fig. 9: box counting of a contact domain"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "contact", "domains", "scaling")
+ORDER = 140
 
 
 def draw(atlas, name):
@@ -68,7 +73,7 @@ def _table(counts):
 
 def _draw_counts(axes, table, estimate, i):
     r, n, used = (table[key] for key in ("box_side_mm", "box_count", "used"))
-    axes.loglog(r[~used], n[~used], "o", mfc="white", mec=COLOURS[0], label="left out")
+    axes.loglog(r[~used], n[~used], "o", mfc="white", mec=COLOURS[0], label="not used")
     axes.loglog(r[used], n[used], "o", color=COLOURS[0], label="used")
     axes.loglog(r, table["fitted_count"], color=COLOURS[2], label=estimate.entry(i), zorder=1)
     # Guides go through the point that all lines share best: the largest box, where N is smallest.
@@ -77,7 +82,7 @@ def _draw_counts(axes, table, estimate, i):
         guide = n_last * (r / r_last) ** -slope
         axes.loglog(r, guide, style, color="0.6", lw=0.8, label=f"slope $-${slope}", zorder=0)
     axes.set_ylim(0.7, n.max() ** 1.1 * 2)
-    axes.set(xlabel="box side $r$ (mm)", ylabel="boxes that meet it, $N(r)$ (1)")
+    axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
     label_short_span(axes.xaxis)
     letter(axes, "b", "box counts")
 
@@ -101,24 +106,24 @@ def _draw_slopes(axes, table, counts):
 
 
 def _caption(loading, i, counts, table):
-    start = f"{loading.opening('Fig. 9')} (a) The contact domain under F = "
-    start += f"{force_label(loading.forces[i])}, s = {short(loading.finest_spacing)} mm. "
+    start = (
+        f"{loading.opening('Fig. 9')} (a) Contact domain, F = {force_label(loading.forces[i])}; "
+        "(b) box counts, "
+    )
     reason = str(counts["reason"].item())
     if reason:
-        return f"{start}(b) Box counts; no dimension: {reason}. (c) Their local slopes."
+        return f"{start}no dimension: {reason}; (c) local slopes."
     return (
-        f"{start}(b) Box counts N(r), filled where used, with a line of the slope that the counts "
-        f"averaged over all origins have from r = {short(counts['fit_min'])} to "
-        f"{short(counts['fit_max'])} mm: Delta_sigma = {loading.estimates[1].text(i)}, the "
-        "interval spanning parts of the window and of the range; (c) slopes over a doubling of r. "
-        f"{_verdict(counts, table)} {disagreement(loading.scaling.isel(load=i))}"
+        f"{start}line fitted to the filled ones; (c) local slopes. Delta_sigma = "
+        f"{loading.estimates[1].text(i)} (r = {short(counts['fit_min'])}–"
+        f"{short(counts['fit_max'])} mm) {_verdict(counts, table)}"
     )
 
 
 def _verdict(counts, table):
     """Whether the counts are those of one lacunar fractal: below 2, one slope throughout."""
     high = counts["delta_sigma_high"].item()
-    lacunar = "is below 2, as in the paper" if high < 2 else "cannot be told from 2"
+    lacunar = "is below 2, as in the paper" if high < 2 else "cannot be separated from 2"
     used = table[table["used"]]
     half = len(used) // 2
     parts = [
@@ -127,10 +132,7 @@ def _verdict(counts, table):
     ]
     fine, coarse = (interval(-p.slope, -p.slope_high, -p.slope_low) for p in parts)
     if not all(np.isfinite(p.slope) for p in parts):
-        return f"Delta_sigma {lacunar}; too few sizes to tell whether one power law holds."
+        return f"{lacunar}; too few sizes to test for one power law."
     apart = parts[0].slope_low > parts[1].slope_high or parts[1].slope_low > parts[0].slope_high
-    law = "no single power law fits both" if apart else "one power law fits both"
-    return (
-        f"Delta_sigma {lacunar}; the smaller half of the boxes used gives {fine}, the larger "
-        f"{coarse} (regression alone): {law}."
-    )
+    law = "no single power law" if apart else "one power law"
+    return f"{lacunar}; smaller boxes give {fine}, larger {coarse} (regression alone): {law}."

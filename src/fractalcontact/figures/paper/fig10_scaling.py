@@ -6,10 +6,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from ...domain.renormalisation import RESOLUTION
-from ..kit.domains import Loading, disagreement
+from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, entries, headline, legends_below, letter
 from ..kit.words import force_label, number, short
 from ._size_effect import draw_axes, size_effect
+
+TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "contact", "domains", "scaling")
+ORDER = 160
 
 #: Loads in panel (a).
 _MOST_LOADS = 5
@@ -108,38 +113,29 @@ def _draw_pressures(axes, loading, i, table):
 def _caption(loading, i, pressure):
     by_area, by_box = loading.estimates
     return (
-        f"{loading.opening('Fig. 10')} (a) Real contact area at each resolution, filled where used "
-        f"for A_r ~ s^(2 - Delta_sigma): {_verdict(loading, i)}. (b) Extrapolation by eq. 6 to "
-        f"other sides b at that load, Delta_sigma from A_r(s) (solid): {by_area.text(i)}, and from "
-        f"box counting (dashed): {by_box.text(i)} ({loading.fit_ranges(i)}; bands: 95 % "
-        f"intervals). {disagreement(loading.scaling.isel(load=i))} {_own_size(loading, pressure)}"
+        f"{loading.opening('Fig. 10')} (a) A_r(s); (b) eq. 6 extrapolated, "
+        f"F = {force_label(loading.forces[i])}. {_verdict(loading, i)} {by_area.text(i)} by "
+        f"A_r(s), {by_box.text(i)} by box counting ({loading.fit_ranges(i)}). "
+        f"{_own_size(pressure, loading.side)}"
     )
 
 
 def _verdict(loading, i):
     """Whether the area falls with refinement as a power law, in words."""
     by_area = loading.estimates[0]
-    start = f"under F = {force_label(loading.forces[i])}"
     if by_area.reason[i]:
-        return f"{start} there is {by_area.reason[i]}"
+        return "The paper's power law is undetermined: Delta_sigma"
     r2 = number(loading.scaling["r2"].values[i], 3)
     if by_area.high[i] < 2:
-        return f"{start}, as in the paper, A_r falls with refinement as a power law (r2 = {r2})"
-    return (
-        f"{start}, unlike in the paper, a fall with refinement is not established, as the interval "
-        f"of Delta_sigma reaches 2 (r2 = {r2})"
-    )
+        return f"As in the paper A_r is a power law (r2 = {r2}): Delta_sigma"
+    return f"The paper's fall of A_r is not established (r2 = {r2}): Delta_sigma"
 
 
-def _own_size(loading, pressure):
-    """How far eq. 6 is from the specimen it was fitted to."""
-    star = f"the specimen (star, b = {short(loading.side)} mm)"
-    own = pressure[np.isclose(pressure["b_mm"], loading.side)].dropna(subset="sigma_0_MPa")
+def _own_size(pressure, side):
+    """Pressure that eq. 6 gives the specimen it was fitted to, over that applied."""
+    own = pressure[np.isclose(pressure["b_mm"], side)].dropna(subset="sigma_0_MPa")
     if own.empty:
-        return f"There is no extrapolation to compare with {star}."
+        return "Nothing to extrapolate."
     ratio = own["sigma_0_MPa"] / own["specimen_sigma_0_MPa"]
-    ratios = (f"{r:.2g} ({e})" for r, e in zip(ratio, own["estimator"], strict=True))
-    return (
-        f"On {star} it gives {' and '.join(ratios)} times the pressure applied, which it meets "
-        "only if H_D = b^Delta_sigma."
-    )
+    ratios = " and ".join(f"{r:.2g}" for r in ratio)
+    return f"Eq. 6 gives {ratios} times the specimen's pressure."

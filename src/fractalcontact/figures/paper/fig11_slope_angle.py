@@ -31,6 +31,11 @@ from ..kit.sizes import (
 )
 from ..kit.words import opening, place, short
 
+TITLE = "Fig. 11: limit slope angle against the size of the joint, computed"
+SUBJECT = "joint"
+NEEDS = ("windows",)
+ORDER = 180
+
 #: Delta_sigma that later work of the paper's school takes from Bandis' shear tests.
 QUOTED_DELTA = 1.66
 
@@ -169,38 +174,29 @@ def _caption(settings, laws, share, drawn):
         return (
             f"{first} No angle can be given: it needs a basic friction angle and fitting offsets."
         )
-    counts = ", ".join(str(n) for n in laws["windows"].values)
     return (
-        f"{first} Computed, not the paper's tilt tests. (a) Limit slope angle atan(tau/sigma_n) of "
-        f"{counts} sub-windows (from the largest down) at v = {share_words(laws, share)} of their "
-        "side, mean with its 95 % interval. (b) Their strength over that of the whole window; the "
-        f"dotted line has the exponent -(2 - {QUOTED_DELTA:g}) that later work of the same school "
-        "quotes for Bandis' shear tests on joints of 50 to 400 mm, and is no result of this model. "
+        f"{first} (a) Computed limit slope angle and (b) relative strength of sub-windows at "
+        f"v = {share_words(laws, share)} of their side b, 95 % intervals. "
         f"{_verdict(laws, share)}"
     )
 
 
 def _verdict(laws, share):
+    """Whether the strength, and so the angle, falls with size as the paper has it."""
     value, low, high = (
         laws[f"similar_strength_exponent{end}"].values[share] for end in ("", "_low", "_high")
     )
     # What is held in all sizes is the same in all: no exponent.
-    told = np.isfinite(low) & (np.abs(value) > 1e-9)
-    if not told.any():
+    decided = np.isfinite(low) & (np.abs(value) > 1e-9)
+    if not decided.any():
         return "No exponent: too few sizes, or all of them held."
-    total, falls = int(told.sum()), int((high[told] < 0).sum())
-    rises, quoted = int((low[told] > 0).sum()), QUOTED_DELTA - 2
-    within = int(((low <= quoted) & (quoted <= high))[told].sum())
-    verdict = (
-        "the paper's fall of the angle with b holds"
-        if falls == total
-        else "the paper's fall of the angle with b holds in part"
-        if falls
-        else "the paper's fall of the angle with b is not established"
-    )
-    words = f"The strength falls with b beyond its interval under {falls} of {total} pressures"
+    total, falls = int(decided.sum()), int((high[decided] < 0).sum())
+    rises, quoted = int((low[decided] > 0).sum()), QUOTED_DELTA - 2
+    within = int(((low <= quoted) & (quoted <= high))[decided].sum())
+    verdict = "holds" if falls == total else "holds in part" if falls else "is not established"
+    words = f"Strength falls with b beyond its interval under {falls} of {total} pressures"
     words += f" and rises under {rises}" if rises else ""
-    words += f": {verdict}; the quoted exponent lies in {within} of the intervals."
-    if (laws["similar_held"].values[share] > 0).any():
-        words += " Angles held at their limit flatten the curves."
-    return words
+    return (
+        f"{words}: the paper's fall {verdict}. Dotted: -(2 - {QUOTED_DELTA:g}) of later work of "
+        f"the same school, within {within} intervals."
+    )

@@ -7,7 +7,12 @@ from matplotlib.figure import Figure
 from ..kit.domains import Loading, disagreement, trend
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
 from ..kit.maps import draw_domain
-from ..kit.words import force_label, interval, percent, short, wrapped
+from ..kit.words import force_label, percent, wrapped
+
+TITLE = "Fig. 12: contact domains and their dimension under growing load"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "contact", "domains", "scaling", "contact_maps")
+ORDER = 190
 
 #: Contact domains drawn.
 _MOST_MAPS = 6
@@ -50,7 +55,7 @@ def draw(atlas, name):
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
     headline(figure, *loading.title)
     table = pd.concat([_table(loading, finest), *_measured_rows(measured, nominal)])
-    caption = f"{_caption(loading, shown)}{_measured_words(measured)}"
+    caption = f"{_caption(loading)}{_measured_words(measured)}"
     return Drawing(figure, table.reset_index(drop=True), caption)
 
 
@@ -81,11 +86,11 @@ def _measured_rows(measured, nominal):
 
 def _draw_measured(axes, measured, nominal):
     """Measured domains at the force that gives the window their nominal pressure."""
-    for n, found in enumerate(measured.values()):
-        value, low, high = (float(found[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
-        pressure = float(found["nominal_pressure"])
+    for n, one in enumerate(measured.values()):
+        value, low, high = (float(one[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
+        pressure = float(one["nominal_pressure"])
         style = {"color": colour_of(n + 3), "marker": MARKERS[(n + 3) % len(MARKERS)]}
-        label = f"measured: {found.attrs['label']}"
+        label = f"measured: {one.attrs['label']}"
         if np.isfinite(pressure):
             reach = [[max(value - low, 0)], [max(high - value, 0)]]
             axes.errorbar(
@@ -99,15 +104,13 @@ def _draw_measured(axes, measured, nominal):
 
 
 def _measured_words(measured):
-    words = [
-        f"{found.attrs['label']} ({percent(found['area_share'])} in contact): "
-        + (
-            found["reason"].item()
-            or interval(*(float(found[f"delta_sigma{end}"]) for end in ("", "_low", "_high")))
-        )
-        for found in measured.values()
-    ]
-    return f" Measured domains, by box counting: {'; '.join(words)}." if words else ""
+    """Range of Delta_sigma by box counting of the measured domains."""
+    values = [float(one["delta_sigma"]) for one in measured.values()]
+    known = [value for value in values if np.isfinite(value)]
+    if not known:
+        return f" Measured maps: {len(values)}, without a dimension." if values else ""
+    ends = dict.fromkeys(f"{end:.2f}" for end in (min(known), max(known)))
+    return f" Measured maps: {' to '.join(ends)} by box counting."
 
 
 def _table(loading, area):
@@ -158,28 +161,13 @@ def _draw_dimensions(axes, loading):
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
 
 
-def _caption(loading, shown):
-    verdicts = "; ".join(
-        f"by {estimate.label} "
-        + trend(loading.forces, estimate.value, estimate.low, estimate.high, rising=True)
-        for estimate in loading.estimates
+def _caption(loading):
+    verdicts = ", ".join(
+        f"{trend(loading.forces, e.value, e.low, e.high, rising=True)} by {e.label}"
+        for e in loading.estimates
     )
     return (
-        f"{loading.opening('Fig. 12')} Contact domains at s = {short(loading.finest_spacing)} mm "
-        f"under {len(shown)} loads (rings: nodes too few to be seen), and Delta_sigma with 95 % "
-        f"intervals, which the axis may cut ({loading.fit_ranges()}). The paper has Delta_sigma "
-        f"rise with F from 0: {verdicts}. {disagreement(loading.scaling)}{_missing(loading)}"
+        f"{loading.opening('Fig. 12')} Contact domains and Delta_sigma under rising load "
+        f"({loading.fit_ranges()}). The paper's rise with F: {verdicts}. "
+        f"{disagreement(loading.scaling)}"
     )
-
-
-def _missing(loading):
-    """Loads without an estimate; the table has the reasons."""
-    missing = [
-        f"by {estimate.label} at "
-        + ", ".join(
-            force_label(loading.forces[i]) for i, reason in enumerate(estimate.reason) if reason
-        )
-        for estimate in loading.estimates
-        if any(estimate.reason)
-    ]
-    return f" None {' and '.join(missing)}, for want of points to fit." if missing else ""

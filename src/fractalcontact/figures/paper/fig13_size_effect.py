@@ -4,10 +4,15 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ..kit.domains import Loading, disagreement, trend
+from ..kit.domains import Loading, trend
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, heading, headline, legends_below
-from ..kit.words import force_label, interval, short
+from ..kit.words import force_label, interval
 from ._size_effect import draw_axes, size_effect
+
+TITLE = "Fig. 13: eq. 6 extrapolated to other sizes, load by load"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "contact", "domains", "scaling")
+ORDER = 200
 
 #: Loads drawn.
 _MOST_LOADS = 6
@@ -64,22 +69,12 @@ def _slope(estimate):
 
 
 def _caption(loading):
-    verdicts = "; ".join(
-        f"by {estimate.label} "
-        + trend(
-            loading.forces,
-            2 - estimate.value,
-            2 - estimate.high,
-            2 - estimate.low,
-            rising=False,
-        )
-        for estimate in loading.estimates
+    verdicts = ", ".join(
+        f"{trend(loading.forces, 2 - e.value, 2 - e.high, 2 - e.low, rising=False)} by {e.label} "
+        f"({line})"
+        for e, line in zip(loading.estimates, ("solid", "dashed"), strict=True)
     )
     return (
-        f"{loading.opening('Fig. 13')} Extrapolation of eq. 6, not a measurement: nominal pressure "
-        "that brings about the sigma* of each load on a joint of side b, with Delta_sigma and "
-        f"sigma* from A_r(s) (solid) and from box counting (dashed), {loading.fit_ranges()}. "
-        f"Markers are the pressures applied to the specimen (b = {short(loading.side)} mm), which "
-        "eq. 6 meets only where H_D = b^Delta_sigma. The paper has the slope's magnitude "
-        f"2 - Delta_sigma fall as F rises: {verdicts}. {disagreement(loading.scaling)}"
+        f"{loading.opening('Fig. 13')} Eq. 6 extrapolated, not measured ({loading.fit_ranges()}). "
+        f"The paper's fall of 2 - Delta_sigma with F: {verdicts}."
     )

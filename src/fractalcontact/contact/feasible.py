@@ -1,0 +1,112 @@
+"""Feasible iterates: pressures between their bounds that carry the load, first and last ones."""
+
+import numpy as np
+
+from ..core.kernel_cache import njit
+from .kkt import Iterate, Problem, Solution, kkt_residual
+from .projected_cg import CLIPPING_PASSES, Operator
+
+# A total this close to F is F.
+FORCE_ROUNDING = 1e-12
+
+
+def first_iterate(
+    problem: Problem, operator: Operator, pressure: np.ndarray, displacement: np.ndarray | None
+) -> Iterate:
+    """A start made to carry the load, with its displacement and its closure.
+
+    Parameters
+    ----------
+    problem : Problem
+    operator : Operator
+    pressure : (n,) ndarray
+        May violate the bounds. It may become part of the iterate, and so may the displacement.
+    displacement : (n,) ndarray or None
+        K of it, where known.
+    """
+    if problem.by_force:
+        pressure, displacement = _scaled_to_force(problem, operator, pressure, displacement)
+    if displacement is None:
+        displacement = operator(pressure.astype(np.float32)).astype(float)
+        factor = _energy_factor(problem, pressure, displacement)
+        pressure, displacement = factor * pressure, factor * displacement
+    if problem.by_force:
+        return Iterate(pressure, displacement, problem.closure_at_force(pressure, displacement))
+    return Iterate(pressure, displacement, problem.load)
+
+
+def verified(problem: Problem, operator: Operator, iterate: Iterate) -> Solution:
+    """The iterate projected on its bounds, with a displacement in double precision.
+
+    Whoever asks for it reads from the ``residual`` whether it is a state of contact.
+    """
+    closure, lacking = iterate.closure, 0.0
+    pressure = np.clip(iterate.pressure, 0.0, problem.cap)
+    if problem.by_force:
+        if not pressure.any():
+            pressure = problem.first_touch()
+        _scale_to(problem.load, pressure, problem.cap)
+        lacking = abs(1 - pressure.sum() / problem.load)
+    displacement = operator(pressure)
+    if problem.by_force:
+        closure = problem.closure_at_force(pressure, displacement)
+    kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.cap)
+    residual = max(kkt.largest / abs(closure), lacking)
+    return Solution(pressure, displacement, closure, residual, operator.applications)
+
+
+def _scaled_to_force(problem, operator, pressure, displacement):
+    """The start at the given force; without a displacement where a factor is not all it takes."""
+    total = np.maximum(pressure, 0.0).sum()
+    if not total > 0:
+        return problem.first_touch(), None
+    factor = problem.load / total
+    if pressure.max() * factor > problem.cap:
+        return _within_cap(problem, operator, pressure), None
+    return pressure * factor, None if displacement is None else displacement * factor
+
+
+def _within_cap(problem, operator, pressure):
+    """A start of the given force that breaks no bound.
+
+    What its nodes cannot carry goes to those that are nearest to touching.
+    """
+    pressure = np.clip(pressure, 0.0, problem.cap)
+    _scale_to(problem.load, pressure, problem.cap)
+    lacking = problem.load - pressure.sum()
+    if lacking > FORCE_ROUNDING * problem.load:
+        displacement = operator(pressure.astype(np.float32))
+        empty = np.flatnonzero(pressure == 0)
+        order = np.argsort((displacement + problem.clearance)[empty], kind="stable")
+        nearest = empty[order[: int(2 * lacking / problem.cap) + 1]]
+        pressure[nearest] = lacking / nearest.size
+    return pressure
+
+
+def _energy_factor(problem, pressure, displacement):
+    """What a start under a given closure is to be multiplied with: its energy is least then.
+
+    On a coarse grid, of which each cell has its highest point, too much is carried.
+    """
+    work = pressure @ displacement
+    if problem.by_force or not work > 0:
+        return 1.0
+    factor = pressure @ (problem.load - problem.clearance) / work
+    return min(factor, problem.cap / pressure.max()) if factor > 0 else 1.0
+
+
+@njit(cache=True)
+def _scale_to(total, pressure, cap):
+    """Scale a pressure to a total in place, none above the cap."""
+    for _ in range(CLIPPING_PASSES):
+        lacking, part = total, 0.0
+        for value in pressure:
+            lacking -= value
+            if value < cap:
+                part += value
+        if abs(lacking) <= FORCE_ROUNDING * total or part == 0:
+            break
+        factor = 1 + lacking / part
+        for i in range(pressure.size):
+            if pressure[i] < cap:
+                pressure[i] = min(pressure[i] * factor, cap)

@@ -1,0 +1,94 @@
+"""Plain twins of the preconditioner, in dense matrices and scalar loops.
+
+They document the vectorised code, and are what the tests compare it with. Each takes a time and a
+memory that grow with the square of the nodes, or faster.
+"""
+
+import numpy as np
+
+from ..elastic.halfspace import HalfSpace
+from .inverse_cholesky import block_shifts
+
+
+def operator_on(space: HalfSpace, rows: np.ndarray) -> np.ndarray:
+    """K on a set of nodes, (n, n): influence of each on each.
+
+    Parameters
+    ----------
+    space : HalfSpace
+    rows : (n,) int ndarray
+        Nodes as numbers of cells.
+    """
+    y, x = np.divmod(rows, space.shape[1])
+    return space.influence()[np.abs(y[:, None] - y), np.abs(x[:, None] - x)]
+
+
+def inverse_cholesky(space: HalfSpace, rows: np.ndarray, neighbourhood: np.ndarray) -> np.ndarray:
+    """The factor U of `inverse_cholesky.InverseCholesky` as a dense matrix: U U' is about K^-1.
+
+    Parameters
+    ----------
+    space : HalfSpace
+    rows : (n,) int ndarray
+        Nodes as numbers of cells, ascending.
+    neighbourhood : (m,) int ndarray
+        Reach along x, in blocks, of the rows of blocks 0 ... m - 1 away.
+
+    Returns
+    -------
+    (n, n) ndarray
+        In column i the weights of node i and of those that it is conditioned on.
+    """
+    place = {node: i for i, node in enumerate(rows.tolist())}
+    level, representative, standing = {}, [], list(place)
+    blocks = [
+        {node: (node // space.shape[1] >> dy, node % space.shape[1] >> dx) for node in place}
+        for dy, dx in block_shifts(space)
+    ]
+    for k, block_of in enumerate(blocks):
+        first: dict[tuple[int, int], int] = {}
+        for node in standing:
+            if first.setdefault(block_of[node], node) == node:
+                level[node] = k  # the coarsest on which it stands for its block
+        representative.append(first)
+        standing = list(first.values())
+    factor = np.zeros((rows.size, rows.size))
+    for node, i in place.items():
+        y, x = blocks[level[node]][node]
+        members = [
+            other
+            for (block_y, block_x), other in representative[level[node]].items()
+            if abs(block_y - y) < len(neighbourhood)
+            and abs(block_x - x) <= neighbourhood[abs(block_y - y)]
+            and (level[other], -other) > (level[node], -node)  # precedes it
+        ]
+        members.append(node)
+        unit = np.eye(len(members))[-1]
+        column = np.linalg.solve(operator_on(space, np.array(members)), unit)
+        factor[[place[other] for other in members], i] = column / np.sqrt(column[-1])
+    return factor
+
+
+def balanced(
+    inverse: np.ndarray, operator: np.ndarray, basis: np.ndarray, coarse: np.ndarray
+) -> np.ndarray:
+    """An approximate inverse M after the coarse correction, C + (1 - C A) M (1 - A C).
+
+    Parameters
+    ----------
+    inverse : (n, n) ndarray
+        M.
+    operator : (n, n) ndarray
+        A, the operator as the coarse grid has it: P K_c P' + D.
+    basis : (n, m) ndarray
+        Z, coarse basis functions on the nodes.
+    coarse : (m, m) ndarray
+        Inverse of Z' A Z with its ridge.
+
+    Returns
+    -------
+    (n, n) ndarray
+    """
+    correction = basis @ coarse @ basis.T
+    remainder = np.eye(len(inverse)) - correction @ operator
+    return correction + remainder @ inverse @ remainder.T

@@ -1,0 +1,23 @@
+"""Modules that are found by listing the folder of their package: to add one is to add its file."""
+
+from importlib import import_module
+from pkgutil import iter_modules
+from types import ModuleType
+
+
+def modules_of(package: ModuleType) -> dict[str, ModuleType]:
+    """Every module of a package, imported.
+
+    Parameters
+    ----------
+    package : module
+        Imported by the calling module with a statement, ``from . import NAME``, and given by that
+        name: so `core.sources.source_files` sees that all that lies in it is imported.
+
+    Returns
+    -------
+    dict of str to module
+        By their own names, sorted.
+    """
+    names = sorted(module.name for module in iter_modules(package.__path__))
+    return {name: import_module(f"{package.__name__}.{name}") for name in names}

@@ -1,0 +1,134 @@
+"""The loading of a joint: how far it is slid, what presses on it, what its contact is solved with.
+
+These five travel together through every solve of a study, and what follows from them (lengths,
+forces, half-spaces) is computed here and nowhere else.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from ..elastic.halfspace import HalfSpace
+from ..surface.specimen import nominal_area
+from .joint import composite_topography, direction_spacing
+from .states import chosen_offset, forces_of, hardness_of
+
+
+@dataclass(frozen=True, eq=False)
+class JointLoading:
+    """A joint at some shear offsets in one direction, under the loads of a study.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+        From :func:`surface.specimen.make_specimen`.
+    direction : {"E", "N", "W", "S", "none"}
+        Where the upper block slides.
+    cells : (n,) int array_like
+        Shear offsets in cells of the scan; may be empty.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    solver : mapping
+        From :func:`study.configuration.solver_settings`: ``rtol``, ``kernel`` and, unless all
+        states are asked for, ``accuracy``.
+    """
+
+    specimen: xr.Dataset
+    direction: str
+    cells: np.ndarray
+    settings: Mapping[str, Any]
+    solver: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "cells", np.asarray(self.cells, int))
+
+    @classmethod
+    def of_joint(
+        cls,
+        specimen: xr.Dataset,
+        joint: xr.Dataset,
+        direction: str,
+        settings: Mapping[str, Any],
+        solver: Mapping[str, Any],
+    ) -> "JointLoading":
+        """The loading at all offsets of a joint.
+
+        Parameters
+        ----------
+        specimen, direction, settings, solver
+            As of the class.
+        joint : xr.Dataset
+            From :func:`mechanics.joint.describe_joint`.
+        """
+        cells = joint["offset_cells"].sel(contact_direction=direction).values
+        return cls(specimen, direction, cells, settings, solver)
+
+    def at(self, cells: ArrayLike) -> "JointLoading":
+        """The same at other offsets, in cells."""
+        return replace(self, cells=np.atleast_1d(cells))
+
+    def at_map_offset(self) -> "JointLoading":
+        """The same at the offset of the contact maps alone."""
+        offset = chosen_offset(self.settings["map_offset"], self.offsets)
+        return self.at(self.cells[self.offsets == offset][0])
+
+    @property
+    def slides(self) -> bool:
+        """Whether the joint can slide; a surface against a rigid plane cannot."""
+        return self.direction != "none"
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """Shear offsets v (n,), mm."""
+        return self.cells * direction_spacing(self.specimen, self.direction)
+
+    @property
+    def spacing(self) -> np.ndarray:
+        """Sides (y, x) of a cell of the scan, mm."""
+        return np.array([self.specimen.attrs[f"spacing_{axis}"] for axis in "yx"])
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of the window."""
+        rows, columns = (int(self.specimen.attrs[f"window_n{axis}"]) for axis in "yx")
+        return rows, columns
+
+    @property
+    def area(self) -> float:
+        """Nominal area A_0 of the window, mm2."""
+        return nominal_area(self.specimen)
+
+    @property
+    def solving(self) -> dict[str, float]:
+        """Options of :func:`contact.solve.solve_contact`.
+
+        Raises
+        ------
+        InputError
+            As :func:`mechanics.states.hardness_of`.
+        """
+        return {
+            "rtol": self.solver["rtol"],
+            "hardness": hardness_of(self.settings, self.specimen),
+        }
+
+    def forces(self, loads: Sequence[tuple[float, str]]) -> np.ndarray:
+        """Loads as forces on the whole window, N, ascending."""
+        return forces_of(loads, self.area)
+
+    def composite(self, cells: int) -> np.ndarray:
+        """Composite topography (ny, nx) of the window at an offset in cells, mm."""
+        return composite_topography(self.specimen, self.direction, cells)
+
+    def half_space(self, shape: Iterable[int], factor: int = 1) -> HalfSpace:
+        """The elastic half-space under a grid of ``factor`` times the scan's spacing."""
+        return HalfSpace(
+            tuple(int(n) for n in shape),
+            tuple(self.spacing * factor),
+            self.settings["material"]["e_star"],
+            kernel=self.solver["kernel"],
+        )

@@ -1,0 +1,41 @@
+"""What an estimator of the Hurst exponent declares of itself."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from .curves import Curve
+from .known_bias import POINTS, Fit
+
+
+class Estimator(NamedTuple):
+    """One way of measuring H: from the slope of a curve that grows as a power of a length."""
+
+    place: int
+    """Its place among all: results and figures come in this order, those of one place by name."""
+    curves: Callable[[np.ndarray, float], dict[str, Curve]]
+    """Takes heights and spacing in mm; gives curves by axis: "both", and "x", "y" where the measure
+    can be taken along one axis alone."""
+    slope_per_hurst: float
+    slope_at_zero: float
+    """d log(measure) / d log(length) = slope_at_zero + slope_per_hurst H."""
+    length: str
+    measure: str
+    units: str
+    factor: float
+    """The fit range, stated as a lag, is this many times longer for the estimator's own length, so
+    that all look at about the same waves: a wave of length l is seen by a lag of l/2, by a window
+    of l, by second differences over 2 lags = l."""
+    spread: float
+    """How many times the jackknife's standard error the scatter between surfaces is. Parts of one
+    surface share its long waves, and so are more alike than surfaces are. Mean over H from 0.3 to
+    0.95 on synthetic surfaces (50 of 256 x 256, 40 of 512 x 512)."""
+    expected_hurst: Callable[[Fit, str], np.ndarray]
+    """H that the slope of such a fit gives on average at each of `known_bias.HURST_GRID`, if the
+    nodes are `known_bias.POINTS` or those of a `spectrum_model.BAND_LIMITED` surface."""
+    nodes: str = POINTS
+    """What they are taken for. Errors of measurement make short lags too rough, as missing waves
+    make them too smooth: of scans neither is taken off."""
+    little_biased: bool = False
+    """Whether the slope is H itself within 0.03 for H from 0.5 to 0.9, even uncorrected."""

@@ -1,0 +1,39 @@
+"""Power spectrum of profiles: its density at a wavelength l grows as l^(1 + 2H)."""
+
+import numpy as np
+
+from ..curves import Curve, of_both_axes
+from ..estimator import Estimator
+from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square
+from ..spectra import profile_spectra
+from ..spectrum_model import sampled
+
+
+def power_spectrum_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
+    """Mean profile spectrum C(q) (mm3) against wavelength (mm): grows as l^(1 + 2H)."""
+    return of_both_axes(profile_spectra(heights, (spacing, spacing)))
+
+
+def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
+    """H that the slope gives on average.
+
+    Profiles lack waves that are short across them, or have short waves along them folded back.
+    Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long.
+    """
+    kept = sampled(sampling, 1 + 2 * HURST_GRID[:, np.newaxis], 2 / fit.length)
+    return hurst_of_mean_square(fit, kept)
+
+
+ESTIMATOR = Estimator(
+    place=40,
+    curves=power_spectrum_curves,
+    slope_per_hurst=2,
+    slope_at_zero=1,
+    length="wavelength",
+    measure="power spectral density of profiles",
+    units="mm3",
+    factor=2,
+    spread=1.2,
+    expected_hurst=expected_hurst,
+    little_biased=True,
+)

@@ -1,0 +1,46 @@
+"""Second differences: their mean square over a lag h grows as h^(2H)."""
+
+import numpy as np
+
+from ..curves import Curve, add_squares, along_axes, lengths_in_cells
+from ..estimator import Estimator
+from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square, short_wave_fraction
+
+
+def second_difference_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
+    """Mean square second difference (mm2) over lags (mm): grows as h^(2H).
+
+    Blind to any plane, and free of the variogram's bias at high H (Kent & Wood, J. R. Stat. Soc. B
+    59 (1997) 679).
+    """
+    lags = lengths_in_cells(1, min(heights.shape) // 4)
+    return along_axes(spacing, lags, heights, _add_second_differences)
+
+
+def _add_second_differences(heights, lag, total, weight):
+    second = heights[:, 2 * lag :] - 2 * heights[:, lag:-lag] + heights[:, : -2 * lag]
+    add_squares(second, 2 * lag, total, weight)
+
+
+def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
+    """H that the slope gives on average.
+
+    Of noise second differences are three times the differences, of the surface 4 - 4^H times.
+    """
+    missing = short_wave_fraction(fit, sampling, 3 / (4 - 4**HURST_GRID))
+    return hurst_of_mean_square(fit, 1 - missing)
+
+
+ESTIMATOR = Estimator(
+    place=20,
+    curves=second_difference_curves,
+    slope_per_hurst=2,
+    slope_at_zero=0,
+    length="lag",
+    measure="mean square second difference",
+    units="mm2",
+    factor=1,
+    spread=1.3,
+    expected_hurst=expected_hurst,
+    little_biased=True,
+)

@@ -1,0 +1,96 @@
+"""Slit islands: the perimeter of islands over the root of their area A grows as A^((1 - H) / 2)."""
+
+import numpy as np
+from scipy import ndimage
+
+from ..curves import BLOCKS, LENGTHS_PER_OCTAVE, Curve, ratio
+from ..estimator import Estimator
+from ..known_bias import HURST_GRID, POINTS, SYNTHETIC_HURST, Fit, extended
+from ..spectrum_model import BAND_LIMITED
+
+#: Fractions of the surface below the levels whose islands are measured.
+LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+
+#: Mean H by the slope on the synthetic surfaces of `known_bias.SYNTHETIC_HURST`.
+_MEAN_HURST = {
+    BAND_LIMITED: (0.411, 0.520, 0.633, 0.747, 0.794, 0.835, 0.857),
+    POINTS: (0.269, 0.456, 0.602, 0.731, 0.777, 0.827, 0.848),
+}
+
+
+def slit_island_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
+    """Perimeter of islands over the root of their area A, against that root (mm): A^((D - 1) / 2).
+
+    Mandelbrot, Passoja & Paullay, Nature 308 (1984) 721: coasts of dimension D = Delta_g - 1.
+    Islands and lakes of the `LEVELS`, connected along sides of cells; shores of what lies inside
+    belong to the perimeter, and its area does not count. What meets the rim or a missing cell is
+    left out.
+    """
+    edges = np.geomspace(1, min(heights.shape) / 2, _bins_to(min(heights.shape) / 2) + 1)
+    bins = len(edges) - 1
+    total, weight = np.zeros((2, bins, BLOCKS**2))
+    known = np.isfinite(heights)
+    levels = np.quantile(heights[known], LEVELS) if known.any() else []
+    for level in levels:
+        area, perimeter, block = _islands(heights, known, level)
+        root = np.sqrt(area)
+        which = np.digitize(root, edges) - 1
+        inside = which < bins
+        place = (which * BLOCKS**2 + block)[inside]
+        compactness = (perimeter / root)[inside]
+        total += np.bincount(place, compactness, total.size).reshape(total.shape)
+        weight += np.bincount(place, minlength=total.size).reshape(total.shape)
+    return {"both": Curve(np.sqrt(edges[1:] * edges[:-1]) * spacing, total, weight)}
+
+
+def _bins_to(longest: float) -> int:
+    return max(int(np.log2(longest) * LENGTHS_PER_OCTAVE), 0)
+
+
+def _islands(heights, known, level):
+    """Area, perimeter (cells) and block of every island and lake that ends within the surface."""
+    above = known & (heights > level)
+    islands, n_islands = ndimage.label(above)
+    lakes, n_lakes = ndimage.label(known & ~above)
+    lakes[lakes > 0] += n_islands
+    # Number 0 is what was not measured, and a rim round the grid.
+    label = np.pad(islands + lakes, 1)
+    n = n_islands + n_lakes + 1
+    perimeter, ends = np.zeros(n), np.ones(n, bool)
+    for first, second in ((label[1:], label[:-1]), (label[:, 1:], label[:, :-1])):
+        border = first != second
+        first, second = first[border], second[border]
+        perimeter += np.bincount(first, minlength=n) + np.bincount(second, minlength=n)
+        ends[first[second == 0]] = ends[second[first == 0]] = False
+    ends[0] = False
+    inner = label[1:-1, 1:-1].ravel()
+    area = np.bincount(inner, minlength=n)
+    block = np.zeros(n, int)
+    for places in np.indices(heights.shape):
+        middle = ratio(np.bincount(inner, places.ravel(), n), area)
+        side = places.max() + 1
+        block = block * BLOCKS + np.where(area > 0, middle, 0).astype(int) * BLOCKS // side
+    return area[ends], perimeter[ends], block[ends]
+
+
+def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
+    """H that the slope gives on average, whatever the range.
+
+    Small islands have no lakes yet, and each coast alone is smoother than all of them.
+    """
+    return extended(HURST_GRID, SYNTHETIC_HURST, np.array(_MEAN_HURST[sampling]))
+
+
+ESTIMATOR = Estimator(
+    place=70,
+    curves=slit_island_curves,
+    slope_per_hurst=-1,
+    slope_at_zero=1,
+    length="root of the area",
+    measure="perimeter over root of the area",
+    units="1",
+    factor=0.75,  # there are too few islands at the long end
+    spread=1.0,
+    expected_hurst=expected_hurst,
+    nodes=BAND_LIMITED,  # the surfaces that it was tried on first
+)

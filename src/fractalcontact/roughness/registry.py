@@ -1,0 +1,14 @@
+"""All estimators of the Hurst exponent, as they lie in their folder."""
+
+from ..core.modules import modules_of
+from . import estimators
+from .estimator import Estimator
+
+
+def _sorted_entries() -> dict[str, Estimator]:
+    entries = {name: module.ESTIMATOR for name, module in modules_of(estimators).items()}
+    return dict(sorted(entries.items(), key=lambda entry: entry[1].place))
+
+
+#: The estimators by name, in the order of results and figures.
+ESTIMATORS = _sorted_entries()

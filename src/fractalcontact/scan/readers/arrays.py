@@ -1,0 +1,99 @@
+"""Matrices and point lists saved by numpy. Nothing pickled is ever opened."""
+
+import math
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading, refuse_larger
+from ..tables import choose_array, is_table, table_to_raw
+
+_HEADER_READERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
+
+
+def read_npy(path: Path, options: ScanOptions) -> RawScan:
+    """Read a ``.npy`` file.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, pickled, or no 2-D array of numbers.
+    """
+    with reading(path, ".npy array"):
+        _refuse_pickled(path)
+        # Mapped, so that a header promising more than the file holds fails at once.
+        values = np.load(path, mmap_mode="r", allow_pickle=False)
+    if not is_table(values.shape, values.dtype):
+        raise InputError(
+            f"{path}: expected a 2-D array of numbers, found {values.dtype} of shape {values.shape}"
+        )
+    refuse_larger(values.size * 8, path)
+    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader("npy"))
+
+
+def read_npz(path: Path, options: ScanOptions) -> RawScan:
+    """Read one array of a ``.npz`` file; of the others only the header is looked at.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, or the wanted array is absent, ambiguous or pickled.
+    """
+    with reading(path, ".npz archive"):
+        with zipfile.ZipFile(path) as archive:
+            tables = _tables_of(archive)
+        variable = choose_array(list(tables), options.variable, path)
+        refuse_larger(math.prod(tables[variable]) * 8, path)
+        with np.load(path, allow_pickle=False) as archive:
+            values = archive[variable]
+    notes = (f"array {variable!r} of the archive",)
+    return table_to_raw(
+        _as_float(values), None, options, str(path), reader=_reader("npz"), notes=notes
+    )
+
+
+def _refuse_pickled(path: Path) -> None:
+    """Say in our own words what numpy would advise to open unsafely."""
+    with open(path, "rb") as stream:
+        read_header = _HEADER_READERS.get(np.lib.format.read_magic(stream))
+        if read_header and read_header(stream)[2].hasobject:
+            raise InputError(
+                f"{path}: it holds pickled Python objects, which are never opened; save the "
+                "heights as an array of numbers"
+            )
+
+
+def _tables_of(archive: zipfile.ZipFile) -> dict[str, tuple]:
+    """Shapes of the 2-D numeric arrays of an archive by name, judged by their headers alone."""
+    tables = {}
+    for member in archive.infolist():
+        with archive.open(member) as stream:
+            read_header = _HEADER_READERS.get(np.lib.format.read_magic(stream))
+            if read_header is None:
+                continue
+            shape, _, dtype = read_header(stream)
+        if is_table(shape, dtype) and math.prod(shape) * dtype.itemsize <= member.file_size:
+            tables[member.filename.removesuffix(".npy")] = shape
+    return tables
+
+
+def _as_float(values) -> np.ndarray:
+    return np.array(values, dtype=np.float64)
+
+
+def _reader(kind: str) -> str:
+    return f"numpy {np.__version__} / {kind}"
+
+
+def _read(path: Path, options: ScanOptions) -> RawScan:
+    return (read_npy if path.suffix.lower() == ".npy" else read_npz)(path, options)
+
+
+FORMAT = Format(_read, endings=(".npy", ".npz"))

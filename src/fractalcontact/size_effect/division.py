@@ -1,0 +1,61 @@
+"""Division of a window into sub-windows: equal, without overlap."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+#: Sub-windows along each side of the window, by default: octaves and halves.
+PARTS = (1, 2, 3, 4, 6, 8)
+#: A sub-window that is solved has at least this many cells per side.
+FEWEST_CELLS = 16
+
+
+def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
+    """Divisions whose sub-windows are solved: the whole window, and those of `FEWEST_CELLS`.
+
+    Parameters
+    ----------
+    parts : sequence of int
+        Sub-windows along each side.
+    shape : (int, int)
+        Rows and columns of the window.
+    """
+    return [n for n in parts if n == 1 or min(shape) // n >= FEWEST_CELLS]
+
+
+def split(heights: ArrayLike, parts: int) -> np.ndarray:
+    """Cut a grid into parts x parts equal sub-windows without overlap.
+
+    Parameters
+    ----------
+    heights : (ny, nx) array_like
+    parts : int
+
+    Returns
+    -------
+    (parts**2, ny // parts, nx // parts) ndarray
+        Row by row. Cells that do not divide are left at the edges, as evenly as can be.
+    """
+    heights = np.asarray(heights)
+    ny, nx = (n // parts for n in heights.shape)
+    first_y, first_x = _first_cells(heights.shape, parts)
+    middle = heights[first_y : first_y + parts * ny, first_x : first_x + parts * nx]
+    return middle.reshape(parts, ny, parts, nx).swapaxes(1, 2).reshape(parts**2, ny, nx)
+
+
+def _first_cells(shape: tuple[int, ...], parts: int) -> list[int]:
+    return [(n - parts * (n // parts)) // 2 for n in shape]
+
+
+def spread_windows(parts: int, most: int) -> np.ndarray:
+    """Sub-windows of parts x parts that are solved: at most ``most``, on an even lattice.
+
+    Returns
+    -------
+    (n,) int ndarray
+        Places in what :func:`split` returns.
+    """
+    along = min(parts, max(1, int(np.sqrt(most))))
+    place = ((np.arange(along) + 0.5) * parts / along).astype(int)
+    return (place[:, np.newaxis] * parts + place).ravel()

@@ -1,0 +1,94 @@
+"""Local roughness: rms heights of sub-windows about their own planes, over their size (eq. 2)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from ..core.datasets import labelled_dataset
+from ..core.intervals import INTERVAL, mean_interval
+from ..core.labels import cf_attrs
+from ..core.mean_plane import without_mean_planes
+from ..mechanics.loading import JointLoading
+from ..surface.specimen import cell_side, faces, window_slices
+from .division import split
+
+#: A sub-window whose sigma_z is measured has at least this many cells per side.
+FEWEST_CELLS_ROUGHNESS = 4
+
+
+def local_roughness(windows: ArrayLike) -> np.ndarray:
+    """sigma_z, mm: rms height of each window about its own mean plane.
+
+    Parameters
+    ----------
+    windows : (n, ny, nx) array_like
+        Complete, mm.
+
+    Returns
+    -------
+    (n,) ndarray
+        With the three degrees of freedom of the plane taken off, as the roughness-length estimator
+        of :mod:`roughness.dimension` has it.
+    """
+    residuals = without_mean_planes(windows)
+    ny, nx = residuals.shape[1:]
+    return np.sqrt(np.sum(residuals**2, axis=(1, 2)) / (ny * nx - 3))
+
+
+def tilt_fraction(windows: ArrayLike) -> np.ndarray:
+    """Fraction of each window's variance that its mean plane explains; NaN where it is flat."""
+    windows = np.asarray(windows, float)
+    total = windows.var(axis=(1, 2))
+    left = np.mean(without_mean_planes(windows) ** 2, axis=(1, 2))
+    return np.where(total > 0, 1 - left / np.where(total > 0, total, 1), np.nan)
+
+
+_SCALES = {
+    "scale_side": ("scale", "mm", "side b of the sub-windows"),
+    "scale_n": ("scale", "1", "sub-windows of that size"),
+    "scale_cells": ("scale", "1", "cells of each"),
+}
+
+
+def roughness_by_size(loading: JointLoading) -> xr.Dataset:
+    """sigma_z of the face and of the composite topography in sub-windows of many sizes.
+
+    Returns
+    -------
+    xr.Dataset
+        Means over all sub-windows of a size with ``_low`` and ``_high`` (95 %): ``face_sigma_z``
+        (scale) of the lower face under the window, ``sigma_z_all`` (offset, scale) of the composite
+        topography. ``scale_side`` b in mm and ``scale_n``, sub-windows of that size.
+    """
+    specimen = loading.specimen
+    lower = faces(specimen)[0][window_slices(specimen)]
+    parts = _octaves_and_halves(min(lower.shape) // FEWEST_CELLS_ROUGHNESS)
+    composites = [loading.composite(n) for n in loading.cells]
+    nodes = np.array([np.prod([n // p for n in lower.shape]) for p in parts])
+    side = cell_side(specimen) * np.sqrt(nodes)
+    result = labelled_dataset(
+        _SCALES, {"scale_side": side, "scale_n": parts**2, "scale_cells": nodes}
+    )
+    means = _mean_roughness([lower], parts), _mean_roughness(composites, parts)
+    for (ending, of_end), face, composite in zip(INTERVAL.items(), *means, strict=True):
+        words = f"about the plane of a sub-window, mean{of_end}"
+        attrs = cf_attrs("mm", f"rms of the lower face {words}")
+        result[f"face_sigma_z{ending}"] = ("scale", face[0], attrs)
+        attrs = cf_attrs("mm", f"rms of the composite topography {words}")
+        result[f"sigma_z_all{ending}"] = (("offset", "scale"), composite, attrs)
+    return result
+
+
+def _octaves_and_halves(most: int) -> np.ndarray:
+    """1, 2, 3, 4, 6, 8, 12, 16 ... up to ``most``."""
+    octaves = 2 ** np.arange(int(np.log2(max(most, 1))) + 1)
+    parts = np.union1d(octaves, octaves[1:] * 3 // 2)
+    return parts[parts <= max(most, 1)]
+
+
+def _mean_roughness(topographies: Sequence[np.ndarray], parts: np.ndarray) -> np.ndarray:
+    """Mean, low and high, each (topographies, parts)."""
+    table = [[mean_interval(local_roughness(split(z, n)))[:3] for n in parts] for z in topographies]
+    return np.moveaxis(np.reshape(table, (len(topographies), len(parts), 3)), 2, 0)

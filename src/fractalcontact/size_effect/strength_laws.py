@@ -1,0 +1,195 @@
+"""Shear strength over the side b of a joint, at one v and at one v/b (sect. 5)."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled
+from ..core.intervals import mean_interval
+from ..core.labels import cf_attrs
+from ..mechanics.strength import (
+    FIELDS,
+    angles_with_errors,
+    from_flush,
+    peak,
+    residual,
+    slopes_apart,
+    strength_with_error,
+)
+from ..mechanics.theory import LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
+from .window_means import add_law, add_mean
+
+#: Offsets, as fractions of the side b, at which sizes are compared. Barton and Bandis put the peak
+#: of a laboratory joint at 1 to 3 % of its length (L/500 (JRC/L)^0.33, in m).
+OFFSET_FRACTIONS = (0.01, 0.02, 0.05, 0.1)
+
+
+def strength_by_size(
+    states: xr.Dataset, material: Mapping[str, float], roughness: float
+) -> xr.Dataset:
+    """Peak and residual strength of the sub-windows, each from its own elastic dilatancy curve.
+
+    Parameters
+    ----------
+    states, material, roughness
+        As for :func:`size_effect.laws.size_laws`.
+
+    Returns
+    -------
+    xr.Dataset
+        Means over sub-windows with ``_low``, ``_high`` and the ``_error`` of the solver:
+        ``peak_strength``, ``peak_dilatancy_angle`` (which is not held), ``residual_strength``
+        (part, load) and ``shear_strength`` (interval, part, load); ``held_share`` (part, load), the
+        fraction of sub-windows whose peak was held; ``strength_exponent``, ``residual_exponent``
+        (load) and ``shear_exponent`` (interval, load); ``barton_strength`` (part, load) with the
+        JRC and JCS of that size by Barton and Bandis' law (which was measured on joints of 50 mm
+        and more).
+
+        At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
+        ``similar_strength`` and ``similar_slope`` (d delta/dv, not held), ``similar_held`` (the
+        fraction of sub-windows whose angle was held there) and their exponents (share, load).
+        ``share`` holds the fractions v/b.
+
+    Notes
+    -----
+    Where a peak is held, its size says nothing; ``peak_dilatancy_angle`` then does. At one v a
+    large sub-window is at an earlier stage of its sliding than a small one; only at one v/b are
+    they alike. There a self-affine face has d delta/dv ~ b^(H - 1), which falls with size.
+
+    The largest of several noisy values grows with their noise, which is larger in a small
+    sub-window, so part of any size effect on a peak is scatter itself, as in a laboratory.
+    """
+    side = states["side"]
+    offset, curve, error = _dilatancy_curves(states)
+    midpoint, angle, angle_off = angles_with_errors(offset, curve, error)
+    friction = material["basic_friction_angle"] + angle
+    pressure = states["nominal_pressure"].values
+    strength, held, off = strength_with_error(pressure, friction, angle_off)
+    held = np.where(np.isnan(strength), np.nan, held == 1)
+
+    words = cf_attrs("mm", "middle of the interval of offsets")
+    result = xr.Dataset(coords={"interval": ("interval", midpoint, words)})
+    largest = states["offset"].values[-1]
+    of_curves = {
+        "peak_strength": [peak(midpoint, values)[0] for values in (strength, off)],
+        "peak_dilatancy_angle": [peak(midpoint, values)[0] for values in (angle, angle_off)],
+        "residual_strength": [residual(midpoint, values, largest)[0] for values in (strength, off)],
+        "shear_strength": [strength, off],
+    }
+    for name, (values, errors) in of_curves.items():
+        over = _DIMS if values.ndim == 3 else ("interval", *_DIMS)
+        mean_of = xr.DataArray(values, dims=over, attrs=cf_attrs(*FIELDS[name]))
+        add_mean(result, name, mean_of, mean_of.copy(data=errors))
+    slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
+    similar = {
+        "similar_strength": (strength, off),
+        "similar_slope": (slopes[0], slopes[1] - slopes[0]),
+    }
+    for name, of_intervals in similar.items():
+        values, errors = (_at_fractions(offset, side.values, of) for of in of_intervals)
+        attrs = cf_attrs(*_SIMILAR[name])
+        mean_of = xr.DataArray(values, dims=("share", *_DIMS), attrs=attrs)
+        add_mean(result, name, mean_of, mean_of.copy(data=errors))
+    attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
+    result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
+    for name, exponent in _EXPONENTS.items():
+        add_law(result, exponent, side, result[name], f"exponent of {name} against b")
+    of_held = {
+        "held_share": mean_interval(peak(midpoint, held)[0], axis=1).value,
+        "similar_held": mean_interval(_at_fractions(offset, side.values, held), axis=2).value,
+    }
+    return result.assign(
+        labelled(_HELD, of_held) | labelled(_BARTON, _by_barton(states, material, roughness))
+    )
+
+
+_DIMS = ("part", "window", "load")
+
+#: What is compared at one v/b: unit, long name.
+_SIMILAR = {
+    "similar_strength": ("MPa", "shear strength at one v/b"),
+    "similar_slope": ("1", "slope d delta/dv at one v/b"),
+}
+
+#: Exponents against b by what they are of.
+_EXPONENTS = {
+    "similar_strength": "similar_strength_exponent",
+    "similar_slope": "similar_slope_exponent",
+    "peak_strength": "strength_exponent",
+    "residual_strength": "residual_exponent",
+    "shear_strength": "shear_exponent",
+}
+
+_OF_HELD = f"fraction of sub-windows held at {LARGEST_FRICTION_ANGLE:g} degrees"
+_HELD = {
+    "held_share": (("part", "load"), "1", f"{_OF_HELD} at their peak"),
+    "similar_held": (("share", "part", "load"), "1", f"{_OF_HELD} at one v/b"),
+}
+
+_BARTON = {
+    "barton_roughness": ("part", "1", "JRC_n by Barton and Bandis' scale law"),
+    "barton_strength": (
+        ("part", "load"),
+        "MPa",
+        "peak strength by Barton's law with JRC_n and JCS_n of each size",
+    ),
+}
+
+
+def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Offsets (n,), elastic dilatancy (n, part, window, load) of the sub-windows, its error, mm."""
+    elastic = states["rigid_opening"] - states["interface_closure"]
+    order = ("offset", "part", "window", "load")
+    curve = elastic.transpose(*order).values
+    error = states["interface_closure_error"].transpose(*order).values
+    offset = states["offset"].values
+    if states.attrs["opposite"] == "match":
+        absent = np.isnan(curve[:1])
+        _, error = from_flush(offset, error)
+        offset, curve = from_flush(offset, curve)
+        curve[:1][absent] = error[:1][absent] = np.nan
+    return offset, curve, error
+
+
+def _by_barton(
+    states: xr.Dataset, material: Mapping[str, float], roughness: float
+) -> dict[str, np.ndarray]:
+    """Barton's law with the JRC and JCS of each size."""
+    lengths = states["side_along"].values
+    scaled = scaled_joint(roughness, material["joint_wall_strength"], lengths)
+    strength = barton_strength(
+        states["nominal_pressure"].values,
+        material["basic_friction_angle"],
+        *(np.asarray(of_size)[:, np.newaxis] for of_size in scaled),
+    )
+    return {"barton_roughness": np.asarray(scaled[0]), "barton_strength": np.asarray(strength)}
+
+
+def _at_fractions(offset: np.ndarray, side: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values of the interval of offsets that holds v, for each v/b of `OFFSET_FRACTIONS` and b.
+
+    Parameters
+    ----------
+    offset : (n,) ndarray
+        Ends of the intervals, mm.
+    side : (part,) ndarray
+        b, mm.
+    values : (n - 1, part, window, load) ndarray
+
+    Returns
+    -------
+    (share, part, window, load) ndarray
+        NaN where v is smaller than the first step of sliding or larger than the last offset.
+    """
+    taken = np.full((len(OFFSET_FRACTIONS), *values.shape[1:]), np.nan)
+    tolerance = 1e-9 * offset[-1]
+    slid = offset[offset > 0]
+    for i, fraction in enumerate(OFFSET_FRACTIONS):
+        for k, b in enumerate(side):
+            v = fraction * b + tolerance
+            if len(values) and slid[0] <= v <= offset[-1] + 2 * tolerance:
+                interval = min(np.searchsorted(offset, v, side="right") - 1, len(values) - 1)
+                if interval >= 0:
+                    taken[i, k] = values[interval, k]
+    return taken

@@ -1,0 +1,64 @@
+"""Means over the sub-windows of each size, and their power laws, into a dataset."""
+
+import numpy as np
+import xarray as xr
+
+from ..core.fitting import fit_line
+from ..core.intervals import INTERVAL, mean_interval
+from ..core.labels import cf_attrs
+from ..mechanics.states import error_attrs
+from .power_laws import add_exponents
+
+
+def add_mean(
+    result: xr.Dataset, name: str, values: xr.DataArray, errors: xr.DataArray | None = None
+) -> None:
+    """Mean over the sub-windows with its interval, into ``result``.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Gets ``name``, ``_low`` and ``_high`` and, with ``errors``, ``_error``.
+    values : xr.DataArray (..., window, ...)
+        Labelled; NaN where missing.
+    errors : xr.DataArray, optional
+        Solver error bounds of the values: their mean bounds that of the mean.
+    """
+    dims = tuple(dim for dim in values.dims if dim != "window")
+    units, long_name = values.attrs["units"], values.attrs["long_name"]
+    means = mean_interval(values.values, axis=values.dims.index("window"))[:3]
+    for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
+        words = f"{long_name}, mean over sub-windows{of_end}"
+        result[f"{name}{ending}"] = (dims, mean, cf_attrs(units, words))
+    if errors is not None:
+        result[f"{name}_error"] = errors.mean("window").transpose(*dims)
+        result[f"{name}_error"].attrs = error_attrs(
+            cf_attrs(units, f"{long_name}, mean over sub-windows")
+        )
+
+
+def add_law(
+    result: xr.Dataset, name: str, side: xr.DataArray, values: xr.DataArray, words: str
+) -> None:
+    """Exponent of positive values against the side b, into ``result``.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        As :func:`size_effect.power_laws.add_exponents` fills it.
+    side : xr.DataArray (size,)
+        b, mm, along the dimension of the sizes.
+    values : xr.DataArray (..., size, ...)
+        Those that are not positive, or missing, are left out.
+    words : str
+        What the exponent is of.
+    """
+    (size,) = side.dims
+    dims = tuple(str(dim) for dim in values.dims if dim != size)
+    rows = values.transpose(*dims, size).values
+    positive = np.where(rows > 0, rows, np.nan)
+    lines = [
+        fit_line(np.log(side.values), np.log(positive[index]))
+        for index in np.ndindex(rows.shape[:-1])
+    ]
+    add_exponents(result, name, lines, dims, words, "sizes fitted")

@@ -1,0 +1,37 @@
+"""What is known of a specimen before contact is solved: dimension, scan quality, sliding joint."""
+
+from collections.abc import Mapping
+
+import xarray as xr
+
+from ..mechanics.joint import describe_joint
+from ..roughness.dimension import surface_dimension
+from ..roughness.quality import scan_quality
+from ..surface.grid import spacing_of
+
+
+def specimen_stages(specimen: xr.Dataset, settings: Mapping) -> dict[str, xr.Dataset]:
+    """Stages of one levelled specimen, itself among them.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+        From :func:`study.preparation.prepare_specimen`.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+
+    Returns
+    -------
+    dict of str to xr.Dataset
+        By stage: specimens, surface_dimension, quality and joints.
+    """
+    return {
+        "specimens": specimen,
+        "joints": describe_joint(specimen, settings),
+        "surface_dimension": surface_dimension(
+            specimen.lower.values,
+            spacing_of(specimen),
+            fit_range=settings["surface_range"],
+        ),
+        "quality": scan_quality(specimen, settings["resolutions"]),
+    }

@@ -1,0 +1,41 @@
+"""Size effect of a specimen: its sub-windows solved, and eq. 6 tested on them."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from ..mechanics.loading import JointLoading
+from ..roughness.dimension import best_dimension
+from ..size_effect.eq6 import size_test
+from ..size_effect.laws import joint_by_size
+
+
+def window_stages(
+    specimens: xr.Dataset,
+    surface_dimension: xr.Dataset,
+    joints: xr.Dataset,
+    settings: Mapping,
+    solver: Mapping,
+) -> dict[str, xr.Dataset]:
+    """Stages that solve sub-windows of one specimen, along its first direction of contact.
+
+    Parameters
+    ----------
+    specimens, surface_dimension, joints : xr.Dataset
+        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    solver : mapping
+        From :func:`study.configuration.solver_settings`.
+
+    Returns
+    -------
+    dict of str to xr.Dataset
+        By stage: windows and size_test.
+    """
+    direction = settings["contact_directions"][0]
+    joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
+    loading = joint.at(np.sort(joint.cells))
+    laws = joint_by_size(loading, best_dimension(surface_dimension))
+    return {"windows": laws, "size_test": size_test(loading, laws)}

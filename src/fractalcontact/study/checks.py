@@ -1,0 +1,186 @@
+"""Checks of a study before anything runs: its configuration, sidecars, names and scan files."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..core.errors import InputError
+from ..core.file_names import specimen_name
+from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
+from .scan_files import ScanFiles, find_scans
+from .schema import shortened, validate
+from .sidecar import is_contact_map, read_yaml
+
+#: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
+_SCAN_DEFINITION, _SETTINGS_DEFINITION = "scan", "settings"
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study that passed all checks.
+
+    Attributes
+    ----------
+    scans : dict of str to ScanFiles
+        By specimen or contact map.
+    settings : dict of str to dict
+        By specimen, scanned or embedded: :func:`study.configuration.resolve_settings`.
+    options : dict of str to dict
+        By scan: how to read it, the scan keys of its sidecar.
+    labels : dict of str to str
+        By measured contact map, which have no settings.
+    solver : dict
+        :func:`study.configuration.solver_settings`.
+    """
+
+    scans: dict[str, ScanFiles]
+    settings: dict[str, dict]
+    options: dict[str, dict]
+    labels: dict[str, str]
+    solver: dict
+
+
+def resolve_study(config: Mapping, schema: Mapping, source: str) -> Study:
+    """Check a study with its scan files and sidecars, and work out all settings.
+
+    Parameters
+    ----------
+    config : mapping
+        The study as read from YAML.
+    schema : mapping
+        config/schema/study.schema.yaml.
+    source : str
+        The file the study came from, for errors.
+
+    Raises
+    ------
+    InputError
+        For the first thing that is wrong.
+    """
+    check_study(config, schema, source)
+    folder = config.get("scans", "scans")
+    scans = find_scans(folder) if folder else {}
+    check_names(scans, config, folder, source)
+    embedded = config.get("embedded", {})
+    unknown = sorted(set(config.get("specimens", {})) - set(scans) - set(embedded))
+    if unknown:
+        raise InputError(
+            f"{source}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
+        )
+    settings, options, labels = {}, {}, {}
+    for name, scan in scans.items():
+        options[name], own = read_sidecar(scan.sidecar, schema)
+        if is_contact_map(options[name]):
+            labels[name] = own.get("label", name)
+        else:
+            settings[name] = resolve_settings(config, name, own, source)
+    for name in embedded:
+        settings[name] = resolve_settings(config, name, {}, source)
+    return Study(scans, settings, options, labels, solver_settings(config, source))
+
+
+def check_study(config: Mapping, schema: Mapping, source: str) -> None:
+    """Check a study against its schema.
+
+    Parameters
+    ----------
+    config : mapping
+        The study as read from YAML.
+    schema : mapping
+        config/schema/study.schema.yaml.
+    source : str
+        The file it came from, for errors.
+
+    Raises
+    ------
+    InputError
+        For the first thing that is wrong: the file, the key, what was expected.
+    """
+    validate(config, schema, source)
+    check_names({}, config, None, source)
+    for name in config.get("specimens", {}):
+        resolve_settings(config, name, {}, source)
+    if "defaults" in config:
+        resolve_settings(config, None, {}, source)
+    for name, recipe in config.get("embedded", {}).items():
+        resolve_embedded(recipe, f"{source}: embedded.{name}")
+    resolve_roll_off(config, source)
+
+
+def check_names(
+    scans: Iterable[str], config: Mapping, folder: Path | str | None, source: str
+) -> None:
+    """Refuse embedded specimens whose results would be taken for others.
+
+    Parameters
+    ----------
+    scans : iterable of str
+        Names of the specimens that are scanned.
+    config : mapping
+        A study that passed the schema.
+    folder : path-like
+        Where the scans are, for errors.
+    source : str
+        The file the study came from, for errors.
+
+    Raises
+    ------
+    InputError
+        If one has the name of a scan or of another, upper and lower case being alike: on many
+        discs they would be one file. Or a name that no scan could have either.
+    """
+    taken: dict[str, tuple[str, str | None]] = {
+        name.lower(): (name, f"a scan in {folder}") for name in scans
+    }
+    for name in config.get("embedded", {}):
+        where = f"{source}: embedded.{shortened(name)}"
+        safe = specimen_name(name)
+        if safe != name:
+            raise InputError(f"{where}: no name for files on every computer; write {safe!r}")
+        other, what = taken.setdefault(name.lower(), (name, None))
+        if other == name and what is not None:
+            raise InputError(f"{where}: has the name of {what}; rename one")
+        if other != name:
+            raise InputError(
+                f"{where}: differs from {what or 'the embedded specimen'} {other} in upper and "
+                "lower case alone; rename one"
+            )
+
+
+def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
+    """Scan keys and settings of a sidecar, checked.
+
+    Parameters
+    ----------
+    path : Path or None
+        None of a scan that has no sidecar.
+    schema : mapping
+        config/schema/study.schema.yaml.
+
+    Returns
+    -------
+    scan : dict
+        How to read the file, for :func:`scan.read.read_faces`.
+    settings : dict
+        What differs from the study's defaults.
+
+    Raises
+    ------
+    InputError
+    """
+    if path is None:
+        return {}, {}
+    document = read_yaml(path)
+    definitions = schema["$defs"]
+    scan_keys = definitions[_SCAN_DEFINITION]["properties"]
+    properties = {**scan_keys, **definitions[_SETTINGS_DEFINITION]["properties"]}
+    sidecar_schema = {
+        "$defs": definitions,
+        "type": "object",
+        "additionalProperties": False,
+        "properties": properties,
+    }
+    validate(document, sidecar_schema, str(path))
+    scan = {key: value for key, value in document.items() if key in scan_keys}
+    settings = {key: value for key, value in document.items() if key not in scan_keys}
+    return scan, settings

@@ -1,0 +1,89 @@
+"""Guards of the results of a study: what is refused before a run reads, loses or replaces any."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from ..core import checksums
+from ..core.errors import InputError
+
+#: Where Snakemake keeps from what it made each file.
+SNAKEMAKE = Path(".snakemake")
+
+
+def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
+    """Keep an atlas from losing specimens without a word.
+
+    A folder that is not mounted, or half copied, looks like one from which scans were removed.
+
+    Parameters
+    ----------
+    results : path-like
+        Folder of the study.
+    names : iterable of str
+        Specimens and contact maps that it has now.
+
+    Raises
+    ------
+    InputError
+        If there is an atlas and it has others.
+    """
+    results = Path(results)
+    places = [results, results / checksums.ASIDE]
+    if not any((place / "atlas.nc").exists() for place in places):
+        return
+    listed = results / "specimens.txt"
+    if listed.is_file():
+        had = set(listed.read_text(encoding="utf-8").split())
+    else:  # of an earlier version, or damaged: those of which anything is there
+        stages = [place / stage for place in places for stage in ("specimens", "contact_maps")]
+        had = {path.stem for stage in stages for path in stage.glob("*.nc")}
+    lost = sorted(had - set(names))
+    if lost:
+        raise InputError(
+            f"{results}/atlas.nc has specimens that the study no longer has: {', '.join(lost)}; "
+            "put their scans back or, if they are to go, run 'make DROP=yes' (with snakemake: "
+            "set FRACTALCONTACT_DROP=yes in the environment). The atlas was not changed"
+        )
+
+
+def refuse_unknown_origin(results: Path | str) -> None:
+    """Refuse results where Snakemake, which notes it in its own folder, has not made them.
+
+    Raises
+    ------
+    InputError
+    """
+    have_results = any(Path(results, checksums.FOLDER).rglob(f"*{checksums.ENDING}"))
+    notes = [*SNAKEMAKE.glob("metadata/*"), *SNAKEMAKE.glob("*.db")]
+    if have_results and not notes:
+        raise InputError(
+            f"{results}: nothing says from which scans, settings and code these results were made, "
+            "since .snakemake is not with them; bring it back, or remove the results"
+        )
+
+
+def refuse_damage(results: Path | str, digest_of: Callable) -> None:
+    """Refuse a damaged file before it is read, or what is good is removed to be made from it again.
+
+    Parameters
+    ----------
+    results : path-like
+        Folder of the study.
+    digest_of : callable
+        SHA-256 of a file: :meth:`core.checksums.Digests.of`.
+
+    Raises
+    ------
+    InputError
+    """
+    # Jobs that a killed run left half done, whose files may be newer than their checksums, are run
+    # again by Snakemake itself.
+    if any((SNAKEMAKE / "incomplete").glob("*")):
+        return
+    damaged = checksums.check(results, digest_of).damaged
+    if damaged:
+        raise InputError(
+            f"{damaged[0]}: damaged or replaced after it was made"
+            + (f", and {len(damaged) - 1} more files" if len(damaged) > 1 else "")
+            + "; run 'make', which sets it aside and makes it again, or remove it yourself"
+        )

@@ -1,0 +1,240 @@
+"""Stages of a study, each described once: its title, inputs and grain, and the function behind it.
+
+The rules of the workflow, the atlas and the tests read this table. It names functions by strings,
+so that reading it imports none of them: on a cluster every job reads the workflow.
+
+To add a stage: a line here; its function, which takes the datasets of the stages it needs by their
+names, and its settings; a rule; a test. What it makes then stands in the atlas.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+#: How often a stage is made: for every specimen, for those that slide, for every measured contact
+#: map; once, on synthetic surfaces, where the study has the stage's key; and of studies of
+#: accuracy for every test problem, or once.
+SPECIMEN, JOINT, MAP, EXPERIMENT = "specimen", "joint", "map", "experiment"
+PROBLEM, ACCURACY = "problem", "accuracy"
+GRAINS = (SPECIMEN, JOINT, MAP, EXPERIMENT, PROBLEM, ACCURACY)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage of a study: a group of the atlas, and a folder of the results.
+
+    Attributes
+    ----------
+    name : str
+        Of the group, the folder and, for an experiment, the key of the configuration.
+    title : str
+        What it holds: the description of its group.
+    grain : str
+        One of :data:`GRAINS`.
+    function : str
+        "room.module:function" that makes it. Stages of one function are made by one job.
+    needs : tuple of str
+        Stages whose datasets the function takes, as arguments of their names.
+    member : str
+        Wildcard or name that its files have, and its groups within the stage's.
+    filed : bool
+        Whether it has files; if not, it is made while the atlas is put together.
+    """
+
+    name: str
+    title: str
+    grain: str
+    function: str
+    needs: tuple[str, ...] = ()
+    member: str = "{specimen}"
+    filed: bool = True
+
+    @property
+    def path(self) -> str:
+        """Its file, or the pattern of its files, below the folder of the results."""
+        return f"{self.name}/{self.member}.nc"
+
+    @property
+    def module(self) -> str:
+        """Path of the function's module within the package, without ending."""
+        return self.function.partition(":")[0].replace(".", "/")
+
+
+_SPECIMEN_STAGES = "stages.specimen:specimen_stages"
+_STATE_STAGES = "stages.states:state_stages"
+_WINDOW_STAGES = "stages.windows:window_stages"
+#: What is known of a joint before contact is solved.
+_OF_JOINT = ("specimens", "surface_dimension", "joints")
+
+
+def _of_states(name, title, grain=SPECIMEN):
+    return Stage(name, title, grain, _STATE_STAGES, _OF_JOINT)
+
+
+def _experiment(name, title, function):
+    return Stage(name, title, EXPERIMENT, function, member="surfaces")
+
+
+_TABLE = (
+    Stage(
+        "specimens",
+        "levelled faces, mask, window and where they came from",
+        SPECIMEN,
+        _SPECIMEN_STAGES,
+    ),
+    Stage(
+        "quality",
+        "relief, spectra and noise floor of each face, and where its fractal range ends",
+        SPECIMEN,
+        _SPECIMEN_STAGES,
+    ),
+    Stage(
+        "surface_dimension",
+        "Delta_g of each face by several estimators",
+        SPECIMEN,
+        _SPECIMEN_STAGES,
+    ),
+    Stage("joints", "offsets and composite topographies", SPECIMEN, _SPECIMEN_STAGES),
+    Stage(
+        "windows",
+        "closure, roughness and strength of sub-windows",
+        SPECIMEN,
+        _WINDOW_STAGES,
+        _OF_JOINT,
+    ),
+    Stage(
+        "size_test",
+        "the direct test of eq. 6, and the whole predicted from its parts",
+        SPECIMEN,
+        _WINDOW_STAGES,
+        _OF_JOINT,
+    ),
+    _of_states("closure", "closure curves, stiffness, real contact area"),
+    _of_states("dilatancy", "rigid and elastic dilatancy"),
+    _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
+    _of_states("area", "laws of the real contact area, and the classical theories beside it"),
+    _of_states("domains", "box counts, Delta_sigma and clusters of the contact domains"),
+    _of_states("contact", "contact domains"),
+    _of_states("scaling", "renormalisation over resolutions"),
+    _of_states(
+        "domain_measures",
+        "lacunarity and generalised dimensions of the contact at the map offset",
+    ),
+    _of_states("strength", "dilatancy and friction angles, shear strength", JOINT),
+    Stage(
+        "contact_maps",
+        "measured contact maps, one group per map",
+        MAP,
+        "domain.measured_map:read_contact_map",
+        member="{map}",
+    ),
+    _experiment(
+        "roll_off",
+        "rigid dilatancy of synthetic joints with and without a roll-off",
+        "experiments.roll_off:roll_off_effect",
+    ),
+    _experiment(
+        "area_slope",
+        "real contact area at light load, on surfaces with and without a roll-off",
+        "experiments.area_slope:area_slope",
+    ),
+    _experiment(
+        "dimension_test",
+        "both estimates of Delta_sigma on synthetic surfaces",
+        "experiments.delta_sigma:dimension_test",
+    ),
+    _experiment(
+        "estimator_bias",
+        "estimators of Delta_g on surfaces of known dimension",
+        "experiments.delta_g:estimator_bias",
+    ),
+    Stage(
+        "statements",
+        "what the paper says, and whether it holds here",
+        SPECIMEN,
+        "statements.judge:judge",
+        filed=False,
+    ),
+    Stage(
+        "speed",
+        "error against time of solvers and cheaper models, one group per test problem",
+        PROBLEM,
+        "accuracy.speed:error_against_time",
+        member="{scene}",
+    ),
+    Stage(
+        "speed_growth",
+        "time and memory of the solvers over sizes",
+        ACCURACY,
+        "accuracy.growth:growth",
+        ("speed",),
+        member="surfaces",
+    ),
+    Stage(
+        "convergence",
+        "error against spacing where the solution is known, and Richardson's extrapolation",
+        PROBLEM,
+        "stages.accuracy:convergence",
+        member="{problem}",
+    ),
+    Stage(
+        "stability",
+        "verdicts on the solvers by kind of test problem",
+        ACCURACY,
+        "accuracy.stability:join",
+        member="scenes",
+    ),
+    Stage(
+        "elimination",
+        "whether dropping points alone reaches the right contact set",
+        ACCURACY,
+        "accuracy.elimination:elimination",
+        member="scenes",
+    ),
+)
+#: Every stage by name, in the order of the atlas.
+STAGES = {stage.name: stage for stage in _TABLE}
+#: Experiments on synthetic surfaces: each is made once, where the study has its key.
+EXPERIMENTS = tuple(stage.name for stage in _TABLE if stage.grain == EXPERIMENT)
+
+
+def paths_of(*grains: str) -> dict[str, str]:
+    """Files of the stages of some grains.
+
+    Parameters
+    ----------
+    *grains : str
+        Of :data:`GRAINS`.
+
+    Returns
+    -------
+    dict of str to str
+        By stage, below the folder of the results; wildcards stand in braces.
+    """
+    return {
+        name: stage.path for name, stage in STAGES.items() if stage.grain in grains and stage.filed
+    }
+
+
+def made_together(name: str, grains: Collection[str] = GRAINS) -> dict[str, str]:
+    """Files that the job of one stage makes: of all stages that share its function.
+
+    Parameters
+    ----------
+    name : str
+        Any stage of the job.
+    grains : collection of str, optional
+        Those of its stages that are made.
+
+    Returns
+    -------
+    dict of str to str
+        As :func:`paths_of`.
+    """
+    function = STAGES[name].function
+    shared = {name for name, stage in STAGES.items() if stage.function == function}
+    return {name: path for name, path in paths_of(*grains).items() if name in shared}
+
+
+def needed_by(name: str) -> dict[str, str]:
+    """Files of the stages that one stage needs, as :func:`paths_of` gives them."""
+    return {need: STAGES[need].path for need in STAGES[name].needs}

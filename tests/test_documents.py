@@ -1,0 +1,48 @@
+"""The documents name keys, commands, files and links that exist."""
+
+import re
+
+import pytest
+import yaml
+from places import ROOT
+
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), ROOT / "config/README.md"])
+KEY = re.compile(r"`([a-z_.]+)`")
+
+
+def keys_of(node):
+    """Names of keys in a JSON schema, at every depth."""
+    if isinstance(node, dict):
+        yield from node.get("properties", {})
+        for name, child in node.items():
+            if name not in ("if", "else"):
+                yield from keys_of(child)
+    elif isinstance(node, list):
+        for child in node:
+            yield from keys_of(child)
+
+
+def test_every_key_of_a_study_and_of_a_sidecar_is_explained():
+    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+    explained = set()
+    for line in (ROOT / "config/README.md").read_text().splitlines():
+        explained |= {part for key in KEY.findall(line) for part in key.split(".")}
+        # Those of a mapping stand in braces: `{modulus, poisson}`.
+        for group in re.findall(r"`\{([a-z_, ]+)\}`", line):
+            explained |= set(group.split(", "))
+    assert set(keys_of(schema)) - explained == set()
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_commands_files_and_links_of_a_document_exist(path):
+    text = path.read_text()
+    phony = re.search(r"^\.PHONY: (.+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    # After `make` and settings such as NAME=value: at the start of code or of an indented line.
+    call = r"(?:`|^ {4}(?:\w+=\w+ )*)make(?: [A-Z]+=[^\s`]+)* ([a-z-]+)"
+    targets = re.findall(call, text, re.MULTILINE)
+    assert set(targets) - set(phony[1].split()) == set()
+
+    files = re.findall(r"`((?:[a-z_.]+/)+[a-z_0-9.-]+\.(?:py|md|yaml|smk|yml))`", text)
+    files += [link for link in re.findall(r"\]\(([^)#]+)", text) if "://" not in link]
+    homes = (ROOT, path.parent, ROOT / "src/fractalcontact")
+    assert [file for file in files if not any((home / file).exists() for home in homes)] == []

@@ -1,0 +1,91 @@
+# Experiments on synthetic surfaces, each once where the study has its key.
+
+
+# What a roll-off of the spectrum does to the rigid dilatancy.
+rule roll_off:
+    output:
+        **outputs_of("roll_off"),
+    log:
+        f"{RESULTS}/logs/roll_off.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/roll_off.tsv"
+    priority: 1
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=30,
+    params:
+        **(resolve_roll_off(config, SOURCE) or {}),
+        **calling("roll_off"),
+    script:
+        "../scripts/stage.py"
+
+
+# How the real contact area begins to grow, with and without a roll-off.
+rule area_slope:
+    output:
+        **outputs_of("area_slope"),
+    log:
+        f"{RESULTS}/logs/area_slope.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/area_slope.tsv"
+    # Short, and nothing waits for it but the end: it fills the core that has nothing else to do.
+    priority: -1
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        **calling("area_slope"),
+        recipe=config.get("area_slope"),
+        rtol=SOLVER["rtol"],
+    script:
+        "../scripts/stage.py"
+
+
+# Whether the two estimates of Delta_sigma agree in any limit.
+rule dimension_test:
+    output:
+        **outputs_of("dimension_test"),
+    log:
+        f"{RESULTS}/logs/dimension_test.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/dimension_test.tsv"
+    # Long, and nothing waits for it: begun last it would keep one core busy and the others idle.
+    priority: 1
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 4000 * attempt,
+        # A partition may allow no more than an hour; who needs more gets it at the second attempt.
+        runtime=lambda wc, attempt: 60 * attempt,
+    params:
+        **calling("dimension_test"),
+        recipe=config.get("dimension_test"),
+        rtol=SOLVER["rtol"],
+    script:
+        "../scripts/stage.py"
+
+
+# How far the estimators of Delta_g are off.
+rule estimator_bias:
+    output:
+        **outputs_of("estimator_bias"),
+    log:
+        f"{RESULTS}/logs/estimator_bias.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/estimator_bias.tsv"
+    # As area_slope.
+    priority: -1
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        **calling("estimator_bias"),
+        recipe=config.get("estimator_bias"),
+    script:
+        "../scripts/stage.py"

@@ -1,0 +1,27 @@
+"""Make one or more stages of a study: a call of their function with what the job is given.
+
+Inputs are read and passed on by name, as the rule's parameters are; the datasets that the function
+gives are written to the outputs of their names.
+"""
+
+from importlib import import_module
+
+from _job import job
+
+from fractalcontact.core import netcdf
+
+arguments = dict(snakemake.params.items())
+# Not from the table of stages: then a new one would make all others again.
+module, _, name = arguments.pop("function").partition(":")
+function = getattr(import_module(f"fractalcontact.{module}"), name)
+del arguments["code"]
+
+with job(snakemake) as log:
+    for key, paths in snakemake.input.items():
+        whole = isinstance(paths, str)
+        arguments[key] = netcdf.read(paths) if whole else [netcdf.read(path) for path in paths]
+    made = function(**arguments)
+    for stage, path in snakemake.output.items():
+        dataset = made[stage] if isinstance(made, dict) else made
+        netcdf.write(dataset, path)
+        log.info("%s", dataset)
