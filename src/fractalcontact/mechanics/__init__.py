@@ -20,7 +20,6 @@ __getattr__, __dir__, __all__ = exports(
         "area_laws": ".area",
         "barton_strength": ".theory",
         "bulk_settlement": ".closure",
-        "choices": ".plan",
         "chosen_offset": ".states",
         "closure_curves": ".closure",
         "combine": ".states",
