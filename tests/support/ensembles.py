@@ -9,7 +9,16 @@ import os
 EVERYTHING = os.environ.get("TESTS") == "all"
 
 #: Ensemble: (for ``make test``, for ``make test-all``).
-ENSEMBLES: dict[str, tuple] = {}
+ENSEMBLES: dict[str, tuple] = {
+    # mechanics, size effect, experiments
+    "fitted hyperbolas": (300, 1000),
+    "side of a flat face": (64, 96),
+    "faces of one exponent": (4, 8),
+    "surfaces of every exponent": (10, 20),
+    "surfaces with many hills": ((256, 4), (512, 5)),
+    "joints with a roll-off": (6, 8),
+    "surfaces of every dimension": (2, 3),
+}
 
 
 def ensemble(name):
