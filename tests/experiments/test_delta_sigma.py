@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.intervals import mean_interval
@@ -13,7 +14,7 @@ from fractalcontact.experiments.units import SIDE
 RECIPE = {
     "dimensions": [2.2, 2.5],
     "sizes": [128, 256],
-    "seeds": [1, 2, 3],
+    "seeds": list(range(1, ensemble("surfaces of every dimension") + 1)),
     "loads": [0.05, 0.01],
     "resolutions": [1, 2, 4, 8],
 }

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact.core.directions import DIRECTIONS
 from fractalcontact.experiments.roll_off import roll_off_effect
@@ -19,7 +20,7 @@ RECIPE = {
 
 @pytest.fixture(scope="module")
 def effect():
-    return roll_off_effect(RECIPE, 12.8, range(8))
+    return roll_off_effect(RECIPE, 12.8, range(ensemble("joints with a roll-off")))
 
 
 def test_dilatancy_levels_off_with_a_roll_off_and_rises_on_without(effect):

@@ -81,7 +81,7 @@ def test_what_is_no_share_is_refused_by_its_key(text):
 
 @pytest.mark.parametrize("hardness", [None, 600.0])
 def test_states_lie_within_their_errors_of_exact_ones(hardness):
-    """Fifty loosely solved states beside the same to 1e-10."""
+    """Loosely solved states beside the same to 1e-10."""
     within = {name: [] for name in UNCERTAIN}
     dimensions = []
     for seed in range(5):

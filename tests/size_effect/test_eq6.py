@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from ensembles import ensemble
 from places import SCANS
 
 from fractalcontact.contact.solve import solve_contact
@@ -165,7 +166,8 @@ def test_power_law_of_closure():
 
 
 def test_full_contact_is_euclidean():
-    _, found = pressed_apart(np.zeros((96, 96)), "flat", [0])
+    side = ensemble("side of a flat face")
+    _, found = pressed_apart(np.zeros((side, side)), "flat", [0], window=side / 10)
     np.testing.assert_allclose(found["slope"], 0, atol=1e-9)
     np.testing.assert_allclose(found["delta_sigma"], 2, atol=1e-9)
     assert (found["verdict"] == "agrees").all()

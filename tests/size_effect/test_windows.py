@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from ensembles import ensemble
 from places import SCANS
 
 from fractalcontact.core.mean_plane import without_mean_plane
@@ -263,7 +264,7 @@ def test_loose_states_are_off_by_no_more_than_they_say(rock, laws):
 
 def test_eq_2_finds_the_exponent_the_faces_were_made_with():
     found = []
-    for seed in range(8):
+    for seed in range(ensemble("faces of one exponent")):
         face = make_specimen(
             scan(self_affine((192, 192), 0.1, 0.8, rms=0.3, seed=seed)), window=12.8, reach=3.2
         )
@@ -378,6 +379,7 @@ def test_everything_says_what_it_is(states, laws):
 # Real scans
 
 
+@pytest.mark.full
 @pytest.mark.scans
 def test_larger_windows_of_real_granite_close_more():
     folder = SCANS / "cnl_granite_pair"

@@ -25,6 +25,14 @@ ENSEMBLES: dict[str, tuple] = {
     "elimination draws": (4, 12),
     "placements": (2, 4),
     "extrapolations": (10, 30),
+    # mechanics, size effect, experiments
+    "fitted hyperbolas": (300, 1000),
+    "side of a flat face": (64, 96),
+    "faces of one exponent": (4, 8),
+    "surfaces of every exponent": (10, 20),
+    "surfaces with many hills": ((256, 4), (512, 5)),
+    "joints with a roll-off": (6, 8),
+    "surfaces of every dimension": (2, 3),
 }
 
 

@@ -57,7 +57,10 @@ def interface_closure(closure: Numbers, settlement: Numbers, flush: Any = False)
         -0.078 F/(E* b) there, because a flush window is loaded like a rigid punch and w_b belongs
         to a uniform pressure.
     """
-    return xr.where(flush, 0.0, closure - settlement)
+    closing = closure - settlement
+    if isinstance(closing, xr.DataArray):  # xr.where would drop the labels of the coordinates
+        return closing.where(~flush, 0.0)
+    return np.where(flush, 0.0, closing)
 
 
 class Hyperbola(NamedTuple):

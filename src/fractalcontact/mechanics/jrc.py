@@ -33,7 +33,7 @@ _TABLE = {
     "z2": ("sampling", "1", "rms slope Z2 of profiles along the sliding"),
     "jrc": ("sampling", "1", "JRC = 32.2 + 32.47 log10 Z2"),
     "jrc_used": ((), "1", f"JRC at {JRC_SAMPLING}, kept within {_range_words()}"),
-    "jrc_note": ((), "1", "what is to be known of the JRC used"),
+    "jrc_note": ((), "1", "remarks on the JRC used"),
 }
 
 
@@ -51,7 +51,7 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
         Over `sampling` (:data:`JRC_SAMPLINGS`): the `step` in whole cells (mm), `z2` (rms slope
         over that step, with every place of the first sample; both faces if two were scanned) and
         `jrc` as Tse & Cruden's relation gives it. `jrc_used`, the one of :data:`JRC_SAMPLING` kept
-        within :data:`JRC_RANGE`, and `jrc_note`, what is to be known of it.
+        within :data:`JRC_RANGE`, and `jrc_note`, remarks on it.
 
     Notes
     -----

@@ -24,10 +24,8 @@ class JointLoading:
 
     Parameters
     ----------
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    direction : {"E", "N", "W", "S", "none"}
-        Where the upper block slides.
+    specimen, direction
+        As for :func:`mechanics.joint.composite_topography`.
     cells : (n,) int array_like
         Shear offsets in cells of the scan; may be empty.
     settings : mapping

@@ -49,7 +49,8 @@ def state_errors(state: ContactState) -> dict[str, float]:
 
     Parameters
     ----------
-    state : ContactState
+    state
+        As for :func:`numbers_of`.
 
     Returns
     -------

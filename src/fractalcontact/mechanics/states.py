@@ -44,7 +44,7 @@ OF_STATES = [*SCALARS, *ERRORS, "solved"]
 #: Numbers kept of every offset: name, unit, long name.
 OFFSETS = {
     "offset_made": ("mm", "shear offset v, in whole cells of this direction"),
-    "rigid_opening": ("mm", "rigid dilatancy delta_r at the offset made"),
+    "rigid_opening": ("mm", "rigid dilatancy delta_r at that offset"),
     "composite_spread": ("mm", "standard deviation of the composite topography"),
 }
 

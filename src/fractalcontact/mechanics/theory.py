@@ -152,10 +152,8 @@ def majumdar_bhushan_area(
 
     Parameters
     ----------
-    force : array_like
-        N.
-    modulus : array_like
-        E*, MPa.
+    force, modulus
+        As for :func:`greenwood_williamson_area`.
     dimension : array_like
         D of profiles, one less than that of the surface; NaN is returned outside 1 < D < 1.5 (above
         it small spots carry most of the load, and without plasticity the law has no limit).

@@ -60,7 +60,7 @@ def solve_sub_windows(
     Raises
     ------
     NotConverged
-        If a state could not be verified; the message names it.
+        As :func:`size_effect.windows.window_states`.
 
     Notes
     -----

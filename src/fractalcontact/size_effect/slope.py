@@ -74,13 +74,13 @@ def real_pressure_errors(states: xr.Dataset) -> tuple[np.ndarray, ...]:
         Infinite where no node is certain to touch, NaN where the windows were not solved.
     """
     dims = ("part", "window", "step", "resolution")
-    nodes, undecided = (states[name].transpose(*dims) for name in ("nodes", "nodes_error"))
+    nodes, ambiguous = (states[name].transpose(*dims) for name in ("nodes", "nodes_error"))
     with np.errstate(divide="ignore"):
         return tuple(
             abs(np.log1p(-np.minimum(off / touch.where(touch > 0), 1))).mean("resolution").values
             for touch, off in (
-                (nodes.mean("window"), undecided.mean("window")),
-                (nodes, undecided),
+                (nodes.mean("window"), ambiguous.mean("window")),
+                (nodes, ambiguous),
             )
         )
 
