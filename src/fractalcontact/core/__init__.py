@@ -39,6 +39,7 @@ __getattr__, __dir__, __all__ = exports(
         "in_child": ".child_process",
         "interval": ".slope_of_sums",
         "jackknife_error": ".intervals",
+        "labelled": ".datasets",
         "labelled_dataset": ".datasets",
         "length_factor": ".units",
         "load": ".units",

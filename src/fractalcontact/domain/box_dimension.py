@@ -166,7 +166,8 @@ def contact_dimension(
     return no_dimension(box.r, box.count, ONE_NODE) if np.sum(domain) == 1 else box
 
 
-class _Cover(NamedTuple):
+@dataclass(frozen=True)
+class _Cover:
     """Boxes of the minimal cover at each size."""
 
     sizes: np.ndarray
