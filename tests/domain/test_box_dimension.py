@@ -288,9 +288,9 @@ def test_sets_turned_by_thirty_degrees(name):
 LEVY = [
     pytest.param(0.8, 512, 200, 0.05, marks=pytest.mark.full),
     pytest.param(0.8, 2048, 150, 0.02, marks=pytest.mark.full),
-    pytest.param(1.2, 512, 120, 0.02, marks=pytest.mark.full),
+    (1.2, 512, 120, 0.02),
     pytest.param(1.2, 1024, 64, 0.02, marks=pytest.mark.full),
-    (1.5, 512, 100, 0.02),
+    pytest.param(1.5, 512, 100, 0.02, marks=pytest.mark.full),
 ]
 
 

@@ -39,7 +39,10 @@ def unseen(interval):
 
 
 @pytest.mark.parametrize("hurst", HURST)
-@pytest.mark.parametrize(("n", "dtype"), [(64, float), (128, float), (256, np.float32)])
+@pytest.mark.parametrize(
+    ("n", "dtype"),
+    [(64, float), pytest.param(128, float, marks=pytest.mark.full), (256, np.float32)],
+)
 def test_a_self_affine_surface_has_no_noise_floor_and_no_filter(n, hurst, dtype):
     for found in each_axis(surface(n, hurst).astype(dtype).astype(float)):
         assert unseen(found.noise_rms)
@@ -104,7 +107,7 @@ def test_noise_alone_leaves_no_fractal_range():
 
 
 @pytest.mark.parametrize("hurst", HURST)
-@pytest.mark.parametrize("width", [1.5, 2.5])
+@pytest.mark.parametrize("width", [pytest.param(1.5, marks=pytest.mark.full), 2.5])
 def test_a_gaussian_low_pass_is_found_where_it_halves_the_spectrum(hurst, width):
     z = gaussian_filter(surface(256 + 40, hurst), width, truncate=8)[20:-20, 20:-20]
     half = 2 * np.pi * width * SPACING / np.sqrt(np.log(2))
@@ -137,7 +140,7 @@ def test_shifted_scan_lines_are_noise_along_the_other_axis_alone():
     assert along_y.noise_rms[0] == pytest.approx(0.03, rel=0.15)
 
 
-@pytest.mark.parametrize("step", [0.02, 0.05])
+@pytest.mark.parametrize("step", [0.02, pytest.param(0.05, marks=pytest.mark.full)])
 def test_quantised_heights_have_the_noise_of_their_step(step):
     z = step * np.round(surface(256, 0.9) / step)
     for found in each_axis(z):
