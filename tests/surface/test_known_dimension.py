@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.mean_plane import without_mean_plane
@@ -73,7 +74,7 @@ def test_estimators_find_the_dimension_again(make, target):
                     make((256, 256), 0.1, target, rms=0.3, seed=seed), 0.1, estimators=names
                 ).values()
             ]
-            for seed in range(10)
+            for seed in range(ensemble("surfaces of other makers"))
         ],
         axis=0,
     )
@@ -83,9 +84,10 @@ def test_estimators_find_the_dimension_again(make, target):
 def test_an_extruded_profile_has_one_dimension_more_than_the_profile():
     target = 0.7
     found = []
-    for seed in range(10):
-        profile = weierstrass_mandelbrot((2, 1024), 0.1, target, rms=0.3, seed=seed)[0]
-        surface = extruded(profile, 1024)
+    n, seeds = ensemble("extruded profiles")
+    for seed in range(seeds):
+        profile = weierstrass_mandelbrot((2, n), 0.1, target, rms=0.3, seed=seed)[0]
+        surface = extruded(profile, n)
         estimate = hurst_exponents(surface, 0.1, estimators=["second_differences"])
         found.append(estimate["second_differences"].hurst["x"][0])
         assert np.isnan(estimate["second_differences"].hurst["y"][0])  # no roughness at all

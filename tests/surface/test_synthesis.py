@@ -3,12 +3,13 @@ import hashlib
 import numpy as np
 import pytest
 import yaml
+from ensembles import ensemble
 
 from fractalcontact.roughness.dimension import roughness_length
 from fractalcontact.study.embedded import write_scan
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 
-SEEDS = range(20)
+SEEDS = range(ensemble("synthetic seeds"))
 SPACING = 0.08
 
 
@@ -60,7 +61,10 @@ def test_heights_do_not_grow_beyond_the_roll_off():
 
 
 def test_opposite_edges_know_nothing_of_each_other():
-    pairs = [self_affine((128, 128), 1.0, 0.8, rms=1.0, seed=s, roll_off=16.0) for s in range(40)]
+    pairs = [
+        self_affine((128, 128), 1.0, 0.8, rms=1.0, seed=s, roll_off=16.0)
+        for s in range(ensemble("edge pairs"))
+    ]
     across = [np.corrcoef(z[0], z[-1])[0, 1] for z in pairs]
     beside = [np.corrcoef(z[0], z[1])[0, 1] for z in pairs]
     assert np.mean(across) == pytest.approx(0, abs=0.12)

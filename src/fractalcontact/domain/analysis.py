@@ -1,5 +1,7 @@
 """One table over all contact states of a specimen: box counts, clusters, renormalisation."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -113,7 +115,7 @@ def analyse_domains(
     table["box_side"] = padded([sizes[k] * k * spacing for k in factors])
     multiples = ("resolution", factors, cf_attrs("1", "multiple k of the scan's spacing"))
     octaves = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
-    coords = {name: fields[name] for name in ("direction", "offset", "load")}
+    coords: dict[str, Any] = {name: fields[name] for name in ("direction", "offset", "load")}
     coords |= {"resolution": multiples, "octave": octaves}
     return labelled_dataset(_TABLE, table, coords=coords)
 

@@ -42,7 +42,7 @@ def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np
     sides = sorted({int(n) for n in np.broadcast_to(extent, 2)})
     largest = sides[0] if largest is None else largest
     parts = {n / k for n in sides for k in range(2, n // 2 + 1) if n / k <= largest}
-    best = {}
+    best: dict[int, tuple[float, float, float]] = {}
     for r in sorted(parts):
         place = SIZES_PER_OCTAVE * np.log2(sides[-1] / r)
         # Rounded, so that of sizes that all fit the one nearest to its place is taken.
@@ -56,10 +56,10 @@ def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np
 
 def _overhang(sides: list[int], r: float) -> float:
     """What boxes of side r cover over what there is; a side shorter than a box does not count."""
-    return float(np.prod([boxes_along(n, r) * r / n for n in sides if n >= r]))
+    return float(np.prod([float(boxes_along(n, r)) * r / n for n in sides if n >= r]))
 
 
-def boxes_along(n: int, sizes: np.ndarray) -> np.ndarray:
+def boxes_along(n: int, sizes: float | np.ndarray) -> np.ndarray:
     """Boxes of each size that cover n cells; the small number keeps n / (n / k) at k."""
     return np.ceil(n / sizes - 1e-9)
 

@@ -6,7 +6,7 @@ counts themselves are those of :mod:`domain.box_counts`.
 
 import itertools
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -147,26 +147,28 @@ def box_dimension(
     return _of_cover(cover, ladder, "cover") if law is None else _of_law(cover, law, spacing)
 
 
-def contact_dimension(
-    domain: np.ndarray,
-    spacing: float,
-    *,
-    fit_range: tuple[float, float] | None = None,
-    sizes: np.ndarray | None = None,
-    whole_cells: bool | None = None,
-) -> BoxDimension:
-    """Box-counting dimension of a contact domain whose nodes stand for cells.
+def contact_dimension(domain: np.ndarray, spacing: float, **how: Any) -> BoxDimension:
+    """Box-counting dimension of a contact domain; a single node has none.
 
-    Parameters and errors as :func:`box_dimension`, but a domain of one node has no dimension. To
-    box counting it is a point, of dimension 0 without error; the node, though, stands for contact
-    somewhere in a cell, and whether that is a point, a line or the whole cell no count at this
-    spacing can show.
+    To box counting it is a point, of dimension 0 without error; the node, though, stands for
+    contact somewhere in a cell, and whether that is a point, a line or the whole cell no count at
+    this spacing can show.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool array_like
+        Nodes in contact.
+    spacing : float
+        In mm.
+    **how
+        ``fit_range``, ``sizes`` and ``whole_cells`` of :func:`box_dimension`.
     """
-    box = box_dimension(domain, spacing, fit_range=fit_range, sizes=sizes, whole_cells=whole_cells)
+    box = box_dimension(domain, spacing, **how)
     return no_dimension(box.r, box.count, ONE_NODE) if np.sum(domain) == 1 else box
 
 
-class _Cover(NamedTuple):
+@dataclass(frozen=True)
+class _Cover:
     """Boxes of the minimal cover at each size."""
 
     sizes: np.ndarray

@@ -1,7 +1,10 @@
 """Clusters of the contact domain: how many, how large, and how unevenly spread over the window."""
 
+from typing import Any
+
 import numpy as np
 import scipy.ndimage
+from numpy.typing import ArrayLike
 from scipy import special
 
 from ..core.intervals import CONFIDENCE
@@ -9,7 +12,7 @@ from ..core.intervals import CONFIDENCE
 #: Numbers kept of the clusters of a domain: name, unit, long name.
 CLUSTER_FIELDS = {
     "clusters": ("1", "contact clusters, neighbours by side or corner"),
-    "largest_share": ("1", "share of the largest cluster in the contact area"),
+    "largest_share": ("1", "fraction of the contact area in the largest cluster"),
     "cluster_area_mean": ("mm2", "mean area of a contact cluster"),
     "cluster_area_median": ("mm2", "median area of a contact cluster"),
     "cluster_exponent": ("1", "beta of N(clusters of area a or more) ~ a^-beta"),
@@ -18,11 +21,14 @@ CLUSTER_FIELDS = {
     "cluster_fit_min": ("mm2", "smallest cluster in the fit of beta"),
     "cluster_fit_max": ("mm2", "largest cluster in the fit of beta"),
     "cluster_fit_n": ("1", "clusters in the fit of beta"),
-    "cluster_fit_distance": ("1", "largest gap between N(a) and its power law, share of the fit"),
+    "cluster_fit_distance": (
+        "1",
+        "Kolmogorov-Smirnov distance of N(a) from its power law",
+    ),
     "morisita": ("1", "Morisita's index of the contact over quadrats, 1 if spread at random"),
     "morisita_scatter": ("1", "standard deviation of Morisita's index of as many random nodes"),
-    "half_share": ("1", "smallest share of the window whose quadrats hold half of the contact"),
-    "half_share_random": ("1", "that share for as many random nodes"),
+    "half_share": ("1", "smallest fraction of the window whose quadrats hold half of the contact"),
+    "half_share_random": ("1", "that fraction for as many random nodes"),
 }
 
 #: Contact is counted in so many by so many equal parts of the window (fewer if it has fewer cells).
@@ -41,7 +47,7 @@ LARGEST_DISTANCE = 0.85
 _NEIGHBOURS = np.ones((3, 3), int)
 
 
-def cluster_statistics(domain, spacing):
+def cluster_statistics(domain: ArrayLike, spacing: float) -> dict[str, Any]:
     """Number, sizes and spread of the clusters of a contact domain.
 
     Parameters
@@ -78,7 +84,7 @@ def cluster_statistics(domain, spacing):
     }
 
 
-def cluster_sizes(domain):
+def cluster_sizes(domain: ArrayLike) -> np.ndarray:
     """Nodes in each cluster of a domain; those that share a side or a corner are in one.
 
     Parameters
@@ -93,14 +99,14 @@ def cluster_sizes(domain):
     return np.bincount(labels.ravel())[1:]
 
 
-def octave_counts(sizes, most):
+def octave_counts(sizes: np.ndarray, most: int) -> np.ndarray:
     """Clusters in each octave of nodes: 1, 2 to 3, 4 to 7, ... up to ``most`` nodes."""
     # Exact, where the logarithm of a power of two need not be: frexp gives the digits of a number.
     octave = np.frexp(sizes)[1] - 1
     return np.bincount(octave, minlength=int(most).bit_length())
 
 
-def size_exponent(octaves, sizes, cell):
+def size_exponent(octaves: np.ndarray, sizes: np.ndarray, cell: float) -> dict[str, float]:
     """Exponent beta of N(clusters of area a or more) ~ a^-beta, Korcak's law.
 
     Parameters
@@ -149,7 +155,7 @@ def size_exponent(octaves, sizes, cell):
     }
 
 
-def follows_law(clusters, distance):
+def follows_law(clusters: float, distance: float) -> bool:
     """Whether sizes are as near to their power law as chance would have them.
 
     Parameters
@@ -173,7 +179,7 @@ def _geometric(counts):
     return float(distance), tuple(float(-np.log2(q)) for q in (ratio, high, low))
 
 
-def quadrat_counts(domain):
+def quadrat_counts(domain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nodes in contact, and all nodes, in each of `QUADRATS` by `QUADRATS` parts of the window.
 
     Parameters
@@ -192,7 +198,7 @@ def quadrat_counts(domain):
     return contact.ravel(), np.outer(height, width).ravel()
 
 
-def morisita_index(contact, cells):
+def morisita_index(contact: ArrayLike, cells: ArrayLike) -> tuple[float, float]:
     """Morisita's index of dispersion and its scatter for random nodes.
 
     Parameters
@@ -238,8 +244,8 @@ def _falling(n, k):
     return np.prod([n - i for i in range(k)], axis=0)
 
 
-def half_share(contact, cells):
-    """Smallest share of the window whose quadrats hold half of the contact.
+def half_share(contact: ArrayLike, cells: ArrayLike) -> float:
+    """Smallest fraction of the window whose quadrats hold half of the contact.
 
     Parameters
     ----------
@@ -261,7 +267,7 @@ def half_share(contact, cells):
     return float(np.interp(0.5, np.r_[0, held], np.r_[0, extent]))
 
 
-def random_half_share(nodes, cells):
+def random_half_share(nodes: float, cells: ArrayLike) -> float:
     """:func:`half_share` of nodes drawn at random, for many quadrats as large as the mean one.
 
     Parameters

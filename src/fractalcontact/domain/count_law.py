@@ -1,4 +1,4 @@
-"""The power law that mean box counts follow: the set's resolution and its outline told apart.
+"""The power law that mean box counts follow: the set's resolution and its outline separated.
 
 The places of a gliding box that meet a set of dimension D fill the area V(r) = r^2 N(r). For a set
 drawn on a grid and cut off by an outline
@@ -19,7 +19,7 @@ The thresholds below were chosen on carpets, dusts, percolation clusters and ran
 D is then found within 0.02. On other sets, drawn as whole cells, that they were not chosen on
 (Vicsek's, Sierpinski's triangle, dusts and carpets of ratios 4 and 5, upright and turned) the
 median error is 0.03 and the largest 0.07, mostly upwards, where whole cells pass for centres.
-Whoever drew a set knows which they are, and may say so.
+Whoever drew a set knows which they are, and may state it.
 """
 
 from dataclasses import dataclass, replace
@@ -44,7 +44,7 @@ LEAST_WITH_OUTLINE = 1.0
 TERM_GAIN = 1.5
 
 #: Cells marked whole (c = 0) are believed where their law fits better by this ratio than that of
-#: centres, and to this share: without an outline (log-periodic sets wave by 2 %), and with one.
+#: centres, and to this misfit: without an outline (log-periodic sets wave by 2 %), and with one.
 WHOLE_GAIN = 1.6
 WHOLE_MISFIT = 0.026
 WHOLE_MISFIT_OUTLINE = 0.0015
@@ -52,7 +52,7 @@ WHOLE_MISFIT_OUTLINE = 0.0015
 #: Other laws are almost as good where their misfit is at most this times as large.
 RIVAL = 2.0
 
-#: Smallest box, cells, by which forms of the law are told apart, and of the fit itself: the
+#: Smallest box, cells, by which forms of the law are separated, and of the fit itself: the
 #: smaller the box, the more what a node stands for shows, which is wanted in the one only.
 SMALLEST_SEPARATING = 3
 SMALLEST = 4
@@ -102,8 +102,8 @@ def best_law(
     sizes, count = _checked(sizes, count)
     stand_for = {None: (_WHOLE, _CENTRE), True: (_WHOLE,), False: (_CENTRE,)}[whole_cells]
     forms = [Law(np.nan, np.inf, c, outline) for c in stand_for for outline in range(3)]
-    laws = [_fit(form, sizes, count, side) for form in forms]
-    laws = {(law.c, law.outline): law for law in laws if law is not None}
+    fits = [_fit(form, sizes, count, side) for form in forms]
+    laws = {(law.c, law.outline): law for law in fits if law is not None}
     if not laws:
         return None, []
     law = _whole_cells(laws) if whole_cells is None else None

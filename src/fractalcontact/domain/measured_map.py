@@ -5,11 +5,15 @@ A map is a file like a scan, a matrix of stresses or of 0 and 1, whose sidecar s
 contact domains.
 """
 
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import labelled
 from ..core.errors import InputError
-from ..core.labels import cf_attrs
 from ..core.units import load as read_load
 from ..scan.read import read_matrix
 from .analysis import DOMAIN_FIELDS, analyse_domains
@@ -19,8 +23,16 @@ MAP_KEYS = ("kind", "threshold", "load", "cells")
 #: What a cell in contact stands for, and whether it is one of those that hold any contact at all.
 CELLS = {"any contact": True, "contact at the centre": False}
 
+#: What a map holds beside the numbers of its contact domain.
+_VARIABLES = {
+    "in_contact": (("y", "x"), "1", "cell in contact"),
+    "measured": (("y", "x"), "1", "cell where something was measured"),
+    "area_share": ((), "1", "real contact area A_r / A_0"),
+    "nominal_pressure": ((), "MPa", "nominal pressure F / A_0"),
+}
 
-def read_contact_map(path, options, *, label):
+
+def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str) -> xr.Dataset:
     """The contact domain of a map, its dimension and its clusters.
 
     Parameters
@@ -66,20 +78,17 @@ def read_contact_map(path, options, *, label):
         coords={"direction": ["none"], "offset": [0.0], "load": [0.0]},
     )
     stands_for = options.get("cells")
-    known = CELLS.get(stands_for)
+    whole_cells = CELLS.get(str(stands_for))
     spacing = float(np.sqrt(dx * dy))
-    found = analyse_domains(domains, spacing, whole_cells=known).squeeze(drop=True)
+    table = analyse_domains(domains, spacing, whole_cells=whole_cells).squeeze(drop=True)
     nominal = measured.sum() * dx * dy
-    result = found[[*DOMAIN_FIELDS, "reason"]]
-    result["in_contact"] = (("y", "x"), touching, cf_attrs("1", "cell in contact"))
-    result["measured"] = (("y", "x"), measured, cf_attrs("1", "cell where something was measured"))
-    share = touching.sum() / measured.sum()
-    result["area_share"] = ((), share, cf_attrs("1", "real contact area A_r / A_0"))
-    result["nominal_pressure"] = (
-        (),
-        _pressure(options.get("load"), nominal, f"sidecar of {path}: load"),
-        cf_attrs("MPa", "nominal pressure F / A_0"),
-    )
+    values = {
+        "in_contact": touching,
+        "measured": measured,
+        "area_share": touching.sum() / measured.sum(),
+        "nominal_pressure": _pressure(options.get("load"), nominal, f"sidecar of {path}: load"),
+    }
+    result = table[[*DOMAIN_FIELDS, "reason"]].assign(labelled(_VARIABLES, values))
     result.attrs = {
         "label": label,
         "threshold": float(threshold),

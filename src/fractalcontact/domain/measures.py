@@ -1,9 +1,14 @@
 """All measures of a contact domain and its pressure: of one state, and of all map states."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from ..core.arrays import padded
+from ..core.datasets import labelled
+from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
 from ..core.slope_of_sums import NO_SLOPE
 from .box_counts import box_count, box_sizes
@@ -19,12 +24,18 @@ SLOPES = {
 }
 
 
-def order_name(q):
+#: Endings of the numbers that a slope is stored as, in the order of `core.slope_of_sums.Slope`.
+_ENDS = ("", "_low", "_high", "_r_min", "_r_max", "_n")
+
+
+def order_name(q: float) -> str:
     """Name of D_q in a table: "d_2", "d_minus_1"."""
     return f"d_{'minus_' if q < 0 else ''}{abs(q):g}".replace(".", "_")
 
 
-def domain_measures(domain, spacing, pressure=None):
+def domain_measures(
+    domain: np.ndarray, spacing: float, pressure: np.ndarray | None = None
+) -> dict[str, float]:
     """Every measure of a contact domain as one row of a table.
 
     Parameters
@@ -58,15 +69,14 @@ def _row(domain, spacing, gliding, pressure):
     mass = domain if pressure is None else pressure
     for q, slope in generalised_dimensions(mass, spacing).items():
         slopes[order_name(q)] = slope
-    ends = ("", "_low", "_high", "_r_min", "_r_max", "_n")
     return {
         f"{name}{end}": float(value)
         for name, slope in slopes.items()
-        for end, value in zip(ends, slope, strict=True)
+        for end, value in zip(_ENDS, slope, strict=True)
     }
 
 
-def measures_of_map_states(states, spacing):
+def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
     """:func:`measures_of_states` of the states that are looked at closely.
 
     Parameters
@@ -88,7 +98,9 @@ def measures_of_map_states(states, spacing):
     return measures.assign_coords(place)
 
 
-def measures_of_states(domains, pressures, spacing, forces):
+def measures_of_states(
+    domains: ArrayLike, pressures: ArrayLike, spacing: float, forces: ArrayLike
+) -> xr.Dataset:
     """Measures of one joint's contact under every load: dataset of the stage domain_measures.
 
     Parameters
@@ -123,60 +135,64 @@ def measures_of_states(domains, pressures, spacing, forces):
         )
     curves = [lacunarity(domain, spacing) for domain in domains]
     rows = [_row(d, spacing, *of) for d, *of in zip(domains, curves, pressures, strict=True)]
-    side, slopes = _local_slopes(domains, spacing)
-    variables = {}
+    side, local = _local_slopes(domains, spacing)
+    variables: dict[str, Any] = {}
     for name, long_name in SLOPES.items():
-        variables |= _slope_variables("load", name, long_name, lambda key: [r[key] for r in rows])
+        variables |= _slope_variables("load", name, long_name, rows, [name])
     variables |= _slope_variables(
         ("load", "order"),
         "generalised_dimension",
         "generalised dimension D_q of the pressure",
-        lambda key: [
-            [row[key.replace("generalised_dimension", order_name(q))] for q in ORDERS]
-            for row in rows
-        ],
+        rows,
+        [order_name(q) for q in ORDERS],
     )
-    variables["local_slope"] = (
+    curve_values = {
+        "local_slope": local,
+        "lacunarity": np.array([curve.value for curve in curves]),
+        "lacunarity_low": np.array([curve.low for curve in curves]),
+        "lacunarity_high": np.array([curve.high for curve in curves]),
+    }
+    coords = {
+        "load": ("load", forces, cf_attrs("N", "normal force F")),
+        "order": ("order", np.array(ORDERS), cf_attrs("1", "order q")),
+        "slope_side": ("slope_side", side, cf_attrs("mm", "middle of the doubling")),
+        "gliding_side": ("gliding_side", curves[0].r, cf_attrs("mm", "side of the gliding box")),
+    }
+    return xr.Dataset(variables | labelled(_CURVES, curve_values), coords=coords)
+
+
+#: Measures of a domain that are curves over a box side.
+_CURVES = {
+    "local_slope": (
         ("load", "slope_side"),
-        slopes,
-        cf_attrs("1", "local slope of log N(r) over a doubling of the box side"),
-    )
-    for end, words in (("", ""), ("_low", ", lower end"), ("_high", ", upper end")):
-        values = [getattr(curve, end.removeprefix("_") or "value") for curve in curves]
-        variables[f"lacunarity{end}"] = (
-            ("load", "gliding_side"),
-            np.array(values),
-            cf_attrs("1", f"gliding-box lacunarity{words and words + ' of the 95 % interval'}"),
-        )
-    return xr.Dataset(
-        variables,
-        coords={
-            "load": ("load", forces, cf_attrs("N", "normal force F")),
-            "order": ("order", np.array(ORDERS), cf_attrs("1", "order q")),
-            "slope_side": ("slope_side", side, cf_attrs("mm", "middle of the doubling")),
-            "gliding_side": (
-                "gliding_side",
-                curves[0].r,
-                cf_attrs("mm", "side of the gliding box"),
-            ),
-        },
-    )
+        "1",
+        "local slope of log N(r) over a doubling of the box side",
+    ),
+    **{
+        f"lacunarity{end}": (("load", "gliding_side"), "1", f"gliding-box lacunarity{words}")
+        for end, words in INTERVAL.items()
+    },
+}
 
 
-def _slope_variables(dims, name, long_name, values):
-    """A slope with its interval and range as variables of a dataset."""
-    ends = {
-        "": ("1", long_name),
-        "_low": ("1", f"{long_name}, lower end of the 95 % interval"),
-        "_high": ("1", f"{long_name}, upper end of the 95 % interval"),
-        "_r_min": ("mm", f"{long_name}: smallest length fitted"),
-        "_r_max": ("mm", f"{long_name}: largest length fitted"),
-        "_n": ("1", f"{long_name}: lengths fitted"),
+def _slope_variables(dims, name, long_name, rows, keys):
+    """A slope with its interval and range as variables of a dataset.
+
+    ``keys`` are those of the slopes in the rows, along the last dimension where there are many.
+    """
+    table = {
+        **{f"{name}{end}": (dims, "1", f"{long_name}{words}") for end, words in INTERVAL.items()},
+        f"{name}_r_min": (dims, "mm", f"{long_name}: smallest length fitted"),
+        f"{name}_r_max": (dims, "mm", f"{long_name}: largest length fitted"),
+        f"{name}_n": (dims, "1", f"{long_name}: lengths fitted"),
     }
-    return {
-        f"{name}{end}": (dims, np.array(values(f"{name}{end}"), float), cf_attrs(*label))
-        for end, label in ends.items()
+    values = {
+        f"{name}{end}": np.array([[row[f"{key}{end}"] for key in keys] for row in rows], float)
+        for end in _ENDS
     }
+    if isinstance(dims, str):
+        values = {key: value[:, 0] for key, value in values.items()}
+    return labelled(table, values)
 
 
 def _local_slopes(domains, spacing):

@@ -1,9 +1,10 @@
-"""Masses of gliding boxes: lacunarity and generalised dimensions of a domain or its pressure.
+"""Multifractal analysis of a domain or its pressure: gliding-box lacunarity and D_q.
 
 A box glides over all its places inside the window. Boxes of one size then are a fair sample of
 what goes on beyond the window too, and nothing depends on where a grid of boxes happens to lie.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,21 +15,21 @@ from ..core.kernel_cache import njit
 from ..core.slope_of_sums import BLOCKS, NO_SLOPE, Slope, slope_of_sums
 from .box_counts import whole_sizes
 
-#: Smallest and largest box of the fits: cells, and share of the window's shorter side.
+#: Smallest and largest box of the fits: cells, and fraction of the window's shorter side.
 SMALLEST_BOX = 4
 LARGEST_BOX = 1 / 4
 
-#: Places of a box along its own side: more say nothing new, the boxes overlap by so much.
+#: Places of a box along its own side: more add nothing new, the boxes overlap by so much.
 PLACES = 16
 
 #: Orders q of the generalised dimensions.
 ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
 #: Of fewer nodes there is no D_q: each is a tenth of it. And gliding boxes meet those near a rim
-#: less often: a single one in a corner would have 1.8, and parts left out would not tell.
+#: less often: a single one in a corner would have 1.8, and parts left out would not show it.
 FEWEST = 10
 
 
-class Curve(NamedTuple):
+class SizeCurve(NamedTuple):
     """A number at each box size, its interval, and the slope of its logarithm."""
 
     r: np.ndarray
@@ -38,7 +39,9 @@ class Curve(NamedTuple):
     slope: Slope
 
 
-def gliding_moments(mass: np.ndarray, sizes: np.ndarray, orders) -> tuple[np.ndarray, np.ndarray]:
+def gliding_moments(
+    mass: np.ndarray, sizes: np.ndarray, orders: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
     """Moments of the mass in gliding boxes inside the window, over parts of the window.
 
     Parameters
@@ -53,8 +56,8 @@ def gliding_moments(mass: np.ndarray, sizes: np.ndarray, orders) -> tuple[np.nda
     Returns
     -------
     moments : (k, len(orders) + 1, BLOCKS**2) float64
-        Sums of p^q over boxes that are not empty, p their share of the window's mass; last those of
-        p ln p.
+        Sums of p^q over boxes that are not empty, p their fraction of the window's mass; last those
+        of p ln p.
     places : (k, BLOCKS**2) int64
         Boxes, empty ones too, by the part of the window that holds their middle.
 
@@ -65,14 +68,14 @@ def gliding_moments(mass: np.ndarray, sizes: np.ndarray, orders) -> tuple[np.nda
     """
     mass = _checked(mass)
     sizes = whole_numbers(sizes, "sizes of boxes", least=1, most=max(1, *mass.shape))
-    orders = real_array(orders, "orders q").astype(float).ravel()
-    moments = np.zeros((sizes.size, orders.size + 1, BLOCKS**2))
+    q = real_array(orders, "orders q").astype(float).ravel()
+    moments = np.zeros((sizes.size, q.size + 1, BLOCKS**2))
     places = np.zeros((sizes.size, BLOCKS**2), np.int64)
     total = mass.sum()
     if total > 0:
-        share = mass / total
+        fraction = mass / total
         for k, size in enumerate(sizes):
-            _glide(share, int(size), max(1, int(size) // PLACES), orders, moments[k], places[k])
+            _glide(fraction, int(size), max(1, int(size) // PLACES), q, moments[k], places[k])
     return moments, places
 
 
@@ -88,15 +91,15 @@ def _checked(mass):
 
 
 @njit(cache=True)
-def _glide(share, size, step, orders, moments, places):
+def _glide(fraction, size, step, orders, moments, places):
     """Add the moments of all boxes of one size; sums of columns move on with the box."""
-    ny, nx = share.shape
+    ny, nx = fraction.shape
     column = np.zeros(nx)
     for y in range(0, ny - size + 1, step):
         # Summed anew: differences of sums would leave a trace of mass where there is none.
         column[:] = 0.0
         for i in range(y, y + size):
-            column += share[i]
+            column += fraction[i]
         part_y = (2 * y + size) * BLOCKS // (2 * ny)
         for x in range(0, nx - size + 1, step):
             p = column[x : x + size].sum()
@@ -122,7 +125,7 @@ def fit_sizes(shape: tuple[int, int]) -> np.ndarray:
     return sizes[sizes >= SMALLEST_BOX]
 
 
-def lacunarity(mass: np.ndarray, spacing: float) -> Curve:
+def lacunarity(mass: np.ndarray, spacing: float) -> SizeCurve:
     """Gliding-box lacunarity <M^2> / <M>^2 over box sizes (Allain & Cloitre 1991).
 
     1 where all boxes hold the same; a translation invariant fractal of dimension D in a window has
@@ -136,7 +139,7 @@ def lacunarity(mass: np.ndarray, spacing: float) -> Curve:
 
     Returns
     -------
-    Curve
+    SizeCurve
         `r` in mm from one cell to half of the window; interval by the jackknife over parts of the
         window (on the logarithm); the slope over the boxes of `fit_sizes`. Empty window: NaN.
     """
@@ -151,7 +154,7 @@ def lacunarity(mass: np.ndarray, spacing: float) -> Curve:
     fitted = np.isin(sizes, fit_sizes(mass.shape))
     slope = slope_of_sums(sizes[fitted] * float(spacing), sums[fitted], _lacunarity)
     r = sizes * float(spacing)
-    return Curve(r, value, value * np.exp(-error), value * np.exp(error), slope)
+    return SizeCurve(r, value, value * np.exp(-error), value * np.exp(error), slope)
 
 
 def _lacunarity(sums):
@@ -177,7 +180,7 @@ def generalised_dimensions(
     spacing : float
         mm.
     orders : sequence of float
-        q. Negative ones weigh the emptiest boxes most: they tell how contact fades out at the rims
+        q. Negative ones weigh the emptiest boxes most: they show how contact fades out at the rims
         of its patches, and depend on the solver's tolerance.
 
     Returns
@@ -192,13 +195,13 @@ def generalised_dimensions(
         return dict.fromkeys(orders, NO_SLOPE)
     moments, places = gliding_moments(mass, sizes, [1.0, *orders])
     first, entropy = moments[:, 0], moments[:, -1]
-    found = {}
+    dimensions = {}
     for j, q in enumerate(orders):
         column = entropy if q == 1 else moments[:, 1 + j]
         sums = np.stack([first, column, places], axis=1)
         slope = slope_of_sums(sizes * float(spacing), sums, _normalised(q))
-        found[q] = _dimension(slope, q)
-    return found
+        dimensions[q] = _dimension(slope, q)
+    return dimensions
 
 
 def _normalised(q):

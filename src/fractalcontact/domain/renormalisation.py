@@ -1,5 +1,7 @@
 """Renormalisation of the contact area over resolutions and the size effect (eqs. 5 and 6)."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from scipy import special
@@ -11,7 +13,7 @@ from ..core.labels import cf_attrs
 #: The dimension along which resolutions s, 2s, 4s ... are stored.
 RESOLUTION = "resolution"
 
-#: Nodes that a contact domain needs at a resolution for its number N_n to tell anything.
+#: Nodes that a contact domain needs at a resolution for its number N_n to count.
 FEWEST_NODES = 4
 
 
@@ -74,32 +76,39 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
         np.log(measure).mean(RESOLUTION),
         np.log(measure).std(RESOLUTION, ddof=1),
     )
-    result = xr.Dataset(
-        {
-            "delta_sigma": delta,
-            "delta_sigma_low": 2 - high,
-            "delta_sigma_high": 2 - low,
-            "n": n.astype(int),
-            "r2": r2,
-            "hausdorff_measure": np.exp(mean_log),
-            "hausdorff_spread": np.exp(spread_log),
-            "sigma_star": force / np.exp(mean_log),
-            "sigma_n": force / touching,
-        }
-    )
-    units = {
-        "delta_sigma": ("1", "dimension of the contact domain from A_r ~ s^(2 - Delta_sigma)"),
-        "delta_sigma_low": ("1", "lower end of the 95 % interval of Delta_sigma"),
-        "delta_sigma_high": ("1", "upper end of the 95 % interval of Delta_sigma"),
-        "n": ("1", "resolutions fitted"),
-        "r2": ("1", "coefficient of determination of the fit"),
-        "hausdorff_measure": ("mm^delta_sigma", "fractal measure H_D of the contact domain"),
-        "hausdorff_spread": ("1", "geometric standard deviation of H_D over resolutions"),
-        "sigma_star": ("N mm^-delta_sigma", "fractal mean pressure sigma*"),
-        "sigma_n": ("MPa", "real mean pressure at each resolution"),
+    values = {
+        "delta_sigma": delta,
+        "delta_sigma_low": 2 - high,
+        "delta_sigma_high": 2 - low,
+        "n": n.astype(int),
+        "r2": r2,
+        "hausdorff_measure": np.exp(mean_log),
+        "hausdorff_spread": np.exp(spread_log),
+        "sigma_star": force / np.exp(mean_log),
+        "sigma_n": force / touching,
     }
-    for name, (unit, words) in units.items():
-        result[name].attrs = cf_attrs(unit, words)
+    return _described(values, _RENORMALISED)
+
+
+#: Unit and long name of what renormalisation gives.
+_RENORMALISED = {
+    "delta_sigma": ("1", "dimension of the contact domain from A_r ~ s^(2 - Delta_sigma)"),
+    "delta_sigma_low": ("1", "lower end of the 95 % interval of Delta_sigma"),
+    "delta_sigma_high": ("1", "upper end of the 95 % interval of Delta_sigma"),
+    "n": ("1", "resolutions fitted"),
+    "r2": ("1", "coefficient of determination of the fit"),
+    "hausdorff_measure": ("mm^delta_sigma", "fractal measure H_D of the contact domain"),
+    "hausdorff_spread": ("1", "geometric standard deviation of H_D over resolutions"),
+    "sigma_star": ("N mm^-delta_sigma", "fractal mean pressure sigma*"),
+    "sigma_n": ("MPa", "real mean pressure at each resolution"),
+}
+
+
+def _described(values, words) -> xr.Dataset:
+    """Arrays that know their own dimensions as a dataset with units and long names."""
+    result = xr.Dataset(values)
+    for name, (unit, long_name) in words.items():
+        result[name].attrs = cf_attrs(unit, long_name)
     return result
 
 
@@ -120,7 +129,7 @@ def _counting_error(log_s: np.ndarray, log_area: np.ndarray) -> float:
     return special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(np.sum(dx**2 / nodes)) / np.sum(dx**2)
 
 
-def hausdorff_measure(s, area, delta_sigma):
+def hausdorff_measure(s: Any, area: Any, delta_sigma: Any) -> Any:
     """Fractal measure N_n s_n^Delta_sigma of each pre-fractal, with N_n = A_n / s_n^2 nodes.
 
     Parameters
@@ -138,7 +147,7 @@ def hausdorff_measure(s, area, delta_sigma):
     return area * s ** (delta_sigma - 2)
 
 
-def nominal_pressure(sigma_star, delta_sigma, b):
+def nominal_pressure(sigma_star: Any, delta_sigma: Any, b: Any) -> Any:
     """Nominal pressure that brings about sigma* on a joint of side b (eq. 6).
 
     Parameters
@@ -184,24 +193,23 @@ def compare_dimensions(
     difference = area - box
     low = difference - np.hypot(area - area_low, box_high - box)
     high = difference + np.hypot(area_high - area, box - box_low)
-    result = xr.Dataset(
-        {
-            "delta_area": area,
-            "delta_box": box,
-            "difference": difference,
-            "difference_low": low,
-            "difference_high": high,
-            "disagree": (low > 0) | (high < 0),
-        }
-    )
-    words = {
-        "delta_area": "Delta_sigma from the contact area over resolutions",
-        "delta_box": "Delta_sigma from box counting",
-        "difference": "Delta_sigma from area less that from box counting",
-        "difference_low": "lower end of the 95 % interval of the difference",
-        "difference_high": "upper end of the 95 % interval of the difference",
-        "disagree": "the two estimates of Delta_sigma differ by more than their intervals",
+    values = {
+        "delta_area": area,
+        "delta_box": box,
+        "difference": difference,
+        "difference_low": low,
+        "difference_high": high,
+        "disagree": (low > 0) | (high < 0),
     }
-    for name, text in words.items():
-        result[name].attrs = cf_attrs("1", text)
-    return result
+    return _described(values, _COMPARED)
+
+
+#: Unit and long name of two estimates side by side.
+_COMPARED = {
+    "delta_area": ("1", "Delta_sigma from the contact area over resolutions"),
+    "delta_box": ("1", "Delta_sigma from box counting"),
+    "difference": ("1", "Delta_sigma from area less that from box counting"),
+    "difference_low": ("1", "lower end of the 95 % interval of the difference"),
+    "difference_high": ("1", "upper end of the 95 % interval of the difference"),
+    "disagree": ("1", "the two estimates of Delta_sigma differ by more than their intervals"),
+}

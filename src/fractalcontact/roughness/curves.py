@@ -6,6 +6,7 @@ so that leaving out one part after the other shows how well the mean is known. A
 with missing cells and any outline: they use what is complete at each length.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -82,7 +83,9 @@ def lengths_in_cells(first: int, last: int) -> np.ndarray:
     return np.unique(np.round(first * 2 ** (octaves / LENGTHS_PER_OCTAVE)).astype(int))
 
 
-def in_blocks(spacing: float, lengths: np.ndarray, heights: np.ndarray, add) -> Curve:
+def in_blocks(
+    spacing: float, lengths: np.ndarray, heights: np.ndarray, add: Callable[..., None]
+) -> Curve:
     """Curve over lengths in cells: ``add(heights, length, total, weight)`` fills the blocks.
 
     Raises
@@ -99,7 +102,9 @@ def in_blocks(spacing: float, lengths: np.ndarray, heights: np.ndarray, add) -> 
     return Curve(lengths * spacing, total.reshape(shape), weight.reshape(shape))
 
 
-def along_axes(spacing: float, lengths: np.ndarray, heights: np.ndarray, add) -> dict[str, Curve]:
+def along_axes(
+    spacing: float, lengths: np.ndarray, heights: np.ndarray, add: Callable[..., None]
+) -> dict[str, Curve]:
     """Curves of a measure of rows: along x, along y, and both."""
     x = in_blocks(spacing, lengths, heights, add)
     y = in_blocks(spacing, lengths, np.ascontiguousarray(heights.T), add)
@@ -109,7 +114,9 @@ def along_axes(spacing: float, lengths: np.ndarray, heights: np.ndarray, add) ->
 
 
 @njit(cache=True)
-def add_squares(differences, length, total, weight):
+def add_squares(
+    differences: np.ndarray, length: int, total: np.ndarray, weight: np.ndarray
+) -> None:
     """Add squares of differences over cells `length` apart to the blocks that hold their middles.
 
     A kernel: (ny, nx - length) differences along x, and (BLOCKS, BLOCKS) sums and numbers of them.

@@ -305,15 +305,15 @@ def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
     dict
         ``lowest``, ``highest``, ``mean`` (NaN without a fit) and ``n``, how many gave a dimension.
     """
-    found = dimensions["dimension"].values
-    found = found[np.isfinite(found)]
-    if not found.size:
+    known = dimensions["dimension"].values
+    known = known[np.isfinite(known)]
+    if not known.size:
         return dict.fromkeys(("lowest", "highest", "mean"), np.nan) | {"n": 0}
     return {
-        "lowest": float(found.min()),
-        "highest": float(found.max()),
-        "mean": float(found.mean()),
-        "n": found.size,
+        "lowest": float(known.min()),
+        "highest": float(known.max()),
+        "mean": float(known.mean()),
+        "n": known.size,
     }
 
 

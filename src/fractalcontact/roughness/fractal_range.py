@@ -4,7 +4,7 @@ What an instrument adds shows in the spectrum of profiles at short wavelengths. 
 of the nodes make it flat, and with N the level of that floor their standard deviation is the root
 of N / spacing. A finite spot, smoothing or interpolation makes it steeper than the surface. At the
 long end a surface may roll off. A model with any of these is fitted to the spectrum, and one of
-them counts as seen where the spectrum cannot be told as well without it; the model is that of
+them counts as seen where the spectrum is not described as well without it; the model is that of
 :mod:`roughness.spectrum_model`.
 """
 
@@ -17,7 +17,7 @@ from ..core.intervals import t_quantile
 from .curves import Curve, jackknife_standard_error, ratio
 from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, named
 
-#: A feature must lower the score (BIC) by this beyond its share: "strong" in Kass & Raftery,
+#: A feature must lower the score (BIC) by this beyond its parameters: "strong" in Kass & Raftery,
 #: J. Am. Stat. Assoc. 90 (1995) 773.
 EVIDENCE = 6.0
 #: No bin of a spectrum is trusted better than this (relative): tapering and binning bend it.
@@ -25,7 +25,7 @@ BIN_ERROR = 0.05
 #: Neighbouring strips of one surface share its long waves (`estimator.Estimator.spread`).
 SPREAD = 1.2
 #: Slope 1 + 2H of a spectrum, between H = 0.2 and H = 1: flatter no rock is known, and what is
-#: flatter can hardly be told from noise.
+#: flatter can hardly be separated from noise.
 SLOPES = (1.4, 3.0)
 #: A filter must halve the spectrum at least at this many spacings, or it is the grid's own limit.
 SHORTEST_FILTER = 2.2
@@ -36,7 +36,7 @@ SHORTEST_NOISE = 2.5
 LEAKAGE = 3.0
 #: Between roll-off and the end of the range must lie this ratio, or there is no range.
 SHORTEST_RANGE = 4.0
-#: A wavelength known less well than by this factor either way is not told.
+#: A wavelength known less well than by this factor either way is undetermined.
 VAGUE = 2.5
 #: A spectrum farther than by this factor (rms) from every model follows no power law: nothing is
 #: said of its noise or filter.
@@ -51,7 +51,7 @@ FEWEST_BINS = 7
 
 
 class FractalRange(NamedTuple):
-    """What was found in one spectrum: (value, low, high) of a 95 % interval, NaN if not seen."""
+    """Fractal range of one spectrum: (value, low, high) of a 95 % interval, NaN if not seen."""
 
     form: Form | None
     """Parts of the model; None where the spectrum has too few bins."""
@@ -80,11 +80,11 @@ class FractalRange(NamedTuple):
     """The model (k,), mm3."""
 
 
-_UNSEEN = (np.nan,) * 3
+_UNSEEN = (np.nan, np.nan, np.nan)
 
 
 def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
-    """Fit the models to a spectrum and say what of them is seen.
+    """Fractal range of a spectrum, and which of noise, filter and roll-off are seen in it.
 
     Parameters
     ----------
@@ -100,33 +100,21 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     Notes
     -----
     Strips of profiles that stand out from the others (`SPIKY`) are left out first. Least squares of
-    the logarithms, each bin weighted by its jackknife error over the strips and
-    `BIN_ERROR`. The form is the one with the lowest chi-square + (parameters) ln(bins) +
-    `EVIDENCE` (features), the chi-square in units of what the best form leaves, among those whose
-    features lie within the spectrum and at a wavelength told within `VAGUE`: a floor that meets the
-    line at `SHORTEST_NOISE` spacings or more (or stands out at the shortest wave behind a filter),
-    a filter at `SHORTEST_FILTER` spacings or more, a roll-off below the longest wave. Intervals are
-    the wider of the fit's and the jackknife's, and hold those of another sampling with a score as
-    good within `EVIDENCE`.
+    the logarithms, each bin weighted by its jackknife error over the strips and `BIN_ERROR`. The
+    form is the one with the lowest chi-square + (parameters) ln(bins) + `EVIDENCE` (features), the
+    chi-square in units of what the best form leaves, among those whose features lie within the
+    spectrum and at a wavelength known within `VAGUE`: a floor that meets the line at
+    `SHORTEST_NOISE` spacings or more (or stands out at the shortest wave behind a filter), a filter
+    at `SHORTEST_FILTER` spacings or more, a roll-off below the longest wave. Intervals are the
+    wider of the fit's and the jackknife's, and hold those of another sampling with a score as good
+    within `EVIDENCE`.
     """
     curve, left_out = _without_spiky_strips(curve)
     level = curve.measure()
     known = _above_leakage(curve.length, level)
     limit = float(np.sqrt(level[known].min() / spacing)) if known.any() else np.nan
     if known.sum() < FEWEST_BINS:
-        nothing = np.full(len(level), np.nan)
-        return FractalRange(
-            None,
-            _UNSEEN,
-            (np.nan,) * 2,
-            _UNSEEN,
-            limit,
-            *[_UNSEEN] * 4,
-            np.nan,
-            left_out,
-            level,
-            nothing,
-        )
+        return _too_short(level, limit, left_out)
     x = 2 * spacing / curve.length[known]
     parts = np.log(curve.without_each_part()[:, known])
     logs = np.log(level[known])
@@ -164,6 +152,25 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     )
 
 
+def _too_short(level, limit, left_out) -> FractalRange:
+    """What is known of a spectrum with too few bins for a model."""
+    return FractalRange(
+        form=None,
+        hurst=_UNSEEN,
+        line=(np.nan, np.nan),
+        noise_rms=_UNSEEN,
+        noise_limit=limit,
+        noise_wavelength=_UNSEEN,
+        filter_wavelength=_UNSEEN,
+        roll_off_wavelength=_UNSEEN,
+        end=_UNSEEN,
+        misfit=np.nan,
+        left_out=left_out,
+        level=level,
+        fitted=np.full(len(level), np.nan),
+    )
+
+
 def _without_spiky_strips(curve: Curve) -> tuple[Curve, float]:
     """The curve without strips far above the median of all, and how many those are in a bin."""
     strips = ratio(curve.total, curve.weight)
@@ -188,7 +195,7 @@ def _above_leakage(length, level) -> np.ndarray:
 
 
 def _most_likely(x, logs, error, parts):
-    """The form with the lowest score that can be told, its fit and features with intervals."""
+    """The form with the lowest score that is determined, its fit and features with intervals."""
     fits = {form: _fit(form, x, logs, error) for form in FORMS}
     freedom = {form: max(len(x) - len(fit.x), 1) for form, fit in fits.items()}
     left = max(1.0, min(2 * fit.cost / freedom[form] for form, fit in fits.items()))
@@ -197,11 +204,11 @@ def _most_likely(x, logs, error, parts):
         for form, fit in fits.items()
         if _is_sensible(form, fit.x, x)
     }
-    for form in sorted(score, key=score.get):  # the line alone, without features, is always told
+    for form in sorted(score, key=score.get):  # the line alone, without features, always is
         values = _with_intervals(form, fits[form], x, logs, parts, error)
         for other in _rivals(form, score):
             values = _joined(values, _with_intervals(other, fits[other], x, logs, parts, error))
-        if _is_told(values):
+        if _is_determined(values):
             return form, fits[form], values
 
 
@@ -221,7 +228,7 @@ def _joined(values, others):
     }
 
 
-def _is_told(values) -> bool:
+def _is_determined(values) -> bool:
     """Whether all wavelengths, and the noise's standard deviation, are known within `VAGUE`."""
     widths = {name: high - low for name, (_, low, high) in values.items() if np.isfinite(low)}
     widths["level"] = widths.get("level", 0.0) / 2  # of a variance

@@ -19,7 +19,6 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import special
 
 from .curves import ratio
@@ -143,7 +142,7 @@ def levelled_fraction(fit: Fit, fraction: np.ndarray) -> np.ndarray:
     return fraction[:, np.newaxis] * (fit.length / fit.side) ** (2 - 2 * HURST_GRID[:, np.newaxis])
 
 
-def short_wave_fraction(fit: Fit, sampling: str, fraction: ArrayLike) -> np.ndarray:
+def short_wave_fraction(fit: Fit, sampling: str, fraction: float | np.ndarray) -> np.ndarray:
     """Fraction of the mean square that missing short waves have, (exponents, k).
 
     Parameters

@@ -317,8 +317,10 @@ def _range_end(result, side) -> _RangeEnd:
     """The end of the range over faces and axes; points farther apart than the nodes end it too."""
     ends = [
         _RangeEnd(
-            *(float(result[f"end{ending}"][i, j]) for ending in INTERVAL),
-            cause=f"{_cause(result, i, j)} along {axis}, {face} face",
+            float(result["end"][i, j]),
+            float(result["end_low"][i, j]),
+            float(result["end_high"][i, j]),
+            f"{_cause(result, i, j)} along {axis}, {face} face",
         )
         for i, face in enumerate(result["face"].values)
         for j, axis in enumerate(AXES)

@@ -1,4 +1,4 @@
-"""How good a scan is, in sentences: noise floor, filter, roll-off, steps."""
+"""Quality of a scan in sentences: noise floor, filter, roll-off, steps."""
 
 import math
 
@@ -16,21 +16,21 @@ UNEQUAL = 2.0
 FLATTEST = 1.5
 
 
-def interval_words(found, name, unit=None) -> str:
+def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> str:
     """A scalar length with its 95 % interval, if it has one: three digits, in mm or what suits."""
-    value, low, high = (found[name + ending].item() for ending in INTERVAL)
+    value, low, high = (values[name + ending].item() for ending in INTERVAL)
     unit, size = (unit, 1.0) if unit == "mm" else height_unit(value)
     interval = f" [{low / size:.3g}, {high / size:.3g}]" if math.isfinite(low) else ""
     return f"{value / size:.3g}{interval} {unit}"
 
 
-def length_words(length) -> str:
+def length_words(length: float) -> str:
     """A length in mm in the unit that suits it: three digits."""
     unit, size = height_unit(length)
     return f"{float(length) / size:.3g} {unit}"
 
 
-def height_unit(height) -> tuple[str, float]:
+def height_unit(height: float) -> tuple[str, float]:
     """Unit that suits a height in mm: its name, and how many mm it is."""
     units = (("mm", 1.0), ("µm", 1e-3), ("nm", 1e-6))
     return next((unit for unit in units if height >= 0.1 * unit[1]), units[-1])
@@ -66,7 +66,7 @@ def _noise_along(axis, of_axis) -> str:
     if of_axis["misfit"] > math.log(NO_POWER_LAW):
         factor = math.exp(of_axis["misfit"].item())
         return (
-            f"not to be told along {axis} {limit}, where the spectrum is no power law: off the "
+            f"undetermined along {axis} {limit}, where the spectrum is no power law: off the "
             f"model by a factor {factor:.2g}"
         )
     return f"none seen along {axis} {limit}"
@@ -88,7 +88,9 @@ def range_words(quality: xr.Dataset, face: str) -> str:
                 f"rolls off along {axis} at {interval_words(of_axis, 'roll_off_wavelength', 'mm')}"
             )
         if of_axis["line_exponent"] < FLATTEST and np.isnan(of_axis["noise_rms"]):
-            words.append(f"so flat a spectrum along {axis} that noise cannot be told from relief")
+            words.append(
+                f"so flat a spectrum along {axis} that noise cannot be separated from relief"
+            )
         if of_axis["strips_left_out"] >= 0.5:
             words.append(
                 f"{of_axis['strips_left_out']:.0f} of {STRIPS} strips of profiles along {axis} "

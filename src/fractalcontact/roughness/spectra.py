@@ -104,7 +104,9 @@ def _without_trend(profiles: np.ndarray) -> np.ndarray:
     return profiles - profiles.mean(axis=1, keepdims=True) - np.outer(slope, x)
 
 
-def radial_spectrum(heights: np.ndarray, spacing) -> tuple[np.ndarray, np.ndarray]:
+def radial_spectrum(
+    heights: np.ndarray, spacing: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
     """Radially averaged spectrum of the largest hole-free square, levelled and tapered (Hann).
 
     Parameters

@@ -11,7 +11,7 @@ halves the spectrum at x_f.
 """
 
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import special
@@ -70,7 +70,7 @@ def named(form: Form, parameters: np.ndarray) -> dict[str, float]:
     return dict(zip(names + ["level"] * form.noisy, parameters, strict=True))
 
 
-def sampled(sampling: str, slope, x: np.ndarray):
+def sampled(sampling: str, slope: float | np.ndarray, x: np.ndarray) -> Any:
     """What the grid makes of a profile's spectrum x^-slope, as a factor.
 
     Parameters

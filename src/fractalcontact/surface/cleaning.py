@@ -67,10 +67,10 @@ def clean_faces(
     cells = {key: np.zeros(scans[0].shape, dtype=bool) for key in ("outlier", "filled")}
     faces = []
     for scan in scans:
-        found = find_outliers(scan.values)
-        heights = np.where(found, np.nan, scan.values) if outliers == "mask" else scan.values
+        outlying = find_outliers(scan.values)
+        heights = np.where(outlying, np.nan, scan.values) if outliers == "mask" else scan.values
         heights, filled = fill_holes(heights, spacing_of(scan), largest_hole)
-        cells["outlier"] |= found
+        cells["outlier"] |= outlying
         cells["filled"] |= filled
         faces.append(scan.copy(data=heights))
     attrs = {

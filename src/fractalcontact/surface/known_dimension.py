@@ -1,4 +1,4 @@
-"""Surfaces of known dimension made in other ways than from a spectrum, for controlled experiments.
+"""Synthetic surfaces of known dimension by other constructions than a spectrum, for experiments.
 
 A sum of waves, a random iterated function, and the stepped profile of Borodich and Mosolov's punch,
 extruded. What holds on all of them, and on :func:`surface.synthesis.self_affine`, belongs to
@@ -6,6 +6,7 @@ the dimension and not to the way a surface was made.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .synthesis import check_surface, levelled
 
@@ -16,29 +17,12 @@ FREQUENCY_RATIO = 1.5
 DIRECTIONS = 12
 
 
-def weierstrass_mandelbrot(shape, spacing, hurst, *, rms, seed):
-    """Make a Weierstrass-Mandelbrot surface: waves of frequencies in geometric series.
+def weierstrass_mandelbrot(
+    shape: tuple[int, int], spacing: float, hurst: float, *, rms: float, seed: int
+) -> np.ndarray:
+    """Weierstrass-Mandelbrot surface: waves of frequencies in geometric series.
 
-    Parameters
-    ----------
-    shape : (ny, nx)
-    spacing : float
-        mm.
-    hurst : float
-        H = 3 - Delta_g, between 0 and 1.
-    rms : float
-        Root mean square height about the mean plane, mm.
-    seed : int
-
-    Returns
-    -------
-    (ny, nx) float64 ndarray
-        Heights in mm.
-
-    Raises
-    ------
-    ValueError
-        If H, a length or the shape is out of range.
+    Parameters, returns and errors as :func:`surface.synthesis.self_affine`, without its roll-off.
 
     Notes
     -----
@@ -65,8 +49,10 @@ def weierstrass_mandelbrot(shape, spacing, hurst, *, rms, seed):
     return levelled(heights, rms)
 
 
-def random_midpoint(shape, spacing, hurst, *, rms, seed):
-    """Make a surface by a random iterated function: midpoints, and random additions everywhere.
+def random_midpoint(
+    shape: tuple[int, int], spacing: float, hurst: float, *, rms: float, seed: int
+) -> np.ndarray:
+    """Surface by a random iterated function: midpoints, and random additions everywhere.
 
     Parameters, returns and errors as :func:`weierstrass_mandelbrot`.
 
@@ -92,8 +78,10 @@ def random_midpoint(shape, spacing, hurst, *, rms, seed):
     return levelled(heights[: shape[0], : shape[1]], rms)
 
 
-def cantor_punch(generations, *, parts=2, narrowing=1.5, lowering=1.3):
-    """Make the profile of a Cantor punch: steps upon steps, each generation narrower and lower.
+def cantor_punch(
+    generations: int, *, parts: int = 2, narrowing: float = 1.5, lowering: float = 1.3
+) -> np.ndarray:
+    """Profile of a Cantor punch: steps upon steps, each generation narrower and lower.
 
     Each step of a generation carries ``parts`` equal steps of the next, evenly spread from one of
     its ends to the other, ``narrowing`` times narrower together and ``lowering`` times lower.
@@ -140,7 +128,9 @@ def cantor_punch(generations, *, parts=2, narrowing=1.5, lowering=1.3):
     return heights
 
 
-def punch_dimensions(parts=2, narrowing=1.5, lowering=1.3):
+def punch_dimensions(
+    parts: int = 2, narrowing: float = 1.5, lowering: float = 1.3
+) -> tuple[float, float]:
     """Dimension of a Cantor punch's profile, and of the set at which it touches a plane.
 
     Parameters
@@ -158,7 +148,7 @@ def punch_dimensions(parts=2, narrowing=1.5, lowering=1.3):
     return 1 + max(np.log(parts / lowering) / ratio, 0.0), np.log(parts) / ratio
 
 
-def extruded(profile, rows):
+def extruded(profile: ArrayLike, rows: int) -> np.ndarray:
     """A surface that is the same profile along every row: one dimension more than the profile.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Self-affine surfaces made from a spectrum, and the scan files that carry them.
+"""Synthetic self-affine surfaces, from a spectrum.
 
 The surfaces are Gaussian and isotropic, their statistics known beforehand: mathematical joints, and
 twins of specimens that are described but whose scans are not public. They are written as ordinary
@@ -10,8 +10,8 @@ import scipy.fft
 
 from ..core.mean_plane import without_mean_plane
 
-#: Sides of the grid a surface is made on, in sides of the patch cut from it. The Fourier series is
-#: periodic on that grid; with two, opposite edges of the patch are as far apart as they look.
+#: Sides of the grid of a synthetic surface, in sides of the patch cut from it. The Fourier series
+#: is periodic on that grid; with two, opposite edges of the patch are as far apart as they look.
 EMBEDDING = 2
 
 
@@ -24,7 +24,7 @@ def self_affine(
     seed: int,
     roll_off: float | None = None,
 ) -> np.ndarray:
-    """Make an isotropic, Gaussian, self-affine surface that is not periodic.
+    """Isotropic, Gaussian, self-affine surface that is not periodic.
 
     White noise, drawn node by node with ``Generator(PCG64(seed)).standard_normal`` in (y, x) order
     on a grid of `EMBEDDING` times the longer side, is filtered to the power spectral density
@@ -77,7 +77,7 @@ def self_affine(
     return levelled(surface[: shape[0], : shape[1]], rms)
 
 
-def check_surface(shape, hurst, spacing, rms):
+def check_surface(shape: tuple[int, int], hurst: float, spacing: float, rms: float) -> None:
     """Refuse what no surface can be made of.
 
     Raises
@@ -93,7 +93,7 @@ def check_surface(shape, hurst, spacing, rms):
         raise ValueError(f"a surface needs at least 2 x 2 cells, not {shape}")
 
 
-def levelled(heights, rms):
+def levelled(heights: np.ndarray, rms: float) -> np.ndarray:
     """Heights about their mean plane, scaled to an rms."""
     heights = without_mean_plane(heights)
     return heights * (rms / np.sqrt(np.mean(heights**2)))
@@ -114,7 +114,7 @@ def _power_spectral_density(
 
 
 def disc_outline(shape: tuple[int, int], spacing: float, diameter: float) -> np.ndarray:
-    """Mark the cells whose centres lie within a disc at the middle of the grid.
+    """Cells whose centres lie within a disc at the middle of the grid.
 
     Parameters
     ----------

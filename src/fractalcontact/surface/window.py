@@ -40,10 +40,10 @@ class WindowRequest:
 class _Wanted(NamedTuple):
     """A window before it is rounded and has found its place; lengths in cells, (y, x)."""
 
-    cells: tuple[int, int]
-    sides: tuple[float, float]
+    cells: tuple[int, ...]
+    sides: tuple[float, ...]
     """mm."""
-    middle: tuple[float, float]
+    middle: tuple[float, ...]
     reach: float | Mapping[str, float]
 
 
@@ -237,7 +237,7 @@ def _largest_square(valid: np.ndarray, spacing) -> tuple[int, int]:
     return cells(fits)
 
 
-def hole_free_square(valid: np.ndarray, spacing) -> tuple[slice, slice]:
+def hole_free_square(valid: np.ndarray, spacing: tuple[float, float]) -> tuple[slice, slice]:
     """Rows and columns of the largest square without holes, the one nearest to the middle.
 
     Parameters
@@ -248,7 +248,8 @@ def hole_free_square(valid: np.ndarray, spacing) -> tuple[slice, slice]:
     """
     shape = _largest_square(valid, spacing)
     corner = _nearest(_free_places(valid, shape), shape, _middle(valid.shape))
-    return tuple(slice(start, start + n) for start, n in zip(corner, shape, strict=True))
+    rows, columns = (slice(start, start + n) for start, n in zip(corner, shape, strict=True))
+    return rows, columns
 
 
 def _no_place(specimen, shape) -> InputError:
