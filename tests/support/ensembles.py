@@ -9,7 +9,11 @@ import os
 EVERYTHING = os.environ.get("TESTS") == "all"
 
 #: Ensemble: (for ``make test``, for ``make test-all``).
-ENSEMBLES: dict[str, tuple] = {}
+ENSEMBLES: dict[str, tuple] = {
+    # scan
+    "spoilt scan files": (66, 300),
+    "scattered points": (2500, 6000),
+}
 
 
 def ensemble(name):
