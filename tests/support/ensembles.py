@@ -14,9 +14,9 @@ ENSEMBLES: dict[str, tuple] = {
     "spoilt scan files": (66, 300),
     "scattered points": (2500, 6000),
     # core
-    "threads": (4, 8),
-    "sides solved by threads": ((48, 200), (48, 200, 400)),
-    "side solved in forks": (200, 400),
+    "threads": (3, 8),
+    "sides solved by threads": ((48, 96), (48, 200, 400)),
+    "side solved in forks": (128, 400),
     "forks": (4, 10),
 }
 
