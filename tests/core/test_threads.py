@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numba
 import numpy as np
 import pytest
+from ensembles import ensemble
 from numba.core.compiler_lock import global_compiler_lock
 
 from fractalcontact import HalfSpace, solve_contact
@@ -17,11 +18,12 @@ from fractalcontact.contact import preconditioner as preconditioning
 from fractalcontact.contact.effort import SOLVING, Effort
 from fractalcontact.contact.preconditioner import forget_preconditioner, preconditioner
 from fractalcontact.core.threads import computed_once, in_parts
+from fractalcontact.elastic import convolution
 from fractalcontact.surface.synthesis import self_affine
 
-THREADS = 8
-#: Seconds after which a process counts as hanging.
-PATIENCE = 120
+THREADS = ensemble("threads")
+#: Seconds after which a process counts as hanging, on however busy a machine.
+PATIENCE = 600
 
 
 def pressed(n, closures, hardness=()):
@@ -30,6 +32,11 @@ def pressed(n, closures, hardness=()):
     loads = [{"closure": closure} for closure in closures]
     loads += [{"closure": closures[-1], "hardness": h} for h in hardness]
     return height, HalfSpace((n, n), (0.1, 0.1), 20e3), loads
+
+
+def threaded_from(side):
+    """Cells from which convolutions are done in parts: a grid of this side is."""
+    return min(convolution.THREADED_CELLS, side**2)
 
 
 def states_of(problem, order):
@@ -48,11 +55,15 @@ def states_of(problem, order):
 
 def alike_in_threads():
     """What the test of this name does, in a process of its own: what crashes it fails the test."""
-    problems = [
-        pressed(48, [0.05, 0.2, 0.4], hardness=[500.0]),
-        pressed(200, [0.1, 0.3], hardness=[500.0]),
-        pressed(400, [0.2]),
-    ]
+    loads = {
+        48: ([0.05, 0.2, 0.4], [500.0]),
+        96: ([0.1, 0.3], [500.0]),
+        200: ([0.1, 0.3], [500.0]),
+        400: ([0.2], []),
+    }
+    sides = ensemble("sides solved by threads")
+    convolution.THREADED_CELLS = threaded_from(max(sides))
+    problems = [pressed(n, *loads[n]) for n in sides]
     expected = []
     for height, space, loads in problems:
         alone = HalfSpace(space.shape, space.spacing, space.modulus)
@@ -68,8 +79,8 @@ def alike_in_threads():
     with ThreadPoolExecutor(THREADS) as pool:
         for found in pool.map(work, range(THREADS)):
             assert found == expected
-    loads = sum(len(problem[2]) for problem in problems)
-    assert SOLVING.problems - before == THREADS * 2 * loads
+    solved = sum(len(problem[2]) for problem in problems)
+    assert SOLVING.problems - before == THREADS * 2 * solved
 
 
 def run(target, method, *arguments):
@@ -166,7 +177,7 @@ def test_effort_of_several_threads_is_counted_in_full():
 
 def bits_of_large():
     """Pressure of a solve that takes the thread pool, in every process the same."""
-    height, space, (load,) = pressed(400, [0.2])
+    height, space, (load,) = pressed(ensemble("side solved in forks"), [0.2])
     return solve_contact(height, space, **load).pressure.tobytes()
 
 
@@ -177,6 +188,8 @@ def expect(bits):
 @pytest.fixture
 def two_threads(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    threaded = threaded_from(ensemble("side solved in forks"))
+    monkeypatch.setattr(convolution, "THREADED_CELLS", threaded)
 
 
 def test_a_fork_after_a_large_solve_solves(two_threads):
@@ -200,7 +213,7 @@ def test_forks_made_while_another_thread_solves(two_threads):
     bits, done = bits_of_large(), threading.Event()
 
     def solve_on():
-        height, space, (load,) = pressed(400, [0.2])
+        height, space, (load,) = pressed(ensemble("side solved in forks"), [0.2])
         while not done.is_set():
             # Everything that is kept is made again: a fork may come at any of these moments.
             space = HalfSpace(space.shape, space.spacing, space.modulus)
@@ -211,7 +224,7 @@ def test_forks_made_while_another_thread_solves(two_threads):
     with ThreadPoolExecutor(1) as other:
         solving = other.submit(solve_on)
         try:
-            for k in range(10):
+            for k in range(ensemble("forks")):
                 time.sleep(0.013 * k)
                 assert run(expect, "fork", bits) == 0
         finally:

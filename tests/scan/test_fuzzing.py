@@ -3,6 +3,7 @@
 import fuzzing
 import numpy as np
 import pytest
+from ensembles import ensemble
 from mutations import ANY, TEXT_ONLY
 
 from fractalcontact.core.errors import InputError
@@ -50,6 +51,8 @@ def test_the_judge_sees_what_must_not_happen(monkeypatch):
 
 
 def test_spoilt_files_are_read_or_refused():
-    verdicts = fuzzing.run(range(300), seed=1, real=False)
+    files = ensemble("spoilt scan files")
+    verdicts = fuzzing.run(range(files), seed=1, real=False)
     assert [verdict for verdict in verdicts if verdict.fault] == []
-    assert 30 < sum(verdict.was_read for verdict in verdicts) < 270
+    assert 0.04 * files < sum(verdict.was_read for verdict in verdicts) < 0.9 * files
+    assert {verdict.ending for verdict in verdicts} >= {*fuzzing.WRITERS, ".yaml"}

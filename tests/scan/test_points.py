@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 import trimesh
+from ensembles import ensemble
 from places import BENCHMARKS
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay
@@ -148,21 +149,29 @@ def whole_triangulation(cloud, lattice, circle):
 
 
 @pytest.mark.parametrize(
-    ("tile", "places"), [(60, 10**6), (400, 10**6), (10**6, 10**6), (10**6, 900)]
+    ("tile", "places"),
+    [
+        pytest.param(60, 10**6, marks=pytest.mark.full),
+        (400, 10**6),
+        pytest.param(10**6, 10**6, marks=pytest.mark.full),
+        (10**6, 900),
+    ],
 )
-@pytest.mark.parametrize("clumped", [False, True])
+@pytest.mark.parametrize("clumped", [pytest.param(False, marks=pytest.mark.full), True])
 def test_tiles_give_the_heights_of_the_whole_triangulation(monkeypatch, tile, places, clumped):
     monkeypatch.setattr(tri, "TILE_POINTS", tile)
     monkeypatch.setattr(tri, "TILE_PLACES", places)
-    rough = cloud(6000, seed=3, height=lambda x, y: np.random.default_rng(4).normal(size=len(x)))
+    n = ensemble("scattered points")
+    rough = cloud(n, seed=3, height=lambda x, y: np.random.default_rng(4).normal(size=len(x)))
     if clumped:
-        rough[:3000, :2] = SIDE * (rough[:3000, :2] / SIDE) ** 3
+        rough[: n // 2, :2] = SIDE * (rough[: n // 2, :2] / SIDE) ** 3
     hole = np.hypot(rough[:, 0] - 8, rough[:, 1] - 11) < 3
     corner = (rough[:, 0] > 14) & (rough[:, 1] < 5)
     rough = rough[~(hole | corner)]
-    lattice = points.covering_lattice(rough, 0.13, "rock")
-    heights = tri.interpolate_points(rough, lattice, 0.5, 1, "rock")
-    whole = whole_triangulation(rough, lattice, 0.5)
+    circle = 0.5 * np.sqrt(6000 / n)
+    lattice = points.covering_lattice(rough, 0.26 * circle, "rock")
+    heights = tri.interpolate_points(rough, lattice, circle, 1, "rock")
+    whole = whole_triangulation(rough, lattice, circle)
     np.testing.assert_allclose(heights, whole, rtol=1e-7, atol=1e-7)
     assert 0.05 < np.isnan(heights).mean() < 0.7
 
@@ -170,8 +179,8 @@ def test_tiles_give_the_heights_of_the_whole_triangulation(monkeypatch, tile, pl
 # --- properties --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("degrees", [10, 45, 80])
-@pytest.mark.parametrize("azimuth", [0.0, 75.0])
+@pytest.mark.parametrize("degrees", [pytest.param(10, marks=pytest.mark.full), 45, 80])
+@pytest.mark.parametrize("azimuth", [pytest.param(0.0, marks=pytest.mark.full), 75.0])
 def test_a_leaning_cloud_comes_back_in_its_own_frame(tmp_path, degrees, azimuth):
     flat = level(cloud(12_000))
     matrix = lean(degrees, azimuth)
@@ -464,6 +473,7 @@ def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, messa
 # --- the benchmark -----------------------------------------------------------------------------
 
 
+@pytest.mark.full
 def test_the_benchmark_of_gridding_measures_time_and_peak():
     command = [sys.executable, BENCHMARK, "--points", "3000", "--clouds", "jittered"]
     run = subprocess.run([*command, "--formats", "ply"], check=True, capture_output=True, text=True)

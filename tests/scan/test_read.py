@@ -5,7 +5,6 @@ import os
 import re
 import socket
 import zipfile
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,6 +22,7 @@ needs_scans = pytest.mark.skipif(not SCANS.is_dir(), reason="the folder of real 
 #: Extensions, one of each reader.
 KINDS = ["npy", "npz", "txt", "csv", "stl", "ply", "x3p", "nc", "h5", "mat", "tif", "gwy"]
 KINDS += ["sur", "dat", "di", "nms"]
+ONE_OF_EACH = {"npy", "txt", "ply", "x3p", "nc", "mat", "tif", "gwy", "sur"}
 
 
 def surface(shape=(12, 15), seed=1):
@@ -404,7 +404,10 @@ def test_a_constant_cloud_is_refused(tmp_path):
         read_scan(save_npy(tmp_path / "rock.npy", points), {"unit": "mm"})
 
 
-@pytest.mark.parametrize("extension", KINDS)
+@pytest.mark.parametrize(
+    "extension",
+    [pytest.param(kind, marks=() if kind in ONE_OF_EACH else pytest.mark.full) for kind in KINDS],
+)
 @pytest.mark.parametrize("content", [b"", b"\x00\x01\xfe no \x00" * 40], ids=["empty", "damaged"])
 def test_empty_and_damaged_files_are_named(tmp_path, extension, content):
     path = tmp_path / f"rock.{extension}"
@@ -569,6 +572,7 @@ def test_an_instrument_file_keeps_its_orientation_and_holes(tmp_path):
 
 @scans
 @needs_scans
+@pytest.mark.full
 def test_granite_gap_agrees_with_its_authors_table():
     folder = SCANS / "cnl_granite_pair"
     pair = (
@@ -614,6 +618,7 @@ def test_corona_fault_in_metres_with_its_pickled_key_untouched():
 
 @scans
 @needs_scans
+@pytest.mark.full
 def test_grasselli_mesh_keeps_its_wedge_outline():
     heights = read_scan(SCANS / "grasselli_joint" / "example_surface.stl", {"unit": "mm"})
     assert heights.attrs["spacing_x"] == pytest.approx(0.196, abs=0.001)
@@ -639,44 +644,9 @@ def test_text_profilometers_are_placed_exactly():
 
 @scans
 @needs_scans
-@pytest.mark.parametrize(
-    ("file", "shape", "field", "missing"),
-    [
-        ("surfacetopography/tmd-1.tmd", (300, 300), 18.9566, 0.0),
-        ("surfacetopography/frt-1.frt", (500, 500), 12.0, 76456 / 500**2),
-        ("surfacetopography/al3d-1.al3d", (296, 200), 200 * 0.000438027, 0.0),
-        ("surfacetopography/matrix-3.txt", (256, 256), 0.01, 0.0),
-        ("surfacetopography/metropro-1.dat", (480, 640), 0.7028813, 0.0),
-        ("surfacetopography/sur-2.sur", (484, 563), 1.9614921, 117 / (484 * 563)),
-        ("x3p/sample-land.x3p", (256, 918), 918 * 0.00258, None),
-        ("x3p/surface_binary.x3p", (150, 200), 0.2, 180 / 30000),
-        ("x3p/surface_xml.x3p", (150, 200), 0.2, 180 / 30000),
-        ("x3p/surface_irregular_xml.x3p", (72, 96), 0.192, None),
-    ],
-)
-def test_instrument_files(file, shape, field, missing):
-    heights = read_scan(SCANS / "instruments" / file)
-    assert heights.shape == shape
-    assert heights.attrs["spacing_x"] * shape[1] == pytest.approx(field, rel=1e-3)
-    if missing is not None:
-        assert float(heights.isnull().mean()) == pytest.approx(missing, abs=1e-9)
-
-
-@scans
-@needs_scans
 def test_x3p_in_binary_and_in_xml_hold_the_same_surface():
     binary, xml = (
         read_scan(SCANS / "instruments" / "x3p" / f"surface_{kind}.x3p")
         for kind in ("binary", "xml")
     )
     np.testing.assert_array_equal(binary.values, xml.values)
-
-
-@scans
-@needs_scans
-@pytest.mark.parametrize(
-    "file", ["surfacetopography/di_corrupted.di", "surfacetopography/sdf-1.sdf"]
-)
-def test_unusable_instrument_files_are_named(file):
-    with pytest.raises(InputError, match=Path(file).name):
-        read_scan(SCANS / "instruments" / file)

@@ -45,7 +45,7 @@ READ = [
     ("../x3p/sample-land.x3p", {}, (256, 918), (2.58e-3, 2.58e-3), "m", 25292),
     ("../x3p/surface_binary.x3p", {}, (150, 200), (0.001, 0.001), "m", 180),
     ("../x3p/surface_xml.x3p", {}, (150, 200), (0.001, 0.001), "m", 180),
-    ("../x3p/surface_irregular_xml.x3p", {}, None, (0.002, 0.002), "m", None),
+    ("../x3p/surface_irregular_xml.x3p", {}, (72, 96), (0.002, 0.002), "m", None),
 ]
 REFUSED = [
     ("corona_fault/PaperStats.csv", {}, "holds no line of numbers"),
@@ -61,6 +61,31 @@ REFUSED = [
 ]
 
 
+#: One file of each kind, small.
+QUICK = {
+    "nanovea/test1.txt",
+    "tmd-1.tmd",
+    "nms-1.nms",
+    "../gwyfile/test.gwy",
+    "../x3p/surface_binary.x3p",
+    "../x3p/surface_irregular_xml.x3p",
+    "di_corrupted.di",
+    "gwyddion-export-german.txt",
+}
+
+
+def parameters(rows):
+    """Rows with their names; all but `QUICK` are left to the full suite."""
+    return [
+        pytest.param(
+            *row,
+            id=f"{row[0]} {row[1]}" if len(row) == 3 else row[0],
+            marks=() if row[0] in QUICK else pytest.mark.full,
+        )
+        for row in rows
+    ]
+
+
 def located(name):
     """Instruments' files are named alone."""
     folder = SCANS if (SCANS / name).exists() else INSTRUMENTS
@@ -68,22 +93,21 @@ def located(name):
 
 
 @pytest.mark.parametrize(
-    ("name", "sidecar", "shape", "spacing", "unit", "missing"), READ, ids=[row[0] for row in READ]
+    ("name", "sidecar", "shape", "spacing", "unit", "missing"), parameters(READ)
 )
 def test_a_real_scan_is_read_right(name, sidecar, shape, spacing, unit, missing):
     heights = read_scan(located(name), sidecar)
-    if shape is not None:  # of a grid of its own, not of scattered points
+    if shape is not None:
         assert heights.shape == shape
+    if missing is not None:  # of a grid of its own, not of scattered points
         assert int(heights.isnull().sum()) == missing
     found = (heights.attrs["spacing_x"], heights.attrs["spacing_y"])
-    assert found == pytest.approx(spacing, rel=2e-3 if shape is None else 1e-6)
+    assert found == pytest.approx(spacing, rel=2e-3 if missing is None else 1e-6)
     assert heights.attrs["file_unit"] == unit
     assert heights.attrs["overrides"] == ""
 
 
-@pytest.mark.parametrize(
-    ("name", "sidecar", "message"), REFUSED, ids=[f"{row[0]} {row[1]}" for row in REFUSED]
-)
+@pytest.mark.parametrize(("name", "sidecar", "message"), parameters(REFUSED))
 def test_a_real_file_that_is_no_scan_is_refused(name, sidecar, message):
     with pytest.raises(InputError, match=rf"{Path(name).name}: .*{message}"):
         read_scan(located(name), sidecar)
@@ -128,6 +152,7 @@ def test_nms_counts_its_spacing_in_nm():
     assert "in nm" in heights.attrs["notes"]
 
 
+@pytest.mark.full
 def test_frt_states_its_field_in_m():
     (length_x, length_y) = header("frt-1.frt", "<dd", 56)
     heights = read_scan(INSTRUMENTS / "frt-1.frt")
@@ -136,6 +161,7 @@ def test_frt_states_its_field_in_m():
     assert float(heights.isnull().mean()) == pytest.approx(0.31, abs=0.005)
 
 
+@pytest.mark.full
 def test_sur_states_its_steps_and_units():
     steps = header("sur-2.sur", "<ff", 120)
     heights = read_scan(INSTRUMENTS / "sur-2.sur")
@@ -157,6 +183,7 @@ def test_an_instrument_that_states_no_size_needs_the_sidecar(tmp_path):
     np.testing.assert_array_equal(heights, read_scan(INSTRUMENTS / "metropro-1.dat"))
 
 
+@pytest.mark.full
 def test_one_measurement_in_two_formats_is_one_surface():
     """A .bcrf states the length from the first point to the last, a .mnt the steps."""
     bcr, mnt = (read_scan(INSTRUMENTS / name) for name in ("bcrf-1.bcrf", "mnt-1.mnt"))
@@ -181,6 +208,7 @@ def test_german_and_english_exports_of_gwyddion_state_the_same():
         np.testing.assert_array_equal(scan.values[0], [1, 1.5, 3])
 
 
+@pytest.mark.full
 def test_the_german_decimal_comma_reads_as_the_point(tmp_path):
     """A real export with its points turned to commas, as Gwyddion writes it in German."""
     english = INSTRUMENTS / "matrix-3.txt"

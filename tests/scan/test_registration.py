@@ -52,7 +52,7 @@ def joint(moved: Motion, hurst=0.7, cells=96, noise=0.0, seed=1, gap=0.5, spacin
 
 
 def assert_found(found: Motion, true: Motion, cells=0.04, degrees=0.02, slope=5e-4):
-    true = true.cf_attrs(*found.end)
+    true = true.about(*found.end)
     assert np.hypot(*np.subtract(found.shift, true.shift)) < cells * SPACING
     assert abs(np.degrees(found.rotation - true.rotation)) < degrees
     np.testing.assert_allclose(found.slope, true.slope, atol=slope)
@@ -79,7 +79,7 @@ def test_there_and_back_again():
     there = Motion((1.0, 2.0), (3.0, -4.0), 0.3, (0.1, 0.2))
     x, y = np.array([0.0, 5.0, -2.0]), np.array([1.0, 1.0, 7.0])
     np.testing.assert_allclose(there.back(*there.forth(x, y)), (x, y), atol=1e-12)
-    other = there.cf_attrs(10.0, 20.0)
+    other = there.about(10.0, 20.0)
     np.testing.assert_allclose(other.forth(x, y), there.forth(x, y), atol=1e-12)
     second = Motion((0.0, 1.0), (2.0, 2.0), -0.2)
     both = there.then(second).forth(x, y)
@@ -115,13 +115,13 @@ def test_a_spline_returns_its_cells_and_spreads_no_hole():
 # --- motions known beforehand ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.02])
-@pytest.mark.parametrize("hurst", [0.3, 0.7, 0.95])
+@pytest.mark.parametrize("noise", [pytest.param(0.0, marks=pytest.mark.full), 0.02])
+@pytest.mark.parametrize("hurst", [0.3, pytest.param(0.7, marks=pytest.mark.full), 0.95])
 @pytest.mark.parametrize(
     "moved",
     [
         motion((0.537, -0.213)),
-        motion((0.37, 0.66), 2.0, (0.02, -0.01)),
+        pytest.param(motion((0.37, 0.66), 2.0, (0.02, -0.01)), marks=pytest.mark.full),
         motion((-0.41, 0.83), -5.0, (0.05, 0.03)),
     ],
 )
@@ -160,7 +160,7 @@ def test_the_other_face_makes_the_inverse_motion():
     lower, upper = joint(motion((0.5, -0.2), 2.0, (0.02, 0.01)), noise=0.02)
     there, _ = find_motion(lower, upper)
     back, _ = find_motion(upper, lower)
-    back = back.cf_attrs(*there.start)
+    back = back.about(*there.start)
     np.testing.assert_allclose(back.shift, np.negative(there.shift), atol=2e-3)
     assert back.rotation == pytest.approx(-there.rotation, abs=1e-4)
     cos, sin = np.cos(there.rotation), np.sin(there.rotation)
@@ -168,7 +168,7 @@ def test_the_other_face_makes_the_inverse_motion():
     np.testing.assert_allclose(back.slope, -slope, atol=1e-4)
 
 
-@pytest.mark.parametrize("factor", [1e-3, 1e3])
+@pytest.mark.parametrize("factor", [1e-3, pytest.param(1e3, marks=pytest.mark.full)])
 def test_unit_and_offset_do_not_matter(factor):
     lower, upper = joint(motion((0.5, -0.2), 2.0))
     found, _ = find_motion(lower, upper)
@@ -280,12 +280,32 @@ def test_faces_that_nowhere_cover_each_other_do_not_match():
     ("signs", "message"),
     [
         ((-1, 1, -1), "on its back.*write 'mirror_upper: x' in the sidecar"),
-        ((1, -1, -1), "on its back.*write 'mirror_upper: y' in the sidecar"),
+        pytest.param(
+            (1, -1, -1),
+            "on its back.*write 'mirror_upper: y' in the sidecar",
+            marks=pytest.mark.full,
+        ),
         ((1, 1, -1), "a cast.*change the sense of z in its file"),
-        ((-1, -1, 1), "turned by 180 degrees.*change the sense of x and y in its file"),
-        ((-1, -1, -1), "a cast.*turned by 180 degrees.*change the sense of x and y and z"),
-        ((-1, 1, 1), "mirrored: its x .*change the sense of x in its file"),
-        ((1, -1, 1), "mirrored: its y .*change the sense of y in its file"),
+        pytest.param(
+            (-1, -1, 1),
+            "turned by 180 degrees.*change the sense of x and y in its file",
+            marks=pytest.mark.full,
+        ),
+        pytest.param(
+            (-1, -1, -1),
+            "a cast.*turned by 180 degrees.*change the sense of x and y and z",
+            marks=pytest.mark.full,
+        ),
+        pytest.param(
+            (-1, 1, 1),
+            "mirrored: its x .*change the sense of x in its file",
+            marks=pytest.mark.full,
+        ),
+        pytest.param(
+            (1, -1, 1),
+            "mirrored: its y .*change the sense of y in its file",
+            marks=pytest.mark.full,
+        ),
     ],
 )
 def test_a_mirrored_face_is_named_with_what_to_write(signs, message):
@@ -307,7 +327,7 @@ def test_a_wrong_or_needless_mirror_is_named_too():
 # --- through the reader ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("axis", ["x", "y"])
+@pytest.mark.parametrize("axis", ["x", pytest.param("y", marks=pytest.mark.full)])
 def test_mirror_upper_turns_a_matrix_over(tmp_path, axis):
     lower, upper = joint(motion((0.5, 0.3)))
     flip = (slice(None), slice(None, None, -1)) if axis == "x" else slice(None, None, -1)
@@ -394,6 +414,7 @@ def test_the_specimen_keeps_what_was_done():
 
 @pytest.mark.scans
 @needs_scans
+@pytest.mark.full
 def test_granite_pair_fits_better_after_a_shift_in_x():
     """A shift of 0.45 mm in x, in steps of half a cell, is where the spread is 4 % lower."""
     for mode, gain in (("rigid", 0.047), ("translation", 0.038)):

@@ -59,6 +59,14 @@ ENSEMBLES: dict[str, tuple] = {
     "noisy surfaces": (1, 3),
     "axes of spectra": ("x", "xy"),
     "exponents of spectra": ((0.3, 0.8), (0.3, 0.5, 0.8, 0.9)),
+    # scan
+    "spoilt scan files": (66, 300),
+    "scattered points": (2500, 6000),
+    # core
+    "threads": (3, 8),
+    "sides solved by threads": ((48, 96), (48, 200, 400)),
+    "side solved in forks": (128, 400),
+    "forks": (4, 10),
 }
 
 

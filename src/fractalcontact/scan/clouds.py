@@ -1,5 +1,6 @@
 """Clouds and meshes made ready for a grid: turned level, repeats and overhangs counted."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,7 +10,9 @@ from ..core.errors import InputError
 from . import density as dense
 from . import levelling, overhangs
 from . import points as pts
+from .measured import Measured
 from .raw import SMALLEST_SIDE
+from .surface_motion import Motion
 from .triangles import interpolate_mesh, interpolate_points, places_across
 
 _OVERHANG_OF_POINTS = (
@@ -55,7 +58,7 @@ class Cloud:
     notes: tuple[str, ...]
 
 
-def prepare_clouds(scans) -> list[Cloud]:
+def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
     """Make the clouds of one or two faces ready for one grid.
 
     Points on a regular grid of x and y are one height to a node and stay as they are. Others are
@@ -77,7 +80,7 @@ def prepare_clouds(scans) -> list[Cloud]:
     return [_look_beneath(cloud) for cloud in clouds]
 
 
-def moved_cloud(cloud: Cloud, motions) -> Cloud:
+def moved_cloud(cloud: Cloud, motions: Sequence[Motion]) -> Cloud:
     """A cloud after rigid motions, one after the other.
 
     Parameters
@@ -136,7 +139,7 @@ def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
     return heights, gridding + "nodes without one lie on the mesh's triangles or are missing"
 
 
-def _merge(scan) -> Cloud:
+def _merge(scan: Measured) -> Cloud:
     """Count and join repeats, and look for a lattice."""
     points, repeats = pts.merge_points(scan.values)
     n_finite = int(np.isfinite(points[:, 2]).sum())
@@ -155,7 +158,7 @@ def _merge(scan) -> Cloud:
     if mesh is None or repeats.stacked == 0:
         distance = dense.neighbour_distance(points, dense.plane_tree(points))
         lattice = pts.find_lattice(points, distance)
-    attrs = {"points": len(scan.values), "duplicated_points": repeats.duplicated}
+    attrs: dict[str, float] = {"points": len(scan.values), "duplicated_points": repeats.duplicated}
     attrs |= {"stacked_points": repeats.stacked, "overhang_share": 0.0, "levelled_degrees": 0.0}
     notes = []
     if repeats.duplicated:

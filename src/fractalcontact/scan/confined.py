@@ -132,7 +132,7 @@ class _Server:
     def is_alive(self) -> bool:
         return self.process.poll() is None
 
-    def read(self, request: dict, path: Path):
+    def read(self, request: dict, path: Path) -> tuple[list[dict], RawScan | None, int]:
         """Lines of the answer, the scan if there is one, and the status of the fork."""
         message = to_text(request)
         self.control.sendall(reader_process.REQUEST_LENGTH.pack(len(message)) + message)

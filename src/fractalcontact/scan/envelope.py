@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from ..core.kernel_cache import njit
 
 #: A node on an edge belongs to both triangles, whatever rounding says. As a share of the triangle.
@@ -20,7 +22,9 @@ def _nodes_between(low, high, count):
 
 
 @njit(cache=True)
-def raise_to_triangles(heights, u, v, z, triangles):
+def raise_to_triangles(
+    heights: np.ndarray, u: np.ndarray, v: np.ndarray, z: np.ndarray, triangles: np.ndarray
+) -> None:
     """Raise heights at the nodes of a grid to the triangles above them.
 
     Parameters

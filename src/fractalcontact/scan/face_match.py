@@ -1,6 +1,7 @@
 """How well two faces match, and where: the coarse start of their registration."""
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 import scipy.fft
@@ -57,7 +58,9 @@ def match(lower: xr.DataArray, upper: xr.DataArray, motion: Motion) -> float:
     return correlation(lower.values, Surface(upper)(*motion.back(*grid_nodes(lower))))
 
 
-def best_match(lower: xr.DataArray, upper: xr.DataArray, rotations=ROTATIONS):
+def best_match(
+    lower: xr.DataArray, upper: xr.DataArray, rotations: Sequence[float] | np.ndarray = ROTATIONS
+) -> tuple[Motion, float]:
     """Try all shifts, and some rotations, of the upper face.
 
     Parameters
@@ -115,7 +118,7 @@ def _masked_correlations(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.n
     shape = [n + m - 1 for n, m in zip(a.shape, b.shape, strict=True)]
     fast = [scipy.fft.next_fast_len(n, real=True) for n in shape]
 
-    def spectra(z, flip):
+    def spectra(z: np.ndarray, flip: bool) -> list[np.ndarray]:
         present = np.isfinite(z)
         z = np.where(present, z / (np.nanstd(z) or 1.0), 0.0)  # the rounding of sums is then known
         fields = (present.astype(float), z, z * z)
@@ -124,7 +127,7 @@ def _masked_correlations(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.n
 
     (mask_a, sum_a, square_a), (mask_b, sum_b, square_b) = spectra(a, False), spectra(b, True)
 
-    def correlate(f, g):
+    def correlate(f: np.ndarray, g: np.ndarray) -> np.ndarray:
         return scipy.fft.irfft2(f * g, fast)[: shape[0], : shape[1]]
 
     common = np.round(correlate(mask_a, mask_b))

@@ -1,6 +1,7 @@
 """From measured numbers in mm to labelled heights; two faces onto one grid."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,45 +10,18 @@ import xarray as xr
 from ..core.errors import InputError
 from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
 from .density import points_per_cell
+from .measured import Measured
 from .pairs import MIRRORS, register
 from .plausible import check_relief, check_spacing
 from .points import Lattice, covering_lattice
 from .raw import SMALLEST_SIDE
+from .surface_motion import Motion
 
 #: Two matrices are one grid when their spacings agree this well (relative).
 SAME_SPACING = 1e-6
 #: Two lattices are one grid when their nodes coincide within this fraction of a cell.
 SAME_NODES = 0.01
-ROUNDING = 1e-12  # relative: what interpolating a constant leaves
-
-
-@dataclass(frozen=True)
-class Measured:
-    """A scan in mm, before it is on a grid.
-
-    Attributes
-    ----------
-    path : Path
-    layout : {"matrix", "points", "mesh"}
-    values : ndarray
-        Heights (ny, nx), first row at the smallest y; or points (n, 3).
-    spacing : (float, float) or None
-        dx, dy of a matrix.
-    grid : float or None
-        Spacing to grid points at, where the user gives it.
-    provenance : dict
-        Attributes for the result.
-    triangles : (m, 3) int ndarray or None
-        Of a mesh, between the points.
-    """
-
-    path: Path
-    layout: str
-    values: np.ndarray
-    spacing: tuple[float, float] | None
-    grid: float | None
-    provenance: dict
-    triangles: np.ndarray | None = None
+CONSTANT = 1e-12  # relative: what interpolating a constant surface leaves
 
 
 def grid_one(scan: Measured) -> xr.DataArray:
@@ -63,7 +37,10 @@ def grid_one(scan: Measured) -> xr.DataArray:
 
 
 def grid_pair(
-    lower: Measured, upper: Measured, registration="rigid", mirror_upper=None
+    lower: Measured,
+    upper: Measured,
+    registration: str = "rigid",
+    mirror_upper: str | None = None,
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Put two faces on one common grid, registered, cropped to the area both cover.
 
@@ -103,11 +80,11 @@ def grid_pair(
     # One sidecar serves both faces, so `grid` is the same for both.
     spacing = lower.grid or max(_spacing(cloud) for cloud in clouds)
 
-    def gridded(scan, cloud):
+    def gridded(scan: Measured, cloud: Cloud) -> xr.DataArray:
         lattice = covering_lattice(cloud.points, spacing, str(scan.path))
         return _interpolated_heights(scan, cloud, lattice)
 
-    def regrid(motions):
+    def regrid(motions: Sequence[Motion]) -> xr.DataArray:
         return gridded(upper, moved_cloud(clouds[1], motions))
 
     z_l, z_u = gridded(lower, clouds[0]), regrid([])
@@ -199,7 +176,7 @@ def _check_surface(heights: np.ndarray, lattice: Lattice, path: Path) -> None:
     present = heights[np.isfinite(heights)]
     if present.size == 0:
         raise InputError(f"{path}: all cells are missing")
-    if np.ptp(present) <= ROUNDING * np.abs(present).max():
+    if np.ptp(present) <= CONSTANT * np.abs(present).max():
         raise InputError(
             f"{path}: a constant surface: every height is {present[0]:g} mm, so this is no scan"
         )

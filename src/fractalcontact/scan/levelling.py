@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..surface.specimen import STEEP_TILT
 
@@ -15,7 +16,9 @@ UPRIGHT = 85.0  # degrees
 _THICKEST = 0.5
 
 
-def common_plane(clouds: list[np.ndarray], upward=None) -> tuple[np.ndarray, np.ndarray]:
+def common_plane(
+    clouds: list[np.ndarray], upward: ArrayLike | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Plane of least squared normal distances through one cloud, or two faces together.
 
     Parameters

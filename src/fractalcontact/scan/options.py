@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 from ..core.errors import InputError
 from ..core.units import length_factor, quantity
@@ -73,7 +74,7 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
     return ScanOptions(**options)
 
 
-def length_mm(value, unit_xy: str | None, where: str) -> float:
+def length_mm(value: Any, unit_xy: str | None, where: str) -> float:
     """Read a spacing: a text with its own unit, or a number in ``unit_xy``.
 
     Raises
@@ -94,7 +95,7 @@ def length_mm(value, unit_xy: str | None, where: str) -> float:
     return length
 
 
-def spacing_mm(spacing, unit_xy: str | None, where: str) -> tuple[float, float]:
+def spacing_mm(spacing: Any, unit_xy: str | None, where: str) -> tuple[float, float]:
     """Read one spacing, or a pair (dx, dy), in mm."""
     pair = spacing if isinstance(spacing, tuple) else (spacing, spacing)
     if len(pair) != 2:

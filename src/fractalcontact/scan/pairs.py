@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -41,7 +42,15 @@ _IMAGES = {
 MIRRORS = {None: (1, 1, 1), "x": (-1, 1, -1), "y": (1, -1, -1)}
 
 
-def register(lower, upper, mode, where, *, mirrored=None, regrid=None):
+def register(
+    lower: xr.DataArray,
+    upper: xr.DataArray,
+    mode: str,
+    where: str,
+    *,
+    mirrored: str | None = None,
+    regrid: Callable[[Sequence[Motion]], xr.DataArray] | None = None,
+) -> tuple[xr.DataArray, xr.DataArray]:
     """Move the upper face to where the spread of the gap is least; crop both to what they share.
 
     Nothing is moved if the spread would fall by less than 1 %, or if the faces do not match. The
@@ -82,7 +91,7 @@ def register(lower, upper, mode, where, *, mirrored=None, regrid=None):
     if mirrored:  # the height it was turned over at means nothing
         before["gap_mean"] = None
 
-    def as_given(note, match=None):
+    def as_given(note: str, match: float | None = None) -> tuple[xr.DataArray, xr.DataArray]:
         return _finished(lower, upper, _record(mode, None, match, before, before, note), where)
 
     if mode == "none":
@@ -134,7 +143,9 @@ def gap_statistics(lower: xr.DataArray, upper: xr.DataArray) -> dict:
     }
 
 
-def crop_to_common(lower, upper, where):
+def crop_to_common(
+    lower: xr.DataArray, upper: xr.DataArray, where: str
+) -> tuple[xr.DataArray, xr.DataArray]:
     """Keep the rectangle both faces cover; their cells are known to coincide.
 
     Raises

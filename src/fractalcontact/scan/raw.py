@@ -1,8 +1,10 @@
 """What every reader of a file format hands over, in the file's own units."""
 
 import re
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -52,7 +54,7 @@ class RawScan:
     triangles: np.ndarray | None = None
 
 
-def refuse_larger(n_bytes: int, path) -> None:
+def refuse_larger(n_bytes: int, path: Path | str) -> None:
     """Refuse what would need more than `LARGEST_FILE`, before anything is allocated."""
     if n_bytes > LARGEST_FILE:
         raise InputError(
@@ -62,7 +64,7 @@ def refuse_larger(n_bytes: int, path) -> None:
 
 
 @contextmanager
-def reading(path, kind: str):
+def reading(path: Path | str, kind: str) -> Iterator[None]:
     """Turn whatever a library raises over a damaged file into one clean `InputError`.
 
     Parameters
@@ -80,7 +82,7 @@ def reading(path, kind: str):
         raise InputError(f"{path}: not a readable {kind} ({reason}); export it again") from error
 
 
-def stated_unit(text) -> str | None:
+def stated_unit(text: object) -> str | None:
     """Take the unit of length a file states; None if it states none, or of something else."""
     text = str(text or "").strip()
     if not _UNIT.fullmatch(text):  # nothing else is handed to the parser of units

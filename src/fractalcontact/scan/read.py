@@ -1,5 +1,6 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,9 @@ from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.units import length_factor
 from .confined import read_confined
-from .faces import Measured, grid_one, grid_pair
+from .faces import grid_one, grid_pair
 from .files import is_unchanged, regular_file, sha256
+from .measured import Measured
 from .options import (
     MATRIX_KEYS,
     PAIR_KEYS,
@@ -29,7 +31,7 @@ __all__ = ["read_faces", "read_matrix", "read_scan"]
 LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
 
-def read_scan(path, options=None) -> xr.DataArray:
+def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
     """Read one scan file.
 
     Parameters
@@ -54,7 +56,11 @@ def read_scan(path, options=None) -> xr.DataArray:
     return grid_one(_measure(Path(path), options))
 
 
-def read_faces(lower_path, upper_path=None, options=None):
+def read_faces(
+    lower_path: Path | str,
+    upper_path: Path | str | None = None,
+    options: Mapping | None = None,
+) -> tuple[xr.DataArray, xr.DataArray | None]:
     """Read the faces of one joint onto one common grid, brought together.
 
     Points are gridded at the coarser of the two spacings, after one turn for both where they lie
@@ -94,7 +100,9 @@ def read_faces(lower_path, upper_path=None, options=None):
     return grid_pair(lower, upper, pair.registration or "rigid", pair.mirror_upper)
 
 
-def read_matrix(path, options=None):
+def read_matrix(
+    path: Path | str, options: Mapping | None = None
+) -> tuple[np.ndarray, tuple[float, float], dict]:
     """Read a file that holds a matrix, whatever its numbers mean.
 
     Parameters
@@ -134,7 +142,8 @@ def _measure(path: Path, options) -> Measured:
             "finished, then run again"
         )
     _refuse_idle_keys(raw, options, path)
-    overrides, notes = [], list(raw.notes)
+    overrides: list[str] = []
+    notes = list(raw.notes)
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)

@@ -18,7 +18,9 @@ _MOST_STEPS, _MOST_HALVINGS = 50, 8
 _SMALL_STEP = 1e-3  # of a cell: a step that moves no cell further ends the search
 
 
-def find_motion(lower: xr.DataArray, upper: xr.DataArray, mode: str = "rigid"):
+def find_motion(
+    lower: xr.DataArray, upper: xr.DataArray, mode: str = "rigid"
+) -> tuple[Motion, dict]:
     """Find the rigid motion of the upper face that minimises the spread of the gap.
 
     The start is the best match over all shifts (and rotations up to 12 degrees), or no motion at
@@ -85,7 +87,7 @@ def _refine(lower, upper, motion: Motion, mode: str) -> tuple[Motion, bool]:
     for _ in range(_MOST_STEPS):
         both = np.isfinite(gap)
         # About the centroid shift and rotation hardly interact.
-        motion = motion.cf_attrs(x[both].mean(), y[both].mean())
+        motion = motion.about(x[both].mean(), y[both].mean())
         step = _gauss_newton_step(lower, gap, motion, x, y, mode)
         size = np.hypot(*step[:2]) + abs(step[2]) * np.hypot(np.ptp(x[both]), np.ptp(y[both])) / 2
         for halving in range(_MOST_HALVINGS):

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 from scipy import ndimage
 
 
@@ -25,27 +26,27 @@ class Motion:
         """(x, y) in mm by which the point above ``start`` moves."""
         return self.end[0] - self.start[0], self.end[1] - self.start[1]
 
-    def forth(self, x, y):
+    def forth(self, x: ArrayLike, y: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Where the cells at x, y come to lie."""
         return _turned(x, y, self.start, self.end, self.rotation)
 
-    def back(self, x, y):
+    def back(self, x: ArrayLike, y: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Where the cells that come to lie at x, y were before."""
         return _turned(x, y, self.end, self.start, -self.rotation)
 
-    def rise(self, x, y):
+    def rise(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """How far the tilt lifts the face at x, y (after the motion)."""
         return self.slope[0] * (x - self.end[0]) + self.slope[1] * (y - self.end[1])
 
-    def cf_attrs(self, x: float, y: float) -> "Motion":
-        """The same motion but for its height, told by the point that ends at x, y."""
-        return replace(self, start=tuple(map(float, self.back(x, y))), end=(float(x), float(y)))
+    def about(self, x: float, y: float) -> "Motion":
+        """The same motion but for its height, written about the point that ends at x, y."""
+        return replace(self, start=_pair(*self.back(x, y)), end=(float(x), float(y)))
 
     def then(self, second: "Motion") -> "Motion":
         """This motion and a second one after it; their tilts, both small, add up."""
         return Motion(
             self.start,
-            tuple(map(float, second.forth(*self.end))),
+            _pair(*second.forth(*self.end)),
             self.rotation + second.rotation,
             (self.slope[0] + second.slope[0], self.slope[1] + second.slope[1]),
         )
@@ -66,6 +67,10 @@ class Motion:
         matrix = _shortest_turn(normal, normal - [*self.slope, 0.0]) @ turn
         pivot = np.array([*self.start, measured[:, 2].mean()])
         return (points - pivot) @ matrix.T + [*self.end, pivot[2]]
+
+
+def _pair(x: ArrayLike, y: ArrayLike) -> tuple[float, float]:
+    return float(np.asarray(x)), float(np.asarray(y))
 
 
 def _turned(x, y, centre, new_centre, angle):
@@ -105,7 +110,7 @@ class Surface:
             z = z[tuple(nearest)]
         self._coefficients = ndimage.spline_filter(z - self._level, order=3, mode="mirror")
 
-    def __call__(self, x, y) -> np.ndarray:
+    def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Heights at x, y in mm; NaN outside and where missing."""
         # Rounded, so that a cell's own place is not outside or beside it by the last bit.
         index = [
@@ -119,7 +124,8 @@ class Surface:
 
 def grid_nodes(heights: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
     """x and y (ny, nx) of every cell."""
-    return tuple(np.meshgrid(heights.x.values, heights.y.values))
+    x, y = np.meshgrid(heights.x.values, heights.y.values)
+    return x, y
 
 
 def correlation(a: np.ndarray, b: np.ndarray) -> float:

@@ -1,10 +1,12 @@
 """Which array of a file holds the heights, and whether a table is a matrix or a list of points."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..core.errors import InputError
+from .options import ScanOptions
 from .raw import SMALLEST_SIDE, RawScan
 
 
@@ -55,7 +57,9 @@ def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> 
         )
 
 
-def table_to_raw(table, names, options, where, **stated) -> RawScan:
+def table_to_raw(
+    table: np.ndarray, names: list[str] | None, options: ScanOptions, where: str, **stated: Any
+) -> RawScan:
     """Decide whether a table of numbers is a matrix of heights or a list of points.
 
     Parameters

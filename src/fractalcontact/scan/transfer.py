@@ -5,6 +5,7 @@ Nothing is pickled: what a damaged reader sends can be wrong, it cannot be run.
 
 import json
 from dataclasses import fields
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -23,7 +24,7 @@ def from_text(line: bytes) -> dict:
     return _with_tuples(json.loads(line))
 
 
-def send_scan(raw: RawScan, stream) -> None:
+def send_scan(raw: RawScan, stream: BinaryIO) -> None:
     """Write a scan to a binary stream."""
     content = {field.name: getattr(raw, field.name) for field in fields(raw)}
     arrays = {k: np.ascontiguousarray(v) for k, v in content.items() if isinstance(v, np.ndarray)}
@@ -34,7 +35,7 @@ def send_scan(raw: RawScan, stream) -> None:
         stream.write(memoryview(array).cast("B"))
 
 
-def receive_scan(message: dict, stream, most_bytes: int) -> RawScan | None:
+def receive_scan(message: dict, stream: Any, most_bytes: int) -> RawScan | None:
     """Read the scan that a line announces, or None if it breaks off.
 
     Parameters

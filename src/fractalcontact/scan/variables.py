@@ -4,7 +4,7 @@ h5py and scipy open them rather than the netCDF library, which hangs over some d
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -49,7 +49,7 @@ class Variable:
 
 
 @contextmanager
-def open_variables(path: Path):
+def open_variables(path: Path) -> Iterator[dict[str, Variable]]:
     """Open a file and list its variables by name, those in groups as ``group/name``."""
     import h5py
 
@@ -99,9 +99,9 @@ def _open_hdf5(path: Path):
     import h5py
 
     with h5py.File(path, "r") as file:
-        variables = {}
+        variables: dict[str, Variable] = {}
 
-        def collect(name, item):
+        def collect(name: str, item: h5py.HLObject) -> None:
             # MATLAB keeps the content of cells and structs under #refs#.
             if not isinstance(item, h5py.Dataset) or not item.shape or name.startswith("#"):
                 return

@@ -1,0 +1,35 @@
+"""A scan measured in mm, before it is on a grid."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A scan in mm, before it is on a grid.
+
+    Attributes
+    ----------
+    path : Path
+    layout : {"matrix", "points", "mesh"}
+    values : ndarray
+        Heights (ny, nx), first row at the smallest y; or points (n, 3).
+    spacing : (float, float) or None
+        dx, dy of a matrix.
+    grid : float or None
+        Spacing to grid points at, where the user gives it.
+    provenance : dict
+        Attributes for the result.
+    triangles : (m, 3) int ndarray or None
+        Of a mesh, between the points.
+    """
+
+    path: Path
+    layout: str
+    values: np.ndarray
+    spacing: tuple[float, float] | None
+    grid: float | None
+    provenance: dict
+    triangles: np.ndarray | None = None
