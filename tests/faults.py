@@ -26,25 +26,26 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "src")]
+from ensembles import ENSEMBLES
 from projects import copy_project, made, rough_heights, small_study, write_scan
 
 from fractalcontact.core.checksums import check
 
-#: In a full run; `--quick` takes the second number.
-TIMES = {
-    "kills": (50, 3),
-    "damage": (0, 4),  # 0: every kind of file alone, and all of them at once in every way
-    "noticed": (0, 0),
-    "scans": (12, 3),
-    "scans meanwhile": (10, 1),
-    "stops": (6, 1),
-    "full disks": (6, 1),
-    "two runs": (4, 1),
-    "threads": (10, 1),
-    "forks": (10, 1),
-    "interrupts": (300, 20),
-    "kernels": (12, 2),
-}
+#: Kinds of faults; how many of each stands in tests/support/ensembles.py.
+FAULTS = (
+    "kills",
+    "damage",
+    "noticed",
+    "scans",
+    "scans meanwhile",
+    "stops",
+    "full disks",
+    "two runs",
+    "threads",
+    "forks",
+    "interrupts",
+    "kernels",
+)
 DAMAGES = {
     "truncate": lambda content, chance: content[: chance.randrange(max(len(content), 1))],
     "empty": lambda content, chance: b"",
@@ -60,7 +61,7 @@ import hashlib, multiprocessing, os, signal, sys, threading
 from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.synthesis import self_affine
+from fractalcontact.surface.synthesis import self_affine
 sizes = (48, 200, 400)
 surfaces = {n: self_affine((n, n), 1.0, 0.8, seed=n, rms=1.0) for n in sizes}
 spaces = {n: HalfSpace((n, n), (1.0, 1.0), 1.0) for n in sizes}
@@ -389,7 +390,7 @@ def main():
     """Replay faults and print what became of them; 1 if anything was wrong."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--quick", action="store_true", help="a few of each")
-    parser.add_argument("--only", nargs="+", choices=TIMES, help="these faults alone")
+    parser.add_argument("--only", nargs="+", choices=FAULTS, help="these faults alone")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     wrong = 0
@@ -397,12 +398,15 @@ def main():
         trials = Trials(Path(folder).resolve(), options.seed)
         faults = {
             "damage": trials.damaged,
-            **{name: getattr(trials, name.replace(" ", "_")) for name in TIMES if name != "damage"},
+            **{
+                name: getattr(trials, name.replace(" ", "_")) for name in FAULTS if name != "damage"
+            },
         }
         print(f"{'fault':18s}{'trials':>8s}{'same':>8s}{'refused, then same':>20s}{'WRONG':>8s}")
-        for name, (full, quick) in TIMES.items():
+        for name in FAULTS:
             if options.only and name not in options.only:
                 continue
+            quick, full = ENSEMBLES.get(f"faults: {name}", (0, 0))
             begin = time.monotonic()
             outcomes, note = Counter(), ""
             try:

@@ -49,13 +49,13 @@ def main():
             _name_damage(results)
             sys.exit(_run([*_command(options, name), "--dry-run", *passed], options))
         _require_room(results)
-        guard, known = _running.alone(WAIT)
+        guard, has_locks = _running.alone(WAIT)
         if guard is None:
             raise InputError(
                 "another run is at work in this folder (or jobs that a killed one left, which end "
                 "by themselves); wait for it, or end it first"
             )
-        if known:
+        if has_locks:
             _unlock(_command(options, name), options)
             _clean(results)
         else:

@@ -147,6 +147,7 @@ def test_a_refused_file_takes_its_specimen_with_it_but_no_other(folder):
     assert list(refused) == ["a"]
 
 
+@pytest.mark.full
 @pytest.mark.scans
 @pytest.mark.skipif(not SCANS.is_dir(), reason="the real scans are not beside the project")
 def test_real_scans_are_read_with_the_sidecars_their_readme_asks_for(folder, check):

@@ -1,31 +1,22 @@
-"""A small atlas, made by the package's own functions: what the figures are drawn from in tests."""
+"""A small atlas, by the functions that the jobs of a study call: what tests draw figures from."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.domain.analysis import analyse_domains, scaling_over_resolutions
-from fractalcontact.domain.measures import measures_of_map_states
 from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.experiments.delta_g import estimator_bias
 from fractalcontact.experiments.delta_sigma import dimension_test
 from fractalcontact.experiments.roll_off import roll_off_effect
-from fractalcontact.mechanics.area import area_laws, joint_statistics
-from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
-from fractalcontact.mechanics.joint import describe_joint
-from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.plan import solve_plan
-from fractalcontact.mechanics.states import combine, domains_of, force_range, map_states
-from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import joint_states
-from fractalcontact.roughness.dimension import best_dimension, surface_dimension
-from fractalcontact.roughness.quality import scan_quality
-from fractalcontact.size_effect.eq6 import size_test
-from fractalcontact.size_effect.laws import joint_by_size
-from fractalcontact.statements.judge import judge
-from fractalcontact.study.atlas import STAGES, read_atlas, write_atlas
+from fractalcontact.stages.atlas import join_stages
+from fractalcontact.stages.specimen import specimen_stages
+from fractalcontact.stages.states import state_stages
+from fractalcontact.stages.windows import window_stages
+from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen, window_sides
+from fractalcontact.study.stages import EXPERIMENT, STAGES
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -126,72 +117,47 @@ def atlas_file(tmp_path_factory):
     """Path of an atlas with the specimens sliding, flat and pair."""
     parts = {stage: {} for stage in STAGES}
     settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
-    for name, (lower, upper) in _scans().items():
-        chosen = settings[name]
-        specimen = make_specimen(lower, upper, name=name, **window_arguments(chosen))
-        joint = describe_joint(specimen, chosen)
-        solved = joint_states(
-            specimen,
-            joint,
-            chosen["contact_directions"],
-            slice(None),
-            chosen,
-            chosen["resolutions"],
-            SOLVER,
-        )
-        states = combine([solved])
-        curves = closure_curves(
-            states,
-            window_sides(specimen),
-            chosen["material"]["e_star"],
-            force_range(chosen["hyperbola_range"], specimen),
-        )
-        fields = domains_of(states)
-        domains = analyse_domains(fields, SPACING)
-        dimension = surface_dimension(lower.values, SPACING)
-        dilatancy = elastic_dilatancy(curves, joint)
-        area = area_laws(
-            curves,
-            joint_statistics(specimen, joint),
-            chosen["material"]["e_star"],
-            best_dimension(dimension)[0],
-        )
-        loading = JointLoading(
-            specimen,
-            chosen["contact_directions"][0],
-            np.sort(joint["offset_cells"][0].values),
-            chosen,
-            SOLVER,
-        )
-        windows = joint_by_size(loading, best_dimension(dimension))
-        made = {
-            "specimens": specimen,
-            "quality": scan_quality(specimen, chosen["resolutions"]),
-            "surface_dimension": dimension,
-            "joints": joint,
-            "contact": fields,
-            "closure": curves,
-            "choices": solve_plan(curves, dilatancy, chosen, SOLVER),
-            "dilatancy": dilatancy,
-            "area": area,
-            "windows": windows,
-            "domains": domains,
-            "scaling": scaling_over_resolutions(curves, domains, SPACING),
-        }
-        made["size_test"] = size_test(loading, windows)
-        made["domain_measures"] = measures_of_map_states(map_states([solved]), SPACING)
-        made["statements"] = judge(made, chosen)
-        if name != "flat":
-            made["strength"] = joint_strength(dilatancy, joint, specimen, chosen)
-        for stage, dataset in made.items():
+    for name, faces in _scans().items():
+        for stage, dataset in _stages_of(name, faces, settings[name]).items():
             parts[stage][name] = dataset
-    parts["area_slope"]["surfaces"] = area_slope(AREA_SLOPE)
-    parts["dimension_test"]["surfaces"] = dimension_test(DIMENSION_TEST)
-    parts["estimator_bias"]["surfaces"] = estimator_bias(ESTIMATOR_BIAS)
-    parts["roll_off"]["surfaces"] = roll_off_effect(ROLL_OFF, 4.8, [1, 2])
+    for stage, dataset in _experiments().items():
+        parts[stage]["surfaces"] = dataset
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
-    write_atlas(parts, path, study="tiny", configuration={"study": STUDY, "settings": settings})
+    join_stages(parts, path, {"study": STUDY, "settings": settings})
     return path
+
+
+def _stages_of(name, faces, settings):
+    """All stages of a specimen, as the jobs of a study compute them."""
+    specimen = make_specimen(*faces, name=name, **window_arguments(settings))
+    known = specimen_stages(specimen, settings)
+    states = joint_states(
+        specimen,
+        known["joints"],
+        settings["contact_directions"],
+        slice(None),
+        settings,
+        settings["resolutions"],
+        SOLVER,
+    )
+    before = {stage: known[stage] for stage in STAGES["closure"].needs}
+    return {
+        **known,
+        **state_stages(**before, parts=[states], settings=settings, solver=SOLVER),
+        **window_stages(**before, settings=settings, solver=SOLVER),
+    }
+
+
+def _experiments():
+    """Stages that a study has once."""
+    computed = {
+        "area_slope": area_slope(AREA_SLOPE),
+        "dimension_test": dimension_test(DIMENSION_TEST),
+        "estimator_bias": estimator_bias(ESTIMATOR_BIAS),
+        "roll_off": roll_off_effect(ROLL_OFF, 4.8, [1, 2]),
+    }
+    assert computed.keys() <= {name for name, s in STAGES.items() if s.grain == EXPERIMENT}
+    return computed
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,7 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.study.atlas import STAGES
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
-from fractalcontact.study.stages import EXPERIMENTS
+from fractalcontact.study.stages import EXPERIMENT, paths_of
 
 #: A caption has fewer words than this; signs such as = and % are none.
 MOST_WORDS = 70
@@ -18,7 +18,7 @@ SPECIMENS = [
     for name, opposite in SUBJECTS.items()
     for figure in figures_of(opposite)
 ]
-STUDY = [(figure, list(SUBJECTS)) for figure in study_figures_of(EXPERIMENTS)]
+STUDY = [(figure, list(SUBJECTS)) for figure in study_figures_of(paths_of(EXPERIMENT))]
 
 
 def words_of(caption):

@@ -6,7 +6,7 @@ from fractalcontact.figures.draw import draw_study_figures
 from fractalcontact.figures.joint import statements
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.study.figure_list import study_figures_of
-from fractalcontact.study.stages import EXPERIMENTS
+from fractalcontact.study.stages import EXPERIMENT, paths_of
 
 
 @pytest.mark.parametrize("name", ["sliding", "pair", "flat"])
@@ -35,7 +35,7 @@ def test_no_row_is_cut_off(atlas):
 
 
 def test_figures_of_a_study(atlas_file, tmp_path):
-    names = study_figures_of(EXPERIMENTS)
+    names = study_figures_of(paths_of(EXPERIMENT))
     assert names == ["plateau", "area_slope", "dimension_test", "estimator_bias"]
     assert study_figures_of({"study": "x", "area_slope": {}}) == ["area_slope"]
     captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, names)

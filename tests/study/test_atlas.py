@@ -1,7 +1,10 @@
 """What is written comes back, the same twice, and says with which versions it was made."""
 
 import json
+import subprocess
+import sys
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -83,3 +86,55 @@ def test_parts_made_with_other_versions_are_named_in_the_atlas(tmp_path, monkeyp
     del made_with["specimens"]["old"]
     assert write_atlas(parts, path, **asked, made_with=made_with) == {}
     assert "versions_differ" not in read_atlas(path).attrs
+
+
+#: What a notebook does: the atlas open, read again by the package, and a cell run once more.
+OPENED_TWICE = """
+import sys
+import xarray as xr
+from fractalcontact.study.atlas import read_atlas
+
+path, kept = sys.argv[1], []
+for _ in range(5):
+    kept.append(xr.open_datatree(path))
+    assert read_atlas(path)["specimens/rock"].equals(kept[0]["specimens/rock"])
+    with xr.open_datatree(path) as again:
+        assert again["contact/rock"].load().equals(kept[-1]["contact/rock"])
+    xr.open_dataset(path, group="contact/rock").load()
+for tree in kept[::2]:
+    tree.close()
+print([str(word) for word in xr.open_datatree(path)["specimens/rock"]["face"].values])
+"""
+
+
+def test_an_atlas_is_opened_again_and_again_in_one_process(tmp_path):
+    """Strings of variable length would end the process: netcdf4-python issues 261 and 1444."""
+    words = {"face": ["lower", "upper", "größer", ""]}
+    values = ("face", np.arange(4.0), {"units": "mm", "long_name": "a"})
+    named = xr.Dataset({"a": values}, coords=words)
+    parts = {"specimens": {"rock": named}, "contact": {"rock": named}}
+    path = tmp_path / "atlas.nc"
+    write_atlas(parts, path, study="test", configuration={})
+    assert read_atlas(path)["specimens/rock"].to_dataset().equals(named)
+    command = [sys.executable, "-c", OPENED_TWICE, path]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, f"{words['face']}\n"), done.stderr[-2000:]
+
+
+def test_no_string_of_variable_length_is_in_an_atlas(tmp_path):
+    import netCDF4
+
+    labels = {"units": "1", "long_name": "a word"}
+    words = xr.Dataset(
+        {
+            "one": ((), "word", labels),
+            "none": ("x", np.array([], dtype="U3"), labels),
+            "objects": ("y", np.array(["a", "bcd"], dtype=object), labels),
+        }
+    )
+    path = tmp_path / "atlas.nc"
+    write_atlas({"specimens": {"rock": words}}, path, study="test", configuration={})
+    with netCDF4.Dataset(path) as file:
+        kinds = {variable.dtype for variable in file["specimens/rock"].variables.values()}
+    assert kinds == {np.dtype("S1")}
+    assert read_atlas(path)["specimens/rock"].to_dataset().equals(words)

@@ -8,18 +8,16 @@ import yaml
 from places import ROOT
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.study import scan_files as catalogue
+from fractalcontact.study import scan_files
+from fractalcontact.study.checks import check_names, check_study, read_sidecar
 from fractalcontact.study.configuration import (
     MOST_NODES,
-    check_names,
-    check_study,
-    read_sidecar,
-    read_study,
     resolve_embedded,
     resolve_roll_off,
     resolve_settings,
     window_arguments,
 )
+from fractalcontact.study.documents import read_study
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 PAPER = yaml.safe_load((ROOT / "config/paper.yaml").read_text())
@@ -208,12 +206,12 @@ def test_names_and_numbers_beyond_all_use_are_one_error_each(study, path, value,
     assert len(str(caught.value)) < 350
 
 
-@pytest.mark.parametrize("length", [catalogue.LONGEST_NAME, catalogue.LONGEST_NAME + 1])
+@pytest.mark.parametrize("length", [scan_files.LONGEST_NAME, scan_files.LONGEST_NAME + 1])
 def test_embedded_names_are_as_long_as_those_of_scans(study, length):
     name = "".join(str(k) for k in range(150))[:length]  # no row of repeats
     study["embedded"] = {name: study["embedded"]["joint_2.1"]}
     del study["roll_off"], study["specimens"]
-    if length <= catalogue.LONGEST_NAME:
+    if length <= scan_files.LONGEST_NAME:
         check_study(study, SCHEMA, "mine.yaml")
     else:
         with pytest.raises(InputError, match="up to 220 letters"):

@@ -67,6 +67,19 @@ ENSEMBLES: dict[str, tuple] = {
     "sides solved by threads": ((48, 96), (48, 200, 400)),
     "side solved in forks": (128, 400),
     "forks": (4, 10),
+    # Of `make faults`, whose option --quick takes the first. Damage: 0 is every kind of file alone,
+    # and all of them at once in every way.
+    "faults: kills": (3, 50),
+    "faults: damage": (4, 0),
+    "faults: scans": (3, 12),
+    "faults: scans meanwhile": (1, 10),
+    "faults: stops": (1, 6),
+    "faults: full disks": (1, 6),
+    "faults: two runs": (1, 4),
+    "faults: threads": (1, 10),
+    "faults: forks": (1, 10),
+    "faults: interrupts": (20, 300),
+    "faults: kernels": (2, 12),
 }
 
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from places import ROOT
 
-from fractalcontact.study.stages import EXPERIMENTS
+from fractalcontact.study.stages import EXPERIMENT, paths_of
 
 
 def copy_project(folder):
@@ -74,7 +74,7 @@ def small_study(project, **changes):
     """A study of scans alone, as fast as one can be."""
     study = yaml.safe_load((project / "config/smoke.yaml").read_text())
     study |= {"study": "test", "scans": "scans", "embedded": {}, "specimens": {}}
-    for experiment in EXPERIMENTS:
+    for experiment in paths_of(EXPERIMENT):
         study.pop(experiment, None)
     study["defaults"] |= {"window": "auto", "offsets": "auto", "loads": ["1 MPa", "10 MPa"]}
     study |= changes

@@ -14,31 +14,48 @@ pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (
-            "__use_yte__: true\nstudy: '?__import__(\"os\").system(\"touch pwned\")'\n",
-            "makes Snakemake run what the file says as Python",
+HOSTILE = {
+    "template": (
+        '__use_yte__: true\nstudy: \'?__import__("os").system("touch pwned")\'\n',
+        "makes Snakemake run what the file says as Python",
+    ),
+    "tag": ("study: !!python/object/apply:os.system ['touch pwned']\n", "not readable as YAML"),
+    "shell": ("study: x; touch pwned\n", "key 'study': found 'x; touch pwned', expected"),
+    "substitution": ("study: a\nstudy: $(touch pwned)\n", "expected the study's name"),
+    "path": ("study: ../outside\n", "expected the study's name"),
+    "aliases": (
+        "a: &a [1,1,1,1,1,1,1,1,1]\n"
+        + "".join(
+            f"{name}: &{name} [{','.join(9 * [f'*{before}'])}]\n"
+            for before, name in zip("abcde", "bcdef", strict=True)
         ),
-        ("study: !!python/object/apply:os.system ['touch pwned']\n", "not readable as YAML"),
-        ("study: x; touch pwned\n", "key 'study': found 'x; touch pwned', expected"),
-        ("study: a\nstudy: $(touch pwned)\n", "expected the study's name"),
-        ("study: ../outside\n", "expected the study's name"),
-        ("a: &a [1,1,1,1,1,1,1,1,1]\nb: &b [*a,*a,*a,*a,*a,*a,*a,*a,*a]\n"
-         "c: &c [*b,*b,*b,*b,*b,*b,*b,*b,*b]\nd: &d [*c,*c,*c,*c,*c,*c,*c,*c,*c]\n"
-         "e: &e [*d,*d,*d,*d,*d,*d,*d,*d,*d]\nf: [*e,*e,*e,*e,*e,*e,*e,*e,*e]\n",
-         "once its aliases"),
+        "once its aliases",
+    ),
+}
+#: What is found before Snakemake starts is found at once, whatever the options.
+_QUICK = [("template", ()), ("shell", ("--full",)), ("aliases", ("--dry-run",))]
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        *_QUICK,
+        *(
+            pytest.param(kind, options, marks=pytest.mark.full)
+            for kind in HOSTILE
+            for options in ((), ("--dry-run",), ("--full",))
+            if (kind, options) not in _QUICK
+        ),
     ],
-)  # fmt: skip
-def test_a_study_is_plain_data_and_runs_nothing(project, text, said):
+)
+def test_a_study_is_plain_data_and_runs_nothing(project, kind, options):
+    text, said = HOSTILE[kind]
     (project / STUDY).write_text(text)
-    for options in ((), ("--dry-run",), ("--full",)):
-        done = made(project, STUDY, *options)
-        assert done.returncode != 0
-        (line,) = done.stderr.strip().splitlines()
-        assert line.startswith(f"error: {STUDY}: ")
-        assert said in line
+    done = made(project, STUDY, *options)
+    assert done.returncode != 0
+    (line,) = done.stderr.strip().splitlines()
+    assert line.startswith(f"error: {STUDY}: ")
+    assert said in line
     assert not list(project.rglob("pwned"))
     assert not (project / "results").exists()
 
@@ -67,6 +84,7 @@ def locks(project):
     return sorted((project / ".snakemake/locks").glob("*"))
 
 
+@pytest.mark.full
 def test_the_lock_of_a_living_run_stays_however_it_was_started(project):
     living = start(project, *command("config/smoke.yaml"))
     wait_for(project / "results/smoke/logs/embedded", living)
@@ -84,6 +102,7 @@ def test_the_lock_of_a_living_run_stays_however_it_was_started(project):
     assert third.returncode == 0, third.stderr[-3000:]
 
 
+@pytest.mark.full
 def test_jobs_that_outlive_their_run_count_as_living(project):
     """Snakemake alone killed: what its jobs still write must not mix with what a new run does."""
     living = start(project, *command("config/smoke.yaml"))
@@ -97,16 +116,15 @@ def test_jobs_that_outlive_their_run_count_as_living(project):
     os.killpg(living.pid, signal.SIGKILL)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_a_run_that_is_told_to_end_ends_its_jobs(project, number):
     running = start(project, *made_words("config/smoke.yaml"))
     wait_for(project / "results/smoke/logs/dimension_test.log", running)
     time.sleep(0.3)
-    began = time.monotonic()
     running.send_signal(number)
     running.wait(timeout=60)
     said = (project / "said").read_text()
-    assert time.monotonic() - began < 45
     assert running.returncode == 128 + number
     assert "make: told to stop; jobs end" in said
     assert "Traceback" not in said
@@ -130,6 +148,7 @@ def _at_work(project):
     return found
 
 
+@pytest.mark.full
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
 @pytest.mark.parametrize("megabytes", [20, 51])
 def test_a_full_disk_is_said_in_one_sentence(project, megabytes):
@@ -161,7 +180,14 @@ def test_a_full_disk_is_said_in_one_sentence(project, megabytes):
         subprocess.run(["umount", results], check=True)
 
 
-@pytest.mark.parametrize("name", ["a b", "it's", "$(touch pwned)"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "$(touch pwned)",
+        pytest.param("a b", marks=pytest.mark.full),
+        pytest.param("it's", marks=pytest.mark.full),
+    ],
+)
 def test_an_environment_that_scripts_cannot_be_started_from_is_said_first(project, name):
     (project / name).mkdir()
     (project / name / ".venv").symlink_to(sys.prefix)

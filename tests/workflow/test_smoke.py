@@ -16,13 +16,14 @@ from projects import ROOT, command, project, run, small_study, write_scan
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import accuracy_figures_of, figures_of, study_figures_of
 from fractalcontact.study.scan_files import find_scans
-from fractalcontact.study.stages import EXPERIMENTS
+from fractalcontact.study.stages import EXPERIMENT, paths_of
 
 __all__ = ["project"]  # a fixture
 SCANS = ROOT.parent / "shared" / "scans"
 pytestmark = pytest.mark.workflow
 
 
+@pytest.mark.full
 def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(project):
     whole = run(project)
     assert whole.returncode == 0, whole.stderr
@@ -32,7 +33,7 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
         drawn = {path.stem for path in (results / "figures" / name).glob("*.png")}
         assert drawn == set(figures_of(opposite))
     drawn = {path.stem for path in (results / "figures").glob("*.svg")}
-    assert drawn == set(study_figures_of(EXPERIMENTS))
+    assert drawn == set(study_figures_of(paths_of(EXPERIMENT)))
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
 
@@ -56,6 +57,7 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
     assert (results / "atlas.nc").read_bytes() == atlas
 
 
+@pytest.mark.full
 def test_one_bad_scan_is_one_clear_error_and_the_good_one_finishes(project):
     study = small_study(project)
     rough = write_scan(project, "good")
@@ -74,6 +76,7 @@ def test_one_bad_scan_is_one_clear_error_and_the_good_one_finishes(project):
     assert drawn == set(figures_of("match"))
 
 
+@pytest.mark.full
 def test_accuracy_is_a_study_of_its_own(project):
     study = yaml.safe_load((project / "config/accuracy_small.yaml").read_text())
     study |= {"study": "speed"}
@@ -93,6 +96,7 @@ def test_accuracy_is_a_study_of_its_own(project):
     assert atlas["convergence/hertz/force_order"] > 1
 
 
+@pytest.mark.full
 def test_accuracy_says_which_study_has_something_to_measure(project):
     done = run(project, "config/smoke.yaml", "accuracy")
     assert done.returncode != 0
@@ -101,11 +105,13 @@ def test_accuracy_says_which_study_has_something_to_measure(project):
 
 
 def test_reading_the_workflow_imports_nothing_heavy():
-    rules = (ROOT / "workflow/rules/common.smk").read_text()
-    modules = re.findall(r"^from (fractalcontact\S*) import", rules, re.MULTILINE)
-    assert "fractalcontact.study.configuration" in modules
+    """Those of accuracy alone know the solver's jobs, where they are asked for."""
+    rules = "\n".join(path.read_text() for path in sorted(ROOT.glob("workflow/rules/*.smk")))
+    statement = r"^from fractalcontact[.\w]* import (?:\([^)]*\)|[^\n]+)"
+    imports = re.findall(statement, rules, re.MULTILINE)
+    assert "from fractalcontact.study.checks import resolve_study" in imports
     names = "import sys; print(sorted({'xarray', 'numba', 'matplotlib'} & set(sys.modules)))"
-    code = f"import {', '.join(modules)}; {names}"
+    code = "\n".join([*imports, names])
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
 
@@ -118,6 +124,7 @@ def test_an_unknown_key_stops_before_anything_runs(project):
     assert not (project / "results").exists()
 
 
+@pytest.mark.full
 def test_a_study_without_a_name_is_not_taken_for_the_default_one(project):
     study = small_study(project)
     text = (project / study).read_text().replace("study: test\n", "")
@@ -145,6 +152,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.full
 def test_files_of_any_permitted_name_are_scheduled_and_run(project):
     study = small_study(project)
     for name in HOSTILE:
@@ -164,6 +172,7 @@ def test_files_of_any_permitted_name_are_scheduled_and_run(project):
     assert "Nothing to be done" in again.stdout + again.stderr
 
 
+@pytest.mark.full
 @pytest.mark.scans
 @pytest.mark.skipif(not SCANS.is_dir(), reason="the real scans are not beside the project")
 def test_a_real_pair_dropped_in_gives_figures(project):

@@ -17,7 +17,8 @@ from fractalcontact.core.checksums import sha256
 from fractalcontact.core.netcdf import read
 from fractalcontact.study.atlas import read_atlas
 
-pytestmark = pytest.mark.workflow
+# What each kind of change makes again is in test_rerun.py; here studies run to their figures.
+pytestmark = [pytest.mark.workflow, pytest.mark.full]
 STUDY = "config/test.yaml"
 #: Little is made where a test needs no more; figures take longest.
 SPECIMEN = "results/test/specimens/rock.nc"
@@ -184,7 +185,7 @@ def append(path, text):
 
 
 def test_code_counts_that_a_script_shares_with_others(project):
-    append(project / "workflow/scripts/_stages.py", "# another judge\n")
+    append(project / "workflow/scripts/_stages.py", "# another way to read them\n")
     assert set(planned(project)) == {"atlas", "figures_against_plane", "all"}
     append(project / "src/fractalcontact/scan/__init__.py", "# another reader\n")
     assert "specimen" in planned(project)

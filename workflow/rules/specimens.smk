@@ -48,9 +48,9 @@ def options_of(wildcards):
     return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_of(wildcards)["spacing"])
 
 
-# The levelled specimen, and what is known of its joint before contact is solved: the dimension of its
-# face, what the instrument adds and which resolutions go below it, and one face slid over the other
-# (offsets, composite topographies, rigid dilatancy). Seconds of work, so one job.
+# The levelled specimen, and its joint before contact is solved: the dimension of its face, what the
+# instrument adds and which resolutions go below it, and one face slid over the other (offsets,
+# composite topographies, rigid dilatancy). Seconds of work, so one job.
 rule specimen:
     input:
         unpack(scan_files),

@@ -72,7 +72,7 @@ def alone(seconds):
     -------
     handle : int or None
         For :func:`share`; None if others are at work.
-    known : bool
+    has_locks : bool
         Whether the file system has locks. Where it has none, others may be at work.
     """
     handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)

@@ -1,4 +1,4 @@
-"""What the scripts share that put stages of a study together."""
+"""Stages of a study read from their files, and written into one atlas."""
 
 from pathlib import Path
 

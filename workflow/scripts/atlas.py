@@ -1,4 +1,4 @@
-"""Put what was made of all specimens into one file."""
+"""Write all stages of all specimens into one file, the atlas."""
 
 from _job import job
 from _stages import join_stages, read_stages

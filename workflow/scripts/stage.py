@@ -18,10 +18,10 @@ del arguments["code"]
 
 with job(snakemake) as log:
     for key, paths in snakemake.input.items():
-        whole = isinstance(paths, str)
-        arguments[key] = netcdf.read(paths) if whole else [netcdf.read(path) for path in paths]
-    made = function(**arguments)
+        one = isinstance(paths, str)
+        arguments[key] = netcdf.read(paths) if one else [netcdf.read(path) for path in paths]
+    result = function(**arguments)
     for stage, path in snakemake.output.items():
-        dataset = made[stage] if isinstance(made, dict) else made
+        dataset = result[stage] if isinstance(result, dict) else result
         netcdf.write(dataset, path)
         log.info("%s", dataset)

@@ -8,6 +8,7 @@ import json
 import math
 import sys
 import textwrap
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -53,7 +54,7 @@ INDENT = "    "
 
 @dataclass
 class Checked:
-    """What is known of one specimen, or of a file that makes none.
+    """Report on one specimen, or on a file that makes none.
 
     Attributes
     ----------
@@ -68,13 +69,15 @@ class Checked:
     """
 
     name: str
-    cells: dict = field(default_factory=dict)
-    lines: list = field(default_factory=list)
-    warnings: list = field(default_factory=list)
+    cells: dict[str, str] = field(default_factory=dict)
+    lines: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
     refusal: str = ""
 
 
-def check_scans(folder, study, schema, source):
+def check_scans(
+    folder: Path | str, study: Mapping, schema: Mapping, source: str
+) -> Iterator[Checked]:
     """Go through all scans of a folder, one after the other.
 
     Parameters
@@ -176,14 +179,14 @@ def _gap_words(specimen):
     words = f"gap: mean {length_words(np.nanmean(gap))}, sd {length_words(np.nanstd(gap))}"
     if "registration" not in specimen.attrs:
         return words
-    found = json.loads(specimen.attrs["registration"])
-    words += f"; registration ({found['mode']}): {found['note']}"
-    if found["applied"]:
-        before = found["gap_sd_before_mm"]
-        known = "unknown" if before is None else length_words(before)
+    motion = json.loads(specimen.attrs["registration"])
+    words += f"; registration ({motion['mode']}): {motion['note']}"
+    if motion["applied"]:
+        before = motion["gap_sd_before_mm"]
+        spread = "unknown" if before is None else length_words(before)
         words += (
-            f", shift {found['shift_x_mm']:.3g}, {found['shift_y_mm']:.3g} mm (x, y), sd before "
-            f"{known}"
+            f", shift {motion['shift_x_mm']:.3g}, {motion['shift_y_mm']:.3g} mm (x, y), sd before "
+            f"{spread}"
         )
     return words
 
@@ -237,7 +240,7 @@ def _shown(error, scan):
 # -- the table -------------------------------------------------------------------------------------
 
 
-def table_lines(checked):
+def table_lines(checked: Checked) -> list[str]:
     """Lines of the table for one specimen.
 
     Parameters
@@ -280,31 +283,31 @@ def _wrapped(sentence):
     return lines
 
 
-def main(arguments=None):
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table; 1 if a file was refused or the study is wrong, else 0."""
     parser = argparse.ArgumentParser(prog="check_scans", description=__doc__.split("\n")[0])
     parser.add_argument("folder", nargs="?", help="default: the study's")
     parser.add_argument("--study", default="config/paper.yaml")
     parser.add_argument("--schema", default="config/schema/study.schema.yaml")
-    asked = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     # Names may hold what a terminal's encoding does not.
-    sys.stdout.reconfigure(errors="backslashreplace")
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
     try:
-        study, schema = read_study(asked.study), read_study(asked.schema)
-        check_study(study, schema, asked.study)
+        study, schema = read_study(options.study), read_study(options.schema)
+        check_study(study, schema, options.study)
         return _print_table(
-            Path(asked.folder or study.get("scans") or "scans"), study, schema, asked
+            Path(options.folder or study.get("scans") or "scans"), study, schema, options.study
         )
     except InputError as error:
         sys.stderr.write(f"error: {error}\n")
         return 1
 
 
-def _print_table(folder, study, schema, asked):
+def _print_table(folder, study, schema, source):
     """Print what each file of a folder holds; 1 if one was refused."""
     counts = {"ok": 0, "with warnings": 0, "refused": 0}
     _write([_row({key: key for key in COLUMNS}), "-" * WIDTH])
-    for checked in check_scans(folder, study, schema, asked.study):
+    for checked in check_scans(folder, study, schema, source):
         state = "refused" if checked.refusal else "with warnings" if checked.warnings else "ok"
         counts[state] += 1
         _write(table_lines(checked))

@@ -12,17 +12,17 @@ from ..elastic.halfspace import HalfSpace
 from ..roughness.dimension import surface_dimension
 from ..surface.synthesis import self_affine
 
-#: Nodes a side: from here on the solver uses all of its parts.
+#: Nodes per side: from here on the solver uses all of its parts.
 SIDE = 200
 
 
-def compile_kernels():
-    """Use every kernel that a study uses, on a small made joint: what is compiled stays on disk.
+def compile_kernels() -> list[float]:
+    """Run every kernel that a study uses, on a small synthetic joint: the compiled code is kept.
 
     Returns
     -------
     list of float
-        Stiffnesses of the states pressed on the way, N/mm.
+        Stiffnesses of the states solved on the way, N/mm.
     """
     surface = self_affine((SIDE, SIDE), 1.0, 0.8, seed=1, rms=1.0)
     surface_dimension(surface, 1.0)

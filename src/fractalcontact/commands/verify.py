@@ -4,6 +4,7 @@ python -m fractalcontact.commands.verify STUDY_FILE_OR_RESULTS_FOLDER
 """
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from ..core.checksums import check
@@ -11,8 +12,8 @@ from ..core.errors import InputError
 from ..study.documents import read_study, study_name
 
 
-def main(arguments=None):
-    """Print what is damaged or missing; 1 if anything is, or nothing is known, else 0."""
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print what is damaged or missing; 1 if anything is, or there are no checksums, else 0."""
     (given,) = sys.argv[1:] if arguments is None else arguments
     try:
         results = results_of(given)
@@ -33,8 +34,8 @@ def main(arguments=None):
     return int(wrong)
 
 
-def results_of(given):
-    """Folder of the results of a study: given itself, or by the study's file."""
+def results_of(given: Path | str) -> Path:
+    """Folder of the results of a study, given itself or by the study's file."""
     path = Path(given)
     return path if path.is_dir() else Path("results") / study_name(read_study(path), path)
 

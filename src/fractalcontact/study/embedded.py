@@ -4,6 +4,7 @@ They are twins of specimens that are described but whose scans are not public, o
 joints, and enter the program through the same door as a measured surface.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -49,7 +50,7 @@ def write_scan(path: Path, heights: np.ndarray, spacing: float, *, sidecar: dict
         np.save(temporary, heights, allow_pickle=False)
 
 
-def embedded_surface(recipe) -> np.ndarray:
+def embedded_surface(recipe: Mapping) -> np.ndarray:
     """Heights of an embedded specimen, NaN outside its outline.
 
     Parameters

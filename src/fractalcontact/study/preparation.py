@@ -1,11 +1,18 @@
 """From scan files to a specimen: what the study does and what `check_scans` tries."""
 
+from collections.abc import Mapping
+from pathlib import Path
+
+import xarray as xr
+
 from ..scan.read import read_faces
 from ..surface.specimen import make_specimen
 from .configuration import window_arguments
 
 
-def prepare_specimen(lower, upper, options, settings, name):
+def prepare_specimen(
+    lower: Path | str, upper: Path | str | None, options: Mapping, settings: Mapping, name: str
+) -> xr.Dataset:
     """Read the faces of a specimen, level them and place the window.
 
     Parameters
@@ -20,7 +27,7 @@ def prepare_specimen(lower, upper, options, settings, name):
 
     Returns
     -------
-    Dataset
+    xr.Dataset
         As :func:`surface.specimen.make_specimen` makes it.
 
     Raises

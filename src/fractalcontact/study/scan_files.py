@@ -39,7 +39,7 @@ class ScanFiles:
     original_name: str
 
 
-def find_scans(folder) -> dict[str, ScanFiles]:
+def find_scans(folder: Path | str) -> dict[str, ScanFiles]:
     """List the specimens of a folder.
 
     ``NAME.ext`` is one face, ``NAME.lower.ext`` and ``NAME.upper.ext`` are two, ``NAME.yaml`` is
@@ -68,7 +68,7 @@ def find_scans(folder) -> dict[str, ScanFiles]:
     return scans
 
 
-def list_scans(folder) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
+def list_scans(folder: Path | str) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
     """List the specimens of a folder, and what is wrong with those that have none.
 
     Parameters
@@ -174,30 +174,33 @@ def _case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
 def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
     """Check that the files of one specimen go together."""
     only, lower, upper = roles.get("only"), roles.get("lower"), roles.get("upper")
-    sidecar = roles.get("sidecar")
-    if only and (lower or upper):
-        raise _two_claims(name, only, lower or upper)
-    if not (only or lower or upper):
-        folders = [p.name for p in sidecar.parent.glob("*/") if p.stem == sidecar.stem]
-        hint = f"; {folders[0]} is a folder, which is not looked into" if folders else ""
+    face = lower or upper
+    if only and face:
+        raise _two_claims(name, only, face)
+    first = only or face
+    if first is None:
+        raise _without_scan(roles["sidecar"])
+    original_name, _ = split_file_name(first.name)
+    if not only and not (lower and upper):
+        missing = "upper" if lower else "lower"
         raise InputError(
-            f"{sidecar}: this sidecar has no scan; put {sidecar.stem}.<ext> (or "
-            f"{sidecar.stem}.lower.<ext> and {sidecar.stem}.upper.<ext>) beside it, or remove it"
-            f"{hint}"
+            f"{first}: the {missing} face is missing; add {original_name}.{missing}{first.suffix}, "
+            f"or rename this file {original_name}{first.suffix} if only one face was scanned"
         )
-    if bool(lower) != bool(upper):
-        there, missing = (lower, "upper") if lower else (upper, "lower")
-        original_name, _ = split_file_name(there.name)
-        raise InputError(
-            f"{there}: the {missing} face is missing; add {original_name}.{missing}{there.suffix}, "
-            f"or rename this file {original_name}{there.suffix} if only one face was scanned"
-        )
-    lower = only or lower
-    return ScanFiles(name, lower, upper, sidecar, split_file_name(lower.name)[0])
+    return ScanFiles(name, first, upper, roles.get("sidecar"), original_name)
+
+
+def _without_scan(sidecar: Path) -> InputError:
+    folders = [path.name for path in sidecar.parent.glob("*/") if path.stem == sidecar.stem]
+    hint = f"; {folders[0]} is a folder, which is not looked into" if folders else ""
+    return InputError(
+        f"{sidecar}: this sidecar has no scan; put {sidecar.stem}.<ext> (or "
+        f"{sidecar.stem}.lower.<ext> and {sidecar.stem}.upper.<ext>) beside it, or remove it{hint}"
+    )
 
 
 def _refuse_outside_link(path: Path, folder: Path) -> None:
-    """A folder handed over by a stranger must not make the program read other files."""
+    """Untrusted folders must not make the program read other files."""
     try:
         target = path.resolve(strict=True)
     except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python

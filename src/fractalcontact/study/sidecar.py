@@ -1,4 +1,4 @@
-"""The text of a sidecar: YAML reduced to what a few keys need, since strangers write it.
+"""Text of a sidecar: YAML reduced to what a few keys need, since it is untrusted input.
 
 Words and numbers mean what they look like: ``1e-3`` is a number, ``no``, ``1:30`` and
 ``2020-01-01`` are words, ``010`` is ten. Anchors, tags, keys written twice and nesting without end
@@ -6,6 +6,8 @@ are refused; so is a file far longer than any sidecar.
 """
 
 import re
+from collections.abc import Mapping
+from pathlib import Path
 from typing import ClassVar
 
 import yaml
@@ -26,12 +28,12 @@ _WORDS = (
 )
 
 
-def is_contact_map(scan_options):
+def is_contact_map(scan_options: Mapping) -> bool:
     """Whether a sidecar says that its file is a map of contact, not of heights."""
     return scan_options.get("kind") == "contact-map"
 
 
-def sidecar_of_matrix(spacing):
+def sidecar_of_matrix(spacing: float) -> dict[str, str]:
     """Scan keys of a matrix in mm.
 
     Parameters
@@ -42,7 +44,7 @@ def sidecar_of_matrix(spacing):
     return {"unit": "mm", "spacing": f"{spacing:.12g} mm"}
 
 
-def read_yaml(path):
+def read_yaml(path: Path | str) -> dict:
     """Mapping in a YAML file.
 
     Parameters
@@ -80,7 +82,7 @@ def read_yaml(path):
     return document
 
 
-def unreadable(path, error):
+def unreadable(path: Path | str, error: yaml.YAMLError) -> InputError:
     """One sentence for what a file has that is not YAML.
 
     Parameters
@@ -124,15 +126,15 @@ def _refusal(problem: str, where) -> yaml.MarkedYAMLError:
 
 
 def _mapping(loader, node):
-    found = {}
+    pairs = {}
     for key_node, value_node in node.value:
         key = loader.construct_object(key_node, deep=True)
         if not isinstance(key, str):
             raise _refusal(f"the key {str(key)[:40]!r} is no word", key_node)
-        if key in found:
+        if key in pairs:
             raise _refusal(f"the key {key[:40]!r} stands here a second time", key_node)
-        found[key] = loader.construct_object(value_node, deep=True)
-    return found
+        pairs[key] = loader.construct_object(value_node, deep=True)
+    return pairs
 
 
 def _sequence(loader, node):

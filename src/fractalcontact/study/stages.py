@@ -193,8 +193,6 @@ _TABLE = (
 )
 #: Every stage by name, in the order of the atlas.
 STAGES = {stage.name: stage for stage in _TABLE}
-#: Experiments on synthetic surfaces: each is made once, where the study has its key.
-EXPERIMENTS = tuple(stage.name for stage in _TABLE if stage.grain == EXPERIMENT)
 
 
 def paths_of(*grains: str) -> dict[str, str]:

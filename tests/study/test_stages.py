@@ -1,0 +1,76 @@
+"""The table of stages: whole, in order, and true of the functions that it names."""
+
+import importlib
+import inspect
+import subprocess
+import sys
+
+import pytest
+import yaml
+from places import ROOT
+
+from fractalcontact.study.stages import (
+    EXPERIMENT,
+    GRAINS,
+    JOINT,
+    MAP,
+    SPECIMEN,
+    STAGES,
+    made_together,
+    needed_by,
+    paths_of,
+)
+
+
+def function_of(stage):
+    module, _, name = stage.function.partition(":")
+    return getattr(importlib.import_module(f"fractalcontact.{module}"), name)
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=STAGES)
+def test_a_stage_names_a_function_that_takes_what_the_stage_needs(stage):
+    taken = inspect.signature(function_of(stage)).parameters
+    if stage.grain in (SPECIMEN, JOINT, MAP, EXPERIMENT):
+        assert set(stage.needs) <= set(taken)
+    assert (ROOT / f"src/fractalcontact/{stage.module}.py").is_file()
+    assert stage.grain in GRAINS
+    assert stage.title
+
+
+def test_stages_need_only_stages_before_them_and_those_of_one_function_the_same():
+    before = set()
+    needs = {}
+    for name, stage in STAGES.items():
+        shared = set(made_together(name)) - {name}
+        assert set(stage.needs) <= before - shared
+        assert needs.setdefault(stage.function, stage.needs) == stage.needs
+        before.add(name)
+
+
+def test_an_experiment_has_a_key_in_the_schema_of_studies():
+    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+    assert set(paths_of(EXPERIMENT)) <= set(schema["properties"])
+
+
+def test_files_of_a_job_are_those_of_the_stages_of_its_function():
+    assert made_together("joints") == {
+        stage: f"{stage}/{{specimen}}.nc"
+        for stage in ("specimens", "quality", "surface_dimension", "joints")
+    }
+    assert set(made_together("closure")) - set(made_together("closure", [SPECIMEN])) == {"strength"}
+    assert needed_by("windows") == {
+        stage: f"{stage}/{{specimen}}.nc" for stage in ("specimens", "surface_dimension", "joints")
+    }
+    assert paths_of(MAP) == {"contact_maps": "contact_maps/{map}.nc"}
+    assert paths_of(EXPERIMENT)["roll_off"] == "roll_off/surfaces.nc"
+    assert "statements" not in paths_of(*GRAINS)
+
+
+def test_the_table_imports_none_of_the_functions_that_it_names():
+    code = (
+        "import sys, fractalcontact.study.stages\n"
+        "print({'numpy', 'numba', 'xarray'} & set(sys.modules),"
+        " [name for name in sys.modules if name.startswith('fractalcontact.stages')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set() []\n"

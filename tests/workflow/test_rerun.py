@@ -1,0 +1,116 @@
+"""What a change makes again, on one small study that was made up to its atlas."""
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
+
+from fractalcontact.core import sources
+from fractalcontact.study.atlas import read_atlas
+from fractalcontact.study.stages import STAGES, paths_of
+
+pytestmark = pytest.mark.workflow
+STUDY = "config/test.yaml"
+ATLAS = "results/test/atlas.nc"
+PACKAGE = ROOT / "src/fractalcontact"
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A study of one scan against a plane, made up to its atlas: figures take longest."""
+    folder = copy_project(tmp_path_factory.mktemp("finished"))
+    document = yaml.safe_load((folder / small_study(folder)).read_text())
+    document["defaults"] |= {"opposite": "flat", "resolutions": [1, 2]}
+    (folder / STUDY).write_text(yaml.safe_dump(document))
+    write_scan(folder, "rock")
+    done = made(folder, STUDY, targets=[ATLAS])
+    assert done.returncode == 0, done.stderr[-3000:]
+    return folder
+
+
+@pytest.fixture
+def project(finished, tmp_path):
+    """A copy of it, times and all."""
+    shutil.copytree(finished, tmp_path / "project", symlinks=True)
+    return tmp_path / "project"
+
+
+def planned(project):
+    return jobs_of(run(project, STUDY, "--dry-run", ATLAS))
+
+
+def append(project, name):
+    with open(project / name, "a") as file:
+        file.write("# a comment\n")
+
+
+def test_the_atlas_has_all_stages_of_the_table_and_a_second_run_nothing_to_do(project):
+    atlas = read_atlas(project / ATLAS)
+    assert set(atlas.children) == {*paths_of("specimen", "joint"), "statements"}
+    for name, group in atlas.children.items():
+        assert group.attrs["description"] == STAGES[name].title
+        assert list(group.children) == ([] if STAGES[name].grain == "joint" else ["rock"])
+    assert (project / "results/test/specimens.txt").read_text() == "rock\n"
+    # Copied, with the words of the schema and the times of the scan changed.
+    append(project, "config/schema/study.schema.yaml")
+    (project / "scans/rock.npy").touch()
+    assert planned(project) == {}
+
+
+def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):
+    for name in (
+        "workflow/scripts/_stages.py",  # beside the script of the atlas
+        "src/fractalcontact/stages/windows.py",  # the function that a generic script calls
+        "src/fractalcontact/study/stages.py",  # a new stage is no reason to make the others again
+    ):
+        append(project, name)
+    assert set(planned(project)) == {"windows", "atlas"}
+
+
+def test_a_scan_replaced_by_an_older_file_is_read(project):
+    scan = project / "scans/rock.npy"
+    np.save(project / "other.npy", rough_heights(seed=1))
+    os.utime(project / "other.npy", (1_000_000_000, 1_000_000_000))
+    os.replace(project / "other.npy", scan)
+    jobs = planned(project)
+    assert jobs["specimen"] == jobs["contact"] == jobs["analysis_against_plane"] == 1
+
+
+def test_a_missing_scan_and_a_damaged_file_stop_everything(project):
+    content = (project / ATLAS).read_bytes()
+    specimen = project / "results/test/specimens/rock.nc"
+    specimen.write_bytes(specimen.read_bytes()[:-1])
+    refused = run(project, STUDY)
+    assert refused.returncode != 0
+    assert "specimens/rock.nc: damaged or replaced after it" in refused.stdout + refused.stderr
+    for path in (project / "scans").iterdir():
+        path.unlink()
+    refused = made(project, STUDY)
+    assert refused.returncode != 0
+    assert "specimens that the study no longer has: rock" in refused.stderr
+    assert "specimens/rock.nc: damaged or replaced after it was made; moved to" in refused.stderr
+    assert (project / ATLAS).read_bytes() == content
+
+
+def _files_behind(*modules):
+    paths = [ROOT / "workflow/scripts/stage.py", *(PACKAGE / f"{name}.py" for name in modules)]
+    files = sources.source_files(paths, package=PACKAGE)
+    return {path.relative_to(ROOT).as_posix() for path in files}
+
+
+def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
+    alone = _files_behind()
+    assert "workflow/scripts/_job.py" in alone
+    assert not {path for path in alone if Path(path).parts[2:3] in (("stages",), ("study",))}
+    for stage in STAGES.values():
+        files = _files_behind(stage.module)
+        assert f"src/fractalcontact/{stage.module}.py" in files
+    windows = _files_behind(STAGES["windows"].module)
+    assert {"src/fractalcontact/size_effect/laws.py", "src/fractalcontact/contact/solve.py"} <= (
+        windows - alone
+    )
+    assert "src/fractalcontact/study/stages.py" not in windows
