@@ -9,7 +9,11 @@ import os
 EVERYTHING = os.environ.get("TESTS") == "all"
 
 #: Ensemble: (for ``make test``, for ``make test-all``).
-ENSEMBLES: dict[str, tuple] = {}
+ENSEMBLES: dict[str, tuple] = {
+    # Figures of accuracy: nodes per side, and Hurst exponents, of their test problems.
+    "accuracy_figure_sizes": ([12, 16], [16, 24, 32]),
+    "accuracy_figure_hurst": ([0.8], [0.5, 0.8]),
+}
 
 
 def ensemble(name):
