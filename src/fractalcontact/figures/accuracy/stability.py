@@ -1,11 +1,13 @@
 """Verdicts on the solvers by kind of test problem: one row a kind, one column a solver."""
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from xarray import DataTree
 
 from ...accuracy.speed import OURS
 from ...accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
@@ -29,20 +31,11 @@ _STYLE = {
 _ROW = 0.145  # inches
 
 
-def draw(atlas, names):
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Fractions of the verdicts, kind by kind and solver by solver.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Specimens of the study; the scenes here are none of them.
-
-    Returns
-    -------
-    Drawing
-        Its data name the draws of every honest failure and of every silent error:
-        ``hard_scene(kind, draw)`` of `fractalcontact.accuracy.hard_problems` makes each again.
+    Its data name the draws of every honest failure and of every silent error:
+    ``hard_scene(kind, draw)`` of `fractalcontact.accuracy.hard_problems` makes each again.
     """
     stability = group(atlas, "stability", "scenes")
     counts = _counts(stability)

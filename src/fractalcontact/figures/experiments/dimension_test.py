@@ -1,9 +1,12 @@
 """Both estimators of Delta_sigma on synthetic surfaces, by load and size."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ..kit.drawing import (
     COLOURS,
@@ -34,19 +37,8 @@ _ESTIMATORS = {
 }
 
 
-def draw(atlas, names):
-    """Delta_sigma against load by dimension and size, their difference, and the way to 2.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Specimens of the study; the surfaces here are the study's own and none of them.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Delta_sigma against load by dimension and size, their difference, and the way to 2."""
     test = group(atlas, "dimension_test", "surfaces")
     capped = "capped_load" in test.dims
     n = test.sizes["dimension"]

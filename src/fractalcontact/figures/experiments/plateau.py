@@ -1,6 +1,7 @@
 """Why rigid dilatancy has a plateau: joints made with and without a roll-off, and the study's."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...core.intervals import mean_interval
@@ -154,20 +156,8 @@ class Slide:
         return self.v >= self.v[-1] / 2
 
 
-def draw(atlas, names):
-    """Dilatancy, spread of the composite topography and their ratio for all that slides.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-        Of a study that has synthetic joints with and without a roll-off.
-    names : sequence of str
-        Its specimens; those that do not slide are passed over.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Dilatancy, spread of the composite topography and their ratio for all that slides."""
     synthetic = [Slide.synthetic(atlas, surface) for surface in SURFACES]
     sliding = [name for name in names if settings_of(atlas, name)["opposite"] != "flat"]
     slides = synthetic + [Slide.of(atlas, name) for name in sliding]

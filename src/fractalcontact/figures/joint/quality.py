@@ -8,6 +8,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from xarray import DataTree
 
 from ...roughness.quality_words import AXES, length_words, noise_words, range_words
 from ...surface.specimen import window_slices
@@ -40,19 +41,10 @@ AXIS_COLOURS = {"x": COLOURS[1], "y": COLOURS[2]}
 LETTERS, LINE = 138, 0.128
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """The quality sheet of a specimen.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are spectra, histograms and profiles drawn, by `panel` and face.
+    Its data are spectra, histograms and profiles drawn, by `panel` and face.
     """
     specimen = group(atlas, "specimens", name)
     quality = group(atlas, "quality", name)

@@ -8,6 +8,7 @@ from matplotlib.colors import LightSource, Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
+from xarray import DataTree
 
 from ...roughness.dimension import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
@@ -26,19 +27,10 @@ CLIPPED = 0.002
 LIT_SLOPE = 0.7
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Relief of each face under light from the North-West, and Delta_g by every estimator.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are the estimates of Delta_g, of the lower face.
+    Its data are the estimates of Delta_g, of the lower face.
     """
     specimen = group(atlas, "specimens", name)
     dimension = group(atlas, "surface_dimension", name)

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...mechanics.joint import STEPS
 from ...surface.specimen import faces, window_sides, window_slices
@@ -113,19 +114,10 @@ class Slid:
         return table.iloc[max(first - margin, 0) : last + margin].reset_index(drop=True)
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Plan, profile and composite topography at the largest offset.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are the profiles.
+    Its data are the profiles.
     """
     slid = Slid.of(atlas, name)
     label = settings_of(atlas, name)["label"]

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...surface.specimen import window_sides
@@ -38,19 +39,10 @@ INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
 NEARLY_FLAT = 0.1
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Dilatancy curves and contact domains at six offsets.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are the points of both kinds of curves and, for the map load, the contact areas.
+    Its data are the points of both kinds of curves and, for the map load, the contact areas.
     """
     settings = settings_of(atlas, name)
     specimen = group(atlas, "specimens", name)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.domains import Loading, disagreement, trend
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
@@ -21,19 +22,8 @@ _MOST_MAPS = 6
 _APART = {"area": 1 / 1.04, "box": 1.04}
 
 
-def draw(atlas, name):
-    """Contact domains under growing load, and Delta_sigma against F by both estimators.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        The specimen.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Contact domains under growing load, and Delta_sigma against F by both estimators."""
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_MAPS)
     aspect = loading.sides[0] / loading.sides[1]

@@ -3,6 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ..kit.domains import Loading, trend
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, heading, headline, legends_below
@@ -18,19 +19,8 @@ ORDER = 200
 _MOST_LOADS = 6
 
 
-def draw(atlas, name):
-    """Eq. 6 under several loads, by both estimators.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        The specimen.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Eq. 6 under several loads, by both estimators."""
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_LOADS)
     table = pd.concat([size_effect(loading, i) for i in shown], ignore_index=True)
