@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -57,7 +58,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     return Drawing(figure, table_of(scenes), words)
 
 
-def caption(scenes, quantity):
+def caption(scenes: dict[str, xr.Dataset], quantity: str) -> str:
     """Whether ours is on the front at every error below `LEADS_BELOW`, and what counts as equal.
 
     Parameters

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -22,7 +23,7 @@ KEY = "stability"
 ORDER = 100
 
 #: Colour and hatching of each verdict: what must not happen is the darkest.
-_STYLE = {
+_STYLE: dict[int, dict[str, Any]] = {
     RIGHT: {"facecolor": "#cfe3f1"},
     HONEST: {"facecolor": COLOURS[5], "hatch": "////"},
     SILENT: {"facecolor": COLOURS[0]},

@@ -1,8 +1,9 @@
 """Area slope kappa of synthetic surfaces at light load, beside the theories."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -60,7 +61,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     return Drawing(figure, _table(slopes), _caption(slopes))
 
 
-def kappa_lines(axes, loads, attrs):
+def kappa_lines(axes: Axes, loads: np.ndarray, attrs: Mapping) -> None:
     """Persson's and Bush, Gibson and Thomas' kappa, and the literature's values as a band.
 
     Parameters

@@ -43,7 +43,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     capped = "capped_load" in test.dims
     n = test.sizes["dimension"]
     figure = Figure(figsize=(WIDTH, 6.4))
-    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))  # type: ignore[misc]  # an array
     panels = np.atleast_1d(above.subplots(1, n, sharey=True))
     for which, axes, dimension in zip("abcdefgh", panels, test["dimension"].values, strict=False):
         _draw_loads(axes, test, dimension, which)

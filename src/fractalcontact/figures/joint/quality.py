@@ -58,7 +58,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     heights = [maps, 1.9, 2.5]
     text = LINE * (len(lines) + 1)
     figure = Figure(figsize=(WIDTH, sum(heights) + text + 0.7))
-    panels, below = figure.subfigures(2, 1, height_ratios=[sum(heights) + 0.7, text])
+    panels, below = figure.subfigures(2, 1, height_ratios=[sum(heights) + 0.7, text])  # type: ignore[misc]  # an array
     grid = panels.add_gridspec(3, 6, height_ratios=heights)
     width = 6 // columns
     top, last = (

@@ -58,7 +58,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
     rows = -(-len(points) // COLUMNS)
     figure = Figure(figsize=(WIDTH, 3.2 + 2.5 * rows))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])
+    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])  # type: ignore[misc]  # an array
     ranges = _ranges(dilatancy["offset"].values)
     rigid, *elastic = top.subplots(
         1, 1 + len(ranges), width_ratios=[2.3, 1.5, 1][: 1 + len(ranges)]

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 from xarray import DataTree
 
 from ..kit.drawing import (
@@ -60,7 +61,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn))
 
 
-def slope_angle(strength, pressure):
+def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
     """Limit slope angle atan(tau / sigma_n), degrees: a block on a plane so steep just slides.
 
     Parameters

@@ -1,5 +1,7 @@
 """Fig. 13: what eq. 6 makes of the size of the joint, for growing load."""
 
+from typing import Any
+
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -28,7 +30,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes = figure.subplots()
     for n, (_, rows) in enumerate(table.groupby("load_N")):
         own = rows.iloc[0]
-        point = {"marker": MARKERS[n], "ms": 7, "mec": "white", "mew": 0.5, "zorder": 3}
+        point: dict[str, Any] = {
+            "marker": MARKERS[n],
+            "ms": 7,
+            "mec": "white",
+            "mew": 0.5,
+            "zorder": 3,
+        }
         axes.plot(own["specimen_b_mm"], own["specimen_sigma_0_MPa"], color=COLOURS[n], **point)
     lines = [_draw_lines(axes, loading, estimate, shown, table) for estimate in loading.estimates]
     legends_below(figure, *lines)
