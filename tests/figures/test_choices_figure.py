@@ -1,7 +1,8 @@
-"""What was chosen, and the errors stated for the states."""
+"""Figure of the solve plan and of the errors stated for the states."""
 
 import numpy as np
 import pytest
+from cases import representative
 
 from fractalcontact.figures.joint import choices
 from fractalcontact.study.atlas import read_atlas
@@ -12,7 +13,7 @@ def atlas(atlas_file):
     return read_atlas(atlas_file)
 
 
-@pytest.mark.parametrize("name", ["sliding", "flat", "pair"])
+@pytest.mark.parametrize("name", representative(["sliding", "flat", "pair"]))
 def test_choices_and_errors_of_every_specimen(atlas, name):
     drawing = choices.draw(atlas, name)
     made, drawn = (drawing.data[drawing.data["kind"] == kind] for kind in ("choice", "error"))

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from cases import representative
 from matplotlib.figure import Figure
 
 from fractalcontact.core.fitting import fit_line
@@ -71,11 +72,11 @@ def test_eq_6_of_a_square_carpet_meets_the_specimen():
 @pytest.mark.parametrize(
     ("values", "half", "words"),
     [
-        ([0.2, 0.9, 1.5], 0.1, "this holds (0.20 [0.10, 0.30] at 10 N to 1.50"),
+        ([0.2, 0.9, 1.5], 0.1, "0.20 [0.10, 0.30] to 1.50 [1.40, 1.60] (holds)"),
         ([0.2, 0.9, 0.3], 0.1, "not established"),
-        ([1.5, 0.9, 0.3], 0.1, "does not hold (1.50 [1.40, 1.60] at 10 N to 0.30"),
+        ([1.5, 0.9, 0.3], 0.1, "1.50 [1.40, 1.60] to 0.30 [0.20, 0.40] (does not hold)"),
         ([0.4, 0.9, 0.3], 0.1, "not established"),
-        ([np.nan, 0.9, np.nan], 0.1, "cannot be told"),
+        ([np.nan, 0.9, np.nan], 0.1, "undetermined"),
     ],
 )
 def test_trend_says_whether_a_value_rises(values, half, words):
@@ -83,10 +84,10 @@ def test_trend_says_whether_a_value_rises(values, half, words):
     said = trend([10.0, 100.0, 1000.0], values, values - half, values + half, rising=True)
     assert words in said
     falling = trend([10.0, 100.0, 1000.0], -values, -values - half, -values + half, rising=False)
-    assert said.split("(")[0] == falling.split("(")[0]
+    assert said.split("(")[-1] == falling.split("(")[-1]
 
 
-def test_trend_tells_up_from_down_where_both_are_established():
+def test_trend_separates_up_from_down_where_both_are_established():
     high = np.array([0.3, 1.6])
     assert "does not hold" in trend([1.0, 2.0], high - 0.1, high - 0.2, high, rising=False)
 
@@ -118,7 +119,7 @@ def test_prefractals_balance_the_force(atlas):
     np.testing.assert_allclose(table["area_mm2"], nodes * table["spacing_mm"] ** 2)
 
 
-@pytest.mark.parametrize("specimen", SPECIMENS)
+@pytest.mark.parametrize("specimen", representative(SPECIMENS, 1))
 def test_box_counts_give_the_dimension_of_the_atlas(atlas, specimen):
     drawing = draw(atlas, "fig09_box_counting", specimen)
     stored = finest(atlas, "domains", specimen).isel(load=-1)
@@ -160,7 +161,7 @@ def test_interval_of_eq_6_brackets_its_line(atlas):
         assert (rows["sigma_0_high_MPa"] >= value * (1 - 1e-12)).all()
 
 
-@pytest.mark.parametrize("specimen", SPECIMENS)
+@pytest.mark.parametrize("specimen", representative(SPECIMENS, 1))
 def test_both_estimates_are_drawn_as_stored(atlas, specimen):
     table = draw(atlas, "fig12_evolution", specimen).data
     stored = finest(atlas, "scaling", specimen)
@@ -185,7 +186,7 @@ def test_size_effect_lists_slopes_and_the_specimen(atlas):
 # Properties
 
 
-@pytest.mark.parametrize("specimen", SPECIMENS)
+@pytest.mark.parametrize("specimen", representative(SPECIMENS))
 @pytest.mark.parametrize("figure", NAMES)
 def test_axes_and_captions_say_what_is_drawn(atlas, figure, specimen):
     drawing = draw(atlas, figure, specimen)
@@ -204,7 +205,7 @@ def test_axes_and_captions_say_what_is_drawn(atlas, figure, specimen):
     assert 0 < len(drawing.data) < 20_000
 
 
-@pytest.mark.parametrize("specimen", ["sliding", "pair"])
+@pytest.mark.parametrize("specimen", representative(["sliding", "pair"]))
 @pytest.mark.parametrize(
     "figure", ["fig04_05_closure", "fig09_box_counting", "fig10_scaling", "fig13_size_effect"]
 )
@@ -241,15 +242,16 @@ def test_box_sides_have_labels_that_stand_apart(largest):
 
 @pytest.mark.parametrize("figure", ["fig10_scaling", "fig13_size_effect"])
 def test_eq_6_is_called_an_extrapolation(atlas, figure):
-    assert "Extrapolation" in draw(atlas, figure, "sliding").caption
+    assert "extrapolated" in draw(atlas, figure, "sliding").caption
 
 
-@pytest.mark.parametrize("figure", NAMES)
+@pytest.mark.parametrize("figure", ["fig08_prefractals", "fig12_evolution"])
 def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas, figure):
-    assert "A_r(s) less box counting is" in draw(atlas, figure, "flat").caption
+    verdict = r"(They disagree|Their intervals overlap|They disagree at \d of \d loads)\.$"
+    assert re.search(verdict, draw(atlas, figure, "flat").caption)
     # One resolution gives no A_r(s) to fit.
     assert np.isnan(finest(atlas, "scaling", "pair")["delta_area"]).all()
-    assert "cannot be compared" in draw(atlas, figure, "pair").caption
+    assert "One estimate is missing." in draw(atlas, figure, "pair").caption
 
 
 def test_no_fit_is_said_with_its_reason(atlas):
@@ -257,6 +259,7 @@ def test_no_fit_is_said_with_its_reason(atlas):
     assert "no fit: A_r large enough at 1 of the 3 resolutions needed" in caption
 
 
+@pytest.mark.full
 def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
     for folder in ("first", "second"):
         figures.draw_figures(atlas_file, "sliding", tmp_path / folder, NAMES)

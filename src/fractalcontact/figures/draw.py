@@ -1,12 +1,14 @@
 """The figures: one module each, drawn from an atlas and nothing else.
 
-A module has ``draw(atlas, name)``: the atlas as an xarray DataTree and a specimen's name in, a
-:class:`figures.kit.drawing.Drawing` out.
+A module states what it is (:mod:`study.figure_list`) and has ``draw(atlas, name)``: the atlas as an
+xarray DataTree in, of which it reads the stages it needs, and a specimen's name, or for a figure of
+a study the names of all its specimens; a :class:`figures.kit.drawing.Drawing` out.
 """
 
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from ..study.atlas import STAGES, read_atlas
 from ..study.figure_list import all_figures
@@ -41,7 +43,9 @@ def drawer_of(name: str) -> Callable[..., Drawing]:
     return importlib.import_module(f".{group}.{module}", __package__).draw
 
 
-def draw_figures(atlas_path, specimen, folder, names):
+def draw_figures(
+    atlas_path: Path | str, specimen: str, folder: Path | str, names: Sequence[str]
+) -> dict[str, str]:
     """Draw figures of one specimen and write each as PNG, SVG, CSV and caption.
 
     Parameters
@@ -61,7 +65,9 @@ def draw_figures(atlas_path, specimen, folder, names):
     return _draw(atlas, specimen, folder, names, atlas[f"quality/{specimen}"].attrs["warning"])
 
 
-def draw_study_figures(atlas_path, specimens, folder, names):
+def draw_study_figures(
+    atlas_path: Path | str, specimens: Sequence[str], folder: Path | str, names: Sequence[str]
+) -> dict[str, str]:
     """Draw figures of a whole study, as :func:`draw_figures` does those of one specimen.
 
     Parameters

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from ..core.fitting import fit_line
 from ..mechanics.states import chosen_offset, forces_of
@@ -38,23 +39,23 @@ class Joint:
     settings: dict
 
     @cached_property
-    def direction(self):
+    def direction(self) -> str:
         """The direction judged."""
         return str(self.stages["joints"]["contact_direction"].values[0])
 
     @cached_property
-    def force(self):
+    def force(self) -> float:
         """Load of the contact maps, N."""
         specimen = self.stages["specimens"]
         return float(forces_of([self.settings["map_load"]], nominal_area(specimen))[0])
 
-    def at_load(self, stage, name):
+    def at_load(self, stage: str, name: str) -> np.ndarray:
         """A variable over offsets, at the load of the maps."""
         values = self.stages[stage][name].sel(direction=self.direction)
         values = values.sel(resolution=values["resolution"].min())
         return values.sel(load=self.force, method="nearest").values
 
-    def map_states(self, stage):
+    def map_states(self, stage: str) -> xr.Dataset:
         """A stage at the offset of the contact maps (and the finest resolution), over loads."""
         states = self.stages[stage].sel(direction=self.direction)
         states = states.sel(offset=self.map_offset, method="nearest")
@@ -62,54 +63,56 @@ class Joint:
             states = states.sel(resolution=states["resolution"].min())
         return states
 
-    def map_state(self, stage):
+    def map_state(self, stage: str) -> xr.Dataset:
         """A stage at the offset and load of the contact maps."""
         return self.map_states(stage).sel(load=self.force, method="nearest")
 
-    def map_windows(self):
+    def map_windows(self) -> xr.Dataset:
         """Parts of the window at the offset and nearest to the load of the contact maps."""
         windows = self.stages["windows"].sel(offset=self.map_offset, method="nearest")
         return windows.sel(load=self.force, method="nearest")
 
     @cached_property
-    def map_offset(self):
+    def map_offset(self) -> float:
         """Offset of the contact maps, mm."""
         return chosen_offset(self.settings["map_offset"], self.offset)
 
     @cached_property
-    def offset(self):
+    def offset(self) -> np.ndarray:
         """Offsets solved, mm."""
         return self.stages["closure"]["offset"].values
 
     @cached_property
-    def closure(self):
+    def closure(self) -> np.ndarray:
         """w_int over offsets, mm."""
         return self.at_load("closure", "interface_closure")
 
-    def of_direction(self, name):
+    def of_direction(self, name: str) -> np.ndarray:
         """A variable of the joint in the direction judged."""
         return self.stages["joints"][name].sel(direction=self.direction).values
 
     @cached_property
-    def initial(self):
+    def initial(self) -> np.ndarray:
         """Offsets of the first stage of sliding: up to the correlation length, if it is reached."""
         length = self.of_direction("correlation_length")
         return (self.offset > 0) & (np.isnan(length) | (self.offset <= length))
 
     @cached_property
-    def between(self):
+    def between(self) -> np.ndarray:
         """Offsets beyond the correlation length at which the faces still correlate."""
         unrelated = self.of_direction("uncorrelated_offset")
         beyond = self.offset > self.of_direction("correlation_length")
         return beyond & (~np.isfinite(unrelated) | (self.offset < unrelated))
 
     @cached_property
-    def unrelated(self):
+    def unrelated(self) -> np.ndarray:
         """Offsets at which the faces no longer correlate."""
         return self.offset >= self.of_direction("uncorrelated_offset")
 
 
-def trend(v, values, chosen, symbol, *, rising):
+def trend(
+    v: np.ndarray, values: np.ndarray, chosen: np.ndarray, symbol: str, *, rising: bool
+) -> Finding:
     """Whether values go with v as a power whose interval has the sign wanted."""
     chosen = chosen & (values > 0)
     line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
@@ -126,7 +129,7 @@ def trend(v, values, chosen, symbol, *, rising):
     )
 
 
-def level(values, symbol, v):
+def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
     """Whether values stay the same: their range as a share of their mean."""
     if len(values) < 2:
         return Finding(UNKNOWN, no_offsets("two"))
@@ -138,11 +141,11 @@ def level(values, symbol, v):
     )
 
 
-def share(good, total):
+def share(good: int, total: int) -> str:
     """Verdict on a claim that holds in some of all cases."""
     return HOLDS if good == total else PARTLY if good else FAILS
 
 
-def no_offsets(needed):
+def no_offsets(needed: str) -> str:
     """Why a claim cannot be told."""
     return f"too few offsets: {needed} needed here"

@@ -5,16 +5,21 @@ for the paper gives none. All are judged in the first direction whose contact wa
 scan's own resolution, and where one is needed at the load (and offset) of the contact maps.
 """
 
+from collections.abc import Callable
+
 import xarray as xr
 
 from ..core.labels import cf_attrs
 from . import mechanics, scaling
 from .findings import FAILS, HOLDS, PARTLY, UNKNOWN, Finding, Joint
 
+#: Figures of the paper, claim in our words, and what judges it.
+Statement = tuple[str, str, Callable[[Joint], Finding]]
+
 __all__ = ["FAILS", "HOLDS", "PARTLY", "UNKNOWN", "Finding", "Joint", "judge", "statements_for"]
 
 
-def statements_for(slides):
+def statements_for(slides: bool) -> tuple[Statement, ...]:
     """Figure, claim and judging function of every statement that can be asked.
 
     Parameters
@@ -25,7 +30,7 @@ def statements_for(slides):
     return (mechanics.STATEMENTS if slides else ()) + scaling.STATEMENTS
 
 
-def judge(stages, settings):
+def judge(stages: dict[str, xr.Dataset], settings: dict) -> xr.Dataset:
     """Judge every statement of :func:`statements_for` a joint.
 
     Parameters

@@ -11,6 +11,7 @@ from .findings import (
     PARTLY,
     UNKNOWN,
     Finding,
+    Joint,
     level,
     no_offsets,
     share,
@@ -23,17 +24,17 @@ GOOD_FIT = 0.02
 CHANCE = 0.05
 
 
-def compliance_rises_at_first(joint):
+def compliance_rises_at_first(joint: Joint) -> Finding:
     """Closure against offset up to the correlation length, as a power of v."""
     return trend(joint.offset, joint.closure, joint.initial, "w_int", rising=True)
 
 
-def curves_overlap(joint):
+def curves_overlap(joint: Joint) -> Finding:
     """Spread of the closure beyond the correlation length."""
     return level(joint.closure[joint.between], "w_int", joint.offset[joint.between])
 
 
-def compliance_rises_again(joint):
+def compliance_rises_again(joint: Joint) -> Finding:
     """Closure where the faces no longer correlate, against that at the offsets just before.
 
     Those are the ones beyond the correlation length or, if none was solved there, the last within.
@@ -51,7 +52,7 @@ def compliance_rises_again(joint):
     )
 
 
-def closure_is_hyperbolic(joint):
+def closure_is_hyperbolic(joint: Joint) -> Finding:
     """Misfit of the hyperbolas, and how many there are."""
     finest = joint.stages["closure"].sel(direction=joint.direction)
     finest = finest.sel(resolution=finest["resolution"].min())
@@ -68,7 +69,7 @@ def closure_is_hyperbolic(joint):
     )
 
 
-def area_is_linear(joint):
+def area_is_linear(joint: Joint) -> Finding:
     """Exponent m of A_r ~ F^m at every offset."""
     law = joint.stages["area"].sel(direction=joint.direction)
     exponent = law["exponent"].values
@@ -83,20 +84,20 @@ def area_is_linear(joint):
     )
 
 
-def area_falls(joint):
+def area_falls(joint: Joint) -> Finding:
     """Contact area against offset, as a power of v."""
     area = joint.at_load("closure", "area_share")
     return trend(joint.offset, area, joint.offset > 0, "A_r", rising=False)
 
 
-def area_settles(joint):
+def area_settles(joint: Joint) -> Finding:
     """Spread of the contact area beyond the correlation length."""
     beyond = joint.between | joint.unrelated
     area = joint.at_load("closure", "area_share")
     return level(area[beyond], "A_r", joint.offset[beyond])
 
 
-def composite_dimension_rises(joint):
+def composite_dimension_rises(joint: Joint) -> Finding:
     """Delta_g of the composite topography against offset."""
     dimension = joint.stages["joints"]["composite_dimension"].values
     slid = joint.offset > 0
@@ -114,7 +115,7 @@ def composite_dimension_rises(joint):
     )
 
 
-def compliance_goes_with_dimension(joint):
+def compliance_goes_with_dimension(joint: Joint) -> Finding:
     """Rank correlation of the closure with Delta_g of the composite topography."""
     from scipy import stats  # slow to import, and used nowhere else
 
@@ -128,7 +129,7 @@ def compliance_goes_with_dimension(joint):
     return Finding(verdict, f"Spearman's rank correlation {rank:+.2f} over {usable.sum()} offsets")
 
 
-def dilatancy_flattens(joint):
+def dilatancy_flattens(joint: Joint) -> Finding:
     """Change of the rigid dilatancy over the second half of the offsets, by direction."""
     means, changes = _plateaus(joint.stages["joints"])
     if not changes.size:
@@ -142,7 +143,7 @@ def dilatancy_flattens(joint):
     )
 
 
-def dilatancy_is_anisotropic(joint):
+def dilatancy_is_anisotropic(joint: Joint) -> Finding:
     """Difference of the rigid dilatancy among directions, over the last quarter of the offsets."""
     v = joint.stages["joints"]["rigid_offset"].values
     opened = joint.stages["joints"]["rigid_dilatancy"].values[:, v >= 0.75 * v[-1]].mean(axis=1)
@@ -157,13 +158,13 @@ def dilatancy_is_anisotropic(joint):
     )
 
 
-def domains_cluster(joint):
+def domains_cluster(joint: Joint) -> Finding:
     """Morisita's index of the contact domains against offset, as a power of v."""
     index = joint.at_load("domains", "morisita")
     return trend(joint.offset, index, joint.offset > 0, "Morisita's index", rising=True)
 
 
-def no_correlation_is_left(joint):
+def no_correlation_is_left(joint: Joint) -> Finding:
     """Correlation of the faces at the largest offset solved."""
     limit = float(joint.stages["joints"]["correlation_limit"])
     v = joint.stages["joints"]["rigid_offset"].values
@@ -175,7 +176,7 @@ def no_correlation_is_left(joint):
     return Finding(verdict, f"{numbers}, chance alone gives up to {limit:.2f}")
 
 
-def larger_samples_close_more(joint):
+def larger_samples_close_more(joint: Joint) -> Finding:
     """Exponent of w_int against window size, at every offset."""
     windows = joint.stages["windows"]
     load = int(np.argmin(np.abs(windows["load"].values - joint.force)))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..core.fitting import fit_line
-from .findings import FAILS, HOLDS, LOOSELY, NEARLY, PARTLY, UNKNOWN, Finding, share
+from .findings import FAILS, HOLDS, LOOSELY, NEARLY, PARTLY, UNKNOWN, Finding, Joint, share
 
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.
 NEAR_POINTS, NEAR_FULL = 0.25, 1.75
@@ -18,7 +18,7 @@ WIDEST = 1.0
 ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 
 
-def area_is_lacunar(joint):
+def area_is_lacunar(joint: Joint) -> Finding:
     """Exponent of A_r over the resolutions, at the load of the maps."""
     state = joint.map_state("scaling")
     value, low, high = (float(state[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
@@ -32,7 +32,7 @@ def area_is_lacunar(joint):
     )
 
 
-def boxes_follow_one_law(joint):
+def boxes_follow_one_law(joint: Joint) -> Finding:
     """Interval of the box-counting dimension at the load of the maps."""
     state = joint.map_state("domains")
     value, low, high = (float(state[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
@@ -47,7 +47,7 @@ def boxes_follow_one_law(joint):
     )
 
 
-def estimates_agree(joint):
+def estimates_agree(joint: Joint) -> Finding:
     """Whether A_r(s) and box counting have one Delta_sigma, over all loads."""
     states = joint.map_states("scaling")
     width = (states["difference_high"] - states["difference_low"]).values
@@ -68,17 +68,17 @@ def estimates_agree(joint):
     )
 
 
-def dimension_rises_by_area(joint):
+def dimension_rises_by_area(joint: Joint) -> Finding:
     """Delta_sigma from A_r(s) against the logarithm of F."""
     return _over_load(joint, "area")
 
 
-def dimension_rises_by_boxes(joint):
+def dimension_rises_by_boxes(joint: Joint) -> Finding:
     """Delta_sigma from box counts against the logarithm of F."""
     return _over_load(joint, "box")
 
 
-def dimension_spans_all(joint):
+def dimension_spans_all(joint: Joint) -> Finding:
     """Smallest and largest Delta_sigma by box counts over the loads."""
     values = joint.map_states("scaling")["delta_box"].values
     values = values[np.isfinite(values)]
@@ -91,7 +91,7 @@ def dimension_spans_all(joint):
     )
 
 
-def size_effect_follows(joint):
+def size_effect_follows(joint: Joint) -> Finding:
     """Verdicts of the direct test of eq. 6, over loads, with either estimate of Delta_sigma."""
     test = joint.stages["size_test"].sel(estimator=list(ESTIMATES))
     decided = test["verdict"].isin(DECIDED).values
@@ -110,13 +110,13 @@ def size_effect_follows(joint):
     )
 
 
-def larger_domains_are_less_dense(joint):
+def larger_domains_are_less_dense(joint: Joint) -> Finding:
     """Exponent of A_r/A_0 against window size at one nominal pressure."""
     windows = joint.map_windows()
     return _of_size(windows, "area_exponent", "A_r/A_0")
 
 
-def strength_falls_with_size(joint):
+def strength_falls_with_size(joint: Joint) -> Finding:
     """Exponents of shear strength against window size, at equal v/b and all loads."""
     windows = joint.stages["windows"]
     if "similar_strength_exponent" not in windows:

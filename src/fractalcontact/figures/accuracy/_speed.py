@@ -1,7 +1,14 @@
 """What the figures of accuracy and speed share: scenes, how a method looks, the axes of a chart."""
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import FigureBase
+from xarray import DataTree
 
 from ...accuracy.speed import ERRORS, FRONTS, MODEL, OURS, PEER, SOLVER
 from ..kit.drawing import COLOURS, LINES, MARKERS, colour_of, entries
@@ -17,7 +24,7 @@ AXES = {
 }
 _COLOURS = tuple(colour_of(i) for i in range(1, len(COLOURS) - 1))
 #: Solvers have filled marks, public codes hollow ones on a line, models hollow ones alone.
-_OF_KIND = {
+_OF_KIND: dict[str, dict[str, Any]] = {
     SOLVER: {"ls": LINES[1], "lw": 0.8},
     PEER: {"mfc": "white", "ls": LINES[2], "lw": 0.8},
     MODEL: {"mfc": "none", "ls": "none"},
@@ -25,7 +32,7 @@ _OF_KIND = {
 OURS_STYLE = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "zorder": 3}
 
 
-def scenes_of(atlas):
+def scenes_of(atlas: DataTree) -> dict[str, xr.Dataset]:
     """Datasets of the scenes measured, by name, in order of size, H and contact."""
     found = {name: node.to_dataset().load() for name, node in atlas["speed"].children.items()}
     return dict(sorted(found.items(), key=lambda item: _place(item[1].attrs)))
@@ -36,23 +43,23 @@ def _place(attrs):
     return size, *np.nan_to_num(smooth, nan=np.inf), attrs["scene"]
 
 
-def rough(scenes):
+def rough(scenes: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
     """Those on self-affine surfaces."""
     return {name: scene for name, scene in scenes.items() if np.isfinite(scene.attrs["hurst"])}
 
 
-def values_of(scenes, key):
+def values_of(scenes: dict[str, xr.Dataset], key: str) -> list:
     """The different values of an attribute, ascending."""
     return sorted({scene.attrs[key] for scene in scenes.values()})
 
 
-def middle_contact(scenes):
+def middle_contact(scenes: dict[str, xr.Dataset]) -> float:
     """The share in contact that stands for all where there is room for one."""
     shares = values_of(scenes, "contact")
     return shares[len(shares) // 2]
 
 
-def pick(scenes, **wanted):
+def pick(scenes: dict[str, xr.Dataset], **wanted: object) -> xr.Dataset:
     """The scene whose attributes are these."""
     for scene in scenes.values():
         if all(scene.attrs[key] == value for key, value in wanted.items()):
@@ -60,19 +67,22 @@ def pick(scenes, **wanted):
     raise KeyError(f"no scene with {wanted}")
 
 
-def styles(scenes):
+def styles(scenes: dict[str, xr.Dataset]) -> dict[str, dict]:
     """Colour, marker and line of every method, in every figure alike; ours alone is black."""
-    kinds = {}
+    kinds: dict[str, str] = {}
     for scene in scenes.values():
         kinds |= dict(zip(scene["method"].values, scene["kind"].values, strict=True))
     found = {OURS: OURS_STYLE}
     for i, (method, kind) in enumerate((m, k) for m, k in kinds.items() if m != OURS):
-        style = {"color": _COLOURS[i % len(_COLOURS)], "marker": MARKERS[(i + 1) % len(MARKERS)]}
+        style: dict[str, Any] = {
+            "color": _COLOURS[i % len(_COLOURS)],
+            "marker": MARKERS[(i + 1) % len(MARKERS)],
+        }
         found[method] = style | _OF_KIND[kind]
     return found
 
 
-def draw_points(axes, scene, quantity, looks):
+def draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, dict]) -> None:
     """Every method's error against its seconds, the front, and the reference's own error."""
     for method, look in looks.items():
         own = scene.isel(point=np.flatnonzero(scene["method"] == method))
@@ -93,13 +103,13 @@ def draw_points(axes, scene, quantity, looks):
     axes.set_ylim(SMALLEST / 3, 30)
 
 
-def legend_of(figure, panels, ncols=4):
+def legend_of(figure: FigureBase, panels: Iterable[Axes], ncols: int = 4) -> None:
     """One legend below a figure with what stands in any of its panels."""
     handles = {handle.get_label(): handle for axes in panels for handle in entries(axes)}
     figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=ncols)
 
 
-def table_of(scenes):
+def table_of(scenes: dict[str, xr.Dataset]) -> pd.DataFrame:
     """One row a point drawn, every scene below the other."""
     columns = ["method", "kind", "tolerance", *ERRORS, "seconds", "seconds_low", "seconds_high"]
     columns += ["runs", "memory", "on_front", "on_pressure_front", "said"]

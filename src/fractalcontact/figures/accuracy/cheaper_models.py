@@ -1,7 +1,10 @@
 """Errors and seconds of models cheaper than elastic contact at full resolution."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...accuracy.speed import DEFAULT_RTOL, ERRORS, MODEL, MODELS, OURS
 from ..kit.drawing import WIDTH, Drawing, label_short_span, letter
@@ -26,19 +29,8 @@ LEAST = 1e-5
 _COSTS = (("seconds", "wall time (s)", 1.0), ("memory", "peak memory (MB)", 1e6))
 
 
-def draw(atlas, names):
-    """A panel for each quantity and one for the time, over the scenes of the largest size.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Not used: the scenes are the study's own.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """A panel for each quantity and one for the time, over the scenes of the largest size."""
     scenes = scenes_of(atlas)
     looks = styles(scenes)
     size = values_of(scenes, "size")[-1]

@@ -1,8 +1,11 @@
 """Error against spacing for Hertz and the flat punch, and trials of Richardson's extrapolation."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...accuracy.convergence import QUANTITIES
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
@@ -19,19 +22,8 @@ _ENDS = ("", "_low", "_high")
 _TITLES = {"hertz": "paraboloid (Hertz)", "punch": "flat circular punch"}
 
 
-def draw(atlas, names):
-    """Errors over s for both problems, with their orders, and Richardson's errors over their bars.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Not used: the problems are the study's own.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Errors over s with their orders, and errors of Richardson's extrapolation over their bars."""
     figure = Figure(figsize=(WIDTH, 3.6))
     panels = figure.subplots(1, 3)
     panels[1].sharey(panels[0])

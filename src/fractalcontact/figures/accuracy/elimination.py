@@ -1,7 +1,10 @@
 """Whether dropping points alone reaches the right contact set, by kernel and by tolerance."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.drawing import COLOURS, LINES, MARKERS, WIDTH, Drawing, entries, group, letter
 from ..kit.words import opening
@@ -13,19 +16,8 @@ KEY = "stability"
 ORDER = 110
 
 
-def draw(atlas, names):
-    """Sign of the inverse influence matrix, wrong sets, and what inexact solves lose.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Specimens of the study; the scenes here are none of them.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Sign of the inverse influence matrix, wrong sets, and what inexact solves lose."""
     elimination = group(atlas, "elimination", "scenes")
     figure = Figure(figsize=(WIDTH, 3.0))
     left, right = figure.subplots(1, 2, width_ratios=[1.2, 1])

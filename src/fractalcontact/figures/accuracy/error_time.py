@@ -1,6 +1,10 @@
 """Error of the force against time on the rough scenes, with the Pareto front."""
 
+from collections.abc import Sequence
+
+import xarray as xr
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...accuracy.speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
 from ..kit.drawing import WIDTH, Drawing, letter
@@ -26,19 +30,8 @@ ORDER = 50
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
-def draw(atlas, names):
-    """A panel for each H and contact, at the smallest and at the largest size.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Not used: the scenes are the study's own.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """A panel for each H and contact, at the smallest and at the largest size."""
     scenes = rough(scenes_of(atlas))
     looks = styles(scenes)
     sizes = sorted({values_of(scenes, "size")[0], values_of(scenes, "size")[-1]})
@@ -65,7 +58,7 @@ def draw(atlas, names):
     return Drawing(figure, table_of(scenes), words)
 
 
-def caption(scenes, quantity):
+def caption(scenes: dict[str, xr.Dataset], quantity: str) -> str:
     """Whether ours is on the front at every error below `LEADS_BELOW`, and what counts as equal.
 
     Parameters

@@ -1,6 +1,9 @@
 """Errors of area, Delta_sigma and pressure against time on the largest rough scenes."""
 
+from collections.abc import Sequence
+
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.drawing import WIDTH, Drawing, letter
 from ..kit.words import supplementary
@@ -27,19 +30,8 @@ ORDER = 60
 QUANTITIES = ("area_error", "delta_error", "pressure_error")
 
 
-def draw(atlas, names):
-    """Rows of quantities, a column for each H, at the largest size and the middle contact.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Not used: the scenes are the study's own.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Rows of quantities, a column for each H, at the largest size and the middle contact."""
     scenes = rough(scenes_of(atlas))
     looks = styles(scenes)
     size, contact = values_of(scenes, "size")[-1], middle_contact(scenes)

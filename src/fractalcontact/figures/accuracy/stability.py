@@ -1,11 +1,14 @@
 """Verdicts on the solvers by kind of test problem: one row a kind, one column a solver."""
 
 import re
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from xarray import DataTree
 
 from ...accuracy.speed import OURS
 from ...accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
@@ -20,7 +23,7 @@ KEY = "stability"
 ORDER = 100
 
 #: Colour and hatching of each verdict: what must not happen is the darkest.
-_STYLE = {
+_STYLE: dict[int, dict[str, Any]] = {
     RIGHT: {"facecolor": "#cfe3f1"},
     HONEST: {"facecolor": COLOURS[5], "hatch": "////"},
     SILENT: {"facecolor": COLOURS[0]},
@@ -29,20 +32,11 @@ _STYLE = {
 _ROW = 0.145  # inches
 
 
-def draw(atlas, names):
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Fractions of the verdicts, kind by kind and solver by solver.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Specimens of the study; the scenes here are none of them.
-
-    Returns
-    -------
-    Drawing
-        Its data name the draws of every honest failure and of every silent error:
-        ``hard_problem(kind, draw)`` of `fractalcontact.accuracy.hard_problems` makes each again.
+    Its data name the draws of every honest failure and of every silent error:
+    ``hard_problem(kind, draw)`` of `fractalcontact.accuracy.hard_problems` makes each again.
     """
     stability = group(atlas, "stability", "scenes")
     counts = _counts(stability)

@@ -1,8 +1,11 @@
 """Wall time and memory against the size of the grid, with exponents."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ...accuracy.speed import OURS
 from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
@@ -18,19 +21,8 @@ ORDER = 70
 _ROWS = {"seconds": ("wall time (s)", 1.0), "memory": ("peak memory (MB)", 1e6)}
 
 
-def draw(atlas, names):
-    """Wall time over peak memory, a column for each H at the middle contact.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Not used: the scenes are the study's own.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Wall time over peak memory, a column for each H at the middle contact."""
     growth = group(atlas, "speed_growth", "surfaces")
     scenes = rough(scenes_of(atlas))
     looks = styles(scenes)

@@ -1,7 +1,11 @@
 """Area slope kappa of synthetic surfaces at light load, beside the theories."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...mechanics.theory import persson_area
 from ..kit.drawing import (
@@ -32,19 +36,8 @@ _TITLES = {
 _THEORIES = ("persson", "bush_gibson_thomas")
 
 
-def draw(atlas, names):
-    """kappa of every synthetic surface against load, with and without a roll-off.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Specimens of the study; the surfaces here are the study's own and none of them.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """kappa of every synthetic surface against load, with and without a roll-off."""
     slopes = group(atlas, "area_slope", "surfaces")
     figure = Figure(figsize=(WIDTH, 4.2))
     panels = figure.subplots(1, len(slopes["surface"]), sharey=True)
@@ -68,7 +61,7 @@ def draw(atlas, names):
     return Drawing(figure, _table(slopes), _caption(slopes))
 
 
-def kappa_lines(axes, loads, attrs):
+def kappa_lines(axes: Axes, loads: np.ndarray, attrs: Mapping) -> None:
     """Persson's and Bush, Gibson and Thomas' kappa, and the literature's values as a band.
 
     Parameters

@@ -1,9 +1,12 @@
 """Both estimators of Delta_sigma on synthetic surfaces, by load and size."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ..kit.drawing import (
     COLOURS,
@@ -34,24 +37,13 @@ _ESTIMATORS = {
 }
 
 
-def draw(atlas, names):
-    """Delta_sigma against load by dimension and size, their difference, and the way to 2.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Specimens of the study; the surfaces here are the study's own and none of them.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Delta_sigma against load by dimension and size, their difference, and the way to 2."""
     test = group(atlas, "dimension_test", "surfaces")
     capped = "capped_load" in test.dims
     n = test.sizes["dimension"]
     figure = Figure(figsize=(WIDTH, 6.4))
-    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))  # type: ignore[misc]  # an array
     panels = np.atleast_1d(above.subplots(1, n, sharey=True))
     for which, axes, dimension in zip("abcdefgh", panels, test["dimension"].values, strict=False):
         _draw_loads(axes, test, dimension, which)

@@ -1,7 +1,10 @@
 """Bias and coverage of the estimators of Delta_g on synthetic surfaces of known H."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of, entries, group, letter
 from ..kit.words import number, supplementary
@@ -18,19 +21,8 @@ TOLERATED = 0.03
 PROMISED = 0.9
 
 
-def draw(atlas, names):
-    """Bias with scatter, and coverage, by H, size and estimator.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    names : list of str
-        Specimens of the study; the surfaces here are the study's own and none of them.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Bias with scatter, and coverage, by H, size and estimator."""
     bias = group(atlas, "estimator_bias", "surfaces")
     sizes = bias["size"].values
     figure = Figure(figsize=(WIDTH, 5.6))

@@ -1,6 +1,7 @@
 """Why rigid dilatancy has a plateau: joints made with and without a roll-off, and the study's."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...core.intervals import mean_interval
@@ -93,7 +95,7 @@ class Slide:
     matched: bool
 
     @classmethod
-    def of(cls, atlas, name):
+    def of(cls, atlas: DataTree, name: str) -> "Slide":
         """The slide of a specimen of the atlas."""
         joint = group(atlas, "joints", name)
         specimen = group(atlas, "specimens", name)
@@ -119,7 +121,7 @@ class Slide:
         )
 
     @classmethod
-    def synthetic(cls, atlas, surface):
+    def synthetic(cls, atlas: DataTree, surface: str) -> "Slide":
         """Slides of synthetic joints with, or without, a roll-off; means of their directions."""
         joints = group(atlas, "roll_off", "surfaces")
         joints = joints.sel(surface=surface).transpose("seed", "direction", "rigid_offset")
@@ -142,32 +144,20 @@ class Slide:
         )
 
     @property
-    def ratio(self):
+    def ratio(self) -> np.ndarray:
         """delta_r / sigma_z; NaN where faces are flush."""
         return np.divide(
             self.opened, self.spread, out=np.full(self.spread.shape, np.nan), where=self.spread > 0
         )
 
     @property
-    def second_half(self):
+    def second_half(self) -> np.ndarray:
         """Which offsets are in the second half of those possible."""
         return self.v >= self.v[-1] / 2
 
 
-def draw(atlas, names):
-    """Dilatancy, spread of the composite topography and their ratio for all that slides.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-        Of a study that has synthetic joints with and without a roll-off.
-    names : sequence of str
-        Its specimens; those that do not slide are passed over.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Dilatancy, spread of the composite topography and their ratio for all that slides."""
     synthetic = [Slide.synthetic(atlas, surface) for surface in SURFACES]
     sliding = [name for name in names if settings_of(atlas, name)["opposite"] != "flat"]
     slides = synthetic + [Slide.of(atlas, name) for name in sliding]
@@ -293,7 +283,7 @@ class Trend(NamedTuple):
     change: float
 
     @classmethod
-    def of(cls, slide, values):
+    def of(cls, slide: Slide, values: np.ndarray) -> "Trend":
         """Trend of one quantity, (rows, n): the mean slope of the rows.
 
         Its interval comes from how the rows differ; from the points of the line where there is but
@@ -303,7 +293,7 @@ class Trend(NamedTuple):
         v = slide.v[half]
         lines = [fit_line(v, row[half]) for row in values]
         slope, low, high = (
-            mean_interval([line.slope for line in lines])[:3]
+            map(float, mean_interval([line.slope for line in lines])[:3])
             if len(lines) > 1
             else (lines[0].slope, lines[0].slope_low, lines[0].slope_high)
         )

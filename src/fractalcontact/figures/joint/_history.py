@@ -1,6 +1,9 @@
 """What was done to the files of a specimen, in words."""
 
 import json
+from collections.abc import Sequence
+
+import xarray as xr
 
 from ...core.labels import printable
 from ...surface.specimen import STEEP_TILT, window_sides
@@ -9,7 +12,7 @@ from ...surface.specimen import STEEP_TILT, window_sides
 LONGEST_NAME, LONGEST_NOTE = 60, 400
 
 
-def history(specimen, faces):
+def history(specimen: xr.Dataset, faces: Sequence[str]) -> list[str]:
     """One paragraph a face on its file, and one on what was done to the faces.
 
     Parameters

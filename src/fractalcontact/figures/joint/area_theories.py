@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...mechanics.area import LIGHT_LOAD
 from ...mechanics.states import chosen_offset
@@ -42,19 +43,8 @@ _FAN = 0.52, 0.9, 0.05
 _GREY = "0.45"
 
 
-def draw(atlas, name):
-    """Area against pressure with every theory, and kappa against reduced pressure.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Area against pressure with every theory, and kappa against reduced pressure."""
     settings = settings_of(atlas, name)
     curves = finest_curves(atlas, name)
     direction = str(curves["direction"].values)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.drawing import (
     COLOURS,
@@ -41,19 +42,10 @@ ERRORS = (
 LEAST = 1e-8
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """The solve plan as a table, and the errors stated for the states over the load.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are the rows of the table ("choice") and the errors drawn ("error").
+    Its data are the rows of the table ("choice") and the errors drawn ("error").
     """
     settings = settings_of(atlas, name)
     plan = group(atlas, "choices", name)

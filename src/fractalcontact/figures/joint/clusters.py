@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...core.fitting import FEWEST_POINTS, fit_line
 from ...domain.clusters import follows_law
@@ -59,20 +60,11 @@ EXPONENTS = {
 }
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Number of clusters, largest one, localisation and sizes, at the finest resolution.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas that slides.
-
-    Returns
-    -------
-    Drawing
-        Its data are the numbers of every domain ("domain") and, for the map load, how many
-        clusters have some area or more ("sizes").
+    Its data are the numbers of every domain ("domain") and, for the map load, how many
+    clusters have some area or more ("sizes").
     """
     settings = settings_of(atlas, name)
     specimen = group(atlas, "specimens", name)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...statements.judge import UNKNOWN
 from ..kit.drawing import (
@@ -32,19 +33,10 @@ ORDER = 70
 STAGES = ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again")
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Face correlation at every offset, closure and compliance at those whose contact was solved.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas that slides.
-
-    Returns
-    -------
-    Drawing
-        Its data are the points of (a) ("correlation") and of (b) and (c) ("closure").
+    Its data are the points of (a) ("correlation") and of (b) and (c) ("closure").
     """
     settings = settings_of(atlas, name)
     specimen = group(atlas, "specimens", name)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.drawing import (
     LINES,
@@ -33,19 +34,8 @@ CURVES = 5
 THEORY = (0.95, 1.0)
 
 
-def draw(atlas, name):
-    """Conductance at about five offsets, at the finest resolution.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Conductance at about five offsets, at the finest resolution."""
     settings = settings_of(atlas, name)
     curves = finest_curves(atlas, name)
     direction = str(curves["direction"].values)

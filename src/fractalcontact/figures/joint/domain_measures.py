@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.drawing import (
     LINES,
@@ -29,19 +30,10 @@ ORDER = 150
 MOST_LOADS = 4
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Local slopes of the box counts, lacunarity and the spectrum D_q of the pressure.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the stage ``domain_measures``.
-
-    Returns
-    -------
-    Drawing
-        Its data are the points drawn, ``kind`` "slope", "lacunarity" or "spectrum".
+    Its data are the points drawn, ``kind`` "slope", "lacunarity" or "spectrum".
     """
     settings = settings_of(atlas, name)
     measures = group(atlas, "domain_measures", name)

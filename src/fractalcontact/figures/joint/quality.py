@@ -8,6 +8,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from xarray import DataTree
 
 from ...roughness.quality_words import AXES, length_words, noise_words, range_words
 from ...surface.specimen import window_slices
@@ -40,19 +41,10 @@ AXIS_COLOURS = {"x": COLOURS[1], "y": COLOURS[2]}
 LETTERS, LINE = 138, 0.128
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """The quality sheet of a specimen.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are spectra, histograms and profiles drawn, by `panel` and face.
+    Its data are spectra, histograms and profiles drawn, by `panel` and face.
     """
     specimen = group(atlas, "specimens", name)
     quality = group(atlas, "quality", name)
@@ -66,7 +58,7 @@ def draw(atlas, name):
     heights = [maps, 1.9, 2.5]
     text = LINE * (len(lines) + 1)
     figure = Figure(figsize=(WIDTH, sum(heights) + text + 0.7))
-    panels, below = figure.subfigures(2, 1, height_ratios=[sum(heights) + 0.7, text])
+    panels, below = figure.subfigures(2, 1, height_ratios=[sum(heights) + 0.7, text])  # type: ignore[misc]  # an array
     grid = panels.add_gridspec(3, 6, height_ratios=heights)
     width = 6 // columns
     top, last = (

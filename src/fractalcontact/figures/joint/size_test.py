@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ..kit.drawing import (
     COLOURS,
@@ -41,9 +42,9 @@ _ESTIMATORS = {
 _BY = {"area": "by A_r(s)", "box": "by box counting", "box_sizes": "by occupied windows"}
 _PREDICTORS = {
     "power_law": "power law of small windows",
-    "eq6_area": r"eq. 6, $\Delta_\sigma$ from $A_r(s)$",
-    "eq6_box": r"eq. 6, $\Delta_\sigma$ from box counting",
-    "eq6_box_sizes": r"eq. 6, $\Delta_\sigma$ from occupied windows",
+    "eq6_area": "eq. 6, $A_r(s)$",
+    "eq6_box": "eq. 6, box counting",
+    "eq6_box_sizes": "eq. 6, occupied windows",
     "no_size_effect": "no size effect",
 }
 _QUANTITIES = {
@@ -53,18 +54,8 @@ _QUANTITIES = {
 }
 
 
-def draw(atlas, name):
-    """Windows of several sizes at equal sigma*, the slope of eq. 6, and predictions of the whole.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Windows of several sizes at equal sigma*, slopes of eq. 6, predictions of the whole."""
     settings = settings_of(atlas, name)
     test = group(atlas, "size_test", name)
     figure = Figure(figsize=(WIDTH, 6.2))

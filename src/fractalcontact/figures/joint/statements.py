@@ -2,6 +2,7 @@
 
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...statements.judge import FAILS, HOLDS, PARTLY, UNKNOWN
 from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, group, label_in_lines, settings_of
@@ -21,19 +22,8 @@ SIGNS |= {FAILS: ("○", COLOURS[2]), UNKNOWN: ("–", "0.4")}
 COLUMNS = {"figure": (0.01, 8), "claim": (0.065, 46), "verdict": (0.44, 24), "numbers": (0.575, 60)}
 
 
-def draw(atlas, name):
-    """The statements, one row each.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """The statements, one row each."""
     label = settings_of(atlas, name)["label"]
     judged = group(atlas, "statements", name)
     table = pd.DataFrame({key: judged[key].values.astype(str) for key in COLUMNS})

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...mechanics.jrc import JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
@@ -29,19 +30,10 @@ NEEDS = ("specimens", "strength")
 ORDER = 110
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Angles and strength against v, peak and residual strength against pressure.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen that slides.
-
-    Returns
-    -------
-    Drawing
-        Its data are the points of (a) and (b), then those of (c).
+    Its data are the points of (a) and (b), then those of (c).
     """
     settings = settings_of(atlas, name)
     specimen = group(atlas, "specimens", name)

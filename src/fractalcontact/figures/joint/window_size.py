@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...mechanics.states import chosen_offset
 from ..kit.drawing import (
@@ -30,18 +31,10 @@ ORDER = 90
 _OFFSETS = 3
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """sigma_z and interface closure against the side b of sub-windows.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-
-    Returns
-    -------
-    Drawing
-        Its data are the means over sub-windows with their intervals.
+    Its data are the means over sub-windows with their intervals.
     """
     settings = settings_of(atlas, name)
     laws = group(atlas, "windows", name)

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
+from xarray import DataTree
 
 from ...core.fitting import FEWEST_POINTS
 from ...domain.renormalisation import RESOLUTION
@@ -37,18 +39,18 @@ class Estimate:
     high: np.ndarray
     reason: list
 
-    def text(self, i):
+    def text(self, i: int) -> str:
         """Delta_sigma under the i-th load in words."""
         return self.reason[i] or interval(self.value[i], self.low[i], self.high[i])
 
-    def entry(self, i):
+    def entry(self, i: int) -> str:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
         if self.reason[i]:
             return self.reason[i].split(":")[0]
         return rf"$\Delta_\sigma$ = {self.text(i)}"
 
     @property
-    def style(self):
+    def style(self) -> dict:
         """Colour, marker and line that stand for the estimator in every figure."""
         first = self.key == "area"
         return {
@@ -83,7 +85,7 @@ class Loading:
     scaling: xr.Dataset
 
     @classmethod
-    def of(cls, atlas, name):
+    def of(cls, atlas: DataTree, name: str) -> "Loading":
         """The states of a specimen that the study wants drawn."""
         settings = settings_of(atlas, name)
         direction = settings["contact_directions"][0]
@@ -96,51 +98,51 @@ class Loading:
         return cls(settings, group(atlas, "specimens", name), direction, offset, **chosen)
 
     @property
-    def forces(self):
+    def forces(self) -> np.ndarray:
         """F of every load, N, ascending."""
         return self.scaling["load"].values
 
     @property
-    def sides(self):
+    def sides(self) -> tuple[float, float]:
         """Sides (y, x) of the window, mm."""
         return window_sides(self.specimen)
 
     @property
-    def side(self):
+    def side(self) -> float:
         """b, mm: side of the square that has the window's area."""
         return float(np.sqrt(np.prod(self.sides)))
 
     @property
-    def finest(self):
+    def finest(self) -> int:
         """Multiple k of the scan's spacing at the finest resolution."""
         return int(self.scaling[RESOLUTION].min())
 
     @property
-    def place(self):
+    def place(self) -> str:
         """Where the contact is, in words."""
         return place(self.direction, self.offset)
 
     @property
-    def title(self):
+    def title(self) -> tuple[str, str]:
         """Which specimen, and where its contact is: parts of a headline."""
         return self.settings["label"], self.place
 
-    def opening(self, figure):
+    def opening(self, figure: str) -> str:
         """First words of the caption of a figure of the paper."""
         return opening(figure, self.settings["label"], self.place)
 
     @property
-    def map_load(self):
+    def map_load(self) -> int:
         """Index of the load whose contact domains the study wants drawn."""
         return nearest_load(self.forces, self.settings["map_load"], self.specimen)
 
     @property
-    def counts(self):
+    def counts(self) -> xr.Dataset:
         """Box counts at the finest resolution, under every load."""
         return self.domains.sel(resolution=self.finest)
 
     @property
-    def estimates(self):
+    def estimates(self) -> tuple[Estimate, ...]:
         """Both estimates of Delta_sigma; that of the box counts at the finest resolution."""
         area, box = self.scaling, self.counts
         too_few = [
@@ -155,7 +157,9 @@ class Loading:
                 key,
                 label,
                 symbol,
-                *(data[f"delta_sigma{end}"].values for end in ("", "_low", "_high")),
+                data["delta_sigma"].values,
+                data["delta_sigma_low"].values,
+                data["delta_sigma_high"].values,
                 reason,
             )
             for key, label, symbol, data, reason in (
@@ -164,34 +168,31 @@ class Loading:
             )
         )
 
-    def fit_ranges(self, load=None):
+    def fit_ranges(self, load: int | None = None) -> str:
         """Words on what the estimates are fitted over, under one load, or the widest of all."""
         which = slice(None) if load is None else [load]
         scaling = self.scaling.isel(load=which)
         box = self.counts.isel(load=which)
         used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")
         spacing = scaling["spacing"].where(used)
-        spans = (
-            ("s", spacing, spacing),
-            ("r", box.fit_min, box.fit_max),
-        )
+        spans = (("s", spacing, spacing), ("r", box["fit_min"], box["fit_max"]))
         words = [
-            f"{what} = {short(low.min())}–{short(high.max())} mm"
+            f"{what} = {short(float(low.min()))}–{short(float(high.max()))} mm"
             for what, low, high in spans
-            if np.isfinite(low).any()
+            if bool(np.isfinite(low).any())
         ]
         return f"fit: {', '.join(words)}" if words else "no fits"
 
-    def domain(self, factor, load):
+    def domain(self, factor: int, load: int) -> np.ndarray:
         """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""
         return self.contact[f"in_contact_{factor}"].isel(load=load).values
 
     @property
-    def finest_spacing(self):
+    def finest_spacing(self) -> float:
         """s at the finest resolution, mm."""
         return float(self.scaling["spacing"].min())
 
-    def spread_loads(self, most, including=None):
+    def spread_loads(self, most: int, including: int | None = None) -> np.ndarray:
         """Indices of up to ``most`` loads: first and last, evenly between, and a given one."""
         chosen = spread(len(self.forces), most)
         if including is not None:
@@ -199,7 +200,9 @@ class Loading:
         return np.unique(chosen)
 
 
-def trend(forces, value, low, high, *, rising):
+def trend(
+    forces: ArrayLike, value: np.ndarray, low: np.ndarray, high: np.ndarray, *, rising: bool
+) -> str:
     """Words on whether a value rises, or falls, with the load as the paper claims.
 
     Parameters
@@ -226,7 +229,7 @@ def trend(forces, value, low, high, *, rising):
     return f"{ends} ({verdict})"
 
 
-def disagreement(scaling):
+def disagreement(scaling: xr.Dataset) -> str:
     """Words on how far the estimates of Delta_sigma are apart, under one load or several."""
     compared = scaling.where(np.isfinite(scaling["difference"]))
     difference = np.atleast_1d(compared["difference"].values)

@@ -7,15 +7,22 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
 import pandas as pd
+import xarray as xr
+from cycler import cycler
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
+from xarray import DataTree
 
 from ...core.atomic import atomic_write
 from ...core.labels import printable
@@ -41,14 +48,14 @@ TITLE_SIZE, LETTERS_AN_INCH, LINE = 9, 14, 0.15
 LONGEST_LABEL = 300
 _DOLLAR = "\ue000"
 
-_STYLE = {
+_STYLE: dict[str, Any] = {
     "font.size": 8,
     "axes.titlesize": 8,
     "legend.fontsize": 7,
     "legend.frameon": False,
     "lines.linewidth": 1.2,
     "lines.markersize": 4,
-    "axes.prop_cycle": matplotlib.cycler(color=COLOURS),
+    "axes.prop_cycle": cycler(color=COLOURS),
     "image.origin": "lower",
     "figure.constrained_layout.use": True,
     # Titles stand on their axes. To find out what may be in their way, every tick would be measured
@@ -79,9 +86,9 @@ class Drawing:
 
 
 @contextlib.contextmanager
-def print_style():
+def print_style() -> Iterator[None]:
     """Style of every figure."""
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(_STYLE):  # type: ignore[arg-type]  # names of settings
         yield
 
 
@@ -101,7 +108,7 @@ def garbage_collection_paused() -> Iterator[None]:
             gc.enable()
 
 
-def save(drawing, folder, name):
+def save(drawing: Drawing, folder: Path | str, name: str) -> None:
     """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
     figure = drawing.figure
@@ -140,35 +147,35 @@ def _lay_out(figure):
     figure.set_layout_engine("none")
 
 
-def settings_of(atlas, specimen):
+def settings_of(atlas: DataTree, specimen: str) -> dict:
     """Settings of a specimen as the study stated them, numbers in mm, N and MPa."""
     return json.loads(atlas.attrs["configuration"])["settings"][specimen]
 
 
-def group(atlas, stage, specimen):
+def group(atlas: DataTree, stage: str, specimen: str) -> xr.Dataset:
     """Dataset of one stage of a specimen, in memory."""
     return atlas[f"{stage}/{specimen}"].to_dataset().load()
 
 
-def finest_curves(atlas, specimen):
+def finest_curves(atlas: DataTree, specimen: str) -> xr.Dataset:
     """Closure curves (offset, load) in the first contact direction, at the finest resolution."""
     closure = group(atlas, "closure", specimen)
     direction = settings_of(atlas, specimen)["contact_directions"][0]
     return closure.sel(direction=direction, resolution=closure["resolution"].min())
 
 
-def nearest_load(loads, wanted, specimen):
+def nearest_load(loads: np.ndarray, wanted: tuple, specimen: xr.Dataset) -> int:
     """Index of the force in N nearest to a load of the settings, (value, kind)."""
     (force,) = forces_of([wanted], nominal_area(specimen))
     return int(np.argmin(np.abs(loads - force)))
 
 
-def dilatancy_loads(loads, settings, specimen):
+def dilatancy_loads(loads: np.ndarray, settings: dict, specimen: xr.Dataset) -> list[int]:
     """Indices of the forces in N that a study's dilatancy is asked for, ascending."""
     return sorted({nearest_load(loads, wanted, specimen) for wanted in settings["dilatancy_loads"]})
 
 
-def offset_axis(axes, offsets):
+def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
     """Offsets v along x: in decades where they span one, with v = 0 at their left if it is there.
 
     Parameters
@@ -192,7 +199,7 @@ def offset_axis(axes, offsets):
     axes.set_xlabel("offset $v$ (mm)")
 
 
-def label_short_span(axis):
+def label_short_span(axis: Axis) -> None:
     """Plain labels at 1, 2 and 5 on a logarithmic axis that spans less than two decades.
 
     Powers of ten would be one there, or none. Labels between those lie over each other on any axis
@@ -206,22 +213,22 @@ def label_short_span(axis):
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
 
 
-def spread(n, most):
+def spread(n: int, most: int) -> np.ndarray:
     """Indices of up to ``most`` of n things, the first and the last among them."""
     return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))
 
 
-def colour_of(i):
+def colour_of(i: int) -> str:
     """The i-th colour that can be seen as a line on white: all but the yellow."""
     return COLOURS[i % (len(COLOURS) - 1)]
 
 
-def letter(axes, which, title):
+def letter(axes: Axes, which: str, title: str) -> None:
     """Letter of a panel as the paper has it, at its upper left, before a title."""
     axes.set_title(f"({which}) {title}", loc="left")
 
 
-def headline(figure, label, *where, below=""):
+def headline(figure: Figure | SubFigure, label: str, *where: str, below: str = "") -> None:
     """Title of a figure, in lines that fit its width.
 
     Parameters
@@ -241,7 +248,7 @@ def headline(figure, label, *where, below=""):
     figure.suptitle("\n".join(filter(None, (text, below))), fontsize=TITLE_SIZE)
 
 
-def label_in_lines(label, *where, width):
+def label_in_lines(label: str, *where: str, width: float) -> str:
     """A label and what follows it, as :func:`headline` has it, in lines of ``width`` inches."""
     # Dollar signs of a label make no formula. What stands in for them is in no printable text.
     label = printable(label, LONGEST_LABEL).replace("$", _DOLLAR)
@@ -249,12 +256,12 @@ def label_in_lines(label, *where, width):
     return text.replace(_DOLLAR, r"\$")
 
 
-def entries(axes):
+def entries(axes: Axes) -> list[Artist]:
     """What stands in a legend of the axes."""
     return axes.get_legend_handles_labels()[0]
 
 
-def legends_below(figure, *columns):
+def legends_below(figure: FigureBase, *columns: list[Artist]) -> None:
     """Legends side by side under a figure, where they hide nothing.
 
     Parameters
@@ -277,6 +284,6 @@ def legends_below(figure, *columns):
     )
 
 
-def heading(text):
+def heading(text: str) -> Line2D:
     """Entry of a legend that is words alone."""
     return Line2D([], [], linestyle="none", label=text)

@@ -1,9 +1,16 @@
 """Maps of scans and of contact domains, true to scale."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike
 
 from ...surface.specimen import window_slices
 from .drawing import COLOURS
@@ -21,12 +28,14 @@ FEW_NODES = 100
 FINE_NODES = 100
 
 
-def scan_extent(specimen):
+def scan_extent(specimen: xr.Dataset) -> tuple[float, ...]:
     """Sides (y, x) of the whole scan, mm."""
     return tuple(specimen.sizes[axis] * specimen.attrs[f"spacing_{axis}"] for axis in "yx")
 
 
-def window_outline(specimen, unit_mm, slid=(0.0, 0.0), **style):
+def window_outline(
+    specimen: xr.Dataset, unit_mm: float, slid: tuple[float, float] = (0.0, 0.0), **style: Any
+) -> Rectangle:
     """The window as a rectangle, in units from the corner of the scan.
 
     Parameters
@@ -39,15 +48,26 @@ def window_outline(specimen, unit_mm, slid=(0.0, 0.0), **style):
     **style
         Of the rectangle.
     """
-    corner, sides = [], []
+    corner: list[float] = []
+    sides: list[float] = []
     for cells, axis, moved in zip(window_slices(specimen), "yx", slid, strict=True):
         spacing = specimen.attrs[f"spacing_{axis}"]
         corner.append((cells.start * spacing + moved) / unit_mm)
         sides.append((cells.stop - cells.start) * spacing / unit_mm)
-    return Rectangle(corner[::-1], sides[1], sides[0], fill=False, path_effects=HALO, **style)
+    return Rectangle(
+        (corner[1], corner[0]), sides[1], sides[0], fill=False, path_effects=HALO, **style
+    )
 
 
-def draw_map(axes, image, sides, *, ticks=5, interpolation="nearest", **options):
+def draw_map(
+    axes: Axes,
+    image: np.ndarray,
+    sides: Sequence[float],
+    *,
+    ticks: int = 5,
+    interpolation: str = "nearest",
+    **options: Any,
+) -> AxesImage:
     """An image true to scale, with distances from its corner in the unit that suits them.
 
     Parameters
@@ -78,7 +98,7 @@ def draw_map(axes, image, sides, *, ticks=5, interpolation="nearest", **options)
     return drawn
 
 
-def draw_domain(axes, domain, sides, *, ticks=5):
+def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks: int = 5) -> None:
     """A contact domain in black; rings where its nodes are too few and too small to be seen.
 
     Parameters
@@ -91,7 +111,7 @@ def draw_domain(axes, domain, sides, *, ticks=5):
         About so many along each side.
     """
     # No cell is missing in a window, and a node smaller than a pixel must not vanish.
-    grey = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
+    grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
     draw_map(axes, domain, sides, ticks=ticks, **grey)
     nodes = np.argwhere(domain)
     if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
@@ -99,7 +119,7 @@ def draw_domain(axes, domain, sides, *, ticks=5):
         axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7, clip_on=False)
 
 
-def node_position(node, shape, sides):
+def node_position(node: ArrayLike, shape: Sequence[int], sides: Sequence[float]) -> list:
     """Centres (y, x) of nodes of a window on its map, in the map's unit.
 
     Parameters
@@ -114,10 +134,10 @@ def node_position(node, shape, sides):
     _, size = length_unit(max(sides))
     return [
         (np.asarray(at) + 0.5) * side / n / size
-        for at, n, side in zip(node, shape, sides, strict=True)
+        for at, n, side in zip(np.asarray(node), shape, sides, strict=True)
     ]
 
 
-def missing_patch():
+def missing_patch() -> Patch:
     """Entry of a legend for cells that were not measured."""
     return Patch(facecolor=MISSING, edgecolor="none", label="not measured")

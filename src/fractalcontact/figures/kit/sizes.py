@@ -1,6 +1,9 @@
 """What the figures of strength and of the size b share: axes, bars of intervals, exponents."""
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from .words import estimate, length_unit, short
@@ -17,7 +20,7 @@ _MARGIN, _OUT_OF_FRAME = 3.0, 1e-3
 _APART = 0.03
 
 
-def plain_decades(axis):
+def plain_decades(axis: Axis) -> None:
     """Ticks of a logarithmic axis as plain numbers: 1, 2, 5, 10 ... where it is short."""
     low, high = axis.get_view_interval()
     short = 0 < low < high < low * 10**_FEW_DECADES
@@ -26,7 +29,7 @@ def plain_decades(axis):
     axis.set_minor_formatter(NullFormatter())
 
 
-def size_axis(axes, b, of):
+def size_axis(axes: Axes, b: np.ndarray, of: str) -> None:
     """Logarithmic axis of the side b, mm, "of" something, in the unit that suits it."""
     axes.set_xscale("log")
     if len(b):
@@ -37,43 +40,47 @@ def size_axis(axes, b, of):
     axes.set_xlabel(f"side $b$ of the {of} ({name})")
 
 
-def share_shown(laws, name):
+def share_shown(laws: xr.Dataset, name: str) -> int:
     """Index of the smallest v/b at which all sizes have a value, else most of them."""
     known = np.isfinite(laws[name].values).all(axis=2).sum(axis=1)
     return int(np.argmax(known))
 
 
-def share_words(laws, share):
+def share_words(laws: xr.Dataset, share: int) -> str:
     """A v/b in per cent."""
     return f"{short(100 * float(laws['share'][share]))} %"
 
 
-def draw_means(axes, b, mean, held, colour, marker):
+def draw_means(
+    axes: Axes, b: np.ndarray, mean: np.ndarray, held: np.ndarray, colour: str, marker: str
+) -> None:
     """Means over sub-windows against b; open where most of the sub-windows had their angle held."""
     mostly = held > MOSTLY
     for chosen, face in ((mostly, "white"), (~mostly, colour)):
         axes.plot(b[chosen], mean[chosen], ls="none", marker=marker, mec=colour, mfc=face)
 
 
-def nothing_in(axes, why):
+def nothing_in(axes: Axes, why: str) -> None:
     """Say why axes are empty, without ticks that would number nothing."""
     axes.set(xticks=[], yticks=[])
     axes.text(0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", color="0.4")
 
 
-def apart(b, j, n):
+def apart(b: np.ndarray, j: int, n: int) -> np.ndarray:
     """The sides b, moved a little sideways for the j-th of n series."""
     return b * (1 + _APART * (j - (n - 1) / 2))
 
 
-def draw_bars(axes, b, mean, low, high, colour):
+def draw_bars(
+    axes: Axes, b: np.ndarray, mean: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str
+) -> None:
     """Intervals of means on a logarithmic axis; one that reaches zero runs out of the frame."""
     known = np.isfinite(low) & (mean > 0)
     bottom = np.maximum(low[known], _OUT_OF_FRAME * mean[known])
     axes.vlines(b[known], bottom, high[known], color=colour, lw=0.8)
 
 
-def logarithmic(axes, values):
+def logarithmic(axes: Axes, values: np.ndarray) -> None:
     """Logarithmic axis along y, which ends below the smallest of the positive values drawn."""
     axes.set_yscale("log")
     smallest = np.min(values, where=values > 0, initial=np.inf)
@@ -81,15 +88,14 @@ def logarithmic(axes, values):
     plain_decades(axes.yaxis)
 
 
-def along_size(laws, name, index):
+def along_size(laws: xr.Dataset, name: str, index: tuple[int, ...]) -> list[np.ndarray]:
     """Mean, low and high of a quantity along b, at an index of its other dimensions."""
     size = "scale" if "scale" in laws[name].dims else "part"
-    return [
-        laws[f"{name}{end}"].transpose(size, ...).values[(slice(None), *index)]
-        for end in ("", "_low", "_high")
-    ]
+    ends = [laws[f"{name}{end}"].transpose(size, ...).values for end in ("", "_low", "_high")]
+    return [values[(slice(None), *index)] for values in ends]  # type: ignore[arg-type]  # an index
 
 
-def interval_text(laws, name, index=()):
+def interval_text(laws: xr.Dataset, name: str, index: int | tuple[int, ...] = ()) -> str:
     """A fitted number with its interval, at an index."""
-    return estimate(*(float(laws[f"{name}{end}"].values[index]) for end in ("", "_low", "_high")))
+    value, low, high = (float(laws[f"{name}{end}"].values[index]) for end in ("", "_low", "_high"))
+    return estimate(value, low, high)

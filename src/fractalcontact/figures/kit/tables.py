@@ -1,13 +1,18 @@
 """Tables of words within figures: wrapped columns, a thin line above each row."""
 
+from collections.abc import Iterable, Mapping
 from textwrap import fill
+
+from matplotlib.axes import Axes
 
 LINE_HEIGHT = 0.135  # inches
 #: Lines that the heads take, and the space above a row.
 HEAD, SPACE = 1.6, 0.35
 
 
-def wrap_rows(rows, columns):
+def wrap_rows(
+    rows: Iterable[Mapping[str, str]], columns: Mapping[str, tuple[float, int]]
+) -> tuple[list[dict[str, str]], list[int]]:
     """Rows with their texts broken into lines that fit, and the lines each row takes.
 
     Parameters
@@ -26,7 +31,14 @@ def wrap_rows(rows, columns):
     return texts, [1 + max(text.count("\n") + 1 for text in row.values()) for row in texts]
 
 
-def draw_rows(axes, texts, lines, columns, heads, top):
+def draw_rows(
+    axes: Axes,
+    texts: list[dict[str, str]],
+    lines: list[int],
+    columns: Mapping[str, tuple[float, int]],
+    heads: Mapping[str, str],
+    top: float,
+) -> list[float]:
     """Draw heads and rows on axes without an axis, whose y is in lines from the top.
 
     Parameters

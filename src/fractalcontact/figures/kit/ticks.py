@@ -5,14 +5,16 @@ measured and drawn once more for either file.
 """
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import FigureBase
 from matplotlib.ticker import Locator, LogFormatterSciNotation
 
 _UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "right")}
 
 
-def plain_ticks(figure):
+def plain_ticks(figure: FigureBase) -> None:
     """Spare what cannot be seen of the ticks of a figure on which everything is drawn.
 
     Powers of ten become plain text, ticks between them are made within the axes alone, and nothing
@@ -26,7 +28,7 @@ def plain_ticks(figure):
         _spare(panel, axis)
 
 
-def keep_labels(figure):
+def keep_labels(figure: FigureBase) -> None:
     """Leave the labels of all axes where the last drawing has put them, clear of the numbers."""
     for panel, axis in _axes_of(figure):
         place = axis.label.get_transform().transform(axis.label.get_position())
@@ -77,11 +79,11 @@ class _Within(Locator):
         ticks, slack = np.asarray(self.locator()), 1e-7 * (high - low)
         return ticks[(ticks >= low - min(slack, 1e-7 * abs(low))) & (ticks <= high + slack)]
 
-    def tick_values(self, vmin, vmax):
+    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
         return self.locator.tick_values(vmin, vmax)
 
-    def nonsingular(self, v0, v1):
+    def nonsingular(self, v0: float, v1: float) -> tuple[float, float]:
         return self.locator.nonsingular(v0, v1)
 
-    def view_limits(self, vmin, vmax):
+    def view_limits(self, vmin: float, vmax: float) -> tuple[float, float]:
         return self.locator.view_limits(vmin, vmax)

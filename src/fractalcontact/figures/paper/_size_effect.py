@@ -2,14 +2,17 @@
 
 import numpy as np
 import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
 
 from ...domain.renormalisation import RESOLUTION, hausdorff_measure, nominal_pressure
+from ..kit.domains import Loading
 
 #: Sides b drawn, as multiples of the specimen's own: two decades.
 _SIDES = np.array([0.1, 1.0, 10.0])
 
 
-def fractal_pressure(scaling, key, delta):
+def fractal_pressure(scaling: xr.Dataset, key: str, delta: float) -> float:
     """sigma* = F / H_D under one load if the contact domain has the dimension ``delta``.
 
     Parameters
@@ -32,7 +35,7 @@ def fractal_pressure(scaling, key, delta):
     return float(scaling["load"] / np.exp(np.log(measure).mean(RESOLUTION)))
 
 
-def size_effect(loading, i):
+def size_effect(loading: Loading, i: int) -> pd.DataFrame:
     """Eq. 6 under the i-th load by both estimates of Delta_sigma, and the specimen itself.
 
     Parameters
@@ -79,7 +82,7 @@ def _by_one_estimate(loading, estimate, i):
     )
 
 
-def draw_axes(axes):
+def draw_axes(axes: Axes) -> None:
     """Logarithmic axes of sigma_0 over b."""
     axes.set(xscale="log", yscale="log")
     axes.set_xlabel("side $b$ of the joint (mm)")

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
@@ -42,19 +43,10 @@ ORDER = 10
 _FEWEST_SIZES = 3
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Strength and slope of the dilatancy curve against the side b, at one v/b.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen that slides.
-
-    Returns
-    -------
-    Drawing
-        Its data are the means over sub-windows at every v/b, and their peaks.
+    Its data are the means over sub-windows at every v/b, and their peaks.
     """
     settings = settings_of(atlas, name)
     laws = group(atlas, "windows", name)

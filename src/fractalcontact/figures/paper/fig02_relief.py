@@ -1,13 +1,19 @@
 """Shaded relief of the levelled faces, and their dimension (Fig. 2)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib import colormaps
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LightSource, Normalize, to_rgb
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
+from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
+from xarray import DataTree
 
 from ...roughness.dimension import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
@@ -26,19 +32,10 @@ CLIPPED = 0.002
 LIT_SLOPE = 0.7
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Relief of each face under light from the North-West, and Delta_g by every estimator.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are the estimates of Delta_g, of the lower face.
+    Its data are the estimates of Delta_g, of the lower face.
     """
     specimen = group(atlas, "specimens", name)
     dimension = group(atlas, "surface_dimension", name)
@@ -65,7 +62,13 @@ def draw(atlas, name):
     return Drawing(figure, _table(dimension), _caption(label, specimen, faces, dimension))
 
 
-def draw_faces(figure, panels, specimen, faces, sides):
+def draw_faces(
+    figure: FigureBase,
+    panels: Sequence[Axes],
+    specimen: xr.Dataset,
+    faces: Sequence[str],
+    sides: Sequence[float],
+) -> Rectangle:
     """Reliefs side by side with one scale of heights; the outline of the window."""
     heights = np.concatenate([specimen[face].values.ravel() for face in faces])
     low, high = np.nanquantile(heights, [CLIPPED, 1 - CLIPPED])

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...mechanics.joint import DIRECTION_STEPS
 from ...surface.specimen import faces, window_sides, window_slices
@@ -50,7 +51,7 @@ class Slid:
     chance: float
 
     @classmethod
-    def of(cls, atlas, name):
+    def of(cls, atlas: DataTree, name: str) -> "Slid":
         """The slid joint of a specimen."""
         joint = group(atlas, "joints", name)
         direction = str(joint["contact_direction"].values[0])
@@ -69,21 +70,21 @@ class Slid:
         )
 
     @property
-    def touch(self):
+    def touch(self) -> tuple:
         """Node (y, x) of the window that touches first."""
         return np.unravel_index(self.composite.argmax(), self.composite.shape)
 
     @property
-    def slid(self):
+    def slid(self) -> tuple[float, ...]:
         """How far (y, x) the upper block has slid, mm."""
         return tuple(self.offset * step for step in DIRECTION_STEPS[self.direction])
 
     @property
-    def axis(self):
+    def axis(self) -> str:
         """Axis along which it slides."""
         return "y" if DIRECTION_STEPS[self.direction][0] else "x"
 
-    def profiles(self):
+    def profiles(self) -> pd.DataFrame:
         """Both faces along the line of sliding through the point of first touch.
 
         Returns
@@ -113,25 +114,16 @@ class Slid:
         return table.iloc[max(first - margin, 0) : last + margin].reset_index(drop=True)
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Plan, profile and composite topography at the largest offset.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are the profiles.
+    Its data are the profiles.
     """
     slid = Slid.of(atlas, name)
     label = settings_of(atlas, name)["label"]
     profiles = slid.profiles()
     figure = Figure(figsize=(WIDTH, 5.6))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[1.3, 1])
+    top, bottom = figure.subfigures(2, 1, height_ratios=[1.3, 1])  # type: ignore[misc]  # an array
     plan, composite = top.subplots(1, 2)
     profile = bottom.subplots()
     handles = _draw_plan(top, plan, slid) + _draw_profile(profile, slid, profiles)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...surface.specimen import nominal_area
@@ -45,19 +46,8 @@ NEARLY = 0.1
 FARTHEST_ASYMPTOTE = 1.5
 
 
-def draw(atlas, name):
-    """Closure and contact area at about five offsets, at the finest resolution.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Closure and contact area at about five offsets, at the finest resolution."""
     label = settings_of(atlas, name)["label"]
     specimen = group(atlas, "specimens", name)
     curves = finest_curves(atlas, name)

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...surface.specimen import window_sides
@@ -38,19 +39,10 @@ INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
 NEARLY_FLAT = 0.1
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Dilatancy curves and contact domains at six offsets.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen of the atlas.
-
-    Returns
-    -------
-    Drawing
-        Its data are the points of both kinds of curves and, for the map load, the contact areas.
+    Its data are the points of both kinds of curves and, for the map load, the contact areas.
     """
     settings = settings_of(atlas, name)
     specimen = group(atlas, "specimens", name)
@@ -66,7 +58,7 @@ def draw(atlas, name):
 
     rows = -(-len(points) // COLUMNS)
     figure = Figure(figsize=(WIDTH, 3.2 + 2.5 * rows))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])
+    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])  # type: ignore[misc]  # an array
     ranges = _ranges(dilatancy["offset"].values)
     rigid, *elastic = top.subplots(
         1, 1 + len(ranges), width_ratios=[2.3, 1.5, 1][: 1 + len(ranges)]

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...domain.renormalisation import RESOLUTION
 from ..kit.domains import Loading, disagreement
@@ -19,19 +20,8 @@ ORDER = 130
 _COLUMNS = 4
 
 
-def draw(atlas, name):
-    """Contact domains at all resolutions, with A_r and sigma_r = F / A_r.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        The specimen.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Contact domains at all resolutions, with A_r and sigma_r = F / A_r."""
     loading = Loading.of(atlas, name)
     i = loading.map_load
     table = _table(loading, i)

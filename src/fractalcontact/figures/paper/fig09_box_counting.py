@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...domain.box_dimension import local_slopes, spans
@@ -17,19 +18,8 @@ NEEDS = ("specimens", "contact", "domains", "scaling")
 ORDER = 140
 
 
-def draw(atlas, name):
-    """A contact domain, its box counts N(r) with the line fitted, and their local slopes.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        The specimen.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """A contact domain, its box counts N(r) with the line fitted, and their local slopes."""
     loading = Loading.of(atlas, name)
     i = loading.map_load
     counts = loading.counts.isel(load=i)

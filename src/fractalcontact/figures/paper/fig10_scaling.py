@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
+from xarray import DataTree
 
 from ...domain.renormalisation import RESOLUTION
 from ..kit.domains import Loading
@@ -20,19 +21,8 @@ ORDER = 160
 _MOST_LOADS = 5
 
 
-def draw(atlas, name):
-    """A_r(s) with its power laws, and eq. 6 under the load of the maps.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        The specimen.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """A_r(s) with its power laws, and eq. 6 under the load of the maps."""
     loading = Loading.of(atlas, name)
     i = loading.map_load
     figure = Figure(figsize=(WIDTH, 3.9))

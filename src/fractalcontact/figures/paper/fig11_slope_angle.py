@@ -3,6 +3,8 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+from xarray import DataTree
 
 from ..kit.drawing import (
     MARKERS,
@@ -40,19 +42,10 @@ ORDER = 180
 QUOTED_DELTA = 1.66
 
 
-def draw(atlas, name):
+def draw(atlas: DataTree, name: str) -> Drawing:
     """Limit slope angle of parts of the window against their side b.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        A specimen that slides.
-
-    Returns
-    -------
-    Drawing
-        Its data are the angles at every v/b.
+    Its data are the angles at every v/b.
     """
     settings = settings_of(atlas, name)
     laws = group(atlas, "windows", name)
@@ -68,7 +61,7 @@ def draw(atlas, name):
     return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn))
 
 
-def slope_angle(strength, pressure):
+def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
     """Limit slope angle atan(tau / sigma_n), degrees: a block on a plane so steep just slides.
 
     Parameters

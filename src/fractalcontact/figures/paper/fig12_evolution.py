@@ -2,7 +2,9 @@
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.figure import Figure
+from xarray import DataTree
 
 from ..kit.domains import Loading, disagreement, trend
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
@@ -21,25 +23,14 @@ _MOST_MAPS = 6
 _APART = {"area": 1 / 1.04, "box": 1.04}
 
 
-def draw(atlas, name):
-    """Contact domains under growing load, and Delta_sigma against F by both estimators.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        The specimen.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Contact domains under growing load, and Delta_sigma against F by both estimators."""
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_MAPS)
     aspect = loading.sides[0] / loading.sides[1]
     map_height = WIDTH / _MOST_MAPS * aspect + 0.75
     figure = Figure(figsize=(WIDTH, map_height + 2.6))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 2.6])
+    top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 2.6])  # type: ignore[misc]  # an array
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
     nominal = np.prod(loading.sides)
     finest = loading.scaling["area"].sel(resolution=loading.finest).values
@@ -59,7 +50,7 @@ def draw(atlas, name):
     return Drawing(figure, table.reset_index(drop=True), caption)
 
 
-def measured_maps(atlas):
+def measured_maps(atlas: DataTree) -> dict[str, xr.Dataset]:
     """Measured contact maps that were dropped in with the scans, by name."""
     if "contact_maps" not in atlas.children:
         return {}

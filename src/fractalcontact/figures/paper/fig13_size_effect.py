@@ -1,8 +1,11 @@
 """Fig. 13: what eq. 6 makes of the size of the joint, for growing load."""
 
+from typing import Any
+
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from xarray import DataTree
 
 from ..kit.domains import Loading, trend
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, heading, headline, legends_below
@@ -18,19 +21,8 @@ ORDER = 200
 _MOST_LOADS = 6
 
 
-def draw(atlas, name):
-    """Eq. 6 under several loads, by both estimators.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-    name : str
-        The specimen.
-
-    Returns
-    -------
-    Drawing
-    """
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Eq. 6 under several loads, by both estimators."""
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_LOADS)
     table = pd.concat([size_effect(loading, i) for i in shown], ignore_index=True)
@@ -38,7 +30,13 @@ def draw(atlas, name):
     axes = figure.subplots()
     for n, (_, rows) in enumerate(table.groupby("load_N")):
         own = rows.iloc[0]
-        point = {"marker": MARKERS[n], "ms": 7, "mec": "white", "mew": 0.5, "zorder": 3}
+        point: dict[str, Any] = {
+            "marker": MARKERS[n],
+            "ms": 7,
+            "mec": "white",
+            "mew": 0.5,
+            "zorder": 3,
+        }
         axes.plot(own["specimen_b_mm"], own["specimen_sigma_0_MPa"], color=COLOURS[n], **point)
     lines = [_draw_lines(axes, loading, estimate, shown, table) for estimate in loading.estimates]
     legends_below(figure, *lines)

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pandas as pd
 import pytest
+from cases import representative
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
@@ -67,7 +68,9 @@ def labelled(atlas):
     return tree
 
 
-@pytest.mark.parametrize("name", [n for n in figures_of("match") if n != "domain_measures"])
+@pytest.mark.parametrize(
+    "name", representative([n for n in figures_of("match") if n != "domain_measures"], 2)
+)
 def test_a_long_label_stays_within_every_figure(labelled, name):
     with print_style():
         figure = drawer_of(name)(labelled, "sliding").figure
