@@ -57,6 +57,22 @@ class Cloud:
     attrs: dict
     notes: tuple[str, ...]
 
+    @property
+    def area_per_point(self) -> float:
+        """In mm2."""
+        if self.density is not None:
+            return self.density.area
+        assert self.lattice is not None  # one of both is known once overhangs were looked for
+        return self.lattice.dx * self.lattice.dy
+
+    @property
+    def spacing(self) -> float:
+        """Spacing that suits the cloud, mm."""
+        if self.lattice is not None:
+            return min(self.lattice.dx, self.lattice.dy)
+        assert self.density is not None
+        return self.density.spacing
+
 
 def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
     """Make the clouds of one or two faces ready for one grid.
@@ -105,7 +121,7 @@ def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
     gridding : str
     """
     where = str(cloud.path)
-    area = cloud.density.area if cloud.density else cloud.lattice.dx * cloud.lattice.dy
+    area = cloud.area_per_point
     across = places_across(lattice, area)
     if cloud.mesh is not None:
         of = f"the mesh's own {len(cloud.mesh.triangles)} triangles, the top-most where several are"
@@ -129,11 +145,12 @@ def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
 
 def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
     """Heights of a cloud on the lattice its points lie on, and how they came there."""
-    heights = pts.place_on_lattice(cloud.points, cloud.lattice)
-    gridding = "the points lie on a regular grid; each is its node, "
-    if cloud.mesh is None:
-        return heights, gridding + "nodes without one are missing"
     mesh, lattice = cloud.mesh, cloud.lattice
+    assert lattice is not None  # else there is nothing to place them on
+    heights = pts.place_on_lattice(cloud.points, lattice)
+    gridding = "the points lie on a regular grid; each is its node, "
+    if mesh is None:
+        return heights, gridding + "nodes without one are missing"
     between = interpolate_mesh(mesh.vertices, mesh.triangles, lattice, 1, str(cloud.path))
     heights = np.where(np.isfinite(heights), heights, between)
     return heights, gridding + "nodes without one lie on the mesh's triangles or are missing"
@@ -205,7 +222,7 @@ def _turned(cloud: Cloud, scan, normal: np.ndarray, centre: np.ndarray) -> Cloud
 def _look_beneath(cloud: Cloud) -> Cloud:
     """Measure overhangs and density."""
     if cloud.mesh is not None:
-        cloud = _with_overhang_of_mesh(cloud)
+        cloud = _with_overhang_of_mesh(cloud, cloud.mesh)
     if cloud.lattice is not None:
         return cloud
     points = cloud.points[np.isfinite(cloud.points[:, 2])]
@@ -237,8 +254,8 @@ def _with_overhang(cloud: Cloud, share: float, what: str) -> Cloud:
     return replace(cloud, attrs=cloud.attrs | {"overhang_share": share}, notes=notes)
 
 
-def _with_overhang_of_mesh(cloud: Cloud) -> Cloud:
-    down, against = overhangs.downward_share(cloud.mesh.vertices, cloud.mesh.triangles)
+def _with_overhang_of_mesh(cloud: Cloud, mesh: Mesh) -> Cloud:
+    down, against = overhangs.downward_share(mesh.vertices, mesh.triangles)
     cloud = _with_overhang(cloud, against, "of the mesh faces down; its top-most part is used")
     if down <= 0.5:
         return cloud

@@ -59,7 +59,7 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
     """
     request = {"path": str(path), "folder": _folder_for(path), "options": asdict(options)}
     lines, raw, status = _ask(request, path)
-    limits = next((line for line in reversed(lines) if line["outcome"] == "limits"), None)
+    limits = next((line for line in reversed(lines) if line["outcome"] == "limits"), {})
     last = lines[-1] if lines else {"outcome": "limits"}
     if raw is not None and status == 0:
         return raw
@@ -72,7 +72,7 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
     raise InputError(f"{path}: {_how_it_ended(last['outcome'], status, limits)}; {_LIKELY}")
 
 
-def _how_it_ended(outcome: str, status: int, limits: dict | None) -> str:
+def _how_it_ended(outcome: str, status: int, limits: dict) -> str:
     """What became of a reader that sent no result."""
     if outcome == "memory":
         return f"the reader ran out of memory ({limits['memory'] / 1024**3:.1f} GiB allowed)"

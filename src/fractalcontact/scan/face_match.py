@@ -17,7 +17,7 @@ CELLS = 128
 #: faces agree somewhere. Compared is what is left without waves of more than about a third of the
 #: smaller face.
 _LONGEST_WAVE = 1 / 3
-#: Smallest share of the smaller face that the other must cover.
+#: Smallest fraction of the smaller face that the other must cover.
 _SMALLEST_OVERLAP = 0.4
 #: Rotations tried; the search that follows finds those between.
 ROTATIONS = np.radians(np.arange(-12, 13, 2))
@@ -41,7 +41,8 @@ def for_comparison(lower: xr.DataArray, upper: xr.DataArray) -> tuple[xr.DataArr
     side = min(min(face.sizes[a] * face.attrs[f"spacing_{a}"] for a in "xy") for face in coarse)
     # A Gaussian of this width halves waves of the length wanted.
     width = side * _LONGEST_WAVE * np.sqrt(2 * np.log(2)) / (2 * np.pi)
-    return tuple(face.copy(data=_without_long_waves(face, width)) for face in coarse)
+    first, second = (face.copy(data=_without_long_waves(face, width)) for face in coarse)
+    return first, second
 
 
 def _without_long_waves(face: xr.DataArray, width: float) -> np.ndarray:
@@ -81,7 +82,7 @@ def best_match(
     Masked normalised cross-correlation: Padfield, IEEE Trans. Image Process. 21 (2012) 2706. Of
     all shifts the one with the largest r sqrt(n) is taken, n the number of cells in common.
     """
-    centre = [float(upper[axis].mean()) for axis in "xy"]
+    centre = float(upper.x.mean()), float(upper.y.mean())
     spacing = np.array([lower.attrs["spacing_x"], lower.attrs["spacing_y"]])
     surface = Surface(upper)
     half = [np.ptp(upper[axis].values) / 2 for axis in "xy"]
@@ -94,7 +95,7 @@ def best_match(
             middle + step * np.arange(-n, n + 1)
             for middle, step, n in zip(centre, spacing, cells, strict=True)
         )
-        turn = Motion(tuple(centre), tuple(centre), float(rotation))
+        turn = Motion(centre, centre, float(rotation))
         turned = surface(*turn.back(*np.meshgrid(x, y)))
         r, common = _masked_correlations(lower.values, turned)
         score = np.where(common > 0, r * np.sqrt(common), -np.inf)
@@ -104,7 +105,7 @@ def best_match(
                 centre[0] + float(lower.x[0]) - x[0] + (column - len(x) + 1) * spacing[0],
                 centre[1] + float(lower.y[0]) - y[0] + (row - len(y) + 1) * spacing[1],
             )
-            motion = Motion(tuple(centre), tuple(map(float, end)), float(rotation))
+            motion = Motion(centre, (float(end[0]), float(end[1])), float(rotation))
             best = (score[row, column], motion, float(r[row, column]))
     return best[1:]
 

@@ -31,7 +31,7 @@ def grid_one(scan: Measured) -> xr.DataArray:
     (cloud,) = prepare_clouds([scan])
     if _keeps_lattice(scan, cloud):
         return _placed_heights(scan, cloud)
-    spacing = scan.grid or _spacing(cloud)
+    spacing = scan.grid or cloud.spacing
     lattice = covering_lattice(cloud.points, spacing, str(scan.path))
     return _interpolated_heights(scan, cloud, lattice)
 
@@ -78,7 +78,7 @@ def grid_pair(
         if not _differing_grid(z_l, z_u):
             return register(z_l, z_u, registration, where, mirrored=mirror_upper)
     # One sidecar serves both faces, so `grid` is the same for both.
-    spacing = lower.grid or max(_spacing(cloud) for cloud in clouds)
+    spacing = lower.grid or max(cloud.spacing for cloud in clouds)
 
     def gridded(scan: Measured, cloud: Cloud) -> xr.DataArray:
         lattice = covering_lattice(cloud.points, spacing, str(scan.path))
@@ -104,13 +104,6 @@ def _turned_over(scan: Measured, axis: str) -> Measured:
     return replace(scan, values=values, provenance=scan.provenance | {"notes": notes})
 
 
-def _spacing(cloud: Cloud) -> float:
-    """Spacing that suits a cloud, mm."""
-    if cloud.lattice is not None:
-        return min(cloud.lattice.dx, cloud.lattice.dy)
-    return cloud.density.spacing
-
-
 def _keeps_lattice(scan: Measured, cloud: Cloud) -> bool:
     """Whether the points stay on the lattice they lie on: the user wants no other spacing."""
     lattice = cloud.lattice
@@ -121,6 +114,7 @@ def _keeps_lattice(scan: Measured, cloud: Cloud) -> bool:
 
 def _matrix_heights(scan: Measured) -> xr.DataArray:
     rows, columns = scan.values.shape
+    assert scan.spacing is not None  # a matrix has one
     dx, dy = scan.spacing
     lattice = Lattice(dx / 2, dy / 2, dx, dy, columns, rows)
     return _label(scan.values, lattice, scan, "")

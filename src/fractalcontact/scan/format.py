@@ -47,3 +47,7 @@ class Format:
     libraries: tuple[str, ...] = ()
     memory_per_byte: int = MEMORY_PER_BYTE
     seconds_per_megabyte: int = SECONDS_PER_MEGABYTE
+
+    def learned_endings(self) -> tuple[str, ...]:
+        """Endings that only a library knows; to ask for them may import it."""
+        return () if self.more_endings is None else tuple(self.more_endings())

@@ -24,7 +24,7 @@ _OPEN_ENDED = [form for form in FORMATS.values() if form.more_endings is not Non
 def known_extensions() -> list[str]:
     """Endings of the files that can be read, with their dot, in lower case."""
     declared = (form.endings for form in FORMATS.values())
-    learned = (form.more_endings() for form in _OPEN_ENDED)
+    learned = (form.learned_endings() for form in _OPEN_ENDED)
     return sorted({ending for endings in (*declared, *learned) for ending in endings})
 
 
@@ -55,7 +55,7 @@ def read_raw(path: Path, options: ScanOptions) -> RawScan:
         if form.takes is None or form.takes(path):
             return form.read(path, options)
     for form in _OPEN_ENDED:
-        if extension in form.more_endings():
+        if extension in form.learned_endings():
             return form.read(path, options)
     for form in _declared(extension):
         if form.refusal:

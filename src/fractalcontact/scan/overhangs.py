@@ -119,4 +119,4 @@ def _wound_alike(triangles: np.ndarray) -> bool:
     """Whether neighbouring triangles pass their common edge in opposite directions."""
     start, end = triangles.T.astype(np.int64), np.roll(triangles.T, -1, axis=0).astype(np.int64)
     edges = np.sort((start * (int(triangles.max()) + 1) + end).ravel())
-    return np.count_nonzero(edges[1:] == edges[:-1]) <= _WOUND_ALIKE * len(edges)
+    return bool(np.count_nonzero(edges[1:] == edges[:-1]) <= _WOUND_ALIKE * len(edges))

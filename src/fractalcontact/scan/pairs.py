@@ -15,14 +15,14 @@ from .raw import SMALLEST_SIDE
 from .registration import find_motion
 from .surface_motion import Motion, Surface, correlation, grid_nodes
 
-#: A motion that lowers the gap's spread by less than this share is not made: interpolating between
-#: cells costs roughness, and the spread is not known better.
+#: A motion that lowers the gap's spread by less than this fraction is not made: interpolating
+#: between cells costs roughness, and the spread is not known better.
 SMALLEST_GAIN = 0.01
 #: Faces whose match, the correlation without their longest waves, is below the first do not belong
 #: together: faces that have nothing to do with each other reach 0.5. The granite pair, a joint
 #: that does not close quite, reaches 0.83.
 POOR_MATCH, GOOD_MATCH = 0.5, 0.7
-#: Share of the cells that touch or overlap where faces are set down: not the one spike of a scan.
+#: Fraction of the cells that touch or overlap where faces are set down: not a scan's one spike.
 _TOUCHING = 0.01
 #: A cloud is moved, gridded and matched again until no further tilt of this size is found: one of
 #: 0.2 degrees carries a peak sideways by 0.35 % of its height.
@@ -231,7 +231,7 @@ def _lift(lower, moved, mean_gap) -> float:
 def _refuse_mirror_image(lower, upper, mirrored, where) -> None:
     """Raise if the upper face does not match but a mirror image of it does."""
     matches = mirror_images(*for_comparison(lower, upper))
-    signs = max(matches, key=matches.get)
+    signs = max(matches, key=lambda image: matches[image])
     if matches[signs] < GOOD_MATCH:
         return
     total = tuple(a * b for a, b in zip(signs, MIRRORS[mirrored], strict=True))

@@ -15,8 +15,8 @@ MOST_CELLS = 200_000_000
 #: Nor does anybody interpolate so finely; a small file would still ask for gigabytes.
 CELLS_PER_POINT = 1000
 _FEW_CELLS = 10_000_000
-#: Coordinates in single precision are worth a note when rounded by this share of the distance of
-#: the points.
+#: Coordinates in single precision are worth a note when rounded by this fraction of the distance
+#: of the points.
 COARSE_ROUNDING = 0.01
 
 
@@ -116,10 +116,10 @@ def find_lattice(points: np.ndarray, distance: float) -> Lattice | None:
         Median distance of nearest neighbours, in mm.
     """
     tolerance = LATTICE_TOLERANCE * distance
-    axes = [_find_levels(points[:, axis], tolerance) for axis in (0, 1)]
-    if None in axes:
+    along_x, along_y = (_find_levels(points[:, axis], tolerance) for axis in (0, 1))
+    if along_x is None or along_y is None:
         return None
-    (x0, dx, nx), (y0, dy, ny) = axes
+    (x0, dx, nx), (y0, dy, ny) = along_x, along_y
     if len(points) < LATTICE_MIN_FILL * nx * ny:
         return None
     return Lattice(x0, y0, dx, dy, nx, ny)
@@ -183,4 +183,5 @@ def covering_lattice(points: np.ndarray, spacing: float, where: str) -> Lattice:
             f"{high[1] - low[1]:.4g} mm has too many cells; remove stray points or set a coarser "
             "key 'grid'"
         )
-    return Lattice(*map(float, first * spacing), spacing, spacing, int(count[0]), int(count[1]))
+    x0, y0 = map(float, first * spacing)
+    return Lattice(x0, y0, spacing, spacing, int(count[0]), int(count[1]))

@@ -155,8 +155,8 @@ def _read(request: dict, stream) -> None:
         stream.write(to_text({"outcome": "refused", "message": _readable(message)}))
     except Exception as error:
         name, trace = type(error).__name__, traceback.format_exc()
-        message = {"outcome": "bug", "message": f"{name}: {error}", "traceback": trace}
-        stream.write(to_text(message))
+        report = {"outcome": "bug", "message": f"{name}: {error}", "traceback": trace}
+        stream.write(to_text(report))
 
 
 def _readable(message: str) -> str:

@@ -47,14 +47,14 @@ def find_motion(
     factors = _factors(faces)
     coarse = [averaged(face, factors[0]) for face in faces]
     start, _ = best_match(*compared, ROTATIONS if mode == "rigid" else (0.0,))
-    motion, converged = _refine(*coarse, start, mode)
+    motion, converged = _refine(coarse, start, mode)
     if _have_common_cells(*coarse):
-        nearer = _refine(*coarse, Motion(), mode)
+        nearer = _refine(coarse, Motion(), mode)
         # What repeats itself fits in many places.
         if match(*compared, nearer[0]) > match(*compared, motion) - _CLEARLY_BETTER:
             motion, converged = nearer
     for factor in factors[1:]:
-        motion, converged = _refine(*(averaged(face, factor) for face in faces), motion, mode)
+        motion, converged = _refine([averaged(face, factor) for face in faces], motion, mode)
     return motion, {"match": match(*compared, motion), "converged": converged}
 
 
@@ -75,8 +75,9 @@ def _factors(faces) -> list[int]:
     return factors
 
 
-def _refine(lower, upper, motion: Motion, mode: str) -> tuple[Motion, bool]:
+def _refine(faces: list[xr.DataArray], motion: Motion, mode: str) -> tuple[Motion, bool]:
     """Lower the spread of the gap by damped Gauss-Newton steps; whether the last one was small."""
+    lower, upper = faces
     x, y = grid_nodes(lower)
     surface = Surface(upper)
     small = _SMALL_STEP * min(lower.attrs["spacing_x"], lower.attrs["spacing_y"])

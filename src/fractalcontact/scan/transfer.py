@@ -32,7 +32,7 @@ def send_scan(raw: RawScan, stream: BinaryIO) -> None:
     plain = {key: value for key, value in content.items() if key not in arrays}
     stream.write(to_text({"outcome": "scan", "arrays": heads, **plain}))
     for array in arrays.values():
-        stream.write(memoryview(array).cast("B"))
+        stream.write(memoryview(array).cast("B"))  # type: ignore[arg-type]  # arrays are buffers
 
 
 def receive_scan(message: dict, stream: Any, most_bytes: int) -> RawScan | None:

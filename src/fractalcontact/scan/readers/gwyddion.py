@@ -43,7 +43,9 @@ def read_gwyddion(path: Path, options: ScanOptions) -> RawScan:
         number, field = channels[name]
         values = _array(path, field, field)
         mask = content.get(f"/{number}/mask")
-        notes = (f"channel {name!r} of {len(channels)}",) if len(channels) > 1 else ()
+        notes: tuple[str, ...] = (
+            (f"channel {name!r} of {len(channels)}",) if len(channels) > 1 else ()
+        )
         if mask is not None:
             values[_array(path, mask[_FIELD], field) > 0.5] = np.nan
             notes += ("pixels under the mask of the file are missing",)

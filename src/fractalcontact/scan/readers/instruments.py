@@ -2,6 +2,7 @@
 
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -82,7 +83,7 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
         heights = np.ma.filled(np.ma.array(topography.heights(), dtype=np.float64), np.nan)
     finally:
         reader.close()
-    stated = {"unit_z": _length(topography.unit, path)}
+    stated: dict[str, Any] = {"unit_z": _length(topography.unit, path)}
     if states_size:
         stated |= {"unit_xy": stated["unit_z"], "spacing": _spacing(topography)}
     if format_name in LATERAL_FAULTS and states_size:

@@ -114,8 +114,7 @@ def _axis(dimension: str, variables: dict, path: Path) -> Axis:
     """Which axis a dimension is, and the step and unit of its coordinates."""
     name = dimension.rpartition("/")[2]
     coordinate = variables.get(dimension)
-    is_coordinate = coordinate is not None and len(coordinate.shape) == 1
-    if not is_coordinate or coordinate.dtype.kind not in "fiu":
+    if coordinate is None or len(coordinate.shape) != 1 or coordinate.dtype.kind not in "fiu":
         return Axis(_letter(name))
     letter = _letter(str(coordinate.attributes.get("axis") or name))
     places = coordinate.read().astype(np.float64)

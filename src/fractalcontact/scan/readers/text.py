@@ -44,8 +44,8 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     with open(path, encoding=_encoding(path), errors="replace") as stream:
         while block := stream.read(_BLOCK) + stream.readline():
             reading.add(block)
-    table, notes = reading.finish()
-    header, style = reading.header, reading.style
+    table, style, notes = reading.finish()
+    header = reading.header
     stated = _gwyddion_header(header, table.shape, str(path)) or _esri_header(header)
     names = _column_names(header, style.delimiter, style.width)
     if stated:
@@ -100,21 +100,22 @@ class _Reading:
     def add(self, block: str) -> None:
         """Take up the next block."""
         # The quick way passes no line it has not understood; what it refuses is read line by line.
-        plain = None if self.style is None or self._short else _parse_plain(block, self.style)
-        if plain is None:
+        style = self.style
+        plain = None if style is None or self._short else _parse_plain(block, style)
+        if style is None or plain is None:
             self._add_lines(block.split("\n"))
         else:
-            self._parts.append(_parse(plain, self.style, self.path))
+            self._parts.append(_parse(plain, style, self.path))
         self._lines += block.count("\n")
 
-    def finish(self) -> tuple[np.ndarray, tuple[str, ...]]:
-        """The table (rows, columns) and the notes."""
+    def finish(self) -> tuple[np.ndarray, _Style, tuple[str, ...]]:
+        """The table (rows, columns), how it is written, and the notes."""
         if self.style is None:
             raise InputError(f"{self.path}: the file holds no line of numbers")
-        notes = ()
+        notes: tuple[str, ...] = ()
         if self._short:
             notes = (f"the last line ({self._short[0]}) was cut short and is left out",)
-        return np.concatenate(self._parts), notes
+        return np.concatenate(self._parts), self.style, notes
 
     def _add_lines(self, lines: list[str]) -> None:
         data = self._data_lines(lines)
@@ -122,7 +123,7 @@ class _Reading:
             return
         if self.style is None:
             self.style = _find_style([line for _, line in data])
-        if rows := self._whole_rows(data):
+        if rows := self._whole_rows(data, self.style):
             # Without the delimiter at the end, which is cut off here.
             style = replace(self.style, trailing=False)
             self._parts.append(_parse("\n".join(rows), style, self.path))
@@ -143,28 +144,27 @@ class _Reading:
                 raise InputError(f"{self.path}: line {number} is not numbers: {line[:60]!r}")
         return data
 
-    def _whole_rows(self, data: list[tuple[int, str]]) -> list[str]:
+    def _whole_rows(self, data: list[tuple[int, str]], style: _Style) -> list[str]:
         """The lines, checked to have the same number of cells; one cut short may be the last."""
-        delimiter, width = self.style.delimiter, self.style.width
+        delimiter, width = style.delimiter, style.width
         rows = []
         for number, line in data:
             if self._short:
-                raise self._wrong_width(*self._short)
-            if self.style.trailing:
+                raise self._wrong_width(*self._short, width)
+            if style.trailing:
                 line = line.removesuffix(delimiter)
             found = len(_split(line, delimiter))
             if found == width + 1 and line.endswith(delimiter):
                 line, found = line.removesuffix(delimiter), width
             if found > width:
-                raise self._wrong_width(number, found)
+                raise self._wrong_width(number, found, width)
             if found < width:
                 self._short = (number, found)
             else:
                 rows.append(line)
         return rows
 
-    def _wrong_width(self, number: int, found: int) -> InputError:
-        width = self.style.width
+    def _wrong_width(self, number: int, found: int, width: int) -> InputError:
         return InputError(f"{self.path}: line {number} has {found} values, the others have {width}")
 
 

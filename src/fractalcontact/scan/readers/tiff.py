@@ -41,8 +41,8 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
             raise ValueError(f"pixels of shape {values.shape}, its header promises {page.shape}")
         stated = _imagej(file, page) or _geotiff(page)
         missing = _nodata(page)
-    notes = (f"{name} of {len(names)}",) if len(names) > 1 else ()
-    if page.dtype.itemsize == 1:
+    notes: tuple[str, ...] = (f"{name} of {len(names)}",) if len(names) > 1 else ()
+    if page.dtype is not None and page.dtype.itemsize == 1:
         notes += ("8 bits: heights in 256 steps at most",)
     return RawScan(
         values,
@@ -60,7 +60,7 @@ def is_plain_tiff(path: Path) -> bool:
     import tifffile
 
     with reading(path, "TIFF file"), tifffile.TiffFile(path) as file:
-        return PARK_TAG not in file.pages[0].tags
+        return PARK_TAG not in file.pages[0].tags  # type: ignore[union-attr]  # no frame
 
 
 def _refuse_images(page, options: ScanOptions, path: Path) -> None:

@@ -4,6 +4,7 @@ import hashlib
 import io
 import zipfile
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def read_x3p(path: Path, options: ScanOptions) -> RawScan:
         names = [f"layer {number}" for number in range(1, len(file.layers) + 1)]
         name = choose_array(names, options.variable, path)
         layer = file.layers[names.index(name)]
-    stated = {
+    stated: dict[str, Any] = {
         "reader": f"x3pio {x3pio.__version__} / x3p",
         "unit_xy": "m",
         "unit_z": "m",
