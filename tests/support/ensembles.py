@@ -9,7 +9,27 @@ import os
 EVERYTHING = os.environ.get("TESTS") == "all"
 
 #: Ensemble: (for ``make test``, for ``make test-all``).
-ENSEMBLES: dict[str, tuple] = {}
+ENSEMBLES: dict[str, tuple] = {
+    # Shapes, spacings and contact fractions on which the preconditioner's spectrum is computed.
+    "contact sets": (
+        [
+            ((60, 60), (1.0, 1.0), 0.1),
+            ((180, 170), (1.0, 1.0), 0.015),
+            ((20, 180), (1.0, 1.0), 0.15),
+            ((64, 64), (0.25, 2.0), 0.1),
+            ((22, 22), (1.0, 1.0), 1.0),
+        ],
+        [
+            ((60, 60), (1.0, 1.0), 0.2),
+            ((180, 170), (1.0, 1.0), 0.05),
+            ((31, 200), (1.0, 1.0), 0.3),
+            ((64, 64), (0.25, 2.0), 0.2),
+            ((40, 40), (1.0, 1.0), 1.0),
+        ],
+    ),
+    # Cells across the contact radius at which errors of exact solutions are fitted.
+    "cells across the radius": ((5, 8, 12, 20), (5, 8, 12, 20, 32)),
+}
 
 
 def ensemble(name):
