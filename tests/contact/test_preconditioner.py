@@ -1,24 +1,27 @@
-"""The approximate inverse on contact sets: exact where it can be, symmetric, positive, close."""
+"""The preconditioner on contact sets: exact where it can be, symmetric, positive, close."""
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact import HalfSpace
+from fractalcontact.contact import reference
+from fractalcontact.contact.coarse_correction import LEAST_RIDGE, RIDGE, CoarseCorrection
+from fractalcontact.contact.inverse_cholesky import (
+    NARROW_NEIGHBOURHOOD,
+    WIDE_NEIGHBOURHOOD,
+    InverseCholesky,
+)
 from fractalcontact.contact.preconditioner import DIRECT, Preconditioner
 from fractalcontact.contact.projected_cg import Operator, ProjectedCG
 from fractalcontact.surface.synthesis import self_affine
 
 
-def rough_set(shape, share, seed=0, hurst=0.7):
+def rough_set(shape, fraction, seed=0, hurst=0.7):
     """Nodes of a rough surface above a level, as numbers of cells."""
     n = max(shape)
     height = self_affine((n, n), 1.0, hurst, rms=1.0, seed=seed)[: shape[0], : shape[1]]
-    return np.flatnonzero(height > np.quantile(height, 1 - share)).astype(np.int32)
-
-
-def matrix_on(space, rows):
-    y, x = rows // space.shape[1], rows % space.shape[1]
-    return space.influence()[np.abs(y[:, None] - y), np.abs(x[:, None] - x)]
+    return np.flatnonzero(height > np.quantile(height, 1 - fraction)).astype(np.int32)
 
 
 def inverse_on(space, rows):
@@ -27,27 +30,77 @@ def inverse_on(space, rows):
     return inverse
 
 
-SETS = [
-    ((60, 60), (1.0, 1.0), 0.2),
-    ((180, 170), (1.0, 1.0), 0.05),
-    ((31, 200), (1.0, 1.0), 0.3),
-    ((64, 64), (0.25, 2.0), 0.2),
-    ((40, 40), (1.0, 1.0), 1.0),
-]
+#: Shape, spacing and contact fraction.
+SETS = ensemble("contact sets")
 
 
 def test_few_nodes_are_inverted_exactly():
     space = HalfSpace((40, 30), (0.1, 0.2), 1.0)
     rows = np.sort(np.random.default_rng(1).choice(1200, DIRECT, replace=False)).astype(np.int32)
     right_side = np.random.default_rng(2).standard_normal(DIRECT).astype(np.float32)
-    exact = np.linalg.solve(matrix_on(space, rows), right_side)
+    exact = np.linalg.solve(reference.operator_on(space, rows), right_side)
     np.testing.assert_allclose(inverse_on(space, rows)(right_side), exact, rtol=1e-4, atol=1e-4)
 
 
-@pytest.mark.parametrize(("shape", "spacing", "share"), SETS)
-def test_inverse_is_symmetric_and_positive(shape, spacing, share):
+@pytest.mark.parametrize(
+    ("shape", "spacing", "fraction", "neighbourhood"),
+    [
+        ((40, 48), (1.0, 1.0), 0.3, WIDE_NEIGHBOURHOOD),
+        ((40, 48), (1.0, 1.0), 0.3, NARROW_NEIGHBOURHOOD),
+        ((33, 21), (1.0, 2.5), 0.6, WIDE_NEIGHBOURHOOD),
+    ],
+)
+def test_factor_is_that_of_scalar_loops(shape, spacing, fraction, neighbourhood):
     space = HalfSpace(shape, spacing, 1.0)
-    rows = rough_set(shape, share)
+    rows = rough_set(shape, fraction)
+    factor = InverseCholesky(space, neighbourhood)
+    factor.update(rows)
+    plain = reference.inverse_cholesky(space, rows, neighbourhood)
+    matrix = np.array([factor(unit) for unit in np.eye(rows.size, dtype=np.float32)])
+    np.testing.assert_allclose(matrix, plain @ plain.T, rtol=0, atol=2e-5 * np.abs(matrix).max())
+    assert np.count_nonzero(plain, axis=0).max() > 10 * (neighbourhood is WIDE_NEIGHBOURHOOD)
+
+
+def test_coarse_correction_is_that_of_dense_matrices():
+    space = HalfSpace((30, 170), (1.0, 1.0), 1.0)
+    rows = rough_set(space.shape, 0.1)
+    correction = CoarseCorrection(space)
+    correction.update(rows, True)
+    # Bilinear interpolation between centres of cells, flat beyond the outermost.
+    coarse = space.coarser(8)
+    along = [
+        np.array([np.interp((at + 0.5) / 8 - 0.5, np.arange(n), unit) for unit in np.eye(n)]).T
+        for at, n in zip(np.divmod(rows, 170), coarse.shape, strict=True)
+    ]
+    interpolation = (along[0][:, :, None] * along[1][:, None, :]).reshape(rows.size, -1)
+    # A pressure on fine cells is 1/64 of it on coarse ones, eight times as wide.
+    every = np.arange(np.prod(coarse.shape))
+    smooth = interpolation @ reference.operator_on(coarse, every) / 8 @ interpolation.T
+    own = np.eye(rows.size) * (space.influence()[0, 0] - np.diag(smooth))
+    operator = smooth + own
+    hats = [
+        np.maximum(0, 1 - np.abs((np.arange(n) + 0.5) / n * (k - 1) - np.arange(k)[:, None]))
+        for n, k in zip(coarse.shape, (2, 3), strict=True)
+    ]
+    functions = np.einsum("ay,bx->abyx", *hats).reshape(6, -1)
+    basis = interpolation @ functions.T
+    matrix = basis.T @ operator @ basis
+    diagonal = np.diag(matrix)
+    ridge = np.diag(RIDGE * diagonal + LEAST_RIDGE * diagonal.max())
+    approximate = np.diag(np.random.default_rng(8).uniform(0.5, 1, rows.size))
+    plain = reference.balanced(approximate, operator, basis, np.linalg.inv(matrix + ridge))
+    residual = np.random.default_rng(9).standard_normal(rows.size).astype(np.float32)
+    balanced = correction.balance(
+        residual, lambda values: (approximate @ values).astype(np.float32)
+    )
+    expected = plain @ residual
+    np.testing.assert_allclose(balanced, expected, rtol=0, atol=1e-4 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("shape", "spacing", "fraction"), SETS)
+def test_inverse_is_symmetric_and_positive(shape, spacing, fraction):
+    space = HalfSpace(shape, spacing, 1.0)
+    rows = rough_set(shape, fraction)
     inverse = inverse_on(space, rows)
     a, b = np.random.default_rng(3).standard_normal((2, rows.size)).astype(np.float32)
     scale = np.linalg.norm(a) * np.linalg.norm(inverse(b))
@@ -56,14 +109,16 @@ def test_inverse_is_symmetric_and_positive(shape, spacing, share):
         assert float(vector @ inverse(vector)) > 0
 
 
-@pytest.mark.parametrize(("shape", "spacing", "share"), SETS)
-def test_spectrum_of_the_product_is_narrow(shape, spacing, share):
+@pytest.mark.parametrize(("shape", "spacing", "fraction"), SETS)
+def test_spectrum_of_the_product_is_narrow(shape, spacing, fraction):
     """Few eigenvalues of M K leave [1/2, 2]: hence few iterations, on any set."""
     space = HalfSpace(shape, spacing, 1.0)
-    rows = rough_set(shape, share)
+    rows = rough_set(shape, fraction)
     inverse = inverse_on(space, rows)
-    product = np.array([inverse(row) for row in matrix_on(space, rows).astype(np.float32)])
-    values = np.linalg.eigvals(product).real
+    matrix = np.array([inverse(unit) for unit in np.eye(rows.size, dtype=np.float32)], float)
+    # Those of M K are those of L' M L, which is symmetric, with K = L L'.
+    lower = np.linalg.cholesky(reference.operator_on(space, rows))
+    values = np.linalg.eigvalsh(lower.T @ matrix @ lower)
     assert values.min() > 0.2
     assert np.mean((values > 0.5) & (values < 2)) > 0.97
 
@@ -76,7 +131,9 @@ def test_ten_iterations_solve_a_linear_problem_to_a_millionth(shape):
     operator.inverse.update(rows, fresh=True)
     equations = ProjectedCG(operator, rows, np.ones(rows.size))
     equations.iterate(1e-6, by_force=False)
-    assert np.abs(1 - matrix_on(space, rows) @ equations.solution.astype(float)).max() < 1e-5
+    pressure = np.zeros(shape)
+    pressure.ravel()[rows] = equations.solution
+    assert np.abs(1 - space.convolve(pressure).ravel()[rows]).max() < 1e-5
     assert operator.applications <= 14
 
 
@@ -93,7 +150,7 @@ def test_an_updated_inverse_is_that_of_a_fresh_start_to_the_bit():
 def test_an_inverse_does_not_depend_on_the_sets_of_earlier_solves():
     """Also where a solve begins with a few nodes, whose exact inverse needs no coarse operator."""
     space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
-    before, few, many = (rough_set((200, 190), share) for share in (0.2, 0.002, 0.19))
+    before, few, many = (rough_set((200, 190), fraction) for fraction in (0.2, 0.002, 0.19))
     assert few.size <= DIRECT
     used, new = Preconditioner(space), Preconditioner(space)
     used.update(before, fresh=True)
@@ -133,7 +190,7 @@ def test_bits_do_not_depend_on_the_number_of_threads(monkeypatch):
 
 
 def test_a_few_nodes_that_stand_alone_do_not_get_an_operator_out_of_date():
-    """Of all nodes they are nothing, of those around their own hat they are all."""
+    """Of all nodes they are nothing, of those around their basis function they are all."""
     space = HalfSpace((400, 400), (1.0, 1.0), 1.0)
     grid = np.zeros(space.shape, bool)
     grid[:150, :150] = True

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from ensembles import ensemble
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.contact import active_set
@@ -84,7 +85,7 @@ def test_hertz_within_one_percent_at_twenty_cells_across_the_radius(centre):
 
 def test_hertz_errors_fall_with_the_spacing_at_known_orders():
     """Measured: 1.95 for the force, 1.0 for the radius of the domain, 2.0 for the peak pressure."""
-    cells = np.array([5, 8, 12, 20, 32])
+    cells = np.array(ensemble("cells across the radius"))
     errors = np.array([[hertz_errors(n, c) for c in CENTRES] for n in cells])
     force, radius, peak = (order_of(cells, errors[:, :, k]) for k in range(3))
     assert 1.8 < force.slope < 2.1
@@ -102,7 +103,7 @@ def test_cone_within_one_percent_and_at_known_orders():
         state = axisymmetric(lambda r: slope * r, n, centre, closure)
         return state.force / exact - 1, np.sqrt(state.area / np.pi) - 1
 
-    cells = np.array([5, 8, 12, 20, 32])
+    cells = np.array(ensemble("cells across the radius"))
     errors = np.array([[errors_at(n, c) for c in CENTRES] for n in cells])
     at_twenty = np.abs(errors[3])
     assert at_twenty[:, 0].max() < 5e-4

@@ -83,6 +83,25 @@ ENSEMBLES: dict[str, tuple] = {
     # Figures of accuracy: nodes per side, and Hurst exponents, of their test problems.
     "accuracy_figure_sizes": ([12, 16], [16, 24, 32]),
     "accuracy_figure_hurst": ([0.8], [0.5, 0.8]),
+    # Shapes, spacings and contact fractions on which the preconditioner's spectrum is computed.
+    "contact sets": (
+        [
+            ((60, 60), (1.0, 1.0), 0.1),
+            ((180, 170), (1.0, 1.0), 0.015),
+            ((20, 180), (1.0, 1.0), 0.15),
+            ((64, 64), (0.25, 2.0), 0.1),
+            ((22, 22), (1.0, 1.0), 1.0),
+        ],
+        [
+            ((60, 60), (1.0, 1.0), 0.2),
+            ((180, 170), (1.0, 1.0), 0.05),
+            ((31, 200), (1.0, 1.0), 0.3),
+            ((64, 64), (0.25, 2.0), 0.2),
+            ((40, 40), (1.0, 1.0), 1.0),
+        ],
+    ),
+    # Cells across the contact radius at which errors of exact solutions are fitted.
+    "cells across the radius": ((5, 8, 12, 20), (5, 8, 12, 20, 32)),
 }
 
 

@@ -249,13 +249,9 @@ def _joined(lists, lengths):
 
 
 @njit(cache=True)
-def _solve_columns(nodes, rows, nx, influence, factor, lower, column):
-    """Last column of the inverse of the transposed Cholesky factor, for a node in each lane.
-
-    Lanes with fewer nodes than others have empty rows before their last, which change nothing, to
-    the bit. The diagonal of ``lower`` is kept inverted.
-    """
-    count, neighbours, weight, diagonal = factor
+def _fill_below_diagonal(nodes, rows, nx, influence, factor, lower):
+    """Influence of the nodes of each lane on each other; returns how many condition one at most."""
+    count, neighbours, _, _ = factor
     n = 0
     for i in nodes:
         n = max(n, count[i])
@@ -276,6 +272,19 @@ def _solve_columns(nodes, rows, nx, influence, factor, lower, column):
                 distance = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
                 both = present[a, lane] * present[b, lane]
                 lower[here + lane] = both * influence[distance]
+    return n
+
+
+@njit(cache=True)
+def _solve_columns(nodes, rows, nx, influence, factor, lower, column):
+    """Last column of the inverse of the transposed Cholesky factor, for a node in each lane.
+
+    Lanes with fewer nodes than others have empty rows before their last, which change nothing, to
+    the bit. The diagonal of ``lower`` is kept inverted.
+    """
+    count, _, weight, diagonal = factor
+    side = (MOST_NEIGHBOURS + 1) * WIDTH
+    n = _fill_below_diagonal(nodes, rows, nx, influence, factor, lower)
     for a in range(n + 1):
         for b in range(a):
             here = a * side + b * WIDTH

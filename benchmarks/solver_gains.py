@@ -1,0 +1,293 @@
+"""What each part of the contact solver gains, measured by leaving it out.
+
+    python benchmarks/solver_gains.py                    256, 512 and 1024 nodes per side; minutes
+    python benchmarks/solver_gains.py --sizes 256        cold solves and load steps, seconds
+    python benchmarks/solver_gains.py --sizes 1024 --runs 5
+
+Every problem is solved by the whole solver and once without each of its parts (docs/solver.md says
+what they do), all to the same tolerance under a given closure: cold, or as the last of the steps of
+a load sweep. Counted are applications of the elastic operator, on the grid itself, and on coarser
+grids as fractions of one there by area. They are exact; seconds are the median of the runs, and
+mean little where anything else runs on the machine. The table replaces that of the last run in
+``--output``. As many threads are used as OMP_NUM_THREADS says, or as there are cores.
+
+Safeguards against cycling gain no time but states: how many of the problems of one hard kind,
+forces just below what a window carries at its hardness, are solved with them and without.
+"""
+
+import argparse
+import csv
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+from fractalcontact import ContactState, HalfSpace, NotConverged, solve_contact
+from fractalcontact.contact import (
+    active_set,
+    coarse_correction,
+    full_approximation,
+    projected_cg,
+    safeguards,
+    solve,
+)
+from fractalcontact.contact.preconditioner import forget_preconditioner
+from fractalcontact.surface.synthesis import self_affine
+
+WHOLE = "whole solver"
+#: Iterations after which a solver without one of its parts is given up.
+MOST_ITERATIONS = 40
+#: Closures of the steps before, as fractions of the last.
+SWEEP = (0.7, 0.85)
+#: The contact fraction is met to this.
+FRACTION_ERROR = 0.02
+COLUMNS = (
+    *("size", "hurst", "contact", "loading", "without"),
+    *("applications", "coarse", "seconds", "applications ratio", "seconds ratio"),
+)
+
+
+class Identity:
+    """No preconditioner: each node by its influence on itself alone."""
+
+    def __init__(self, space: HalfSpace):
+        self.small = max(space.shape) <= 160
+        self._own = np.float32(space.influence()[0, 0])
+
+    def update(self, rows: np.ndarray, *, fresh: bool) -> None:
+        """There is nothing that depends on the set."""
+
+    def __call__(self, residual: np.ndarray) -> np.ndarray:
+        """The residual over the influence of a node on itself."""
+        return residual / self._own
+
+
+def _uniform(problem):
+    return np.full(problem.clearance.size, min(1.0, problem.cap))
+
+
+_CLIPPED_STEP = projected_cg.ProjectedCG.clipped_step
+
+
+def _unclipped_step(equations, start, bounds, total):
+    _CLIPPED_STEP(equations, start, (-np.inf, np.inf), total)
+
+
+#: What is left out of a cold solve, and what is put in its place: (owner, name, value).
+COLD = {
+    "preconditioner": [(projected_cg, "preconditioner", Identity)],
+    "coarse correction": [
+        (coarse_correction.CoarseCorrection, "update", lambda self, rows, fresh: None),
+        (
+            coarse_correction.CoarseCorrection,
+            "balance",
+            lambda self, residual, inverse: inverse(residual),
+        ),
+    ],
+    "clipping of the first step": [(projected_cg.ProjectedCG, "clipped_step", _unclipped_step)],
+    "nested iteration": [(solve, "nested_iteration_start", _uniform)],
+}
+#: The same of a step of a load sweep.
+STEPS = {
+    "set prediction": [(active_set, "SET_PREDICTIONS", 0)],
+    "full approximation scheme": [(full_approximation, "LEAST_FINE_SIDE", np.inf)],
+}
+
+
+#: Never thought to cycle.
+SAFEGUARDS = [(safeguards, name, np.inf) for name in ("PATIENCE", "STALL")]
+#: Problems of the hard kind that are tried.
+YIELDING = 20
+
+
+@dataclass
+class RoughProblem:
+    """A self-affine surface under a closure.
+
+    Attributes
+    ----------
+    size : int
+        Nodes per side.
+    hurst, fraction : float
+        Hurst exponent, and the contact fraction reached.
+    height : (size, size) ndarray
+        mm.
+    space : HalfSpace
+    closure : float
+        mm.
+    """
+
+    size: int
+    hurst: float
+    fraction: float
+    height: np.ndarray
+    space: HalfSpace
+    closure: float
+
+
+def main() -> None:
+    """Measure what the command line asks for, print the table and write it."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--sizes", type=int, nargs="+", default=[256, 512, 1024])
+    parser.add_argument("--hurst", type=float, nargs="+", default=[0.5, 0.8])
+    parser.add_argument("--fractions", type=float, nargs="+", default=[0.05, 0.15])
+    parser.add_argument("--rtol", type=float, default=1e-6)
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--output", type=Path, default=Path("results/benchmarks"))
+    options = parser.parse_args()
+    rows: list[dict] = []
+    for size, hurst, fraction in product(options.sizes, options.hurst, options.fractions):
+        sys.stderr.write(f"{size}, H = {hurst:g}, {fraction:.0%} in contact ...\n")
+        problem = rough_problem(size, hurst, fraction, options.seed)
+        rows += measured(problem, "cold", COLD, options.rtol, options.runs)
+        rows += measured(problem, "step", _steps_of(size), options.rtol, options.runs)
+        write_table(options.output, rows)
+    sys.stdout.write((options.output / "solver_gains.md").read_text())
+    for name, changes in {"with": [], "without": SAFEGUARDS}.items():
+        with left_out(changes):
+            solved = sum(_is_solved(draw) for draw in range(YIELDING))
+        sys.stdout.write(f"{solved} of {YIELDING} yielding problems solved {name} safeguards\n")
+
+
+def _steps_of(size):
+    """Parts that act on load steps in a window of a size."""
+    if size >= full_approximation.LEAST_FINE_SIDE:
+        return STEPS
+    return {name: how for name, how in STEPS.items() if name != "full approximation scheme"}
+
+
+def rough_problem(size: int, hurst: float, fraction: float, seed: int) -> RoughProblem:
+    """A self-affine surface and the closure at which a fraction of its nodes touch."""
+    height = self_affine((size, size), 1 / size, hurst, rms=0.01, seed=seed)
+    space = HalfSpace(height.shape, (1 / size, 1 / size), 1.0)
+    low, high, closure = 0.0, np.inf, float(height.std())
+    while True:
+        state = solve_contact(height, space, closure=closure, rtol=1e-4)
+        reached = float(state.in_contact.mean())
+        if abs(reached / fraction - 1) <= FRACTION_ERROR:
+            return RoughProblem(size, hurst, reached, height, space, closure)
+        low, high = (closure, high) if reached < fraction else (low, closure)
+        closure = (low + min(high, 4 * low)) / 2
+
+
+def measured(
+    problem: RoughProblem, loading: str, parts: dict[str, list], rtol: float, runs: int
+) -> list[dict]:
+    """Rows of the table: a problem with the whole solver, and without each of some parts."""
+    start = None
+    if loading == "step":
+        for factor in SWEEP:
+            closure = factor * problem.closure
+            start = solve_contact(problem.height, problem.space, closure=closure, start=start)
+    rows = []
+    for name, changes in {WHOLE: [], **parts}.items():
+        row = {
+            "size": problem.size,
+            "hurst": problem.hurst,
+            "contact": round(problem.fraction, 3),
+            "loading": loading,
+            "without": "" if name == WHOLE else name,
+        }
+        seconds = []
+        for _ in range(runs):
+            forget_preconditioner(problem.space)
+            limit = [(active_set, "MAX_ITERATIONS", MOST_ITERATIONS)]
+            with left_out(changes + limit), coarse_applications(problem.space.shape) as coarse:
+                begin = time.perf_counter()
+                state = _solved(problem, start, rtol)
+                seconds.append(time.perf_counter() - begin)
+        forget_preconditioner(problem.space)
+        if state is not None:
+            row |= {"applications": state.iterations, "coarse": round(coarse[0], 2)}
+            row["seconds"] = float(np.median(seconds))
+            for what in ("applications", "seconds"):
+                row[f"{what} ratio"] = row[what] / (rows[0][what] if rows else row[what])
+        rows.append(row)
+    return rows
+
+
+def _is_solved(draw: int) -> bool:
+    """Whether a problem is solved whose force all but yields the whole window."""
+    generator = np.random.default_rng([50, draw])
+    ny, nx = generator.integers(20, 33, size=2)
+    height = self_affine((32, 32), 0.1, 0.8, rms=0.1, seed=draw)[:ny, :nx]
+    space = HalfSpace((int(ny), int(nx)), (0.1, 0.1), 1e4)
+    hardness = 10 ** generator.uniform(0, 3)
+    force = hardness * height.size * space.cell_area * (1 - 10 ** generator.uniform(-6, -1))
+    try:
+        solve_contact(height, space, force=force, hardness=hardness)
+    except NotConverged:
+        return False
+    return True
+
+
+def _solved(problem, start, rtol) -> ContactState | None:
+    try:
+        return solve_contact(
+            problem.height, problem.space, closure=problem.closure, start=start, rtol=rtol
+        )
+    except NotConverged:
+        return None
+
+
+@contextmanager
+def left_out(changes: list[tuple[object, str, object]]) -> Iterator[None]:
+    """Put other values in the place of what some modules and classes have."""
+    with ExitStack() as stack:
+        for owner, name, value in changes:
+            stack.enter_context(mock.patch.object(owner, name, value))
+        yield
+
+
+@contextmanager
+def coarse_applications(shape: tuple[int, int]) -> Iterator[list[float]]:
+    """Count what is convolved meanwhile on other grids, as fractions of one by area."""
+    total, convolve = [0.0], HalfSpace.convolve
+
+    def counted(space: HalfSpace, values: np.ndarray) -> np.ndarray:
+        if space.shape != shape:
+            total[0] += values.size / (shape[0] * shape[1])
+        return convolve(space, values)
+
+    with mock.patch.object(HalfSpace, "convolve", counted):
+        yield total
+
+
+def write_table(folder: Path, rows: list[dict]) -> None:
+    """Write solver_gains.csv, and the same for reading as solver_gains.md."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "solver_gains.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+    lines = [
+        "| size | H | contact | loading | without | applications | on coarser grids | time, s |",
+        "|---:|---:|---:|---|---|---:|---:|---:|",
+    ]
+    for row in rows:
+        head = f"| {row['size']} | {row['hurst']:g} | {row['contact']:.1%} | {row['loading']} "
+        head += f"| {row['without'] or WHOLE} "
+        if "applications" not in row:
+            lines.append(head + "| not converged | | |")
+            continue
+        ratios = [f" (x {row[f'{what} ratio']:.2g})" for what in ("applications", "seconds")]
+        if not row["without"]:
+            ratios = ["", ""]
+        lines.append(
+            head + f"| {row['applications']}{ratios[0]} | {row['coarse']:g} "
+            f"| {row['seconds']:.3g}{ratios[1]} |"
+        )
+    (folder / "solver_gains.md").write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()
