@@ -1,19 +1,19 @@
 """Labelled datasets made from a table: of each variable its dimensions, unit and long name."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from .labels import cf_attrs
 
-Dims = str | tuple[str, ...]
+#: A name, several of them, or () for a number.
+Dims = Sequence[str]
 
 
 def labelled(
-    table: Mapping[str, tuple[Dims, str, str]], values: Mapping[str, ArrayLike]
-) -> dict[str, tuple[Dims, ArrayLike, dict[str, str]]]:
+    table: Mapping[str, tuple[Dims, str, str]], values: Mapping[str, Any]
+) -> dict[str, tuple[Dims, Any, dict[str, str]]]:
     """Variables with their dimensions and attributes, as ``xr.Dataset`` takes them.
 
     Parameters
@@ -43,7 +43,7 @@ def labelled(
 
 def labelled_dataset(
     table: Mapping[str, tuple[Dims, str, str]],
-    values: Mapping[str, ArrayLike],
+    values: Mapping[str, Any],
     coords: Mapping[Any, Any] | None = None,
     attrs: Mapping[Any, Any] | None = None,
 ) -> xr.Dataset:

@@ -1,4 +1,4 @@
-"""The directions in which the lower face slides, seen from above, and how far."""
+"""Directions of the shear offset: where the upper block slides, seen from above."""
 
 from .errors import InputError
 

@@ -346,6 +346,6 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     # Openings of rigid faces are read off the heights: they have no solver error.
     error = finest["closure_error"].transpose(*result["elastic_dilatancy"].dims)
     result["elastic_dilatancy_error"] = error
-    error.attrs = error_attrs(cf_attrs("mm", "elastic dilatancy"))
+    result["elastic_dilatancy_error"].attrs = error_attrs(cf_attrs("mm", "elastic dilatancy"))
     result["offset_made"] = finest["offset_made"]
     return result

@@ -226,7 +226,7 @@ def joint_strength(
         load=dilatancy["load"],
         interval=("interval", result["midpoint"].values[0], cf_attrs("mm", FIELDS["midpoint"][1])),
     )
-    result["nominal_pressure"] = ("load", pressure, cf_attrs("MPa", "nominal pressure sigma_n"))
+    result["nominal_pressure"] = ("load", pressure, cf_attrs("MPa", "nominal pressure sigma_0"))
     for name, units, words in (
         ("basic_friction_angle", "degree", "basic friction angle phi_b"),
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),

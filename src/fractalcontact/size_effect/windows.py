@@ -51,7 +51,7 @@ _TABLE = {
     "side": ("part", "mm", "side b of the sub-windows"),
     "side_along": ("part", "mm", "length of the sub-windows along the sliding"),
     "bulk_settlement": (("part", "load"), "mm", "bulk settlement w_b of a sub-window"),
-    "nominal_pressure": ("load", "MPa", "nominal pressure sigma_n"),
+    "nominal_pressure": ("load", "MPa", "nominal pressure sigma_0"),
 }
 
 
