@@ -33,11 +33,11 @@ from fractalcontact.contact import (
     active_set,
     coarse_correction,
     full_approximation,
+    preconditioner,
     projected_cg,
     safeguards,
     solve,
 )
-from fractalcontact.contact.preconditioner import forget_preconditioner
 from fractalcontact.surface.synthesis import self_affine
 
 WHOLE = "whole solver"
@@ -57,7 +57,7 @@ class Identity:
     """No preconditioner: each node by its influence on itself alone."""
 
     def __init__(self, space: HalfSpace):
-        self.small = max(space.shape) <= 160
+        self.small = max(space.shape) <= preconditioner.SMALL
         self._own = np.float32(space.influence()[0, 0])
 
     def update(self, rows: np.ndarray, *, fresh: bool) -> None:
@@ -79,16 +79,16 @@ def _unclipped_step(equations, start, bounds, total):
     _CLIPPED_STEP(equations, start, (-np.inf, np.inf), total)
 
 
+def _factor_alone(correction, residual, inverse):
+    return inverse(residual)
+
+
 #: What is left out of a cold solve, and what is put in its place: (owner, name, value).
 COLD = {
     "preconditioner": [(projected_cg, "preconditioner", Identity)],
     "coarse correction": [
         (coarse_correction.CoarseCorrection, "update", lambda self, rows, fresh: None),
-        (
-            coarse_correction.CoarseCorrection,
-            "balance",
-            lambda self, residual, inverse: inverse(residual),
-        ),
+        (coarse_correction.CoarseCorrection, "balance", _factor_alone),
     ],
     "clipping of the first step": [(projected_cg.ProjectedCG, "clipped_step", _unclipped_step)],
     "nested iteration": [(solve, "nested_iteration_start", _uniform)],
@@ -199,13 +199,13 @@ def measured(
         }
         seconds = []
         for _ in range(runs):
-            forget_preconditioner(problem.space)
+            preconditioner.forget_preconditioner(problem.space)
             limit = [(active_set, "MAX_ITERATIONS", MOST_ITERATIONS)]
             with left_out(changes + limit), coarse_applications(problem.space.shape) as coarse:
                 begin = time.perf_counter()
                 state = _solved(problem, start, rtol)
                 seconds.append(time.perf_counter() - begin)
-        forget_preconditioner(problem.space)
+        preconditioner.forget_preconditioner(problem.space)
         if state is not None:
             row |= {"applications": state.iterations, "coarse": round(coarse[0], 2)}
             row["seconds"] = float(np.median(seconds))
