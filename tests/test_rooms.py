@@ -10,7 +10,6 @@ import pytest
 from places import ROOT
 
 import fractalcontact
-from fractalcontact.study.stages import STAGES
 
 PACKAGE = Path(fractalcontact.__file__).parent
 FLOORS = (
@@ -85,11 +84,6 @@ def used_of(room):
                 # What is named as its module is taken from there: a package cannot have both.
                 if module[:1] == (room,) and len(module) > 1 and name not in (None, module[-1]):
                     found[name].add("." + ".".join(module[1:]))
-    # The functions of stages are called by name.
-    for stage in STAGES.values():
-        home, _, name = stage.function.partition(":")
-        if home.startswith(f"{room}.") and not home.endswith(f".{name}"):
-            found[name].add(home.removeprefix(room))
     return {name: sorted(modules) for name, modules in found.items()}
 
 

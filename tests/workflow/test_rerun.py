@@ -65,9 +65,10 @@ def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):
     for name in (
         "workflow/scripts/_stages.py",  # beside the script of the atlas
         "src/fractalcontact/stages/windows.py",  # the function that a generic script calls
-        "src/fractalcontact/study/stages.py",  # a new stage is no reason to make the others again
+        "src/fractalcontact/study/stages.py",  # another stage: the others are not made again
     ):
         append(project, name)
+    (project / "src/fractalcontact/stages/another.py").write_text("# its function\n")
     assert set(planned(project)) == {"windows", "atlas"}
 
 

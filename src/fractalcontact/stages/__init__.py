@@ -7,7 +7,5 @@ __getattr__, __dir__, __all__ = exports(
     {
         "convergence": ".accuracy",
         "specimen_stages": ".specimen",
-        "state_stages": ".states",
-        "window_stages": ".windows",
     },
 )
