@@ -80,10 +80,10 @@ def rough_surface(generator: np.random.Generator) -> np.ndarray:
 
 
 def half_space(
-    shape: tuple[int, ...], *, cell: float = 0.1, stretch: float = 1.0, modulus: float = 1e4
+    shape: tuple[int, int], *, cell: float = 0.1, stretch: float = 1.0, modulus: float = 1e4
 ) -> HalfSpace:
     """The half-space under so many cells (mm), ``stretch`` times as long along y as along x."""
-    return HalfSpace(tuple(shape), (cell * stretch, cell), modulus)
+    return HalfSpace(shape, (cell * stretch, cell), modulus)
 
 
 def closure_reaching(height: np.ndarray, fraction: float) -> float:

@@ -4,6 +4,7 @@ import contextlib
 import os
 import threading
 import time
+from collections.abc import Iterator
 
 
 class Effort:
@@ -19,12 +20,12 @@ class Effort:
         self.problems, self.seconds = 0, 0.0
         self.renew_lock()
 
-    def renew_lock(self):
+    def renew_lock(self) -> None:
         """Make the lock anew: one that another thread holds is never released in a fork."""
         self._lock = threading.Lock()
 
     @contextlib.contextmanager
-    def counted(self, problems):
+    def counted(self, problems: int) -> Iterator[None]:
         """Add what the block takes, and the problems it solves."""
         begin = time.perf_counter()
         try:

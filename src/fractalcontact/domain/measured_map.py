@@ -82,13 +82,13 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
     spacing = float(np.sqrt(dx * dy))
     table = analyse_domains(domains, spacing, whole_cells=whole_cells).squeeze(drop=True)
     nominal = measured.sum() * dx * dy
-    values = {
+    variables = {
         "in_contact": touching,
         "measured": measured,
         "area_share": touching.sum() / measured.sum(),
         "nominal_pressure": _pressure(options.get("load"), nominal, f"sidecar of {path}: load"),
     }
-    result = table[[*DOMAIN_FIELDS, "reason"]].assign(labelled(_VARIABLES, values))
+    result = table[[*DOMAIN_FIELDS, "reason"]].assign(labelled(_VARIABLES, variables))
     result.attrs = {
         "label": label,
         "threshold": float(threshold),

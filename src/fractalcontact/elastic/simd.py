@@ -5,6 +5,7 @@ none of many rows of numbers overlap. Supported are ``load``, ``store``, +, - an
 """
 
 import operator
+from typing import Any
 
 from llvmlite import ir
 from numba import types
@@ -19,7 +20,7 @@ FUSED = ("contract",)
 class Vector(types.Type):
     """Type of :data:`WIDTH` numbers of a ``dtype``."""
 
-    def __init__(self, dtype):
+    def __init__(self, dtype: types.Type):
         super().__init__(name=f"Vector({dtype})")
         self.dtype = dtype
 
@@ -38,7 +39,7 @@ def _pointer(context, builder, array_type, array, start, vector):
 
 
 @intrinsic
-def load(typing_context, array, start):
+def load(typing_context: Any, array: Any, start: Any) -> Any:
     """The numbers of a flat contiguous array from ``start`` on; nothing checks its end."""
     vector = Vector(array.dtype)
 
@@ -50,7 +51,7 @@ def load(typing_context, array, start):
 
 
 @intrinsic
-def store(typing_context, array, start, values):
+def store(typing_context: Any, array: Any, start: Any, values: Any) -> Any:
     """Put them there."""
     if not isinstance(values, Vector):
         return None
@@ -113,7 +114,15 @@ def _vector_multiply(first, second):
 
 
 @intrinsic
-def transpose(typing_context, source, first, source_step, target, start, target_step):
+def transpose(
+    typing_context: Any,
+    source: Any,
+    first: Any,
+    source_step: Any,
+    target: Any,
+    start: Any,
+    target_step: Any,
+) -> Any:
     """Turn a square of :data:`WIDTH` x WIDTH numbers, rows of it being ``step`` numbers apart."""
     vector = Vector(source.dtype)
 

@@ -1,7 +1,7 @@
 """The joint: one face slid over the other, its composite topography, dilatancy and pre-fractals.
 
-Signs are those of docs/conventions.md: the window stays with the upper block, which slides by v towards a
-direction d; h(xi; v, d) = z_l(xi + v d) - z_u(xi), and the largest h touches first.
+Signs are those of docs/conventions.md: the window stays with the upper block, which slides by v
+towards a direction d; h(xi; v, d) = z_l(xi + v d) - z_u(xi), and the largest h touches first.
 """
 
 from collections.abc import Mapping, Sequence

@@ -124,8 +124,9 @@ class JointLoading:
 
     def half_space(self, shape: Iterable[int], factor: int = 1) -> HalfSpace:
         """The elastic half-space under a grid of ``factor`` times the scan's spacing."""
+        rows, columns = (int(n) for n in shape)
         return HalfSpace(
-            tuple(int(n) for n in shape),
+            (rows, columns),
             tuple(self.spacing * factor),
             self.settings["material"]["e_star"],
             kernel=self.solver["kernel"],

@@ -70,7 +70,7 @@ def state_errors(state: ContactState) -> dict[str, float]:
     below_cap = state.in_contact & (state.pressure < state.hardness)
     near_cap = below_cap & (state.pressure >= state.hardness - hidden)
     loose = ambiguous + np.count_nonzero(near_cap)
-    fraction = STIFFNESS_ERROR + loose / max(np.count_nonzero(below_cap), 1)
+    fraction = STIFFNESS_ERROR + loose / max(int(np.count_nonzero(below_cap)), 1)
     return {
         "closure_error": state.residual * state.closure,
         "area_error": ambiguous * space.cell_area,

@@ -77,7 +77,14 @@ def solve(problem: ContactProblem) -> ContactState:
 
 
 @njit(cache=True)
-def relieve(influence, rows, columns, s, change, left):
+def relieve(
+    influence: np.ndarray,
+    rows: np.ndarray,
+    columns: np.ndarray,
+    s: int,
+    change: float,
+    left: np.ndarray,
+) -> None:
     """Take from ``left`` at all points what a change of pressure at point s displaces them by."""
     for r in range(rows.size):
         left[r] -= influence[abs(rows[r] - rows[s]), abs(columns[r] - columns[s])] * change

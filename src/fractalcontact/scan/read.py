@@ -127,7 +127,8 @@ def read_matrix(
     measured = _measure(Path(path), options)
     if measured.layout != "matrix":
         raise InputError(f"{path}: holds points, a matrix is needed; 'layout: matrix' if it is one")
-    return measured.values, measured.spacing, measured.provenance
+    # A matrix has a spacing, else it was refused.
+    return measured.values, measured.spacing, measured.provenance  # type: ignore[return-value]
 
 
 def _measure(path: Path, options) -> Measured:
@@ -150,7 +151,7 @@ def _measure(path: Path, options) -> Measured:
     missing = _choose("missing", raw.missing, options, overrides)
     if raw.layout == "matrix":
         values = _without_missing(raw.values, missing)
-        values *= length_factor(unit_z, f"{path}: unit_z")
+        values *= length_factor(str(unit_z), f"{path}: unit_z")
         if _choose("first_row", raw.first_row, options, overrides) == "top":
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
@@ -159,8 +160,8 @@ def _measure(path: Path, options) -> Measured:
             notes.append(note)
         values = raw.values.copy()
         values[:, 2] = _without_missing(raw.values[:, 2], missing)
-        values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
-        values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
+        values[:, :2] *= length_factor(str(unit_xy), f"{path}: unit_xy")
+        values[:, 2] *= length_factor(str(unit_z), f"{path}: unit_z")
         spacing = None
     _refuse_enormous(values, path)
     grid = options.grid
@@ -262,8 +263,9 @@ def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple
                 f"{stated[0]:.6g} x {stated[1]:.6g} mm"
             )
         return spacing
-    check_spacing(stated, path)
-    return stated
+    # Asked for by _require_units where it is missing.
+    check_spacing(stated, path)  # type: ignore[arg-type]
+    return stated  # type: ignore[return-value]
 
 
 def _without_missing(values: np.ndarray, missing: float | None) -> np.ndarray:

@@ -173,7 +173,8 @@ class Loading:
         which = slice(None) if load is None else [load]
         scaling = self.scaling.isel(load=which)
         box = self.counts.isel(load=which)
-        used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")
+        products = scaling["sigma_n"] * scaling["delta_sigma"]
+        used = xr.apply_ufunc(np.isfinite, products).any("load")
         spacing = scaling["spacing"].where(used)
         spans = (("s", spacing, spacing), ("r", box["fit_min"], box["fit_max"]))
         words = [
