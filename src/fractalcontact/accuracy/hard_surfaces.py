@@ -83,7 +83,8 @@ def half_space(
     shape: tuple[int, ...], *, cell: float = 0.1, stretch: float = 1.0, modulus: float = 1e4
 ) -> HalfSpace:
     """The half-space under so many cells (mm), ``stretch`` times as long along y as along x."""
-    return HalfSpace(tuple(shape), (cell * stretch, cell), modulus)
+    ny, nx = shape
+    return HalfSpace((ny, nx), (cell * stretch, cell), modulus)
 
 
 def closure_reaching(height: np.ndarray, fraction: float) -> float:
