@@ -140,7 +140,7 @@ def _grid(cells_per_radius, centre):
 
 
 #: Variables of `richardson_trials`: dimensions, unit, long name.
-_TRIALS = {
+_TRIALS: dict[str, tuple[str | tuple[str, ...], str, str]] = {
     "error": (("quantity", "case"), "1", "error of Richardson's value, relative"),
     "bar": (("quantity", "case"), "1", "its own error bar, relative"),
     "finest": (("quantity", "case"), "1", "error at the finest spacing, relative"),
@@ -208,7 +208,7 @@ def richardson_trials(
 
 
 #: Variables of `kernel_effect`: dimensions, unit, long name.
-_KERNEL_EFFECT = {
+_KERNEL_EFFECT: dict[str, tuple[str, str, str]] = {
     "force": ("kernel", "N", "normal force"),
     "area": ("kernel", "mm2", "area of the contact domain"),
     "stiffness": ("kernel", "N/mm", "normal stiffness dF/dw"),

@@ -50,6 +50,8 @@ class Tamaas(PublicCode):
         The tolerance is on the gap in contact, averaged with the pressure, relative to the standard
         deviation of the heights.
         """
+        if load.force is None:
+            raise ValueError("Tamaas takes a force: give force=")
         self.model.traction[:] = 0.0 if load.start is None else load.start
         solver = self.tamaas.PolonskyKeerRey(self.model, self.height, rtol)
         solver.setIntegralOperator("dcfft")
