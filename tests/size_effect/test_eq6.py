@@ -243,6 +243,7 @@ def test_labels_and_words(which, flat, sliding):
     assert found.sizes["step"] == found.sizes["load"] + SPARE_DOUBLINGS
 
 
+@pytest.mark.full
 def test_doublings_that_are_left_out_change_nothing(flat, monkeypatch):
     specimen, lazy = flat
     # Nothing is ever enough: all of them are pressed.
@@ -348,6 +349,7 @@ def test_few_nodes_say_nothing():
 # -- real ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.full
 @pytest.mark.scans
 def test_granite_pair():
     folder = SCANS / "cnl_granite_pair"
