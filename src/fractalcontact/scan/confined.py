@@ -59,7 +59,7 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
     """
     request = {"path": str(path), "folder": _folder_for(path), "options": asdict(options)}
     lines, raw, status = _ask(request, path)
-    limits = next((line for line in reversed(lines) if line["outcome"] == "limits"), {})
+    limits: dict = next((line for line in reversed(lines) if line["outcome"] == "limits"), {})
     last = lines[-1] if lines else {"outcome": "limits"}
     if raw is not None and status == 0:
         return raw
