@@ -11,7 +11,8 @@ EVERYTHING = os.environ.get("TESTS") == "all"
 #: Ensemble: (for ``make test``, for ``make test-all``).
 ENSEMBLES: dict[str, tuple] = {
     # scan
-    "spoilt scan files": (66, 300),
+    "spoilt scan files": (44, 300),
+    "sound scan files": (("npy", "stl", "x3p", "nc"), None),
     "scattered points": (2500, 6000),
     # core
     "threads": (3, 8),
