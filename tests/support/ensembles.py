@@ -15,6 +15,8 @@ ENSEMBLES: dict[str, tuple] = {
     "sound scan files": (("npy", "stl", "x3p", "nc"), None),
     "scattered points": (2500, 6000),
     # core
+    "damages to kernels": (("cut in half", "one bit"), None),
+    "processes that compile": (3, 6),
     "threads": (3, 8),
     "sides solved by threads": ((48, 96), (48, 200, 400)),
     "side solved in forks": (128, 400),
