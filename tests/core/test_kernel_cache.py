@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from ensembles import ensemble
 
 import fractalcontact
 
@@ -158,7 +159,8 @@ def test_damaged_files_are_replaced_in_silence(compiled):
         "zeros": lambda content: bytes(len(content)),
     }
     files = compiled.files()
-    for kind, damage in kinds.items():
+    for kind in ensemble("damages to kernels") or kinds:
+        damage = kinds[kind]
         for path in files:
             path.write_bytes(damage(path.read_bytes()))
         assert compiled.run() == ("21.0 0", ""), kind
@@ -176,7 +178,7 @@ def test_a_whole_file_of_another_kernel_is_not_taken_for_this_one(compiled):
 
 def test_processes_that_compile_at_once_agree(project):
     calls = ("result(10.0)", "result(10)", "result(True) + 18", "result(np.float32(10))")
-    turns = [calls[k % 4 :] + calls[: k % 4] for k in range(6)]
+    turns = [calls[k % 4 :] + calls[: k % 4] for k in range(ensemble("processes that compile"))]
     code = "import numpy as np; from rocks.caller import result; print({{{}}})"
     processes = [project.start(code.format(", ".join(turn))) for turn in turns]
     for process in processes:
@@ -202,6 +204,7 @@ def test_only_the_newest_three_versions_of_a_module_are_kept(project):
     assert project.run() == ("21.0 1", "")
 
 
+@pytest.mark.full
 def test_a_process_outlives_the_removal_of_its_kernels(project):
     remove = "import shutil; shutil.rmtree('rocks/__pycache__/kernels')"
     assert project.run(f"{RUN}; {remove}; print(result(10))") == ("21.0 0\n21.0", "")
@@ -218,6 +221,7 @@ def test_the_folder_that_the_user_names_is_used(project):
     assert not project.kernels.exists()
 
 
+@pytest.mark.full
 def test_a_package_that_cannot_be_written_to_uses_the_user_s_folder(project):
     project.no_cache_in_package()
     for environment, folder in (
@@ -242,6 +246,7 @@ def test_without_a_home_the_kernels_go_to_a_private_temporary_folder(project):
     assert project.files(folder)
 
 
+@pytest.mark.full
 def test_without_any_folder_kernels_work_and_one_sentence_says_so(project):
     project.no_cache_in_package()
     (project.folder / f"fractalcontact-{os.geteuid()}").write_text("")
@@ -275,7 +280,13 @@ def _a_link(folder):
 
 @pytest.mark.parametrize(
     "spoil",
-    [_open_to_all, _open_to_the_group, _of_somebody_else, _a_link],
+    [
+        _open_to_all,
+        *(
+            pytest.param(spoil, marks=pytest.mark.full)
+            for spoil in (_open_to_the_group, _of_somebody_else, _a_link)
+        ),
+    ],
     ids=lambda f: f.__name__,
 )
 def test_nothing_is_loaded_from_a_folder_that_others_can_write_to(project, original, spoil):
@@ -326,6 +337,7 @@ def test_kernels_work_without_the_compiler_too(project):
     assert not project.kernels.exists()
 
 
+@pytest.mark.full
 def test_kernels_that_check_bounds_are_others(compiled):
     assert compiled.run(NUMBA_BOUNDSCHECK=1) == ("21.0 0", "")
     assert compiled.run() == ("21.0 1", "")

@@ -60,9 +60,12 @@ ENSEMBLES: dict[str, tuple] = {
     "axes of spectra": ("x", "xy"),
     "exponents of spectra": ((0.3, 0.8), (0.3, 0.5, 0.8, 0.9)),
     # scan
-    "spoilt scan files": (66, 300),
+    "spoilt scan files": (44, 300),
+    "sound scan files": (("npy", "stl", "x3p", "nc"), None),
     "scattered points": (2500, 6000),
     # core
+    "damages to kernels": (("cut in half", "one bit"), None),
+    "processes that compile": (3, 6),
     "threads": (3, 8),
     "sides solved by threads": ((48, 96), (48, 200, 400)),
     "side solved in forks": (128, 400),

@@ -127,8 +127,8 @@ def read_matrix(
     measured = _measure(Path(path), options)
     if measured.layout != "matrix":
         raise InputError(f"{path}: holds points, a matrix is needed; 'layout: matrix' if it is one")
-    # A matrix has a spacing, else it was refused.
-    return measured.values, measured.spacing, measured.provenance  # type: ignore[return-value]
+    assert measured.spacing is not None  # a matrix has one
+    return measured.values, measured.spacing, measured.provenance
 
 
 def _measure(path: Path, options) -> Measured:
@@ -148,20 +148,22 @@ def _measure(path: Path, options) -> Measured:
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
+    assert unit_z is not None
     missing = _choose("missing", raw.missing, options, overrides)
     if raw.layout == "matrix":
         values = _without_missing(raw.values, missing)
-        values *= length_factor(str(unit_z), f"{path}: unit_z")
+        values *= length_factor(unit_z, f"{path}: unit_z")
         if _choose("first_row", raw.first_row, options, overrides) == "top":
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
     else:
         if note := single_precision_note(raw.values):
             notes.append(note)
+        assert unit_xy is not None  # points were required to have one
         values = raw.values.copy()
         values[:, 2] = _without_missing(raw.values[:, 2], missing)
-        values[:, :2] *= length_factor(str(unit_xy), f"{path}: unit_xy")
-        values[:, 2] *= length_factor(str(unit_z), f"{path}: unit_z")
+        values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
+        values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
     _refuse_enormous(values, path)
     grid = options.grid
@@ -225,12 +227,10 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     """Ask for everything the file lacks in one message, ready to be copied."""
     stated_spacing = options.spacing if options.spacing is not None else raw.spacing
     lacks_spacing = raw.layout == "matrix" and stated_spacing is None
-    if raw.layout == "matrix":
-        given = options.spacing if isinstance(options.spacing, tuple) else (options.spacing,)
-        numbers_only = options.spacing is None or not all(isinstance(s, str) for s in given)
-        lacks_unit = unit_z is None or (numbers_only and not lacks_spacing and unit_xy is None)
-    else:
-        lacks_unit = unit_z is None or unit_xy is None
+    needs_unit_xy = raw.layout != "matrix" or (
+        not lacks_spacing and not _has_units_of_its_own(options.spacing)
+    )
+    lacks_unit = unit_z is None or (needs_unit_xy and unit_xy is None)
     if not (lacks_unit or lacks_spacing):
         return
     what = " and ".join(
@@ -248,12 +248,18 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     )
 
 
+def _has_units_of_its_own(spacing) -> bool:
+    """Whether a spacing, or each of a pair, is a text such as "0.1 mm"."""
+    pair = spacing if isinstance(spacing, tuple) else (spacing,)
+    return all(isinstance(step, str) for step in pair)
+
+
 def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple[float, float]:
     """The sidecar's spacing, else the file's, in mm; recorded where they differ."""
     stated = None
     if raw.spacing is not None and unit_xy is not None:
         factor = length_factor(unit_xy, f"{path}: unit_xy")
-        stated = tuple(factor * spacing for spacing in raw.spacing)
+        stated = factor * raw.spacing[0], factor * raw.spacing[1]
     if options.spacing is not None:
         spacing = spacing_mm(options.spacing, unit_xy, f"{path}: key 'spacing'")
         check_spacing(spacing, path)
@@ -263,9 +269,9 @@ def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple
                 f"{stated[0]:.6g} x {stated[1]:.6g} mm"
             )
         return spacing
-    # Asked for by _require_units where it is missing.
-    check_spacing(stated, path)  # type: ignore[arg-type]
-    return stated  # type: ignore[return-value]
+    assert stated is not None  # it was required, with its unit
+    check_spacing(stated, path)
+    return stated
 
 
 def _without_missing(values: np.ndarray, missing: float | None) -> np.ndarray:
