@@ -3,9 +3,9 @@
 The rules of the workflow, the atlas and the tests read this table. It names functions by strings,
 so that reading it imports none of them: on a cluster every job reads the workflow.
 
-To add a stage: an entry here; its function, which takes the datasets of the stages it needs by
-their names, and its settings; a rule; a test. Its dataset then stands in the atlas. In a module of
-its own the function makes no other stage out of date.
+To add a stage: an entry here; its function, which takes its settings and, by their names, the
+datasets of the stages it needs; a rule; a test. Its dataset then stands in the atlas. In a module
+of its own the function makes no other stage out of date.
 """
 
 from collections.abc import Collection
