@@ -173,7 +173,7 @@ class Loading:
         which = slice(None) if load is None else [load]
         scaling = self.scaling.isel(load=which)
         box = self.counts.isel(load=which)
-        used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")
+        used = np.isfinite(scaling["sigma_n"] * scaling["delta_sigma"]).any("load")  # type: ignore[call-overload]  # of xarray
         spacing = scaling["spacing"].where(used)
         spans = (("s", spacing, spacing), ("r", box["fit_min"], box["fit_max"]))
         words = [
