@@ -125,7 +125,8 @@ def test_shares_beyond_the_window_are_not_drawn(with_area):
 
 
 @pytest.mark.parametrize(
-    ("value", "words"), [(1.2, "below both"), (2.0, "lies between"), (3.0, "above both")]
+    ("value", "words"),
+    representative([(1.2, "below both"), (2.0, "lies between"), (3.0, "above both")]),
 )
 def test_kappa_is_judged_by_the_theories(with_area, value, words):
     def set_mean(laws):
@@ -138,11 +139,13 @@ def test_kappa_is_judged_by_the_theories(with_area, value, words):
 
 @pytest.mark.parametrize(
     ("low", "high", "words"),
-    [
-        (0.95, 1.02, "includes the paper's 1, fits Archard's level 3"),
-        (0.85, 0.98, "leaves out the paper's 1, fits Archard's level 2, 3"),
-        (0.75, 0.8, "fits none of Archard's"),
-    ],
+    representative(
+        [
+            (0.95, 1.02, "includes the paper's 1, fits Archard's level 3"),
+            (0.85, 0.98, "leaves out the paper's 1, fits Archard's level 2, 3"),
+            (0.75, 0.8, "fits none of Archard's"),
+        ]
+    ),
 )
 def test_exponent_is_judged_by_its_interval(with_area, low, high, words):
     def set_exponent(laws):

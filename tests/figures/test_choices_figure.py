@@ -5,12 +5,6 @@ import pytest
 from cases import representative
 
 from fractalcontact.figures.joint import choices
-from fractalcontact.study.atlas import read_atlas
-
-
-@pytest.fixture(scope="module")
-def atlas(atlas_file):
-    return read_atlas(atlas_file)
 
 
 @pytest.mark.parametrize("name", representative(["sliding", "flat", "pair"]))

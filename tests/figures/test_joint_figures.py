@@ -196,11 +196,13 @@ def test_scale_of_offsets_suits_them(offsets, scale):
 
 @pytest.mark.parametrize(
     ("power", "words"),
-    [
-        (0.5, "less homogeneous with v, as the paper says"),
-        (-0.5, "more homogeneous with v, unlike in the paper"),
-        (0.0, "no trend (paper: less homogeneous with v)"),
-    ],
+    representative(
+        [
+            (0.5, "less homogeneous with v, as the paper says"),
+            (-0.5, "more homogeneous with v, unlike in the paper"),
+            (0.0, "no trend (paper: less homogeneous with v)"),
+        ]
+    ),
 )
 def test_localisation_is_judged_by_its_slope(atlas, power, words):
     def law(dataset):
@@ -231,11 +233,13 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
 
 @pytest.mark.parametrize(
     ("ends", "words"),
-    [
-        ((0.9, 0.97), "as theory has it"),
-        ((0.5, 0.6), "5 lie below and 0 above"),
-        ((1.2, 1.4), "0 lie below and 5 above"),
-    ],
+    representative(
+        [
+            ((0.9, 0.97), "as theory has it"),
+            ((0.5, 0.6), "5 lie below and 0 above"),
+            ((1.2, 1.4), "0 lie below and 5 above"),
+        ]
+    ),
 )
 def test_conductance_is_judged_by_its_intervals(atlas, ends, words):
     changed = with_changes(

@@ -9,7 +9,6 @@ from PIL import Image
 from fractalcontact.figures.draw import draw_study_figures
 from fractalcontact.figures.joint import statements
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import study_figures_of
 from fractalcontact.study.stages import EXPERIMENT, paths_of
 
@@ -39,7 +38,7 @@ def test_no_row_is_cut_off(atlas):
         assert box.y1 <= whole.y1
 
 
-def test_figures_of_a_study(atlas_file, tmp_path):
+def test_figures_of_a_study(atlas_file, atlas, tmp_path):
     names = study_figures_of(paths_of(EXPERIMENT))
     assert names == ["plateau", "area_slope", "dimension_test", "estimator_bias"]
     assert study_figures_of({"study": "x", "area_slope": {}}) == ["area_slope"]
@@ -52,5 +51,5 @@ def test_figures_of_a_study(atlas_file, tmp_path):
         assert np.ptp(np.asarray(picture.convert("L"))) > 100  # something is drawn
     assert "<svg" in (tmp_path / "area_slope.svg").read_text(encoding="utf-8")
     table = pd.read_csv(tmp_path / "area_slope.csv")
-    slopes = read_atlas(atlas_file)["area_slope/surfaces"]
+    slopes = atlas["area_slope/surfaces"]
     np.testing.assert_allclose(table["kappa"], slopes["kappa"].values.ravel(), rtol=1e-7)

@@ -83,9 +83,8 @@ def caption(scenes: dict[str, xr.Dataset], quantity: str) -> str:
     worst = max(scene.attrs["reference_error"] for scene in scenes.values())
     return (
         f"{OURS} is on the solvers' Pareto front at every error below {LEADS_BELOW:g} on {leads} "
-        f"of {len(scenes)} test problems; a cheaper model is the fastest way to some such error on "
-        f"{models}. Errors below {short(alike)} count as equal; the references' own error of the "
-        f"force is at most {short(worst)}."
+        f"of {len(scenes)} test problems, a cheaper model ahead on {models}. Errors below "
+        f"{short(alike)} count as equal; the references' own is at most {short(worst)}."
     )
 
 

@@ -50,8 +50,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
     words = (
-        f"{supplementary()} Errors of the real contact area, of Delta_sigma from box counts and of "
-        f"the pressure against wall time, {size} x {size} nodes, {100 * contact:g} % in contact; "
-        f"zeros stand at the foot. For the pressure {caption(scenes, 'pressure_error')}"
+        f"{supplementary()} Errors of A_r, of Delta_sigma from boxes and of pressure against wall "
+        f"time, {size} x {size} nodes, {100 * contact:g} % in contact; zeros stand at the foot. "
+        f"For pressure {caption(scenes, 'pressure_error')}"
     )
     return Drawing(figure, table_of(scenes), words)
