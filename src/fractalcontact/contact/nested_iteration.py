@@ -63,22 +63,22 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
 def restrict_minimum(values: np.ndarray) -> np.ndarray:
     """The smallest of each 2 x 2 nodes, an odd last row or column standing alone."""
     ny, nx = values.shape
-    pooled = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
+    coarse_values = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
     for y in range(ny):
         for x in range(nx):
-            pooled[y // 2, x // 2] = min(pooled[y // 2, x // 2], values[y, x])
-    return pooled
+            coarse_values[y // 2, x // 2] = min(coarse_values[y // 2, x // 2], values[y, x])
+    return coarse_values
 
 
 @njit(cache=True)
 def restrict_sum(values: np.ndarray) -> np.ndarray:
     """The sum of each 2 x 2 nodes, an odd last row or column standing alone."""
     ny, nx = values.shape
-    pooled = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
+    coarse_values = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
     for y in range(ny):
         for x in range(nx):
-            pooled[y // 2, x // 2] += values[y, x]
-    return pooled
+            coarse_values[y // 2, x // 2] += values[y, x]
+    return coarse_values
 
 
 @njit(cache=True)

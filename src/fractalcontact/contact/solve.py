@@ -2,8 +2,9 @@
 
 A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
 where the force is given its sum of p is fixed and w is free. With a hardness H the pressure stops
-at H, and points there may be pressed in. How such a state is found is told in `active_set`; here
-loads become dimensionless, starts are chosen, and nothing returns unverified.
+at H, and points there may be pressed in. How such a state is found is described in
+`active_set` and docs/solver.md; here loads become dimensionless, starts are chosen, and nothing
+returns unverified.
 """
 
 import math
