@@ -6,7 +6,6 @@ __getattr__, __dir__, __all__ = exports(
     __name__,
     {
         "FEWEST_NODES": ".renormalisation",
-        "QUADRATS": ".clusters",
         "RESOLUTION": ".renormalisation",
         "analyse_domains": ".analysis",
         "box_count": ".box_counts",
