@@ -130,7 +130,7 @@ def trend(
 
 
 def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
-    """Whether values stay the same: their range as a share of their mean."""
+    """Whether values stay the same: their range over their mean."""
     if len(values) < 2:
         return Finding(UNKNOWN, no_offsets("two"))
     spread = np.ptp(values) / np.mean(values)
@@ -147,5 +147,5 @@ def share(good: int, total: int) -> str:
 
 
 def no_offsets(needed: str) -> str:
-    """Why a claim cannot be told."""
+    """Why a claim is undetermined."""
     return f"too few offsets: {needed} needed here"

@@ -1,4 +1,4 @@
-"""What the paper says, held against what was computed for a joint.
+"""Statements of the paper, compared with what was computed for a joint.
 
 Every statement is judged by a number and a rule that stands in its function; the rules are ours,
 for the paper gives none. All are judged in the first direction whose contact was solved, at the

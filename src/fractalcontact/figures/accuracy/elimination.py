@@ -36,13 +36,13 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 def _draw_signs(axes, elimination):
     worst = elimination["largest_off_diagonal"].values
     rows = np.arange(worst.size)
-    made = elimination["counter_example"].values == 1
+    defeated = elimination["counter_example"].values == 1
     # The values span decades on both sides of zero.
     axes.set_xscale("symlog", linthresh=1e-5, linscale=0.5)
     axes.axvline(0, color="0.5", lw=0.8)
     for chosen, colour, marker, label in (
-        (~made, COLOURS[1], MARKERS[0], "elimination always right"),
-        (made, COLOURS[2], MARKERS[1], "a counter-example defeats it"),
+        (~defeated, COLOURS[1], MARKERS[0], "elimination always right"),
+        (defeated, COLOURS[2], MARKERS[1], "a counter-example defeats it"),
     ):
         if chosen.any():
             axes.plot(worst[chosen], rows[chosen], marker, color=colour, label=label)

@@ -1,4 +1,4 @@
-"""Why rigid dilatancy has a plateau: joints made with and without a roll-off, and the study's."""
+"""Plateau of rigid dilatancy: synthetic joints with and without a roll-off, and the study's."""
 
 import json
 from collections.abc import Sequence

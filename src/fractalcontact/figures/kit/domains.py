@@ -1,4 +1,4 @@
-"""States of the contact that the figures of domains draw, and both estimates of Delta_sigma."""
+"""Contact states that the figures of domains draw, and both estimates of Delta_sigma."""
 
 from dataclasses import dataclass
 

@@ -30,7 +30,7 @@ from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
 from .ticks import keep_labels, plain_ticks
 
-#: Okabe and Ito's colours, told apart by colour-blind readers; black first.
+#: Okabe and Ito's colours, distinguished by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
 #: Markers go with the colours, so that a print in grey can be read too.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")

@@ -8,7 +8,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from .words import estimate, length_unit, short
 
-#: Where more than this share of the sub-windows had their angle held, a marker is left open.
+#: Where more than this fraction of the sub-windows had their angle held, a marker is left open.
 MOSTLY = 0.5
 #: Why no strength is drawn.
 NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
@@ -16,7 +16,7 @@ NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no off
 _FEW_DECADES = 2.5
 #: The frame ends at this part of the smallest mean; a bar as much shorter leaves it for certain.
 _MARGIN, _OUT_OF_FRAME = 3.0, 1e-3
-#: Pressures at one b are set apart by this part of b, so that their bars can be told apart.
+#: Pressures at one b are set apart by this part of b, so that their bars do not hide each other.
 _APART = 0.03
 
 

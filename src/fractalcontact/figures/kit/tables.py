@@ -19,7 +19,7 @@ def wrap_rows(
     ----------
     rows : iterable of mapping of str to str
     columns : dict
-        Key to where the column begins, as a share of the width, and how many letters it holds.
+        Key to where the column begins, as a fraction of the width, and how many letters it holds.
 
     Returns
     -------
