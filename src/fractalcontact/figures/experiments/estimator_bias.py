@@ -61,7 +61,7 @@ def _draw_bias(axes, bias):
     axes.axhline(0, color="0.5", lw=0.6)
     for n, name in enumerate(bias["estimator"].values):
         one, x = bias.sel(estimator=name), _beside(bias, n)
-        style = {"color": colour_of(n), "marker": MARKERS[n], "ls": "none"}
+        style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "ls": "none"}
         label = name.replace("_", " ")
         axes.errorbar(x, one["bias"], one["scatter"], capsize=2, lw=0.8, label=label, **style)
         moved = np.abs(one["slope_bias"] - one["bias"]) > 1e-9
@@ -76,7 +76,7 @@ def _draw_coverage(axes, bias):
             _beside(bias, n),
             bias["coverage"].sel(estimator=name),
             color=colour_of(n),
-            marker=MARKERS[n],
+            marker=MARKERS[n % len(MARKERS)],
             ls="none",
         )
     axes.set_ylim(-0.05, 1.05)
