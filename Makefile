@@ -68,11 +68,15 @@ check-accuracy: study
 cost: study
 	@$(BIN)/python benchmarks/study_cost.py "$$STUDY"
 
+# A process for each core, which shares costly fixtures file by file. Threads of BLAS in all of them
+# would only wait for each other.
+PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadgroup
+
 test: $(VENV)/tests-installed
-	$(BIN)/python -m pytest
+	$(PYTEST)
 
 test-all: $(VENV)/tests-installed
-	TESTS=all $(BIN)/python -m pytest
+	TESTS=all $(PYTEST)
 
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)

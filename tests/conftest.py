@@ -1,6 +1,16 @@
 """Two suites: ``make test`` leaves out what is marked ``full``, ``make test-all`` nothing."""
 
+import pytest
 from ensembles import EVERYTHING
+
+#: Folders whose files share costly fixtures: one process runs all of such a folder.
+SHARING = ("figures", "workflow")
+
+
+def pytest_itemcollected(item):
+    folder = item.path.parent.name
+    group = folder if folder in SHARING else f"{folder}/{item.path.stem}"
+    item.add_marker(pytest.mark.xdist_group(group))
 
 
 def pytest_collection_modifyitems(config, items):

@@ -193,7 +193,7 @@ def _table(test):
 def _caption(test, letters):
     return (
         f"After Figs. 8 and 9 of {PAPER}. Delta_sigma of {test.sizes['seed']} synthetic surfaces "
-        "per case by A_r(s) and by box counting, means with 95 % intervals. "
+        "per case by A_r(s) and by box counting, means, 95 % intervals. "
         f"{_difference_words(test)} {_paper_words(test)}{_capped_words(test, letters)}"
     ).strip()
 

@@ -120,9 +120,9 @@ def _caption(bias):
     verdict += f" ({', '.join(good)})" if good else ""
     least = float(known["coverage"].where(bias["hurst"] >= start).min())
     return (
-        f"{opening} For H of {start:g} or more {verdict}; "
-        f"{100 * float(known['mean_coverage'].mean()):.0f} % of the 95 % intervals hold H, at "
-        f"least {100 * least:.0f} %.{_rough_words(bias, start)}"
+        f"{opening} For H of {start:g} or more {verdict}; 95 % intervals hold H in "
+        f"{100 * float(known['mean_coverage'].mean()):.0f} % of all surfaces, in "
+        f"{100 * least:.0f} % of any H, size and estimator.{_rough_words(bias, start)}"
     )
 
 
