@@ -70,7 +70,7 @@ cost: study
 
 # A process for each core, which shares costly fixtures file by file. Threads of BLAS in all of them
 # would only wait for each other.
-PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadgroup
+PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto
 
 test: $(VENV)/tests-installed
 	$(PYTEST)

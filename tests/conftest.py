@@ -2,15 +2,24 @@
 
 import pytest
 from ensembles import EVERYTHING
+from xdist.scheduler import LoadScopeScheduling
 
 #: Folders whose files share costly fixtures: one process runs all of such a folder.
-SHARING = ("figures", "workflow")
+SHARING = ("tests/figures", "tests/workflow")
 
 
-def pytest_itemcollected(item):
-    folder = item.path.parent.name
-    group = folder if folder in SHARING else f"{folder}/{item.path.stem}"
-    item.add_marker(pytest.mark.xdist_group(group))
+class ByFile(LoadScopeScheduling):
+    """A file, or a folder of :data:`SHARING`, is run by one process."""
+
+    def _split_scope(self, nodeid):
+        path = nodeid.partition("::")[0]
+        folder = path.rpartition("/")[0]
+        return folder if folder in SHARING else path
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    return ByFile(config, log)
 
 
 def pytest_collection_modifyitems(config, items):
