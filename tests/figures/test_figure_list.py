@@ -6,6 +6,7 @@ import sys
 import pytest
 
 from fractalcontact.figures.draw import drawer_of
+from fractalcontact.study import figure_list
 from fractalcontact.study.atlas import STAGES
 from fractalcontact.study.figure_list import (
     accuracy_figures_of,
@@ -83,3 +84,12 @@ def test_the_register_imports_nothing_heavy():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+def test_two_figures_of_one_name_are_refused(tmp_path, monkeypatch):
+    for group in ("joint", "paper"):
+        (tmp_path / group).mkdir()
+        (tmp_path / group / "twice.py").write_text(STATED)
+    monkeypatch.setattr(figure_list, "FOLDER", tmp_path)
+    with pytest.raises(ValueError, match=r"joint/twice\.py and .*paper/twice\.py: two figures"):
+        all_figures.__wrapped__()

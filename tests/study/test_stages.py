@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+import re
 import subprocess
 import sys
 
@@ -45,6 +46,15 @@ def test_stages_need_only_stages_before_them_and_those_of_one_function_the_same(
         assert set(stage.needs) <= before - shared
         assert needs.setdefault(stage.function, stage.needs) == stage.needs
         before.add(name)
+
+
+def test_a_stage_with_files_has_a_rule():
+    rules = "".join(path.read_text() for path in (ROOT / "workflow/rules").glob("*.smk"))
+    for name, stage in STAGES.items():
+        if stage.filed:
+            together = "|".join(made_together(name))
+            made = rf'(outputs_of|calling)\(\s*"({together})"|RESULTS}}/({together})/'
+            assert re.search(made, rules), f"no rule in workflow/rules makes {name}"
 
 
 def test_an_experiment_has_a_key_in_the_schema_of_studies():

@@ -13,7 +13,7 @@ class Estimator(NamedTuple):
     """One way of measuring H: from the slope of a curve that grows as a power of a length."""
 
     place: int
-    """Its place among all: results and figures come in this order, those of one place by name."""
+    """Its place among all: results and figures come in this order, and no other has it."""
     curves: Callable[[np.ndarray, float], dict[str, Curve]]
     """Takes heights and spacing in mm; gives curves by axis: "both", and "x", "y" where the measure
     can be taken along one axis alone."""

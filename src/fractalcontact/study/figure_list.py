@@ -103,10 +103,21 @@ def read_figure(path: Path | str) -> Figure:
 
 @cache
 def all_figures() -> dict[str, Figure]:
-    """Every figure by name, in order."""
+    """Every figure by name, in order.
+
+    Raises
+    ------
+    ValueError
+        If two have one name, or as :func:`read_figure`.
+    """
     paths = [path for path in FOLDER.glob("*/[!_]*.py") if path.parent.name != _SHARED]
     figures = sorted(map(read_figure, paths), key=lambda figure: (figure.order, figure.name))
-    return {figure.name: figure for figure in figures}
+    named = {figure.name: figure for figure in figures}
+    for figure in figures:
+        if named[figure.name] is not figure:
+            modules = f"{figure.module}.py and {named[figure.name].module}.py"
+            raise ValueError(f"{modules}: two figures of one name; rename one")
+    return named
 
 
 def figures_of(opposite: str) -> list[str]:
