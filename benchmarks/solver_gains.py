@@ -60,7 +60,7 @@ class Identity:
         self.small = max(space.shape) <= preconditioner.SMALL
         self._own = np.float32(space.influence()[0, 0])
 
-    def update(self, rows: np.ndarray, *, fresh: bool) -> None:
+    def update(self, nodes: np.ndarray, *, fresh: bool) -> None:
         """There is nothing that depends on the set."""
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
@@ -87,10 +87,10 @@ def _factor_alone(correction, residual, inverse):
 COLD = {
     "preconditioner": [(projected_cg, "preconditioner", Identity)],
     "coarse correction": [
-        (coarse_correction.CoarseCorrection, "update", lambda self, rows, fresh: None),
+        (coarse_correction.CoarseCorrection, "update", lambda self, nodes, fresh: None),
         (coarse_correction.CoarseCorrection, "balance", _factor_alone),
     ],
-    "clipping of the first step": [(projected_cg.ProjectedCG, "clipped_step", _unclipped_step)],
+    "clipping of the steps": [(projected_cg.ProjectedCG, "clipped_step", _unclipped_step)],
     "nested iteration": [(solve, "nested_iteration_start", _uniform)],
 }
 #: The same of a step of a load sweep.

@@ -24,9 +24,9 @@ def rough_set(shape, fraction, seed=0, hurst=0.7):
     return np.flatnonzero(height > np.quantile(height, 1 - fraction)).astype(np.int32)
 
 
-def inverse_on(space, rows):
+def inverse_on(space, nodes):
     inverse = Preconditioner(space)
-    inverse.update(rows, fresh=True)
+    inverse.update(nodes, fresh=True)
     return inverse
 
 
@@ -36,10 +36,10 @@ SETS = ensemble("contact sets")
 
 def test_few_nodes_are_inverted_exactly():
     space = HalfSpace((40, 30), (0.1, 0.2), 1.0)
-    rows = np.sort(np.random.default_rng(1).choice(1200, DIRECT, replace=False)).astype(np.int32)
+    nodes = np.sort(np.random.default_rng(1).choice(1200, DIRECT, replace=False)).astype(np.int32)
     right_side = np.random.default_rng(2).standard_normal(DIRECT).astype(np.float32)
-    exact = np.linalg.solve(reference.operator_on(space, rows), right_side)
-    np.testing.assert_allclose(inverse_on(space, rows)(right_side), exact, rtol=1e-4, atol=1e-4)
+    exact = np.linalg.solve(reference.operator_on(space, nodes), right_side)
+    np.testing.assert_allclose(inverse_on(space, nodes)(right_side), exact, rtol=1e-4, atol=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -52,31 +52,31 @@ def test_few_nodes_are_inverted_exactly():
 )
 def test_factor_is_that_of_scalar_loops(shape, spacing, fraction, neighbourhood):
     space = HalfSpace(shape, spacing, 1.0)
-    rows = rough_set(shape, fraction)
+    nodes = rough_set(shape, fraction)
     factor = InverseCholesky(space, neighbourhood)
-    factor.update(rows)
-    plain = reference.inverse_cholesky(space, rows, neighbourhood)
-    matrix = np.array([factor(unit) for unit in np.eye(rows.size, dtype=np.float32)])
+    factor.update(nodes)
+    plain = reference.inverse_cholesky(space, nodes, neighbourhood)
+    matrix = np.array([factor(unit) for unit in np.eye(nodes.size, dtype=np.float32)])
     np.testing.assert_allclose(matrix, plain @ plain.T, rtol=0, atol=2e-5 * np.abs(matrix).max())
     assert np.count_nonzero(plain, axis=0).max() > 10 * (neighbourhood is WIDE_NEIGHBOURHOOD)
 
 
 def test_coarse_correction_is_that_of_dense_matrices():
     space = HalfSpace((30, 170), (1.0, 1.0), 1.0)
-    rows = rough_set(space.shape, 0.1)
+    nodes = rough_set(space.shape, 0.1)
     correction = CoarseCorrection(space)
-    correction.update(rows, True)
+    correction.update(nodes, True)
     # Bilinear interpolation between centres of cells, flat beyond the outermost.
     coarse = space.coarser(8)
     along = [
         np.array([np.interp((at + 0.5) / 8 - 0.5, np.arange(n), unit) for unit in np.eye(n)]).T
-        for at, n in zip(np.divmod(rows, 170), coarse.shape, strict=True)
+        for at, n in zip(np.divmod(nodes, 170), coarse.shape, strict=True)
     ]
-    interpolation = (along[0][:, :, None] * along[1][:, None, :]).reshape(rows.size, -1)
+    interpolation = (along[0][:, :, None] * along[1][:, None, :]).reshape(nodes.size, -1)
     # A pressure on fine cells is 1/64 of it on coarse ones, eight times as wide.
     every = np.arange(np.prod(coarse.shape))
     smooth = interpolation @ reference.operator_on(coarse, every) / 8 @ interpolation.T
-    own = np.eye(rows.size) * (space.influence()[0, 0] - np.diag(smooth))
+    own = np.eye(nodes.size) * (space.influence()[0, 0] - np.diag(smooth))
     operator = smooth + own
     hats = [
         np.maximum(0, 1 - np.abs((np.arange(n) + 0.5) / n * (k - 1) - np.arange(k)[:, None]))
@@ -87,9 +87,9 @@ def test_coarse_correction_is_that_of_dense_matrices():
     matrix = basis.T @ operator @ basis
     diagonal = np.diag(matrix)
     ridge = np.diag(RIDGE * diagonal + LEAST_RIDGE * diagonal.max())
-    approximate = np.diag(np.random.default_rng(8).uniform(0.5, 1, rows.size))
+    approximate = np.diag(np.random.default_rng(8).uniform(0.5, 1, nodes.size))
     plain = reference.balanced(approximate, operator, basis, np.linalg.inv(matrix + ridge))
-    residual = np.random.default_rng(9).standard_normal(rows.size).astype(np.float32)
+    residual = np.random.default_rng(9).standard_normal(nodes.size).astype(np.float32)
     balanced = correction.balance(
         residual, lambda values: (approximate @ values).astype(np.float32)
     )
@@ -100,12 +100,12 @@ def test_coarse_correction_is_that_of_dense_matrices():
 @pytest.mark.parametrize(("shape", "spacing", "fraction"), SETS)
 def test_inverse_is_symmetric_and_positive(shape, spacing, fraction):
     space = HalfSpace(shape, spacing, 1.0)
-    rows = rough_set(shape, fraction)
-    inverse = inverse_on(space, rows)
-    a, b = np.random.default_rng(3).standard_normal((2, rows.size)).astype(np.float32)
+    nodes = rough_set(shape, fraction)
+    inverse = inverse_on(space, nodes)
+    a, b = np.random.default_rng(3).standard_normal((2, nodes.size)).astype(np.float32)
     scale = np.linalg.norm(a) * np.linalg.norm(inverse(b))
     assert abs(float(a @ inverse(b)) - float(b @ inverse(a))) < 1e-5 * scale
-    for vector in (a, b, np.ones(rows.size, np.float32)):
+    for vector in (a, b, np.ones(nodes.size, np.float32)):
         assert float(vector @ inverse(vector)) > 0
 
 
@@ -113,11 +113,11 @@ def test_inverse_is_symmetric_and_positive(shape, spacing, fraction):
 def test_spectrum_of_the_product_is_narrow(shape, spacing, fraction):
     """Few eigenvalues of M K leave [1/2, 2]: hence few iterations, on any set."""
     space = HalfSpace(shape, spacing, 1.0)
-    rows = rough_set(shape, fraction)
-    inverse = inverse_on(space, rows)
-    matrix = np.array([inverse(unit) for unit in np.eye(rows.size, dtype=np.float32)], float)
+    nodes = rough_set(shape, fraction)
+    inverse = inverse_on(space, nodes)
+    matrix = np.array([inverse(unit) for unit in np.eye(nodes.size, dtype=np.float32)], float)
     # Those of M K are those of L' M L, which is symmetric, with K = L L'.
-    lower = np.linalg.cholesky(reference.operator_on(space, rows))
+    lower = np.linalg.cholesky(reference.operator_on(space, nodes))
     values = np.linalg.eigvalsh(lower.T @ matrix @ lower)
     assert values.min() > 0.2
     assert np.mean((values > 0.5) & (values < 2)) > 0.97
@@ -126,14 +126,14 @@ def test_spectrum_of_the_product_is_narrow(shape, spacing, fraction):
 @pytest.mark.parametrize("shape", [(128, 128), (300, 280)])
 def test_ten_iterations_solve_a_linear_problem_to_a_millionth(shape):
     space = HalfSpace(shape, (1.0, 1.0), 1.0)
-    rows = rough_set(shape, 0.1, hurst=0.8)
+    nodes = rough_set(shape, 0.1, hurst=0.8)
     operator = Operator(space)
-    operator.inverse.update(rows, fresh=True)
-    equations = ProjectedCG(operator, rows, np.ones(rows.size))
+    operator.inverse.update(nodes, fresh=True)
+    equations = ProjectedCG(operator, nodes, np.ones(nodes.size))
     equations.iterate(1e-6, by_force=False)
     pressure = np.zeros(shape)
-    pressure.ravel()[rows] = equations.solution
-    assert np.abs(1 - space.convolve(pressure).ravel()[rows]).max() < 1e-5
+    pressure.ravel()[nodes] = equations.solution
+    assert np.abs(1 - space.convolve(pressure).ravel()[nodes]).max() < 1e-5
     assert operator.applications <= 14
 
 
@@ -180,12 +180,12 @@ def test_an_update_that_is_interrupted_changes_nothing(monkeypatch):
 
 def test_bits_do_not_depend_on_the_number_of_threads(monkeypatch):
     space = HalfSpace((200, 190), (1.0, 1.0), 1.0)
-    rows = rough_set((200, 190), 0.3)
-    vector = np.random.default_rng(5).standard_normal(rows.size).astype(np.float32)
+    nodes = rough_set((200, 190), 0.3)
+    vector = np.random.default_rng(5).standard_normal(nodes.size).astype(np.float32)
     results = []
     for count in ("1", "3"):
         monkeypatch.setenv("OMP_NUM_THREADS", count)
-        results.append(inverse_on(space, rows)(vector))
+        results.append(inverse_on(space, nodes)(vector))
     np.testing.assert_array_equal(*results)
 
 

@@ -1,14 +1,15 @@
 """Active-set iteration for the contact problem: pressures between bounds, an unknown closure.
 
 The active contact set of an iterate are the nodes between the bounds and those at a bound that the
-gap pulls off it (`kkt`). On it the gap is made to vanish: first by the whole step of the sparse
-inverse-Cholesky preconditioner, clipped at the bounds, so that nodes leave the set in the same
-application of K that moves the others; then by conjugate gradients on those that stay. While the
-set is far off it is predicted: the nodes that a step would take to a bound are left out, and the
-step is made anew on the others, before K is applied at all. Directions and their images are in
-single precision; what is returned was judged on a displacement in double precision. (Primal-dual
-active sets, a semismooth Newton method: M. Hintermueller, K. Ito and K. Kunisch, SIAM J. Optim. 13
-(2002) 865. docs/solver.md has the whole solver on one page.)
+gap pulls off it (`kkt`): the nodes in contact whose bounds are inactive. On it the gap is made to
+vanish: first by the whole step of the sparse inverse-Cholesky preconditioner, clipped at the
+bounds, so that nodes leave the set in the same application of K that moves the others; then by
+conjugate gradients on those that stay. In the first iterations of a load step the set is predicted:
+the nodes that a step would take to a bound are left out, and the step is made anew on the others,
+before K is applied at all. Directions and their images are in single precision; what is returned
+was judged on a displacement in double precision. (Primal-dual active sets, a semismooth Newton
+method: M. Hintermueller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002) 865. docs/solver.md has
+the whole solver on one page.)
 """
 
 from dataclasses import dataclass
@@ -23,30 +24,30 @@ from .node_sets import symmetric_difference
 from .projected_cg import Operator, ProjectedCG, add
 from .safeguards import (
     SAFETY,
-    may_cycle,
+    many_iterations,
+    many_iterations_under_force,
     newton_on_closure,
-    stalls_under_force,
     without_entering,
 )
 
 # Iterations before the solver gives up: trials needed at most some twenty.
 MAX_ITERATIONS = 200
-# An inexact linear solve stops at a fraction of its first residual, as the set will change: so many
-# times the fraction of the set that changed last, within these limits. One against cycling goes on
-# nearly to the end.
+# An inexact linear solve stops at a fraction of the scale of its numbers, as the set will change:
+# so many times the fraction of the set that changed last, within these limits. The scale is the
+# largest of the gaps on the set, of the changes of nodes put at a bound, and of the force that is
+# lacking, per node. A solve against cycling goes on nearly to the end.
 REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
 EXACT_REDUCTION = 1e-3
-# In so many iterations the set is predicted; in all of them it might cycle. Only on the way from
-# another state, whose gaps overlap all around what touched: after nested iteration it saves
-# applications, but no time, and neither in small windows. And no more than this fraction of the
-# set is left out: where most nodes yield, the few others would have to carry whatever a given
-# force lacks.
+# Iterations with set prediction (in all of them sets might cycle). Only on the way from another
+# state, in windows that are not small: after nested iteration it saves applications but no time.
+# No more than this fraction of the set is left out: where most nodes yield, the few others would
+# have to carry whatever a given force lacks.
 SET_PREDICTIONS, MOST_LEFT_OUT = 2, 0.5
-# A violation no larger than so many tolerances is expected to fall below one in a single step,
-# whose displacement is then computed in double precision at once.
-NEARLY = 2.0
-# Single precision carries a step no further down than this fraction of its right side.
-SINGLE_REACHES = 1e-5
+# Once, where the violation is no larger than so many tolerances, the preconditioned step is made
+# alone and verified in double precision at once: it is expected to be the last.
+SINGLE_STEP_BELOW = 2.0
+# Violations of no more than this fraction of the closure are rounding of single precision.
+SINGLE_PRECISION_FLOOR = 1e-5
 _FLOAT64 = np.dtype(np.float64)
 
 
@@ -55,9 +56,9 @@ class LinearSolve(Enum):
 
     #: As far as the set is known: the usual case.
     INEXACT = auto()
-    #: The preconditioner's step alone, where it should be the last one.
+    #: The preconditioned step alone, verified at once, where it should be the last one.
     SINGLE_STEP = auto()
-    #: Nearly to the end, and without clipping, where sets may cycle.
+    #: Nearly to the end, and without clipping, after many iterations under a given closure.
     EXACT = auto()
 
 
@@ -113,7 +114,7 @@ class ActiveSetMethod:
     def solve(
         self, pressure: np.ndarray, displacement: np.ndarray | None = None, *, at_least: int = 0
     ) -> Solution:
-        """Iterate until a state is verified or patience ends; the caller checks the residual.
+        """Iterate until a state is verified, or MAX_ITERATIONS; the caller checks the residual.
 
         Parameters
         ----------
@@ -122,7 +123,8 @@ class ActiveSetMethod:
         displacement : (n,) ndarray, optional
             K of it, where known.
         at_least : int
-            Iterations made even of what satisfies the tolerance, unless nothing is left of them.
+            Fewest iterations, even of a start within tolerance; fewer only where violations are
+            no larger than SINGLE_PRECISION_FLOOR.
 
         Returns
         -------
@@ -137,35 +139,51 @@ class ActiveSetMethod:
         _check_on_grid(pressure, "pressure", problem.space)
         if displacement is not None:
             _check_on_grid(displacement, "displacement", problem.space)
+        # A displacement comes with states of this half-space at other loads. A start without one is
+        # prolonged from a coarser grid, and its set nearly right, or from another half-space.
         predictions = 0 if displacement is None or operator.inverse.small else SET_PREDICTIONS
         iterate = first_iterate(problem, operator, pressure, displacement)
-        active, single_step_made = np.empty(0, np.int32), False
+        previous_active, violation, single_step_left = np.empty(0, np.int32), 0.0, True
         for iteration in range(MAX_ITERATIONS):
+            # Safeguards: Newton's method where the force is given, which then gives closures; exact
+            # solves where the closure is given.
+            begun, closure = iteration > 0, iterate.closure
+            newton = begun and many_iterations_under_force(iteration, violation, closure)
+            exact = many_iterations(iteration)
+            if problem.by_force and newton:
+                start = verified(problem, operator, iterate)
+                return newton_on_closure(problem, rtol, operator, start, self._solve_closure)
             kkt = self._kkt_residual(iterate)
-            may_end = iteration >= at_least or _below(SINGLE_REACHES, kkt, iterate)
-            if may_end and _below(rtol, kkt, iterate):
+            may_end = iteration >= at_least or kkt.holds_to(SINGLE_PRECISION_FLOOR, iterate.closure)
+            if may_end and kkt.holds_to(rtol, iterate.closure):
                 iterate = solution = verified(problem, operator, iterate)
                 if solution.residual <= rtol:
                     return solution
                 kkt = self._kkt_residual(iterate)
-            extent = LinearSolve.INEXACT
-            if may_cycle(iteration):
-                extent = LinearSolve.EXACT
+            violation = kkt.largest
+            if exact:
                 kkt = without_entering(kkt, iterate.pressure, problem.cap)
-            elif may_end and not single_step_made and _below(NEARLY * rtol, kkt, iterate):
-                # Once only: where one step gains too little, conjugate gradients must follow.
-                extent, single_step_made = LinearSolve.SINGLE_STEP, True
+            single_step = may_end and single_step_left
+            linear_solve = self._linear_solve(kkt, iterate.closure, exact, single_step)
             operator.inverse.update(kkt.active, fresh=iteration == 0)
-            reduction, active = _reduction(extent, active, kkt.active), kkt.active
-            self._step(iterate, kkt, extent, reduction, predict=iteration < predictions)
-            if extent is LinearSolve.SINGLE_STEP:
+            reduction = _reduction(linear_solve, previous_active, kkt.active)
+            self._step(iterate, kkt, linear_solve, reduction, predict=iteration < predictions)
+            previous_active = kkt.active
+            if linear_solve is LinearSolve.SINGLE_STEP:
+                # Once only: where one step gains too little, conjugate gradients must follow.
+                single_step_left = False
                 iterate = solution = verified(problem, operator, iterate)
                 if solution.residual <= rtol:
                     return solution
-            if stalls_under_force(problem, iteration, kkt.largest, iterate.closure):
-                start = verified(problem, operator, iterate)
-                return newton_on_closure(problem, rtol, operator, start, self._solve_closure)
         return verified(problem, operator, iterate)
+
+    def _linear_solve(self, kkt, closure, exact, single_step):
+        """How far to solve: ``exact`` as a safeguard, or, where one is left, a ``single_step``."""
+        if exact:
+            return LinearSolve.EXACT
+        if single_step and kkt.holds_to(SINGLE_STEP_BELOW * self.rtol, closure):
+            return LinearSolve.SINGLE_STEP
+        return LinearSolve.INEXACT
 
     def _solve_closure(self, problem, rtol, start):
         """The solution of the same problem under a given closure."""
@@ -185,18 +203,21 @@ class ActiveSetMethod:
         self,
         iterate: Iterate,
         kkt: KKTResidual,
-        extent: LinearSolve,
+        linear_solve: LinearSolve,
         reduction: float,
         *,
         predict: bool,
     ) -> None:
         """Make one step on the active set, in place.
 
-        ``reduction`` is the fraction of the first residual at which the linear solve stops. After a
-        single step the displacement is left for a verification. If ``predict``, nodes that the
+        ``reduction`` is the fraction of the equations' scale at which the linear solve stops. After
+        a single step the displacement is left for a verification. If ``predict``, nodes that the
         first step takes to a bound are left out of the set.
+
+        Conjugate gradients, and unclipped steps, may take pressures beyond their bounds. Such nodes
+        are ``infeasible`` in the next iteration, which puts them at the bound.
         """
-        cap, clipped = self.problem.cap, extent is not LinearSolve.EXACT
+        cap, clipped = self.problem.cap, linear_solve is not LinearSolve.EXACT
         bound = np.where(iterate.pressure[kkt.infeasible] < 0, 0.0, cap)
         working = WorkingSet(kkt.active, kkt.infeasible, bound)
         equations, change, scale = self._preconditioned_step(iterate, working, clipped)
@@ -205,11 +226,10 @@ class ActiveSetMethod:
             working = working.without(leaving, np.where(equations.at_zero[leaving], 0.0, cap))
             self.operator.inverse.update(working.active, fresh=False)
             equations, change, scale = self._preconditioned_step(iterate, working, clipped)
-        if extent is not LinearSolve.SINGLE_STEP:
+        if linear_solve is not LinearSolve.SINGLE_STEP:
             equations.apply_step(working.fixed, change)
             wanted = SAFETY * self.rtol * abs(iterate.closure) / scale
-            goal = max(reduction, SINGLE_REACHES, wanted)
-            equations.iterate(goal, by_force=self.problem.by_force)
+            equations.iterate(max(reduction, wanted), by_force=self.problem.by_force)
             add(iterate.displacement, scale, equations.image)
         iterate.pressure[working.fixed] = working.bound
         _add_step(
@@ -237,16 +257,11 @@ class ActiveSetMethod:
         return equations, change, scale
 
 
-def _below(tolerance, kkt, iterate):
-    """Whether no violation exceeds a fraction of the closure."""
-    return kkt.largest <= tolerance * abs(iterate.closure)
-
-
-def _reduction(extent, before, active):
-    """Fraction of its first residual at which the linear solve on an active set stops."""
-    if extent is LinearSolve.EXACT:
+def _reduction(linear_solve, previous_active, active):
+    """Fraction of its scale at which the linear solve on an active set stops."""
+    if linear_solve is LinearSolve.EXACT:
         return EXACT_REDUCTION
-    changed = symmetric_difference(before, active).size / max(active.size, 1)
+    changed = symmetric_difference(previous_active, active).size / max(active.size, 1)
     return min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
 
 

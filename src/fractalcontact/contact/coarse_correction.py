@@ -1,13 +1,14 @@
 """Coarse correction of the preconditioner for smooth pressures (balancing, two-level Schwarz).
 
-What the sparse factor gets wrong is smooth: it makes widespread pressures too soft. Balancing (J.
-Mandel, Balancing domain decomposition, Comm. Numer. Methods Eng. 9 (1993) 233) solves what a few
-coarse basis functions on the contact set can resolve with the elastic operator between them, and
-leaves to the factor only what remains. With P the bilinear interpolation from a coarse grid to the
-contact set and Y piecewise bilinear functions (hats) on that grid, the basis is Z = P Y, and the
-operator is taken as P K_c P' + D: K_c on the coarse grid, D what is then missing of each node's
-displacement under its own load. Numbers are small here, and loops are compiled: a library of linear
-algebra would set its own threads spinning beside those of the transforms.
+What the sparse factor gets wrong is smooth: it displaces too little, that is, is too stiff, under
+widespread pressures. Balancing (J. Mandel, Balancing domain decomposition, Comm. Numer. Methods
+Eng. 9 (1993) 233) solves what a few coarse basis functions on the contact set can resolve with the
+elastic operator between them, and leaves to the factor only what remains. With P the bilinear
+interpolation from a coarse grid to the contact set and Y piecewise bilinear functions (hats) on
+that grid, the basis is Z = P Y, and the operator is taken as P K_c P' + D: K_c on the coarse grid,
+D what is then missing of each node's displacement under its own load. Numbers are small here, and
+loops are compiled: a library of linear algebra would set its own threads spinning beside those of
+the transforms.
 """
 
 from collections.abc import Callable
@@ -60,12 +61,12 @@ class CoarseCorrection:
         self._extents = _extents(self._basis.reshape(-1, *self._coarse.shape))
         self._made_for = np.empty(0, np.int32)
 
-    def update(self, rows: np.ndarray, fresh: bool) -> None:
+    def update(self, nodes: np.ndarray, fresh: bool) -> None:
         """Take another contact set; the operator is made anew if it lags behind.
 
         Parameters
         ----------
-        rows : (n,) int32 ndarray
+        nodes : (n,) int32 ndarray
             Nodes as numbers of cells, ascending.
         fresh : bool
             Whether to make it anew in any case.
@@ -75,13 +76,13 @@ class CoarseCorrection:
         ValueError
             If they are no such numbers.
         """
-        check_nodes(rows, self._shape)
+        check_nodes(nodes, self._shape)
         self._cells, self._weights = _interpolation(
-            rows, self._shape[1], self._step, *self._coarse.shape
+            nodes, self._shape[1], self._step, *self._coarse.shape
         )
         self._missing = _missing(self._weights, self._near, self._own)
-        if fresh or _most_changed(self._made_for, rows, self._shape, self._counts) > LAG:
-            self._made_for = rows
+        if fresh or _most_changed(self._made_for, nodes, self._shape, self._counts) > LAG:
+            self._made_for = nodes
             self._make_operator()
 
     def forget(self) -> None:
@@ -161,13 +162,13 @@ def _extents(basis):
 
 
 @njit(cache=True)
-def _interpolation(rows, nx, step, coarse_y, coarse_x):
+def _interpolation(nodes, nx, step, coarse_y, coarse_x):
     """The four coarse cells between which each node lies, and its weight in each."""
-    cells = np.empty((rows.size, 4), np.int32)
-    weights = np.empty((rows.size, 4), np.float32)
-    for i in range(rows.size):
-        y = min(max((rows[i] // nx + 0.5) / step - 0.5, 0.0), coarse_y - 1.0)
-        x = min(max((rows[i] % nx + 0.5) / step - 0.5, 0.0), coarse_x - 1.0)
+    cells = np.empty((nodes.size, 4), np.int32)
+    weights = np.empty((nodes.size, 4), np.float32)
+    for i in range(nodes.size):
+        y = min(max((nodes[i] // nx + 0.5) / step - 0.5, 0.0), coarse_y - 1.0)
+        x = min(max((nodes[i] % nx + 0.5) / step - 0.5, 0.0), coarse_x - 1.0)
         low_y, low_x = min(int(y), max(coarse_y - 2, 0)), min(int(x), max(coarse_x - 2, 0))
         high_y, high_x = min(low_y + 1, coarse_y - 1), min(low_x + 1, coarse_x - 1)
         y -= low_y
@@ -284,9 +285,9 @@ def _restrict(cells, weights, missing, values, n):
     plain, own = np.zeros(n, np.float32), np.zeros(n, np.float32)
     for i in range(values.size):
         for a in range(4):
-            part = weights[i, a] * values[i]
-            plain[cells[i, a]] += part
-            own[cells[i, a]] += missing[i] * part
+            weighted = weights[i, a] * values[i]
+            plain[cells[i, a]] += weighted
+            own[cells[i, a]] += missing[i] * weighted
     return plain, own
 
 

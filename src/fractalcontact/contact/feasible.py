@@ -1,4 +1,4 @@
-"""Feasible iterates: pressures between their bounds that carry the load, first and last ones."""
+"""First and last iterates: a start brought near the load, and an iterate within its bounds."""
 
 import numpy as np
 
@@ -13,14 +13,17 @@ FORCE_ROUNDING = 1e-12
 def first_iterate(
     problem: Problem, operator: Operator, pressure: np.ndarray, displacement: np.ndarray | None
 ) -> Iterate:
-    """A start made to carry the load, with its displacement and its closure.
+    """A start brought near the load, with its displacement and its closure.
+
+    It may violate the bounds. Under a given force the sum of its positive pressures is the force;
+    what negative ones take off, the first step makes up.
 
     Parameters
     ----------
     problem : Problem
     operator : Operator
     pressure : (n,) ndarray
-        May violate the bounds. It may become part of the iterate, and so may the displacement.
+        It may become part of the iterate, and so may the displacement.
     displacement : (n,) ndarray or None
         K of it, where known.
     """
@@ -38,7 +41,8 @@ def first_iterate(
 def verified(problem: Problem, operator: Operator, iterate: Iterate) -> Solution:
     """The iterate projected on its bounds, with a displacement in double precision.
 
-    Whoever asks for it reads from the ``residual`` whether it is a state of contact.
+    Under a given force it is also scaled to that, as far as the cap allows. Whoever asks for it
+    reads from the ``residual`` whether it is a state of contact.
     """
     closure, lacking = iterate.closure, 0.0
     pressure = np.clip(iterate.pressure, 0.0, problem.cap)
@@ -56,7 +60,7 @@ def verified(problem: Problem, operator: Operator, iterate: Iterate) -> Solution
 
 
 def _scaled_to_force(problem, operator, pressure, displacement):
-    """The start at the given force; without a displacement where a factor is not all it takes."""
+    """The start, its positive part scaled to the force; no displacement where that is not all."""
     total = np.maximum(pressure, 0.0).sum()
     if not total > 0:
         return problem.first_touch(), None
@@ -99,14 +103,14 @@ def _energy_factor(problem, pressure, displacement):
 def _scale_to(total, pressure, cap):
     """Scale a pressure to a total in place, none above the cap."""
     for _ in range(CLIPPING_PASSES):
-        lacking, part = total, 0.0
+        lacking, below_cap = total, 0.0
         for value in pressure:
             lacking -= value
             if value < cap:
-                part += value
-        if abs(lacking) <= FORCE_ROUNDING * total or part == 0:
+                below_cap += value
+        if abs(lacking) <= FORCE_ROUNDING * total or below_cap == 0:
             break
-        factor = 1 + lacking / part
+        factor = 1 + lacking / below_cap
         for i in range(pressure.size):
             if pressure[i] < cap:
                 pressure[i] = min(pressure[i] * factor, cap)

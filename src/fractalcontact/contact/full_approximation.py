@@ -23,7 +23,8 @@ from .nested_iteration import (
 )
 from .preconditioner import forget_preconditioner
 
-# With fewer nodes along the shorter side, as many applications on the fine grid take no more time.
+# Least nodes along the shorter side: on smaller windows the coarse solves cost as much as the
+# applications they save.
 LEAST_FINE_SIDE = 768
 # No coarser grid has fewer.
 LEAST_COARSE_SIDE = 96
@@ -89,7 +90,7 @@ def _changed_pressure(problem, pressure, gap, closure):
 
 
 def _displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:
-    """K of a pressure, (n,), of which single precision is enough: it is only a start."""
+    """K of a pressure, (n,), in single precision: enough for a coarse clearance and for a start."""
     pressure = pressure.reshape(space.shape).astype(np.float32)
     return space.convolve(pressure).astype(float).ravel()
 

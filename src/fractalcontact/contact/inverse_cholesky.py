@@ -27,12 +27,13 @@ WIDE_NEIGHBOURHOOD = np.array([2, 2, 1])
 #: The same in small windows, where applications cost little: up to a third more of them, and still
 #: a fifth less time under loads that double from step to step.
 NARROW_NEIGHBOURHOOD = np.array([1, 1])
-#: Most nodes that can condition one.
+#: Size of the larger neighbourhood, and so the most nodes that can condition one.
 MOST_NEIGHBOURS = 20
 #: A thread takes no fewer nodes than this.
 CHUNK = 512
-#: Smallest conditional variance: least fraction of a node's influence on itself that others may
-#: leave unexplained. On cells much longer than wide, single precision would lose less.
+#: Smallest conditional variance, as a fraction of a node's influence on itself. It is a difference
+#: in single precision; where neighbours all but explain a node, as on cells much longer than wide,
+#: rounding may make it zero or negative, whose root is no number to divide by.
 LEAST_CONDITIONAL_VARIANCE = np.float32(1e-3)
 
 
@@ -58,30 +59,30 @@ class InverseCholesky:
         self.influence = space.influence().astype(np.float32)
         self._shifts = block_shifts(space)
         self._neighbourhood = neighbourhood
-        rows = np.empty(0, np.int32)
+        nodes = np.empty(0, np.int32)
         slot = np.full(space.shape[0] * space.shape[1], -1, np.int32)
-        representative = _representatives(rows, *space.shape, self._shifts)[0]
+        representative = _representatives(nodes, *space.shape, self._shifts)[0]
         # All that belongs to one set, in one place: it changes as a whole, or not at all.
-        self._known = representative, rows, slot, _empty_factor(0)
+        self._known = representative, nodes, slot, _empty_factor(0)
 
     @property
     def size(self) -> int:
         """Nodes of the set."""
         return self._known[1].size
 
-    def update(self, rows: np.ndarray) -> None:
+    def update(self, nodes: np.ndarray) -> None:
         """Factorise on another contact set, as far as it differs from the last one.
 
         Parameters
         ----------
-        rows : (n,) int32 ndarray
+        nodes : (n,) int32 ndarray
             Its nodes as numbers of cells, ascending; nothing checks them.
         """
         nx = self._shape[1]
         representative, *old = self._known
         slot = np.full(old[1].size, -1, np.int32)
-        slot[rows] = np.arange(rows.size, dtype=np.int32)
-        blocks = _representatives(rows, *self._shape, self._shifts)
+        slot[nodes] = np.arange(nodes.size, dtype=np.int32)
+        blocks = _representatives(nodes, *self._shape, self._shifts)
         if old[0].size:
             changed = np.flatnonzero(representative != blocks[0])
             affected = _affected(
@@ -89,15 +90,15 @@ class InverseCholesky:
             )
         else:
             affected = np.ones(blocks[0].size, bool)
-        factor = _empty_factor(rows.size)
+        factor = _empty_factor(nodes.size)
         before, known = tuple(old), (*blocks, affected)
         grid = self._shifts, self._neighbourhood, nx, self.influence
         threads.in_parts(
-            lambda start, stop: _factorise(start, stop, rows, slot, known, grid, before, factor),
-            rows.size,
+            lambda start, stop: _factorise(start, stop, nodes, slot, known, grid, before, factor),
+            nodes.size,
             smallest=CHUNK,
         )
-        self._known = blocks[0], rows, slot, factor
+        self._known = blocks[0], nodes, slot, factor
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """U U' residual, both (n,) float32 on the contact set.
@@ -134,7 +135,7 @@ def block_shifts(space: HalfSpace) -> np.ndarray:
 
 
 @njit(cache=True)
-def _representatives(rows, ny, nx, shifts):
+def _representatives(nodes, ny, nx, shifts):
     """For every level, the node (cell number) that stands for each block, or -1."""
     levels = shifts.shape[0]
     offsets = np.empty(levels + 1, np.int64)
@@ -146,19 +147,19 @@ def _representatives(rows, ny, nx, shifts):
         offsets[k + 1] = offsets[k] + widths[k, 0] * widths[k, 1]
     representative = np.full(offsets[levels], -1, np.int32)
     level = np.zeros(ny * nx, np.int8)
-    standing = rows.copy()
-    representative[standing] = standing
+    candidates = nodes.copy()
+    representative[candidates] = candidates
     for k in range(1, levels):
         n = 0
-        for node in standing:
+        for node in candidates:
             y, x = (node // nx) >> shifts[k, 0], (node % nx) >> shifts[k, 1]
             block = offsets[k] + y * widths[k, 1] + x
             if representative[block] < 0:
                 representative[block] = node
                 level[node] = k
-                standing[n] = node
+                candidates[n] = node
                 n += 1
-        standing = standing[:n]
+        candidates = candidates[:n]
     return representative, offsets, widths, level
 
 
@@ -190,11 +191,11 @@ def _mark(affected, offset, width, y, x, reach):
 
 
 @njit(cache=True, nogil=True)
-def _factorise(start, stop, rows, slot, blocks, grid, old, new):
+def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
     """Columns start ... stop of the factor: taken over where nothing changed, else solved."""
     representative, offsets, widths, level, affected = blocks
     shifts, neighbourhood, nx, influence = grid
-    old_rows, old_slot, (old_count, old_neighbours, old_weight, old_diagonal) = old
+    old_nodes, old_slot, (old_count, old_neighbours, old_weight, old_diagonal) = old
     count, neighbours, weight, diagonal = new
     members, far = np.empty(MOST_NEIGHBOURS + 1, np.int64), neighbourhood.size - 1
     # Those solved side by side have equally many nodes, as far as present are enough such.
@@ -203,7 +204,7 @@ def _factorise(start, stop, rows, slot, blocks, grid, old, new):
     lower = np.empty((MOST_NEIGHBOURS + 1) * (MOST_NEIGHBOURS + 1) * WIDTH, np.float32)
     column = np.empty((MOST_NEIGHBOURS + 1) * WIDTH, np.float32)
     for i in range(start, stop):
-        node = rows[i]
+        node = nodes[i]
         y, x = node // nx, node % nx
         k = level[node]
         block_y, block_x = y >> shifts[k, 0], x >> shifts[k, 1]
@@ -211,7 +212,7 @@ def _factorise(start, stop, rows, slot, blocks, grid, old, new):
         if before >= 0 and not affected[offsets[k] + block_y * widths[k, 1] + block_x]:
             count[i], diagonal[i] = old_count[before], old_diagonal[before]
             for a in range(count[i]):
-                neighbours[i, a] = slot[old_rows[old_neighbours[before, a]]]
+                neighbours[i, a] = slot[old_nodes[old_neighbours[before, a]]]
                 weight[i, a] = old_weight[before, a]
             continue
         n = 0
@@ -230,11 +231,11 @@ def _factorise(start, stop, rows, slot, blocks, grid, old, new):
         waiting[n, filled[n]] = i
         filled[n] += 1
         if filled[n] == WIDTH:
-            _solve_columns(waiting[n], rows, nx, influence, new, lower, column)
+            _solve_columns(waiting[n], nodes, nx, influence, new, lower, column)
             filled[n] = 0
-    left = _joined(waiting, filled)
-    for a in range(0, left.size, WIDTH):
-        _solve_columns(left[a : a + WIDTH], rows, nx, influence, new, lower, column)
+    remaining = _joined(waiting, filled)
+    for a in range(0, remaining.size, WIDTH):
+        _solve_columns(remaining[a : a + WIDTH], nodes, nx, influence, new, lower, column)
 
 
 @njit(cache=True)
@@ -249,22 +250,22 @@ def _joined(lists, lengths):
 
 
 @njit(cache=True)
-def _fill_below_diagonal(nodes, rows, nx, influence, factor, lower):
+def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
     """Influence of the nodes of each lane on each other; returns how many condition one at most."""
     count, neighbours, _, _ = factor
     n = 0
-    for i in nodes:
+    for i in places:
         n = max(n, count[i])
     side = (MOST_NEIGHBOURS + 1) * WIDTH
     ys = np.zeros((MOST_NEIGHBOURS + 1, WIDTH), np.int32)
     xs = np.zeros((MOST_NEIGHBOURS + 1, WIDTH), np.int32)
     present = np.zeros((MOST_NEIGHBOURS + 1, WIDTH), np.float32)
-    for lane in range(nodes.size):
-        i = nodes[lane]
+    for lane in range(places.size):
+        i = places[lane]
         for a in range(count[i]):
-            node = rows[neighbours[i, a]]
+            node = nodes[neighbours[i, a]]
             ys[a, lane], xs[a, lane], present[a, lane] = node // nx, node % nx, 1
-        ys[n, lane], xs[n, lane], present[n, lane] = rows[i] // nx, rows[i] % nx, 1
+        ys[n, lane], xs[n, lane], present[n, lane] = nodes[i] // nx, nodes[i] % nx, 1
     for a in range(n + 1):
         for b in range(a):
             here = a * side + b * WIDTH
@@ -276,7 +277,7 @@ def _fill_below_diagonal(nodes, rows, nx, influence, factor, lower):
 
 
 @njit(cache=True)
-def _solve_columns(nodes, rows, nx, influence, factor, lower, column):
+def _solve_columns(places, nodes, nx, influence, factor, lower, column):
     """Last column of the inverse of the transposed Cholesky factor, for a node in each lane.
 
     Lanes with fewer nodes than others have empty rows before their last, which change nothing, to
@@ -284,7 +285,7 @@ def _solve_columns(nodes, rows, nx, influence, factor, lower, column):
     """
     count, _, weight, diagonal = factor
     side = (MOST_NEIGHBOURS + 1) * WIDTH
-    n = _fill_below_diagonal(nodes, rows, nx, influence, factor, lower)
+    n = _fill_below_diagonal(places, nodes, nx, influence, factor, lower)
     for a in range(n + 1):
         for b in range(a):
             here = a * side + b * WIDTH
@@ -310,8 +311,8 @@ def _solve_columns(nodes, rows, nx, influence, factor, lower, column):
             store(column, c, load(column, c) - load(lower, a * side + c) * known)
         here = (a - 1) * WIDTH
         store(column, here, load(column, here) * load(lower, (a - 1) * (side + WIDTH)))
-    for lane in range(nodes.size):
-        i = nodes[lane]
+    for lane in range(places.size):
+        i = places[lane]
         for a in range(count[i]):
             weight[i, a] = column[a * WIDTH + lane]
         diagonal[i] = column[n * WIDTH + lane]

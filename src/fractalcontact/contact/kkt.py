@@ -17,7 +17,7 @@ from ..elastic.halfspace import HalfSpace
 
 @dataclass
 class Problem:
-    """A contact problem in units in which loads are near one.
+    """A contact problem in units in which the closure, or under a force the mean pressure, is one.
 
     Attributes
     ----------
@@ -86,7 +86,8 @@ class Solution(Iterate):
     Attributes
     ----------
     residual : float
-        Largest violation of the contact conditions, as a fraction of the closure.
+        Largest violation of the contact conditions, as a fraction of the closure; or, of a given
+        force, as a fraction of it.
     applications : int
         Applications of K, in either precision.
     """
@@ -108,12 +109,16 @@ class KKTResidual:
         Nodes whose pressure is beyond a bound.
     largest : float
         Largest violation: of a gap condition, or of a bound (as a node's pressure displaces it by
-        about itself in these units).
+        about itself in these units). Not yet a fraction of the closure.
     """
 
     active: np.ndarray
     infeasible: np.ndarray
     largest: float
+
+    def holds_to(self, tolerance: float, closure: float) -> bool:
+        """Whether no violation exceeds a fraction of the closure."""
+        return self.largest <= tolerance * abs(closure)
 
 
 def kkt_residual(
@@ -147,7 +152,7 @@ def kkt_residual(
     return KKTResidual(*_kkt_residual(pressure, displacement, clearance, closure, cap))
 
 
-def inactive_bounds(pressure: np.ndarray, cap: float) -> np.ndarray:
+def nodes_between_bounds(pressure: np.ndarray, cap: float) -> np.ndarray:
     """Nodes at which neither bound is active, (n,) int32: those whose gap stays 0."""
     return np.flatnonzero((pressure > 0) & (pressure < cap)).astype(np.int32)
 

@@ -16,7 +16,8 @@ from .dense import inverted
 from .kkt import Problem
 from .preconditioner import forget_preconditioner
 
-# A coarser grid gives the start until its shorter side has fewer nodes than this.
+# A grid of fewer nodes along its shorter side starts from a uniform pressure, all others from the
+# next coarser grid.
 COARSEST_SIDE = 24
 # The preconditioner on coarse grids of more cells is not kept: it takes memory, and there is
 # little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
@@ -161,31 +162,31 @@ def _redistribute(before, change, gap, influence):
     ny, nx = gap.shape
     own, around = _influence_on(influence)
     maps = _redistributions(own)
-    known, left, part = np.zeros(4), np.zeros(4), np.zeros(4)
+    known, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
     for top in range(0, ny, 2):
         for side in range(0, nx, 2):
-            total, those = 0.0, 0
+            total, mask = 0.0, 0
             for a in range(4):
                 y, x = top + a // 2, side + a % 2
-                known[a] = left[a] = 0.0
+                known[a] = opening[a] = 0.0
                 if y < ny and x < nx:
-                    known[a], left[a] = before[y, x], gap[y, x]
+                    known[a], opening[a] = before[y, x], gap[y, x]
                     total += known[a] + change[y + 2, x + 2]
-                    those |= 1 << a
+                    mask |= 1 << a
             if not total > 0:
                 continue
             for i in range(6):
                 for j in range(6):
                     value = change[top + i, side + j]
                     for a in range(4):
-                        left[a] += around[i, j, a] * value
+                        opening[a] += around[i, j, a] * value
             for a in range(4):
                 for b in range(4):
-                    left[a] -= own[a, b] * known[b]
-            _equalise_gaps(maps, left, total, those, part)
+                    opening[a] -= own[a, b] * known[b]
+            _equalise_gaps(maps, opening, total, mask, pressure)
             for a in range(4):
-                if those & (1 << a):
-                    change[top + a // 2 + 2, side + a % 2 + 2] = part[a] - known[a]
+                if mask & (1 << a):
+                    change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - known[a]
 
 
 @njit(cache=True)
@@ -214,20 +215,20 @@ def _redistributions(own):
     which gives M = W - W 1 1' W / (1' W 1) and c = W 1 / (1' W 1), with W the inverse of own.
     """
     maps = np.zeros((16, 4, 5))
-    for those in range(1, 16):
-        nodes = np.array([a for a in range(4) if those & (1 << a)])
+    for mask in range(1, 16):
+        nodes = np.array([a for a in range(4) if mask & (1 << a)])
         inverse = inverted(own[nodes][:, nodes])
         ones = inverse.sum(axis=1)
         for i, a in enumerate(nodes):
-            maps[those, a, 4] = ones[i] / ones.sum()
+            maps[mask, a, 4] = ones[i] / ones.sum()
             for j, b in enumerate(nodes):
-                maps[those, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
+                maps[mask, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
     return maps
 
 
 @njit(cache=True)
-def _equalise_gaps(maps, gap, total, those, part):
-    """Pressures of a given sum, 0 but on ``those`` nodes, that leave even gaps where positive.
+def _equalise_gaps(maps, gap, total, mask, pressure):
+    """Pressures of a given sum on the nodes of a ``mask`` that leave even gaps where positive.
 
     Those in tension are dropped, the strongest first, until there is none. Only by how much gaps
     differ counts: what they share may be huge, and would leave the sum to rounding.
@@ -235,15 +236,15 @@ def _equalise_gaps(maps, gap, total, those, part):
     while True:
         nearest = np.inf
         for a in range(4):
-            if those & (1 << a):
+            if mask & (1 << a):
                 nearest = min(nearest, gap[a])
         worst, least = 0, 0.0
         for a in range(4):
-            part[a] = maps[those, a, 4] * total
+            pressure[a] = maps[mask, a, 4] * total
             for b in range(4):
-                part[a] += maps[those, a, b] * (gap[b] - nearest)
-            if part[a] < least:
-                worst, least = a, part[a]
+                pressure[a] += maps[mask, a, b] * (gap[b] - nearest)
+            if pressure[a] < least:
+                worst, least = a, pressure[a]
         if not least < 0:
             break
-        those &= ~(1 << worst)
+        mask &= ~(1 << worst)

@@ -19,7 +19,7 @@ from .node_sets import check_nodes, check_on_set
 
 #: Sets of at most so many nodes are inverted exactly.
 DIRECT = 96
-#: Windows of at most so many cells across do without the coarse correction too.
+#: Windows of at most so many cells along the longer side do without the coarse correction too.
 SMALL = 160
 
 
@@ -37,8 +37,10 @@ class Preconditioner:
 
     Notes
     -----
-    ``update`` keeps what a new set leaves unchanged, bit for bit as a fresh start would have it.
-    It changes the object, so that no two threads may use one: `preconditioner` gives each its own.
+    ``update`` keeps of the factor what a new set leaves unchanged, bit for bit as a fresh start
+    would have it. The coarse operator lags behind the set, by up to `coarse_correction.LAG`,
+    unless it is made ``fresh``. An update changes the object, so that no two threads may use one:
+    `preconditioner` gives each its own.
     """
 
     def __init__(self, space: HalfSpace):
@@ -49,12 +51,12 @@ class Preconditioner:
         self._coarse = None if self.small else CoarseCorrection(space)
         self._exact: np.ndarray | None = None
 
-    def update(self, rows: np.ndarray, *, fresh: bool) -> None:
+    def update(self, nodes: np.ndarray, *, fresh: bool) -> None:
         """Make this the inverse on another contact set.
 
         Parameters
         ----------
-        rows : (n,) int32 ndarray
+        nodes : (n,) int32 ndarray
             Its nodes as numbers of cells, ascending.
         fresh : bool
             Whether to make the coarse operator anew, which else may lag a little behind the set.
@@ -64,17 +66,17 @@ class Preconditioner:
         ValueError
             If they are no such numbers.
         """
-        check_nodes(rows, self._shape)
+        check_nodes(nodes, self._shape)
         self._exact = None
         if fresh and self._coarse is not None:
             # Also where so few nodes come first that none is needed yet.
             self._coarse.forget()
-        if rows.size <= DIRECT:
-            self._exact = _exact_inverse(rows, self._shape[1], self._factor.influence)
+        if nodes.size <= DIRECT:
+            self._exact = _exact_inverse(nodes, self._shape[1], self._factor.influence)
             return
-        self._factor.update(rows)
+        self._factor.update(nodes)
         if self._coarse is not None:
-            self._coarse.update(rows, fresh)
+            self._coarse.update(nodes, fresh)
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """The approximate solution x of K x = residual, both (n,) float32 on the contact set.
@@ -93,25 +95,25 @@ class Preconditioner:
         return self._coarse.balance(residual, self._factor)
 
 
-class _Kept(dict):
+class _Preconditioners(dict):
     """By the id of a half-space: a weak reference to it, and its preconditioner."""
 
 
-class _OfThread(threading.local):
-    """What this thread keeps; it ends with the thread."""
+class _ThreadStore(threading.local):
+    """The preconditioners that this thread keeps; they end with the thread."""
 
     def __init__(self):
-        self.kept = _Kept()
+        self.kept = _Preconditioners()
 
 
-_THREAD = _OfThread()
+_THREAD = _ThreadStore()
 
 
 def preconditioner(space: HalfSpace) -> Preconditioner:
     """The preconditioner that this thread keeps for a half-space.
 
     It is kept as the next contact set is much the same, and as long as the half-space itself and
-    the thread. What it gives does not depend on the sets it was of before.
+    the thread. After ``update(fresh=True)`` it does not depend on the sets it was of before.
 
     Parameters
     ----------
@@ -142,12 +144,12 @@ def _drop(kept, key):
 
 
 @njit(cache=True)
-def _exact_inverse(rows, nx, influence):
+def _exact_inverse(nodes, nx, influence):
     """Inverse of K on a few nodes, exactly."""
-    n = rows.size
+    n = nodes.size
     inverse = np.empty((n, n))
     for a in range(n):
         for b in range(n):
-            dy = abs(rows[a] // nx - rows[b] // nx)
-            inverse[a, b] = influence[dy, abs(rows[a] % nx - rows[b] % nx)]
+            dy = abs(nodes[a] // nx - nodes[b] // nx)
+            inverse[a, b] = influence[dy, abs(nodes[a] % nx - nodes[b] % nx)]
     return inverted(inverse).astype(np.float32)

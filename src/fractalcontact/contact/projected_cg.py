@@ -2,8 +2,10 @@
 
 Where the sum of x is given, the gradients are projected so that they keep it (projected method of
 N. I. M. Gould, M. E. Hribar and J. Nocedal, On the solution of equality constrained quadratic
-programming problems arising in optimization, SIAM J. Sci. Comput. 23 (2001) 1376). Directions and
-their images are in single precision.
+programming problems arising in optimization, SIAM J. Sci. Comput. 23 (2001) 1376). The step before
+them is clipped at the bounds (D. P. Bertsekas, Projected Newton methods for optimization problems
+with simple constraints, SIAM J. Control Optim. 20 (1982) 221). Directions and their images are in
+single precision.
 """
 
 import numpy as np
@@ -42,7 +44,7 @@ class Operator:
         self.applications += 1
         return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
 
-    def on(self, *parts: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    def on(self, *pairs: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """The same in single precision under (nodes, values) pairs alone.
 
         Raises
@@ -51,10 +53,10 @@ class Operator:
             If a pair does not go together, or lies outside the grid.
         """
         grid = self._grid.ravel()
-        for nodes, values in parts:
+        for nodes, values in pairs:
             _put(grid, nodes, values)
         image = self(grid)
-        for nodes, _ in parts:
+        for nodes, _ in pairs:
             grid[nodes] = 0
         return image
 
@@ -125,9 +127,9 @@ class ProjectedCG:
             self.multiplier += multiplier
         self.at_zero, self.at_cap = _clip(aim, start, *bounds, self.solution, self.unclipped)
 
-    def apply_step(self, infeasible: np.ndarray, change: np.ndarray) -> None:
-        """Apply K to the step, and to the ``change`` of ``infeasible`` nodes that goes with it."""
-        self.image = self.operator.on((self.active, self.solution), (infeasible, change))
+    def apply_step(self, fixed: np.ndarray, change: np.ndarray) -> None:
+        """Apply K to the step, and to the ``change`` of ``fixed`` nodes that goes with it."""
+        self.image = self.operator.on((self.active, self.solution), (fixed, change))
         self.residual *= self.unclipped
         _subtract(self.residual, np.float32(1), self.image, self.active, self.unclipped)
 
@@ -226,7 +228,8 @@ def _project(search, residual, unclipped, response, total):
     Returns
     -------
     offset : float
-        The multiplier added: so many times the response to the search, and 1 to the residual.
+        What is added to the multiplier and to every residual; and the response times it to the
+        search.
     slope, worst : float
         Search times residual, and the largest residual.
     """

@@ -10,26 +10,26 @@ from ..elastic.halfspace import HalfSpace
 from .inverse_cholesky import block_shifts
 
 
-def operator_on(space: HalfSpace, rows: np.ndarray) -> np.ndarray:
+def operator_on(space: HalfSpace, nodes: np.ndarray) -> np.ndarray:
     """K on a set of nodes, (n, n): influence of each on each.
 
     Parameters
     ----------
     space : HalfSpace
-    rows : (n,) int ndarray
+    nodes : (n,) int ndarray
         Nodes as numbers of cells.
     """
-    y, x = np.divmod(rows, space.shape[1])
+    y, x = np.divmod(nodes, space.shape[1])
     return space.influence()[np.abs(y[:, None] - y), np.abs(x[:, None] - x)]
 
 
-def inverse_cholesky(space: HalfSpace, rows: np.ndarray, neighbourhood: np.ndarray) -> np.ndarray:
+def inverse_cholesky(space: HalfSpace, nodes: np.ndarray, neighbourhood: np.ndarray) -> np.ndarray:
     """The factor U of `inverse_cholesky.InverseCholesky` as a dense matrix: U U' is about K^-1.
 
     Parameters
     ----------
     space : HalfSpace
-    rows : (n,) int ndarray
+    nodes : (n,) int ndarray
         Nodes as numbers of cells, ascending.
     neighbourhood : (m,) int ndarray
         Reach along x, in blocks, of the rows of blocks 0 ... m - 1 away.
@@ -39,20 +39,20 @@ def inverse_cholesky(space: HalfSpace, rows: np.ndarray, neighbourhood: np.ndarr
     (n, n) ndarray
         In column i the weights of node i and of those that it is conditioned on.
     """
-    place = {node: i for i, node in enumerate(rows.tolist())}
-    level, representative, standing = {}, [], list(place)
+    place = {node: i for i, node in enumerate(nodes.tolist())}
+    level, representative, candidates = {}, [], list(place)
     blocks = [
         {node: (node // space.shape[1] >> dy, node % space.shape[1] >> dx) for node in place}
         for dy, dx in block_shifts(space)
     ]
     for k, block_of in enumerate(blocks):
         first: dict[tuple[int, int], int] = {}
-        for node in standing:
+        for node in candidates:
             if first.setdefault(block_of[node], node) == node:
                 level[node] = k  # the coarsest on which it stands for its block
         representative.append(first)
-        standing = list(first.values())
-    factor = np.zeros((rows.size, rows.size))
+        candidates = list(first.values())
+    factor = np.zeros((nodes.size, nodes.size))
     for node, i in place.items():
         y, x = blocks[level[node]][node]
         members = [

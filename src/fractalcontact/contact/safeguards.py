@@ -1,11 +1,12 @@
-"""Safeguards against cycling: what the active-set iteration does where its sets come round again.
+"""Safeguards against cycling: what the active-set iteration does after many iterations.
 
 It has no proof of convergence with inexact, clipped steps, and on combs, checkerboards and single
-spikes its sets do cycle. After :data:`PATIENCE` iterations two things change. Linear equations are
-solved nearly to the end and without clipping, and while nodes leave the set none enters it. And
-where the force is given, whose closure all nodes share, it is found by Newton's method on F(w), the
-force as a function of the closure (the rigid approach), safeguarded by bisection: F rises, and its
-slope is the contact stiffness.
+spikes its sets do cycle. No cycle is detected, iterations are counted. Under a given closure, once
+more than :data:`PATIENCE` were made, linear equations are solved nearly to the end and without
+clipping, and while nodes leave the set none enters it. Under a given force, whose closure all nodes
+share, Newton's method on F(w) then takes over, the force as a function of the closure (the rigid
+approach), safeguarded by bisection: F rises, and its slope is the contact stiffness. It solves for
+one given closure after the other.
 """
 
 from collections.abc import Callable
@@ -14,14 +15,14 @@ from dataclasses import replace
 import numpy as np
 
 from .feasible import verified
-from .kkt import KKTResidual, Problem, Solution, inactive_bounds
+from .kkt import KKTResidual, Problem, Solution, nodes_between_bounds
 from .projected_cg import Operator, stiffness
 
-# After so many iterations the set may be cycling: seen on combs and checkerboards under a given
-# force, once in 2,000 random problems under a given closure.
+# After more iterations than this the set may be cycling: seen on combs and checkerboards under a
+# given force, once in 2,000 random problems under a given closure.
 PATIENCE = 30
 # Under a given force it cycles for sure where a violation is still of the order of the closure
-# after so many iterations: a spike carries what its neighbours, all or none of them, would.
+# after more than these: a spike carries what its neighbours, all or none of them, would.
 STALL, STALLED_VIOLATION = 15, 0.5
 # Closures tried in search of one force; Newton's method needs about five.
 MAX_CLOSURES = 50
@@ -31,24 +32,25 @@ SAFETY = 0.3
 CLOSURE_ROUNDING = 1e-12
 
 
-def may_cycle(iteration: int) -> bool:
-    """Whether so many iterations were made that the sets may come round again."""
-    return iteration > PATIENCE
+def many_iterations(iterations: int) -> bool:
+    """Whether more iterations were made than go without exact solves, under a given closure."""
+    return iterations > PATIENCE
 
 
-def stalls_under_force(problem: Problem, iteration: int, violation: float, closure: float) -> bool:
-    """Whether the search for the state of a given force is to go on by Newton's method on F(w).
+def many_iterations_under_force(iterations: int, violation: float, closure: float) -> bool:
+    """Whether more iterations were made than go without Newton's method, under a given force.
 
     Parameters
     ----------
-    problem : Problem
-    iteration : int
+    iterations : int
+        Made so far.
     violation : float
-        The largest before the last step.
+        The largest before the last of them.
     closure : float
+        After it.
     """
-    hopeless = violation > STALLED_VIOLATION * abs(closure)
-    return problem.by_force and iteration >= (STALL if hopeless else PATIENCE)
+    stalled = violation > STALLED_VIOLATION * abs(closure)
+    return iterations > (STALL if stalled else PATIENCE)
 
 
 def without_entering(kkt: KKTResidual, pressure: np.ndarray, cap: float) -> KKTResidual:
@@ -95,7 +97,7 @@ def newton_on_closure(
             if state.residual <= rtol:
                 return state
         low, high = (closure, high) if total < problem.load else (low, closure)
-        slope, _ = stiffness(operator, inactive_bounds(solution.pressure, problem.cap))
+        slope, _ = stiffness(operator, nodes_between_bounds(solution.pressure, problem.cap))
         if slope > 0:
             # Steep F(w): a closure within its tolerance must still give the force within its.
             steepness = max(1.0, slope * abs(closure) / problem.load)

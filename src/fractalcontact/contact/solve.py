@@ -24,7 +24,6 @@ from ..core.arguments import (
 )
 from ..core.errors import NotConverged
 from ..elastic.halfspace import HalfSpace
-from . import active_set
 from .active_set import ActiveSetMethod
 from .effort import SOLVING
 from .full_approximation import full_approximation_start
@@ -61,7 +60,8 @@ def solve_contact(
     start : ContactState, optional
         A state of the same grid to start from, such as the previous load step.
     rtol : float
-        Largest violation allowed of gap and pressure conditions, as a fraction of the closure.
+        Largest violation allowed of gap and pressure conditions, as a fraction of the closure;
+        or, of a given force, as a fraction of it.
     hardness : float, optional
         H, MPa: the pressure at which the surface yields (elastic, then perfectly plastic).
 
@@ -95,7 +95,8 @@ def solve_contact(
         solution = ActiveSetMethod(problem, rtol).solve(pressure, displacement)
     state = units.state(solution, clearance, problem, start)
     if not state.residual <= rtol:
-        reason = f"the contact set still changed after {active_set.MAX_ITERATIONS} iterations"
+        what = "are still violated" if math.isfinite(state.residual) else "have no finite state"
+        reason = f"contact conditions {what} after {state.iterations} applications of the operator"
         raise NotConverged(reason, state, state.residual)
     return state
 
@@ -200,7 +201,7 @@ def _within_double_precision(space, load, by_force, depth):
 
 
 def _load_units(space, load, by_force):
-    """Units of length, mm, and of pressure, MPa, in which a load is near one."""
+    """Units of length, mm, and of pressure, MPa, in which closure or mean pressure is one."""
     stress_per_length = space.modulus / space.cell
     if not by_force:
         return load, load * stress_per_length
@@ -210,7 +211,7 @@ def _load_units(space, load, by_force):
 
 
 class _Units:
-    """Units in which loads are near one: nothing depends on mm or MPa."""
+    """Units in which the closure, or under a force the mean pressure, is one: no mm, no MPa."""
 
     def __init__(self, space, load, by_force):
         self.space, self.by_force = space, by_force

@@ -9,7 +9,7 @@ from ..core.errors import NotConverged
 from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from .effort import SOLVING
-from .kkt import inactive_bounds
+from .kkt import nodes_between_bounds
 from .projected_cg import Operator, stiffness
 
 # Largest relative error of the stiffness.
@@ -27,13 +27,15 @@ class ContactState:
     displacement : (ny, nx) ndarray
         Elastic displacement u = K p of the composite surface, mm.
     gap : (ny, nx) ndarray
-        Remaining opening, mm; within ``residual`` of zero in contact.
+        Remaining opening, mm; within ``residual`` times the closure of zero in contact, where
+        the pressure is not at the cap.
     closure : float
         w from first touch, mm: the rigid-body approach (indentation) of contact mechanics.
     force : float
         F, N.
     residual : float
-        Largest violation of the contact conditions, as a fraction of the closure.
+        Largest violation of the contact conditions, as a fraction of the closure; or, of a given
+        force, as a fraction of it.
     iterations : int
         Applications of the elastic operator, whatever their precision. Those on coarser
         grids, for a start, are not counted.
@@ -79,14 +81,16 @@ class ContactState:
 
     @computed_once
     def stiffness(self) -> float:
-        """Normal stiffness dF/dw, N/mm, from K q = 1 on the contact set; 0 without contact.
+        """Normal stiffness dF/dw, N/mm, from K q = 1 on the nodes strictly between the bounds.
+
+        It is 0 without any.
 
         Raises
         ------
         NotConverged
             If it is not known to :data:`STIFFNESS_ERROR`.
         """
-        active = inactive_bounds(self.pressure.ravel(), self.hardness)
+        active = nodes_between_bounds(self.pressure.ravel(), self.hardness)
         with SOLVING.counted(0):
             value, error = stiffness(Operator(self.space), active)
         if not error <= STIFFNESS_ERROR:

@@ -1,15 +1,15 @@
 """Zero-padded convolution of a real field with an even kernel, by Fourier transforms of its own.
 
 Sixteen transforms go on side by side, one in each lane of the processor's SIMD vectors (`simd`),
-which libraries built for every processor do not use in full. What is known is left out: rows nobody
-wants are not transformed, and as the kernel's spectrum is put in the order in which the forward
-transform leaves its result and the inverse takes it, nothing is sorted. `reference.convolution` is
-the same with scipy.fft.
+which libraries built for every processor do not use in full. What is known is left out: columns
+beyond the window are not transformed along y, and as the kernel's spectrum is put in the order in
+which the forward transform leaves its result and the inverse takes it, nothing is sorted.
+`reference.convolution` is the same with scipy.fft.
 
 The transform along y comes first, of two real columns as one complex. Their spectra, for half the
 wave numbers, stand in blocks of sixteen wave numbers and are transformed along x, multiplied, and
-transformed back. (Decimation in frequency forward, in time back: Cooley and Tukey, Math. Comp. 19
-(1965) 297; Gentleman and Sande, AFIPS Proc. 29 (1966) 563.)
+transformed back. (Forward by decimation in frequency: Gentleman and Sande, AFIPS Proc. 29
+(1966) 563; back by decimation in time: Cooley and Tukey, Math. Comp. 19 (1965) 297.)
 """
 
 import numpy as np
@@ -74,7 +74,7 @@ class Convolution:
         for n, length in zip(shape, padded, strict=True):
             if n < 1 or length < 2 * n - 1 or length != fast_length(length):
                 raise ValueError(
-                    f"padded {padded}: expected the fast_length of twice the shape {shape} or more"
+                    f"padded {padded}: expected fast lengths of 2 n - 1 or more, of shape {shape}"
                 )
         half = padded[0] // 2 + 1, padded[1] // 2 + 1
         if np.shape(spectrum) != half:
@@ -274,7 +274,8 @@ def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
     """Spectra along y of some blocks of columns.
 
     The left half of a block are the real, the right half the imaginary parts of what is
-    transformed: spectra a and b of the two are apart in even and odd part of the result.
+    transformed: the spectra a, b of the halves are the Hermitian and (over i) the anti-Hermitian
+    part of the result.
     """
     ny, nx = field.shape
     n = twiddles.shape[0]
