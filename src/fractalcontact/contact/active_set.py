@@ -146,7 +146,7 @@ class ActiveSetMethod:
         iterate = first_iterate(problem, operator, pressure, displacement)
         previous_active, violation, single_step_left = np.empty(0, np.int32), 0.0, True
         for iteration in range(MAX_ITERATIONS):
-            # Safeguards. Force: Newton's method, which goes on with closures. Closure: exact solves.
+            # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
             begun, closure = iteration > 0, iterate.closure
             newton = begun and many_iterations_under_force(iteration, violation, closure)
             exact = many_iterations(iteration)
