@@ -46,7 +46,8 @@ SET_PREDICTIONS, MOST_LEFT_OUT = 2, 0.5
 # Once, where the violation is no larger than so many tolerances, the preconditioned step is made
 # alone and verified in double precision at once: it is expected to be the last.
 SINGLE_STEP_BELOW = 2.0
-# Violations of no more than this fraction of the closure are rounding of single precision.
+# Where violations are no more than this fraction of the closure, single precision leaves a step
+# little to gain.
 SINGLE_PRECISION_FLOOR = 1e-5
 _FLOAT64 = np.dtype(np.float64)
 
@@ -145,8 +146,7 @@ class ActiveSetMethod:
         iterate = first_iterate(problem, operator, pressure, displacement)
         previous_active, violation, single_step_left = np.empty(0, np.int32), 0.0, True
         for iteration in range(MAX_ITERATIONS):
-            # Safeguards: Newton's method where the force is given, which then gives closures; exact
-            # solves where the closure is given.
+            # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
             begun, closure = iteration > 0, iterate.closure
             newton = begun and many_iterations_under_force(iteration, violation, closure)
             exact = many_iterations(iteration)
