@@ -14,7 +14,7 @@ def test_every_part_is_left_out_once(tmp_path):
     with (tmp_path / "solver_gains.csv").open() as file:
         rows = list(csv.DictReader(file))
     cold = {row["without"]: row for row in rows if row["loading"] == "cold"}
-    parts = {"preconditioner", "coarse correction", "clipping of the first step"}
+    parts = {"preconditioner", "coarse correction", "clipping of the steps"}
     assert cold.keys() == {"", "nested iteration"} | parts
     assert all(int(row["applications"]) > 0 for row in rows)
     assert float(cold[""]["applications ratio"]) == 1.0
