@@ -23,16 +23,16 @@ def fields():
         ranked = np.sort(z, axis=None)[::-1]
         levels = [ranked[max(round(share * z.size), 1) - 1] for share in SHARES]
         data[f"in_contact_{k}"] = (
-            ("direction", "offset", "load", f"y_{k}", f"x_{k}"),
+            ("direction", "offset", "normal_force", f"y_{k}", f"x_{k}"),
             np.array([z >= level for level in levels])[np.newaxis, np.newaxis],
         )
-    return xr.Dataset(data, coords={"direction": ["E"], "offset": [0.0], "load": range(5)})
+    return xr.Dataset(data, coords={"direction": ["E"], "offset": [0.0], "normal_force": range(5)})
 
 
 def test_each_domain_has_the_dimension_of_its_box_counts(fields):
     table = analyse_domains(fields, SPACING).isel(direction=0, offset=0)
     for k in (1, 2):
-        row = table.sel(resolution=k, load=4)
+        row = table.sel(resolution=k, normal_force=4)
         domain = fields[f"in_contact_{k}"].values[0, 0, 4]
         expected = box_dimension(domain, k * SPACING, sizes=box_sizes(domain.shape))
         assert row.delta_sigma.item() == expected.dimension
@@ -43,7 +43,7 @@ def test_each_domain_has_the_dimension_of_its_box_counts(fields):
 
 def test_few_nodes_have_no_dimension_and_a_reason(fields):
     table = analyse_domains(fields, SPACING).isel(direction=0, offset=0).sel(resolution=1)
-    few = table.isel(load=slice(3))
+    few = table.isel(normal_force=slice(3))
     assert np.isnan(few.delta_sigma).all()
     assert np.isnan(few.delta_sigma_low).all()
     assert (few.fit_n == 0).all()

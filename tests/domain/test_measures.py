@@ -49,14 +49,14 @@ def test_states_of_a_specimen():
     for variable in found.variables.values():
         assert {"units", "long_name"} <= set(variable.attrs)
     row = domain_measures(domains[1], 0.1, pressures[1])
-    state = found.sel(load=10.0)
+    state = found.sel(normal_force=10.0)
     assert state["box_dimension"] == row["box_dimension"]
     assert state["generalised_dimension_high"].sel(order=-1) == row["d_minus_1_high"]
-    assert np.isnan(found["box_dimension"].sel(load=0.0))
-    assert np.isnan(found["lacunarity"].sel(load=0.0)).all()
-    assert np.isnan(found["local_slope"].sel(load=0.0)).all()
-    assert np.isfinite(found["local_slope"].sel(load=100.0)).all()
-    assert (found["lacunarity"].sel(load=100.0) >= 1 - 1e-9).all()
+    assert np.isnan(found["box_dimension"].sel(normal_force=0.0))
+    assert np.isnan(found["lacunarity"].sel(normal_force=0.0)).all()
+    assert np.isnan(found["local_slope"].sel(normal_force=0.0)).all()
+    assert np.isfinite(found["local_slope"].sel(normal_force=100.0)).all()
+    assert (found["lacunarity"].sel(normal_force=100.0) >= 1 - 1e-9).all()
 
 
 def test_states_must_belong_together():

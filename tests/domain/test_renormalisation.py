@@ -10,15 +10,15 @@ from fractalcontact.domain.renormalisation import (
 )
 
 S = xr.DataArray(0.08 * 2.0 ** np.arange(4), dims="resolution")
-DELTA = xr.DataArray([1.2, 1.5, 1.8], dims="load")
-FORCE = xr.DataArray([100.0, 1000.0, 10000.0], dims="load")
-MEASURE = xr.DataArray([3.0, 40.0, 200.0], dims="load")
+DELTA = xr.DataArray([1.2, 1.5, 1.8], dims="normal_force")
+FORCE = xr.DataArray([100.0, 1000.0, 10000.0], dims="normal_force")
+MEASURE = xr.DataArray([3.0, 40.0, 200.0], dims="normal_force")
 AREA = MEASURE * S ** (2 - DELTA)
 
 
 def test_exact_fractal_gives_back_its_dimension_and_measure():
     result = renormalisation(S, AREA, FORCE)
-    assert result.delta_sigma.dims == ("load",)
+    assert result.delta_sigma.dims == ("normal_force",)
     np.testing.assert_allclose(result.delta_sigma, DELTA)
     np.testing.assert_allclose(result.hausdorff_measure, MEASURE)
     np.testing.assert_allclose(result.hausdorff_spread, 1)
@@ -42,7 +42,7 @@ def test_sigma_star_does_not_depend_on_resolution_though_sigma_n_does():
     whole, finer = (renormalisation(S[i], AREA[:, i], FORCE) for i in (slice(4), slice(3)))
     np.testing.assert_allclose(whole.sigma_star, finer.sigma_star)
     # Real pressures rise towards finer resolution, as in Fig. 8.
-    assert (whole.sigma_n.transpose("resolution", "load").diff("resolution") < 0).all()
+    assert (whole.sigma_n.transpose("resolution", "normal_force").diff("resolution") < 0).all()
 
 
 def test_euclidean_contact_keeps_the_usual_pressure():
@@ -73,7 +73,7 @@ def test_resolutions_without_contact_are_left_out():
     assert np.isnan(result.delta_sigma[0]).all()
     assert np.isnan(result.sigma_star[0]).all()
     np.testing.assert_allclose(result.delta_sigma[1:], DELTA[1:])
-    assert np.isnan(result.sigma_n.sel(load=0)[:2]).all()
+    assert np.isnan(result.sigma_n.sel(normal_force=0)[:2]).all()
 
 
 @pytest.mark.parametrize(("nodes", "fitted"), [(1, 0), (3, 0), (4, 4)])
@@ -107,10 +107,10 @@ def test_interval_holds_the_dimension_of_counts_that_scatter():
 
 
 def test_more_dimensions_than_load():
-    area = AREA.expand_dims(offset=2).transpose("offset", "resolution", "load")
+    area = AREA.expand_dims(offset=2).transpose("offset", "resolution", "normal_force")
     result = renormalisation(S, area, FORCE)
-    assert set(result.delta_sigma.dims) == {"offset", "load"}
-    assert result.sigma_star.transpose("offset", "load").shape == (2, 3)
+    assert set(result.delta_sigma.dims) == {"offset", "normal_force"}
+    assert result.sigma_star.transpose("offset", "normal_force").shape == (2, 3)
     np.testing.assert_allclose(result.delta_sigma.sel(offset=1), DELTA)
 
 
@@ -144,7 +144,7 @@ def test_size_effect_and_renormalisation_are_the_same_statement():
 
 
 def test_dimensions_are_compared_with_their_intervals():
-    area, box = (xr.DataArray(v, dims="load") for v in ([1.7, 1.5], [1.4, 1.45]))
+    area, box = (xr.DataArray(v, dims="normal_force") for v in ([1.7, 1.5], [1.4, 1.45]))
     result = compare_dimensions(area, area - 0.03, area + 0.03, box, box - 0.04, box + 0.04)
     np.testing.assert_allclose(result.difference, [0.3, 0.05])
     np.testing.assert_allclose(result.difference_low, [0.25, 0.0], atol=1e-12)

@@ -39,16 +39,16 @@ def test_a_few_hills_scatter_more(slopes):
 
 
 def test_kappa_is_the_share_over_the_load(slopes):
-    np.testing.assert_allclose(slopes["load"], [0.01, 0.02])
-    np.testing.assert_allclose(slopes["kappa"] * slopes["load"], slopes["area_share"])
+    np.testing.assert_allclose(slopes["reduced_pressure"], [0.01, 0.02])
+    np.testing.assert_allclose(slopes["kappa"] * slopes["reduced_pressure"], slopes["area_share"])
     np.testing.assert_allclose(
-        slopes["corrected_kappa"] * slopes["load"], slopes["corrected_share"]
+        slopes["corrected_kappa"] * slopes["reduced_pressure"], slopes["corrected_share"]
     )
 
 
 def test_mean_over_the_seeds(slopes):
-    values = slopes["kappa"].isel(surface=1, load=0).values
-    chosen = slopes.isel(surface=1, load=0)
+    values = slopes["kappa"].isel(surface=1, reduced_pressure=0).values
+    chosen = slopes.isel(surface=1, reduced_pressure=0)
     found = [float(chosen[f"mean_kappa{end}"]) for end in ("", "_low", "_high")]
     assert found == pytest.approx([float(end) for end in mean_interval(values)[:3]])
     assert float(chosen["mean_kappa_deviation"]) == pytest.approx(np.std(values, ddof=1))

@@ -33,17 +33,17 @@ def capped():
 
 
 def test_domain_that_fills_the_window_has_dimension_2(capped):
-    full = capped.isel(capped_load=-1)
+    full = capped.isel(capped_pressure=-1)
     assert (full["capped_area_share"] > 0.97).all()
     assert full["capped_mean_delta_area"].item() == pytest.approx(2, abs=0.02)
     assert full["capped_mean_delta_box"].item() == pytest.approx(2, abs=0.02)
-    assert (capped["capped_mean_delta_box"].diff("capped_load") > 0).all()
-    assert (capped["capped_area_share"].diff("capped_load") > 0).all()
+    assert (capped["capped_mean_delta_box"].diff("capped_pressure") > 0).all()
+    assert (capped["capped_area_share"].diff("capped_pressure") > 0).all()
 
 
 def test_area_follows_the_light_load_theory(found):
     # A_r = kappa F / (E* h'_rms) and h'_rms ~ s^(H - 1).
-    light = found["mean_delta_area"].sel(load=0.01)
+    light = found["mean_delta_area"].sel(reduced_pressure=0.01)
     np.testing.assert_allclose(
         light, found["light_load_delta"].values[:, None] + 0 * light, atol=0.2
     )
@@ -53,7 +53,7 @@ def test_area_follows_the_light_load_theory(found):
 def test_boxes_are_counted_on_the_same_state(found):
     size, seed, load = 256, 2, 0.01
     surface = synthetic_surface(2.5, size, seed)
-    chosen = found.sel(dimension=2.5, size=size, seed=seed, load=load)
+    chosen = found.sel(dimension=2.5, size=size, seed=seed, reduced_pressure=load)
     force = load * float(chosen["rms_slope"]) * SIDE**2
     space = HalfSpace((size, size), (SIDE / size,) * 2, 1.0)
     domain = solve_contact(surface, space, force=force).in_contact
@@ -64,24 +64,24 @@ def test_boxes_are_counted_on_the_same_state(found):
 
 
 def test_means_and_trends(found):
-    values = found["difference"].sel(dimension=2.5, size=128, load=0.05)
-    area = found["delta_area"].sel(dimension=2.5, size=128, load=0.05)
-    box = found["delta_box"].sel(dimension=2.5, size=128, load=0.05)
+    values = found["difference"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
+    area = found["delta_area"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
+    box = found["delta_box"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
     np.testing.assert_allclose(values, area - box)
-    mean = found.sel(dimension=2.5, size=128, load=0.05)
+    mean = found.sel(dimension=2.5, size=128, reduced_pressure=0.05)
     expected = [float(end) for end in mean_interval(values)[:3]]
     assert [float(mean[f"mean_difference{end}"]) for end in ("", "_low", "_high")] == pytest.approx(
         expected
     )
-    both = found["difference"].sel(dimension=2.5, load=0.05).mean("seed")
-    assert float(found["growth"].sel(dimension=2.5, load=0.05)) == pytest.approx(
+    both = found["difference"].sel(dimension=2.5, reduced_pressure=0.05).mean("seed")
+    assert float(found["growth"].sel(dimension=2.5, reduced_pressure=0.05)) == pytest.approx(
         float(both.sel(size=256) - both.sel(size=128))
     )
 
 
 def test_same_pressure_touches_less_of_a_finer_surface(found):
     other = dimension_test(RECIPE | {"same_pressure": True, "seeds": [1], "dimensions": [2.5]})
-    first, second = (d.sel(dimension=2.5, seed=1, load=0.05) for d in (found, other))
+    first, second = (d.sel(dimension=2.5, seed=1, reduced_pressure=0.05) for d in (found, other))
     first, second = (d["nodes"].sel(resolution=1) / d["size"] ** 2 for d in (first, second))
     assert float(second.sel(size=128)) == float(first.sel(size=128))
     assert float(second.sel(size=256)) < 0.85 * float(first.sel(size=256))
@@ -100,4 +100,4 @@ def test_everything_is_labelled(found, capped):
         for name, variable in made.data_vars.items():
             assert {"units", "long_name"} <= variable.attrs.keys(), name
     assert found.attrs["summary"].count("Delta_g") == 2
-    assert "capped_load" not in found.dims
+    assert "capped_pressure" not in found.dims

@@ -87,7 +87,7 @@ def test_points_are_those_of_the_atlas(with_area, name):
     np.testing.assert_array_equal(table["area_share"], curve["area_share"])
     for column in ("kappa", "corrected_kappa", "persson_share", "majumdar_bhushan_share"):
         np.testing.assert_array_equal(table[column], laws[column])
-    nominal = curve["load"] / curve["nominal_pressure"]
+    nominal = curve["normal_force"] / curve["nominal_pressure"]
     np.testing.assert_allclose(table["corrected_share"], curve["area_corrected"] / nominal)
 
 
@@ -183,7 +183,7 @@ def test_flush_faces_are_passed_over_and_if_there_are_no_others_said_to_be(with_
 def test_one_load_is_drawn(with_area):
     one = with_area
     for group in ("area/sliding", "closure/sliding"):
-        one = changed(one, group, lambda dataset: dataset.isel(load=[-1]))
+        one = changed(one, group, lambda dataset: dataset.isel(normal_force=[-1]))
     drawn(one, "sliding").figure.draw_without_rendering()
 
 

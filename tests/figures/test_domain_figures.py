@@ -20,7 +20,7 @@ def with_measures(atlas, name, factor=1.0):
     if factor == 0:
         domains = np.zeros_like(domains)
     pressures = np.array([distance_transform_edt(domain) for domain in domains])
-    found = measures_of_states(domains, pressures, 0.1, contact["load"].values)
+    found = measures_of_states(domains, pressures, 0.1, contact["normal_force"].values)
     found = found.assign_coords(
         direction=str(contact["direction"].values), offset=float(contact["offset"])
     )
@@ -39,7 +39,7 @@ def test_drawing_shows_what_was_measured(atlas, name, tmp_path):
         assert np.ptp(np.asarray(picture.convert("L"))) > 100  # something is drawn
     spectrum = drawing.data[drawing.data["kind"] == "spectrum"]
     for force, points in spectrum.groupby("force_N"):
-        expected = found["generalised_dimension"].sel(load=force).dropna("order")
+        expected = found["generalised_dimension"].sel(normal_force=force).dropna("order")
         np.testing.assert_allclose(points["value"], expected)
     assert set(drawing.data["kind"]) == {"slope", "lacunarity", "spectrum"}
     assert "section 6" in drawing.caption

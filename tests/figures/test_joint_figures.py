@@ -54,7 +54,9 @@ def test_clusters_drawn_are_those_of_the_contact_domains(atlas, name):
     points = table[table["kind"] == "domain"]
     assert len(points) > 0
     for _, point in points.iterrows():
-        domain = fields.sel(offset=point["offset_mm"], load=point["force_N"], method="nearest")
+        domain = fields.sel(
+            offset=point["offset_mm"], normal_force=point["force_N"], method="nearest"
+        )
         found = cluster_statistics(domain.values, 0.1)
         assert point["nodes"] == domain.values.sum()
         for column in ("clusters", "largest_share", "morisita", "half_share", "morisita_scatter"):
@@ -67,7 +69,9 @@ def test_sizes_drawn_are_those_of_the_clusters(atlas):
     fields = atlas["contact/sliding"].to_dataset()["in_contact_1"].isel(direction=0)
     assert sizes["offset_mm"].nunique() == 3
     for _, point in sizes.iterrows():
-        domain = fields.sel(offset=point["offset_mm"], load=point["force_N"], method="nearest")
+        domain = fields.sel(
+            offset=point["offset_mm"], normal_force=point["force_N"], method="nearest"
+        )
         areas = cluster_sizes(domain.values) * 0.1**2
         at_least = (areas > point["cluster_area_mm2"] * (1 - 1e-9)).sum()
         assert point["clusters_at_least"] == at_least
@@ -98,7 +102,7 @@ def test_compliance_drawn_is_the_inverse_of_the_stiffness(atlas, name):
     joint = atlas[f"joints/{name}"].to_dataset()
     closed = table[table["curve"] == "closure"]
     for force, points in closed.groupby("force_N"):
-        curve = curves.sel(load=force)
+        curve = curves.sel(normal_force=force)
         np.testing.assert_array_equal(points["interface_closure_mm"], curve["interface_closure"])
         np.testing.assert_allclose(
             points["interface_compliance_mm_per_MPa"] * curve["interface_stiffness"].values,

@@ -157,7 +157,7 @@ def test_closure_points_are_those_of_the_atlas(atlas, specimen):
     for offset, points in table.groupby("offset_mm"):
         stored = curves.sel(offset=offset, method="nearest")
         for column, name in (
-            ("force_N", "load"),
+            ("force_N", "normal_force"),
             ("interface_closure_mm", "interface_closure"),
             ("area_mm2", "area"),
         ):
@@ -193,7 +193,9 @@ def test_elastic_dilatancy_is_rigid_dilatancy_less_closure(atlas, specimen):
     rigid = table[(table["curve"] == "rigid") & (table["direction"] == direction)]
     assert set(elastic["direction"]) == {direction}
     for _, point in elastic.iterrows():
-        state = curves.sel(offset=point["offset_mm"], load=point["force_N"], method="nearest")
+        state = curves.sel(
+            offset=point["offset_mm"], normal_force=point["force_N"], method="nearest"
+        )
         opened = np.interp(point["offset_mm"], rigid["offset_mm"], rigid["dilatancy_mm"])
         expected = opened - float(state["interface_closure"])
         assert point["dilatancy_mm"] == pytest.approx(expected, abs=1e-12)
@@ -204,7 +206,7 @@ def test_contact_domains_drawn_hold_the_area_of_the_atlas(atlas):
     figure = drawn(atlas, "sliding", "fig06_07_dilatancy").figure
     maps = [axes for axes in figure.axes if axes.images]
     assert len(maps) == 6
-    curves = atlas["closure/sliding"].to_dataset().isel(direction=0, resolution=0, load=-1)
+    curves = atlas["closure/sliding"].to_dataset().isel(direction=0, resolution=0, normal_force=-1)
     for axes, i in zip(maps, spread(curves.sizes["offset"], 6), strict=True):
         share = float(np.mean(axes.images[0].get_array()))
         assert share == pytest.approx(float(curves["area_share"][i]))

@@ -52,7 +52,7 @@ def test_eq_6_of_a_full_square_is_the_pressure_applied_whatever_the_size():
     s = xr.DataArray([1.0, 2.0, 4.0], dims="resolution", coords={"resolution": [1, 2, 4]})
     area = xr.full_like(s, 64.0)  # every node of 8 x 8 mm touches at every resolution
     scaling = renormalisation(s, area, xr.DataArray(640.0)).assign(spacing=s, area=area)
-    scaling = scaling.assign_coords(load=640.0)
+    scaling = scaling.assign_coords(normal_force=640.0)
     for key in ("area", "box"):
         assert fractal_pressure(scaling, key, 2.0) == pytest.approx(10.0)  # MPa, 640 N on 64 mm2
 
@@ -63,7 +63,7 @@ def test_eq_6_of_a_square_carpet_meets_the_specimen():
     s = xr.DataArray([1.0, 4.0, 16.0], dims="resolution", coords={"resolution": [1, 4, 16]})
     area = (b / s) ** delta * s**2
     scaling = renormalisation(s, area, xr.DataArray(force)).assign(spacing=s, area=area)
-    scaling = scaling.assign_coords(load=force)
+    scaling = scaling.assign_coords(normal_force=force)
     for key in ("area", "box"):
         sigma_star = fractal_pressure(scaling, key, delta)
         assert sigma_star * b ** (delta - 2) == pytest.approx(force / b**2)
@@ -122,7 +122,7 @@ def test_prefractals_balance_the_force(atlas):
 @pytest.mark.parametrize("specimen", representative(SPECIMENS, 1))
 def test_box_counts_give_the_dimension_of_the_atlas(atlas, specimen):
     drawing = draw(atlas, "fig09_box_counting", specimen)
-    stored = finest(atlas, "domains", specimen).isel(load=-1)
+    stored = finest(atlas, "domains", specimen).isel(normal_force=-1)
     used = drawing.data[drawing.data["used"]]
     line = fit_line(np.log(used["box_side_mm"]), np.log(used["fitted_count"]))
     np.testing.assert_allclose(-line.slope, stored["delta_sigma"].item(), atol=1e-9)
@@ -139,7 +139,9 @@ def test_area_law_and_sigma_star_are_those_of_the_atlas(atlas, specimen):
     loading = Loading.of(atlas, specimen)
     stored = finest(atlas, "scaling", specimen)
     for i in range(len(loading.forces)):
-        star = fractal_pressure(loading.scaling.isel(load=i), "area", loading.estimates[0].value[i])
+        star = fractal_pressure(
+            loading.scaling.isel(normal_force=i), "area", loading.estimates[0].value[i]
+        )
         np.testing.assert_allclose(star, stored["sigma_star"].values[i])
     table = draw(atlas, "fig10_scaling", specimen).data
     rows = table[(table["panel"] == "a") & (table["load_N"] == loading.forces[-1])]
@@ -168,7 +170,7 @@ def test_both_estimates_are_drawn_as_stored(atlas, specimen):
     for label, key in (("A_r(s)", "delta_area"), ("box counting", "delta_box")):
         rows = table[table["estimator"] == label]
         np.testing.assert_allclose(rows["delta_sigma"], stored[key])
-        np.testing.assert_allclose(rows["load_N"], stored["load"])
+        np.testing.assert_allclose(rows["load_N"], stored["normal_force"])
         assert ((rows["reason"] == "") == np.isfinite(rows["delta_sigma"])).all()
 
 

@@ -150,10 +150,10 @@ def test_slope_angle_labels_table_and_caption(atlas, name):
     assert "Fig. 11" in drawing.caption
     assert "nan" not in drawing.caption
     laws = atlas[f"windows/{name}"].to_dataset()
-    shares = laws.sizes["share"] * laws.sizes["load"] * laws.sizes["part"]
+    shares = laws.sizes["share"] * laws.sizes["normal_force"] * laws.sizes["part"]
     assert len(drawing.data) == shares
     expected = np.degrees(np.arctan(laws["similar_strength"] / laws["nominal_pressure"]))
-    expected = expected.transpose("share", "load", "part").values.ravel()
+    expected = expected.transpose("share", "normal_force", "part").values.ravel()
     np.testing.assert_allclose(drawing.data["angle_deg"], expected)
 
 

@@ -95,7 +95,7 @@ def test_sizes_drawn_are_those_of_the_atlas(atlas, specimen):
     np.testing.assert_array_equal(face["b_mm"], laws["scale_side"])
     np.testing.assert_array_equal(face["mean_mm"], laws["face_sigma_z"])
     closure = table[table["quantity"] == "interface_closure"]
-    expected = laws["interface_closure"].transpose("offset", "load", "part").values.ravel()
+    expected = laws["interface_closure"].transpose("offset", "normal_force", "part").values.ravel()
     np.testing.assert_array_equal(closure["mean_mm"], expected)
 
 
@@ -103,10 +103,10 @@ def test_strength_by_size_is_that_of_the_atlas(atlas):
     table = drawn(atlas, "sliding", "fig01_strength").data
     laws = atlas["windows/sliding"].to_dataset()
     similar = table[table["at"] == "v/b"]
-    stored = laws["similar_slope"].transpose("load", "share", "part").values.ravel()
+    stored = laws["similar_slope"].transpose("normal_force", "share", "part").values.ravel()
     np.testing.assert_array_equal(similar["slope"], stored)
     peak = table[table["at"] == "peak"]
-    stored = laws["peak_strength"].transpose("load", "part").values.ravel()
+    stored = laws["peak_strength"].transpose("normal_force", "part").values.ravel()
     np.testing.assert_array_equal(peak["strength_MPa"], stored)
 
 

@@ -215,7 +215,7 @@ def _made_curves(share, statistics, e_star=1.0, nominal=100.0):
     pressure = e_star * float(statistics["rms_slope"][0, 0]) * np.geomspace(1e-3, 0.3, 12)
     reduced = pressure / (e_star * statistics["rms_slope"].values[0, 0])
     made = np.broadcast_to(share(reduced), (1, 1, 1, 12))
-    dims = ("direction", "offset", "resolution", "load")
+    dims = ("direction", "offset", "resolution", "normal_force")
     return xr.Dataset(
         {
             "area_share": (dims, made),
@@ -223,13 +223,13 @@ def _made_curves(share, statistics, e_star=1.0, nominal=100.0):
             "area_corrected": (dims, 0.9 * made * nominal),
             "area_error": (dims, 0.01 * made * nominal),
             "area_corrected_error": (dims, 0.02 * made * nominal),
-            "nominal_pressure": ("load", pressure),
+            "nominal_pressure": ("normal_force", pressure),
         },
         coords={
             "direction": ["E"],
             "offset": [0.1],
             "resolution": [1],
-            "load": pressure * nominal,
+            "normal_force": pressure * nominal,
         },
     )
 
@@ -249,7 +249,7 @@ def test_exact_power_law_is_recovered(statistics):
     found = area_laws(made, statistics, 1.0, 2.2).isel(direction=0, offset=0)
     assert float(found["exponent"]) == pytest.approx(0.9)
     assert float(found["corrected_exponent"]) == pytest.approx(0.9)
-    force = made["load"].values
+    force = made["normal_force"].values
     np.testing.assert_allclose(
         float(found["unit_area"]) * force**0.9, made["area"].values.squeeze(), rtol=1e-9
     )
@@ -306,7 +306,7 @@ def test_line_of_a_theory_is_its_kappa(statistics):
 def test_theories_of_a_surface(statistics):
     made = _made_curves(lambda reduced: 2 * reduced, statistics)
     found = area_laws(made, statistics, 1.0, 2.2).isel(direction=0, offset=0)
-    light = found.isel(load=0)
+    light = found.isel(normal_force=0)
     reduced = float(light["reduced_pressure"])
     assert reduced == pytest.approx(1e-3)
     assert float(light["persson_share"]) == pytest.approx(1.596e-3, rel=1e-3)
@@ -314,9 +314,11 @@ def test_theories_of_a_surface(statistics):
     summits = theory.asperities(0.01, 0.08, 30.0)
     assert float(found["summit_density"]) == pytest.approx(summits.density)
     law = np.sqrt(np.pi * summits.radius / summits.height_deviation)
-    expected = law * made["load"].values / 100
+    expected = law * made["normal_force"].values / 100
     np.testing.assert_allclose(found["greenwood_williamson_share"], expected)
-    growth = np.diff(np.log(found["majumdar_bhushan_share"])) / np.diff(np.log(found["load"]))
+    growth = np.diff(np.log(found["majumdar_bhushan_share"])) / np.diff(
+        np.log(found["normal_force"])
+    )
     np.testing.assert_allclose(growth, 2 / 1.8)
     np.testing.assert_allclose(found["archard_exponent"], [2 / 3, 8 / 9, 26 / 27])
 
@@ -345,7 +347,7 @@ def test_few_nodes_and_full_contact_are_not_fitted(statistics):
 
 
 def test_too_few_loads_say_so(statistics):
-    made = _made_curves(lambda reduced: 2 * reduced, statistics).isel(load=[9, 11])
+    made = _made_curves(lambda reduced: 2 * reduced, statistics).isel(normal_force=[9, 11])
     found = area_laws(made, statistics, 1.0, 2.2)
     assert np.isnan(found["exponent"]).all()
     assert np.isnan(found["departure"]).all()

@@ -128,8 +128,8 @@ def test_what_a_left_out_state_misses_is_in_the_atlas():
     assert np.isnan(missed[[0, -1]]).all()
     finest = curves.squeeze()
     read = closure_at_force(
-        *(finest[name].values[j] for name, j in (("load", 1),)),
-        *(finest[name].values[[0, 2, 3]] for name in ("load", "closure", "stiffness")),
+        *(finest[name].values[j] for name, j in (("normal_force", 1),)),
+        *(finest[name].values[[0, 2, 3]] for name in ("normal_force", "closure", "stiffness")),
     )
     assert missed[1] == pytest.approx(abs(read.closure - finest["closure"].values[1]), rel=1e-9)
 

@@ -142,7 +142,7 @@ def test_a_small_closure_of_the_interface_is_as_exact_as_a_large_one():
     smooth = make_specimen(scan, window=4.0, name="smooth", multiple=4)
     found = curves_of(smooth, solver_settings({}, "study"))
     closure = found["interface_closure"].isel(direction=0).sel(resolution=1)
-    assert float((closure / found["closure"]).isel(load=-1).min()) < 0.3
+    assert float((closure / found["closure"]).isel(normal_force=-1).min()) < 0.3
     share = found["interface_closure_error"] / abs(found["interface_closure"])
     assert float(share.max()) <= 0.01
 
@@ -174,7 +174,7 @@ def test_a_study_solves_less_and_says_so(specimen):
     assert float(share.max()) <= 0.004
     # Twice the spacing was solved in the first direction at the offset of the maps alone.
     spacing = np.isfinite(found["closure_spacing_error"])
-    assert spacing.any("load").sum() == 2
+    assert spacing.any("normal_force").sum() == 2
     dilatancy = elastic_dilatancy(found, describe_joint(specimen, SETTINGS))
     table = solve_plan(found, dilatancy, SETTINGS, solver).set_index(choice="choice")
     assert table.attrs["states_solved"] == 20

@@ -176,7 +176,7 @@ def test_strength_follows_from_the_elastic_dilatancy(twin):
     chosen = settings(OFFSETS)
     dilatancy, joint = pressed(twin, chosen)
     found = joint_strength(dilatancy, joint, twin, chosen)
-    for j, force in enumerate(dilatancy["load"].values):
+    for j, force in enumerate(dilatancy["normal_force"].values):
         delta = [0.0, *dilatancy["elastic_dilatancy"].values[0, :, j]]
         v = [0.0, *dilatancy["offset"].values]
         sigma = force / nominal_area(twin)
@@ -243,8 +243,8 @@ def test_west_on_the_mirrored_face_is_east(twin):
 def test_load_takes_from_the_peak_angle(strength):
     peaks = strength["peak_dilatancy_angle"]
     rigid = strength["rigid_dilatancy_angle"].max("interval")
-    assert (peaks.diff("load") < 0).all()
-    assert (peaks.isel(load=0) < rigid).all()
+    assert (peaks.diff("normal_force") < 0).all()
+    assert (peaks.isel(normal_force=0) < rigid).all()
 
 
 def test_held_intervals_are_those_beyond_the_largest_angle(strength):

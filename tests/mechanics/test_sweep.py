@@ -108,7 +108,7 @@ def test_pressures_of_the_maps_are_those_solved(jobs, specimen, joint):
     np.testing.assert_array_equal(states["pressure"].values > 0, contact.values)
     composite = composite_topography(specimen, "W", joint["offset_cells"].values[0, 1])
     space = HalfSpace(composite.shape, (SPACING_Y, SPACING_X), 2e4)
-    solved = load_steps(composite, space, states["load"].values, {"rtol": 1e-6}, "rock")
+    solved = load_steps(composite, space, states["normal_force"].values, {"rtol": 1e-6}, "rock")
     for pressure, state in zip(states["pressure"].values, solved, strict=True):
         np.testing.assert_allclose(pressure, state.pressure, rtol=1e-6)
         assert pressure.sum() * space.cell_area == pytest.approx(state.force)

@@ -101,10 +101,10 @@ def made_states(law, closure=None):
             "side": ("part", side),
             "windows": ("part", windows),
             "ladder_pressure": ("step", pressure),
-            "nominal_pressure": ("load", pressure[:4]),
+            "nominal_pressure": ("normal_force", pressure[:4]),
             "spacing": ("resolution", spacing),
         },
-        coords={"part": [1, 2, 4, 8], "load": pressure[:4] * 256},
+        coords={"part": [1, 2, 4, 8], "normal_force": pressure[:4] * 256},
     )
 
 
@@ -139,12 +139,12 @@ def test_its_whole_is_predicted_from_its_parts():
     states = made_states(lambda p, b: 100 * (p * b**0.4) ** 0.2)
     delta = xr.DataArray(
         np.array([[1.6], [1.0], [2.0]]) * np.ones(4),
-        dims=("estimator", "load"),
+        dims=("estimator", "normal_force"),
         coords={"estimator": list(DELTA_SIGMA_ESTIMATORS)},
     )
     found = predict_whole(states, delta, 4)
     for name in ("area_error", "closure_error"):
-        by = found[name].dropna("load")
+        by = found[name].dropna("normal_force")
         np.testing.assert_allclose(by.sel(predictor="power_law"), 0, atol=1e-9)
         np.testing.assert_allclose(by.sel(predictor="eq6_area"), 0, atol=1e-9)
         assert (np.abs(by.sel(predictor="eq6_box")) > 0.05).all()
@@ -155,7 +155,7 @@ def test_its_whole_is_predicted_from_its_parts():
 
 def test_power_law_of_closure():
     states = made_states(lambda p, b: 50 + 0 * b * p, lambda p, b: 1e-3 * p**0.5 * b**0.7)
-    delta = xr.DataArray(np.full((3, 4), 2.0), dims=("estimator", "load"))
+    delta = xr.DataArray(np.full((3, 4), 2.0), dims=("estimator", "normal_force"))
     found = predict_whole(states, delta, 4)
     np.testing.assert_allclose(
         found["direct_closure"], 1e-3 * np.geomspace(1, 8, 4) ** 0.5 * 16**0.7
@@ -205,8 +205,8 @@ def test_windows_have_the_sigma_star_of_the_whole(flat):
 
 def test_measured_slope_does_not_know_delta(flat):
     found = flat[1]
-    assert found["slope"].dims == ("load",)
-    difference = (found["slope"] - found["predicted_slope"]).transpose("estimator", "load")
+    assert found["slope"].dims == ("normal_force",)
+    difference = (found["slope"] - found["predicted_slope"]).transpose("estimator", "normal_force")
     np.testing.assert_allclose(found["slope_difference"], difference)
     np.testing.assert_allclose(found["predicted_slope"], found["delta_sigma"] - 2)
 
@@ -240,7 +240,7 @@ def test_labels_and_words(which, flat, sliding):
     assert list(found["predictor"].values) == list(PREDICTORS)
     assert ("predicted_strength" in found) == (which == "sliding")
     assert found["beyond_study"].sum() == TESTED_DOUBLINGS
-    assert found.sizes["step"] == found.sizes["load"] + SPARE_DOUBLINGS
+    assert found.sizes["step"] == found.sizes["normal_force"] + SPARE_DOUBLINGS
 
 
 @pytest.mark.full
@@ -296,7 +296,7 @@ def test_hardness_bounds_the_loads():
     chosen = settings("flat", hardness="1 GPa")
     states, domains = solve_sub_windows(JointLoading(specimen, "none", [0], chosen, SOLVER))
     assert states["ladder_pressure"].max() < 1000
-    assert len(domains) == states.sizes["load"]
+    assert len(domains) == states.sizes["normal_force"]
     nodes = states["nodes"].isel(part=0, window=0, resolution=0).values
     assert (nodes * 0.01 * 1000 >= states["ladder_pressure"].values * 6.4**2 * (1 - 1e-9)).all()
 

@@ -44,8 +44,8 @@ def stages(**changes):
         "length": 0.5,
         "uncorrelated": 2.0,
     } | changes
-    dims = ("direction", "offset", "resolution", "load")
-    coords = {"direction": ["W"], "offset": V, "resolution": [1], "load": LOADS}
+    dims = ("direction", "offset", "resolution", "normal_force")
+    coords = {"direction": ["W"], "offset": V, "resolution": [1], "normal_force": LOADS}
 
     def states(name):
         """Values over the offsets, the same under every load."""
@@ -54,7 +54,8 @@ def stages(**changes):
 
     def over_loads(found):
         """Values over the loads, the same at every offset."""
-        return ("direction", "offset", "load"), np.broadcast_to(found, (1, len(V), len(LOADS)))
+        shape = (1, len(V), len(LOADS))
+        return ("direction", "offset", "normal_force"), np.broadcast_to(found, shape)
 
     area, box = (np.asarray(values[f"delta_{key}"], float) for key in ("area", "box"))
     half = values["half"]
@@ -86,16 +87,16 @@ def stages(**changes):
         {"direction": ["W", "E"], "contact_direction": ["W"], "rigid_offset": RIGID, "offset": V},
     )
     ends = {"": 0, "_low": -0.1, "_high": 0.1}
-    windows = {"nominal_pressure": ("load", [10.0])}
+    windows = {"nominal_pressure": ("normal_force", [10.0])}
     for end, by in ends.items():
         windows[f"closure_exponent{end}"] = (
-            ("offset", "load"),
+            ("offset", "normal_force"),
             np.asarray(values["window_exponent"])[:, np.newaxis] + by,
         )
         density = np.full((len(V), 1), values["density_exponent"] + by)
-        windows[f"area_exponent{end}"] = (("offset", "load"), density)
+        windows[f"area_exponent{end}"] = (("offset", "normal_force"), density)
         windows[f"similar_strength_exponent{end}"] = (
-            ("share", "load"),
+            ("share", "normal_force"),
             values["strength_exponent"] + by,
         )
     specimen = xr.Dataset(
@@ -130,7 +131,7 @@ def stages(**changes):
         ),
         "scaling": xr.Dataset(
             {name: over_loads(found) for name, found in scaling.items()},
-            {"direction": ["W"], "offset": V, "load": LOADS},
+            {"direction": ["W"], "offset": V, "normal_force": LOADS},
         ),
         "area": xr.Dataset(
             {"exponent": (("direction", "offset"), [values["exponent"]])},
@@ -138,12 +139,12 @@ def stages(**changes):
         ),
         "size_test": xr.Dataset(
             {
-                "verdict": (("estimator", "load"), values["size_verdict"]),
-                "slope": ("load", [-0.6, -0.4]),
+                "verdict": (("estimator", "normal_force"), values["size_verdict"]),
+                "slope": ("normal_force", [-0.6, -0.4]),
             },
             {"estimator": ["area", "box"]},
         ),
-        "windows": xr.Dataset(windows, {"offset": V, "load": [1000.0]}),
+        "windows": xr.Dataset(windows, {"offset": V, "normal_force": [1000.0]}),
     }
 
 

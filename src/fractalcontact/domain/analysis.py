@@ -29,7 +29,7 @@ DOMAIN_FIELDS = {
 NOT_NEEDED = "not solved, since nothing shown needs it"
 
 #: Dimensions of the table of contact domains.
-_ORDER = ("direction", "offset", "resolution", "load")
+_ORDER = ("direction", "offset", "resolution", "normal_force")
 
 #: The table: dimensions, unit and long name.
 _TABLE = {
@@ -58,8 +58,8 @@ def analyse_domains(
     Parameters
     ----------
     fields : xr.Dataset
-        ``in_contact_k`` over (direction, offset, load, y_k, x_k) and, of domains that were not
-        measured, ``solved`` and ``nodes_error``, as :func:`mechanics.states.domains_of` gives
+        ``in_contact_k`` over (direction, offset, normal_force, y_k, x_k) and, of domains that were
+        not measured, ``solved`` and ``nodes_error``, as :func:`mechanics.states.domains_of` gives
         them.
     spacing : float
         Of the scan, mm; a domain at resolution k has k times this.
@@ -115,7 +115,9 @@ def analyse_domains(
     table["box_side"] = padded([sizes[k] * k * spacing for k in factors])
     multiples = ("resolution", factors, cf_attrs("1", "multiple k of the scan's spacing"))
     octaves = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
-    coords: dict[str, Any] = {name: fields[name] for name in ("direction", "offset", "load")}
+    coords: dict[str, Any] = {
+        name: fields[name] for name in ("direction", "offset", "normal_force")
+    }
     coords |= {"resolution": multiples, "octave": octaves}
     return labelled_dataset(_TABLE, table, coords=coords)
 
@@ -170,7 +172,7 @@ def scaling_over_resolutions(
     Parameters
     ----------
     curves : xr.Dataset
-        With ``area`` over (direction, offset, resolution, load).
+        With ``area`` over (direction, offset, resolution, normal_force).
     domains : xr.Dataset
         From :func:`analyse_domains`.
     spacing : float
@@ -189,7 +191,7 @@ def scaling_over_resolutions(
     area = curves["area"]
     if fit_range is not None:
         area = area.where(within(s, *fit_range))
-    result = renormalisation(s, area, curves["load"])
+    result = renormalisation(s, area, curves["normal_force"])
     finest = domains.sel(resolution=domains["resolution"].min())
     both = compare_dimensions(
         result["delta_sigma"],

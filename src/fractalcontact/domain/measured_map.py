@@ -72,10 +72,10 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
             f"{path}: no cell lies above the threshold of {threshold:g} (the largest holds "
             f"{np.nanmax(values):g}); write a lower 'threshold' in its sidecar"
         )
-    dims = ("direction", "offset", "load", "y_1", "x_1")
+    dims = ("direction", "offset", "normal_force", "y_1", "x_1")
     domains = xr.Dataset(
         {"in_contact_1": (dims, touching[np.newaxis, np.newaxis, np.newaxis])},
-        coords={"direction": ["none"], "offset": [0.0], "load": [0.0]},
+        coords={"direction": ["none"], "offset": [0.0], "normal_force": [0.0]},
     )
     stands_for = options.get("cells")
     whole_cells = CELLS.get(str(stands_for))

@@ -93,7 +93,7 @@ def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
     """
     pressures = states["pressure"].values
     side = spacing * int(states["resolution"])
-    measures = measures_of_states(pressures > 0, pressures, side, states["load"].values)
+    measures = measures_of_states(pressures > 0, pressures, side, states["normal_force"].values)
     place = {name: states[name] for name in ("direction", "offset", "resolution")}
     return measures.assign_coords(place)
 
@@ -105,21 +105,21 @@ def measures_of_states(
 
     Parameters
     ----------
-    domains : (load, ny, nx) bool array_like
-    pressures : (load, ny, nx) array_like
+    domains : (normal_force, ny, nx) bool array_like
+    pressures : (normal_force, ny, nx) array_like
         MPa.
     spacing : float
         mm.
-    forces : (load,) array_like
+    forces : (normal_force,) array_like
         F, N.
 
     Returns
     -------
     xr.Dataset
         Over load: the measures of :func:`domain_measures` but D_q, with ``_low``, ``_high``,
-        ``_r_min``, ``_r_max`` and ``_n``. ``generalised_dimension`` over (load, order), likewise.
-        ``local_slope`` of the box counts over (load, slope_side); ``lacunarity`` with ``_low`` and
-        ``_high`` over (load, gliding_side). Sides in mm are coordinates.
+        ``_r_min``, ``_r_max`` and ``_n``. ``generalised_dimension`` over (normal_force, order),
+        likewise. ``local_slope`` of the box counts over (normal_force, slope_side); ``lacunarity``
+        with ``_low`` and ``_high`` over (normal_force, gliding_side). Sides in mm are coordinates.
 
     Raises
     ------
@@ -138,9 +138,9 @@ def measures_of_states(
     side, local = _local_slopes(domains, spacing)
     variables: dict[str, Any] = {}
     for name, long_name in SLOPES.items():
-        variables |= _slope_variables("load", name, long_name, rows, [name])
+        variables |= _slope_variables("normal_force", name, long_name, rows, [name])
     variables |= _slope_variables(
-        ("load", "order"),
+        ("normal_force", "order"),
         "generalised_dimension",
         "generalised dimension D_q of the pressure",
         rows,
@@ -153,7 +153,7 @@ def measures_of_states(
         "lacunarity_high": np.array([curve.high for curve in curves]),
     }
     coords = {
-        "load": ("load", forces, cf_attrs("N", "normal force F")),
+        "normal_force": ("normal_force", forces, cf_attrs("N", "normal force F")),
         "order": ("order", np.array(ORDERS), cf_attrs("1", "order q")),
         "slope_side": ("slope_side", side, cf_attrs("mm", "middle of the doubling")),
         "gliding_side": ("gliding_side", curves[0].r, cf_attrs("mm", "side of the gliding box")),
@@ -164,12 +164,16 @@ def measures_of_states(
 #: Measures of a domain that are curves over a box side.
 _CURVES = {
     "local_slope": (
-        ("load", "slope_side"),
+        ("normal_force", "slope_side"),
         "1",
         "local slope of log N(r) over a doubling of the box side",
     ),
     **{
-        f"lacunarity{end}": (("load", "gliding_side"), "1", f"gliding-box lacunarity{words}")
+        f"lacunarity{end}": (
+            ("normal_force", "gliding_side"),
+            "1",
+            f"gliding-box lacunarity{words}",
+        )
         for end, words in INTERVAL.items()
     },
 }

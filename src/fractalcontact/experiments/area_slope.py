@@ -84,13 +84,13 @@ def _labelled(
     fraction: np.ndarray, slope: np.ndarray, loads: np.ndarray, seeds: list[int]
 ) -> xr.Dataset:
     """The dataset from the area fractions (raw and corrected) and slopes of all surfaces."""
-    dims = ("surface", "seed", "load")
+    dims = ("surface", "seed", "reduced_pressure")
     result = xr.Dataset(
         {"rms_slope": (dims[:2], slope, cf_attrs("1", "rms slope h'_rms of the surface"))},
         coords={
             "surface": list(SURFACES),
             "seed": ("seed", seeds, cf_attrs("1", "seed of the surface")),
-            "load": ("load", loads, cf_attrs("1", "p / (E* h'_rms)")),
+            "reduced_pressure": ("reduced_pressure", loads, cf_attrs("1", "p / (E* h'_rms)")),
         },
     )
     for prefix, fractions, words in (
@@ -104,7 +104,7 @@ def _labelled(
         means = mean_interval(kappa, axis=1)[:3]
         for (ending, of_end), values in zip(INTERVAL.items(), means, strict=True):
             attrs = cf_attrs("1", f"mean over seeds of {words}{of_end}")
-            result[f"{prefix}mean_kappa{ending}"] = (("surface", "load"), values, attrs)
+            result[f"{prefix}mean_kappa{ending}"] = (("surface", "reduced_pressure"), values, attrs)
         result[f"{prefix}mean_kappa_deviation"] = result[f"{prefix}kappa"].std("seed", ddof=1)
         result[f"{prefix}mean_kappa_deviation"].attrs = cf_attrs(
             "1", f"standard deviation between seeds of {words}"

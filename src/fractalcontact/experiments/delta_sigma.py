@@ -71,7 +71,7 @@ def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
         ``_n``; ``light_load_delta`` (dimension) = 4 - Delta_g; ``growth`` (dimension, load), change
         of the difference with each doubling of the size, ``decade`` (dimension, size) with each
         decade of load. With a hardness the same names after ``capped_``, over (dimension, seed,
-        capped_load).
+        capped_pressure).
 
     Notes
     -----
@@ -85,7 +85,7 @@ def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
         "dimension": list(recipe["dimensions"]),
         "size": sorted(recipe["sizes"]),
         "seed": list(recipe["seeds"]),
-        "load": np.unique(recipe["loads"]),
+        "reduced_pressure": np.unique(recipe["loads"]),
     }
     values = _uncapped(axes, factors, rtol, same_pressure=bool(recipe.get("same_pressure")))
     result = _labelled(axes, {name: values[name] for name in ESTIMATES})
@@ -115,7 +115,7 @@ def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     return result.assign_attrs(summary=summary(result))
 
 
-_AXES = ("dimension", "size", "seed", "load")
+_AXES = ("dimension", "size", "seed", "reduced_pressure")
 _OF_SURFACES = {
     "rms_slope": (_AXES[:3], "1", "rms slope h'_rms at the finest spacing"),
     "nodes": ((*_AXES, "resolution"), "1", "nodes in contact at each resolution"),
@@ -141,7 +141,7 @@ def _uncapped(
         surface = synthetic_surface(dimension, size, seed)
         slope[i, j, k] = slope_statistics(surface, SIDE / size)["rms_slope"]
         finer = (sizes[0] / size) ** (dimension - 2) if same_pressure else 1.0
-        forces = axes["load"] * finer * E_STAR * slope[i, j, k] * SIDE**2
+        forces = axes["reduced_pressure"] * finer * E_STAR * slope[i, j, k] * SIDE**2
         for name, of_loads in _estimates(surface, forces, factors, rtol).items():
             values[name][i, j, k] = of_loads
     return values | {"rms_slope": slope}
@@ -178,8 +178,8 @@ def _estimates(
                 pairs.append(correlation_dimension(state.in_contact, spacing))
                 occupied[i] = box_count(state.in_contact, np.array(factors, float))
     s = xr.DataArray(spacing * np.array(factors), dims="resolution")
-    area = xr.DataArray(nodes, dims=("load", "resolution")) * s**2
-    by_area = renormalisation(s, area, xr.DataArray(forces, dims="load"))
+    area = xr.DataArray(nodes, dims=("reduced_pressure", "resolution")) * s**2
+    by_area = renormalisation(s, area, xr.DataArray(forces, dims="reduced_pressure"))
     return {
         **{f"delta_area{end}": by_area[f"delta_sigma{end}"].values for end in INTERVAL},
         "delta_box": [box.dimension for box in boxes],
@@ -213,14 +213,14 @@ def _capped(
         for name in ESTIMATES:
             table[name][i, j] = values[name]
         fraction[i, j] = np.asarray(values["nodes"])[:, 0] / size**2
-    capped = _labelled({"dimension": dimensions, "seed": seeds, "load": loads}, table)
+    capped = _labelled({"dimension": dimensions, "seed": seeds, "reduced_pressure": loads}, table)
     attrs = cf_attrs("1", "real contact area A_r / A_0")
-    capped["area_share"] = (("dimension", "seed", "load"), fraction, attrs)
+    capped["area_share"] = (("dimension", "seed", "reduced_pressure"), fraction, attrs)
     _add_means(capped)
     capped = capped.drop_vars("light_load_delta")
-    names = {name: f"capped_{name}" for name in [*capped.data_vars, "load"]}
-    capped = capped.rename(names)
-    capped["capped_load"].attrs = cf_attrs("1", "F / (H A_0)")
+    names = {name: f"capped_{name}" for name in capped.data_vars}
+    capped = capped.rename(names | {"reduced_pressure": "capped_pressure"})
+    capped["capped_pressure"].attrs = cf_attrs("1", "F / (H A_0)")
     capped.attrs = {}
     return capped
 
@@ -229,7 +229,7 @@ _AXIS_WORDS = {
     "dimension": "dimension Delta_g of the surface",
     "size": "nodes per side",
     "seed": "seed of the surface",
-    "load": "p / (E* h'_rms)",
+    "reduced_pressure": "p / (E* h'_rms)",
 }
 
 
@@ -264,11 +264,17 @@ def _add_means(result: xr.Dataset) -> None:
 def _add_trends(result: xr.Dataset) -> None:
     """How the difference goes with size and with load, over all surfaces, into ``result``."""
     values = result["difference"]
-    doubling, decade = np.log2(result["size"].values), np.log10(result["load"].values)
-    by_size = values.transpose("dimension", "load", "size", "seed").values
-    by_load = values.transpose("dimension", "size", "load", "seed").values
+    doubling, decade = np.log2(result["size"].values), np.log10(result["reduced_pressure"].values)
+    by_size = values.transpose("dimension", "reduced_pressure", "size", "seed").values
+    by_load = values.transpose("dimension", "size", "reduced_pressure", "seed").values
     for name, rows, x, dims, words in (
-        ("growth", by_size, doubling, ("dimension", "load"), "with each doubling of the size"),
+        (
+            "growth",
+            by_size,
+            doubling,
+            ("dimension", "reduced_pressure"),
+            "with each doubling of the size",
+        ),
         ("decade", by_load, decade, ("dimension", "size"), "with each decade of the load"),
     ):
         x = np.repeat(x, rows.shape[3])

@@ -51,5 +51,6 @@ __getattr__, __dir__, __all__ = exports(
         "solve_plan": ".plan",
         "state_errors": ".state_scalars",
         "strength_with_error": ".strength",
+        "with_pressure": ".states",
     },
 )

@@ -200,7 +200,7 @@ def area_laws(
     finest, statistics = xr.align(finest, statistics, join="exact")
     spacing = statistics.attrs["spacing_y"], statistics.attrs["spacing_x"]
     # Fraction of the window that a node covers.
-    node = np.prod(spacing) * finest["nominal_pressure"] / finest["load"]
+    node = np.prod(spacing) * finest["nominal_pressure"] / finest["normal_force"]
     touching = finest["area_share"] > (RESOLVED_NODES - 0.5) * node
     result = statistics.copy()
     result["fitted"] = touching & (finest["area_share"] < 1 - 0.5 * node)
@@ -208,7 +208,7 @@ def area_laws(
     _add_laws(result, finest)
     _add_kappa(result, finest, e_star, touching)
     _add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
-    return result.transpose("direction", "offset", "load", ...)
+    return result.transpose("direction", "offset", "normal_force", ...)
 
 
 #: What is kept of a law A_r ~ F^m: name, field of the fit in logarithms, unit, long name.
@@ -241,10 +241,10 @@ _LOGARITHMS = ("intercept", "intercept_low", "intercept_high", "x_min", "x_max")
 def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
     """Power laws of raw and corrected area, departure from linearity, reasons for none."""
     dims = ("direction", "offset")
-    force = np.log(curves["load"].values)
-    fitted = result["fitted"].transpose(*dims, "load").values
+    force = np.log(curves["normal_force"].values)
+    fitted = result["fitted"].transpose(*dims, "normal_force").values
     for prefix, name in (("", "area"), ("corrected_", "area_corrected")):
-        area = np.log(curves[name].transpose(*dims, "load").where(fitted).values)
+        area = np.log(curves[name].transpose(*dims, "normal_force").where(fitted).values)
         lines = np.empty(area.shape[:2], object)
         for index in np.ndindex(lines.shape):
             lines[index] = fit_line(force[fitted[index]], area[index][fitted[index]])
@@ -263,9 +263,9 @@ def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
 
 def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
     """Departure of area against force from a straight line, into ``result``."""
-    ratio = curves["area"] / curves["load"]
+    ratio = curves["area"] / curves["normal_force"]
     log_ratio = xr.apply_ufunc(np.log, ratio).where(result["fitted"])
-    largest = abs(log_ratio - log_ratio.mean("load")).max("load")
+    largest = abs(log_ratio - log_ratio.mean("normal_force")).max("normal_force")
     deviation = largest.pipe(np.exp) - 1
     result["departure"] = deviation.where(np.isfinite(result["exponent"]))
     result["departure"].attrs = cf_attrs(
@@ -274,13 +274,13 @@ def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
     uncertain = np.minimum(curves["area_error"] / curves["area"], 1)
     with np.errstate(divide="ignore"):  # a law of which nothing is sure
         off = abs(np.log1p(-uncertain)).where(result["fitted"])
-    error = (1 + result["departure"]) * np.expm1(off.max("load") + off.mean("load"))
+    error = (1 + result["departure"]) * np.expm1(off.max("normal_force") + off.mean("normal_force"))
     result["departure_error"] = error.assign_attrs(error_attrs(result["departure"].attrs))
 
 
 def _reasons_for_no_law(result: xr.Dataset, curves: xr.Dataset) -> np.ndarray:
     """Why a curve has no law of the area, (direction, offset); empty where it has one."""
-    full = (curves["area_share"] > 0.5).all("load") & ~result["fitted"].any("load")
+    full = (curves["area_share"] > 0.5).all("normal_force") & ~result["fitted"].any("normal_force")
     n = result["n"].values.astype(int)
     reasons = [
         "" if loads >= FEWEST_POINTS else FULL_CONTACT if whole else _too_few(loads)
@@ -304,7 +304,7 @@ def _add_kappa(
     result["light"] = light.assign_attrs(
         cf_attrs("1", f"{RESOLVED_NODES} nodes or more touch and p / (E* h'_rms) <= {LIGHT_LOAD:g}")
     )
-    nominal = curves["load"] / curves["nominal_pressure"]
+    nominal = curves["normal_force"] / curves["nominal_pressure"]
     for prefix, name, words in (
         ("", "area", AREA_SLOPE),
         ("corrected_", "area_corrected", CORRECTED_AREA_SLOPE),
@@ -317,13 +317,15 @@ def _add_kappa(
         means = xr.apply_ufunc(
             lambda values: mean_interval(values, axis=-1)[:3],
             kappa.where(light),
-            input_core_dims=[["load"]],
+            input_core_dims=[["normal_force"]],
             output_core_dims=[[], [], []],
         )
         for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
             text = f"mean of {words}, at light load{of_end}"
             result[f"{prefix}mean_kappa{ending}"] = mean.assign_attrs(cf_attrs("1", text))
-    result["mean_kappa_n"] = light.sum("load").assign_attrs(cf_attrs("1", "loads in the mean"))
+    result["mean_kappa_n"] = light.sum("normal_force").assign_attrs(
+        cf_attrs("1", "loads in the mean")
+    )
     reason = xr.where(
         np.isnan(slope),
         "the faces are flush and have no slope",
@@ -367,7 +369,7 @@ def _add_theories(
 ) -> None:
     """Asperities and fractal parameters of the surface, and the areas the theories make of them."""
     rough = result.where(result["rms_slope"] > FLUSH)
-    force, pressure = curves["load"], curves["nominal_pressure"]
+    force, pressure = curves["normal_force"], curves["nominal_pressure"]
     nominal, slope = force / pressure, rough["rms_slope"]
     summits = theory.asperities(rough["m0"], rough["m2"], rough["m4"])
     deviation = result["m0"].copy(data=summits.height_deviation)

@@ -166,7 +166,7 @@ def closure_curves(
     Returns
     -------
     xr.Dataset
-        ``bulk_settlement`` and ``nominal_pressure`` (load); ``interface_closure``,
+        ``bulk_settlement`` and ``nominal_pressure`` (normal_force); ``interface_closure``,
         ``interface_stiffness``, ``conductance``, ``area_share``, each with an ``_error``,
         ``closure_spacing_error`` and the numbers of the states over (direction, offset, resolution,
         load); the fits over (direction, offset, resolution); what
@@ -174,7 +174,7 @@ def closure_curves(
     """
     area = window[0] * window[1]
     result = states[[*OF_STATES, *OFFSETS]].copy()
-    _add_interface(result, bulk_settlement(states["load"].values, e_star, *window), area)
+    _add_interface(result, bulk_settlement(states["normal_force"].values, e_star, *window), area)
     _add_conductance(result, e_star)
     _add_errors(result, area, e_star)
     _add_hyperbolas(result, fit_range)
@@ -184,9 +184,9 @@ def closure_curves(
 def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> None:
     """Closure, stiffness and contact of the interface alone, into ``curves``."""
     order = curves["closure"].dims
-    force = curves["load"].values
-    curves["bulk_settlement"] = ("load", settlement, cf_attrs("mm", "bulk settlement w_b"))
-    curves["nominal_pressure"] = ("load", force / area, cf_attrs("MPa", "F / A_0"))
+    force = curves["normal_force"].values
+    curves["bulk_settlement"] = ("normal_force", settlement, cf_attrs("mm", "bulk settlement w_b"))
+    curves["nominal_pressure"] = ("normal_force", force / area, cf_attrs("MPa", "F / A_0"))
     flush = curves["composite_spread"] == 0
     closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
     curves["interface_closure"] = closing.transpose(*order)
@@ -204,11 +204,11 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
 
 def _add_hyperbolas(curves: xr.Dataset, fit_range: tuple[float, float] | None) -> None:
     """The hyperbola of every closure curve, into ``curves``."""
-    force = curves["load"].values
+    force = curves["normal_force"].values
     fitted = within(force, *(fit_range or (force.min(), force.max())))
     dims = ("direction", "offset", "resolution")
     fits = np.empty([curves.sizes[dim] for dim in dims], object)
-    closures = curves["interface_closure"].transpose(*dims, "load").values
+    closures = curves["interface_closure"].transpose(*dims, "normal_force").values
     for index in np.ndindex(fits.shape):
         fits[index] = fit_hyperbola(
             curves["nominal_pressure"].values[fitted], closures[index][fitted]
@@ -285,7 +285,7 @@ def _add_conductance(curves: xr.Dataset, e_star: float) -> None:
     log_pressure = np.log(curves["nominal_pressure"].values)
     with np.errstate(divide="ignore"):
         resolved = curves["conductance"].where(curves["nodes"] >= RESOLVED_NODES)
-        log_conductance = np.log(resolved.transpose(*dims, "load").values)
+        log_conductance = np.log(resolved.transpose(*dims, "normal_force").values)
     shape = log_conductance.shape[:-1]
     fits = [fit_line(log_pressure, row) for row in log_conductance.reshape(-1, len(log_pressure))]
     for ending, of_end in INTERVAL.items():
@@ -326,8 +326,8 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     -------
     xr.Dataset
         Rigid dilatancy over (direction, rigid_offset); ``elastic_dilatancy`` and ``left_out_error``
-        over (contact_direction, offset, load), the latter what interpolating the closure curve at
-        this force gives wrong when its own state is left out; ``offset_made`` over
+        over (contact_direction, offset, normal_force), the latter what interpolating the closure
+        curve at this force gives wrong when its own state is left out; ``offset_made`` over
         (contact_direction, offset).
     """
     result = joint[["rigid_dilatancy", "composite_rms"]].copy()
@@ -336,9 +336,9 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     # The opening at the cells whose contact was solved: that of `joint` is at the first direction's
     # offsets, from which those of the others differ where cells are not square.
     elastic = finest["rigid_opening"] - finest["interface_closure"]
-    result["elastic_dilatancy"] = elastic.transpose("contact_direction", "offset", "load")
+    result["elastic_dilatancy"] = elastic.transpose("contact_direction", "offset", "normal_force")
     result["elastic_dilatancy"].attrs = cf_attrs("mm", "elastic dilatancy delta = delta_r - w_int")
-    misses = left_out_misses(finest["load"].values, finest["closure"], finest["stiffness"])
+    misses = left_out_misses(finest["normal_force"].values, finest["closure"], finest["stiffness"])
     result["left_out_error"] = abs(misses).transpose(*result["elastic_dilatancy"].dims)
     result["left_out_error"].attrs = cf_attrs(
         "mm", "error of delta when interpolated from the states at the loads beside this one"

@@ -76,12 +76,12 @@ def left_out_misses(
     ----------
     forces : (n,) ndarray
         F, N, ascending.
-    closures, stiffnesses : DataArray (..., load)
+    closures, stiffnesses : DataArray (..., normal_force)
         w (mm) and dF/dw (N/mm); NaN where a state was not solved.
 
     Returns
     -------
-    DataArray (..., load)
+    DataArray (..., normal_force)
         Closure read less closure solved, mm; NaN for the first and the last state of a curve.
     """
 
@@ -99,7 +99,7 @@ def left_out_misses(
         of_curve,
         closures,
         stiffnesses,
-        input_core_dims=[["load"], ["load"]],
-        output_core_dims=[["load"]],
+        input_core_dims=[["normal_force"], ["normal_force"]],
+        output_core_dims=[["normal_force"]],
         vectorize=True,
     )

@@ -144,7 +144,7 @@ def _of_loads(curves, dilatancy, requested):
     misses = dilatancy["left_out_error"].rename(contact_direction="direction")
     errors = abs(misses / closure.where(closure != 0))
     known = errors.values[np.isfinite(errors.values)]
-    value = f"{closure.sizes['load']} in the first direction, none read between others"
+    value = f"{closure.sizes['normal_force']} in the first direction, none read between others"
     if not known.size:
         return "load steps", value, "too few to tell what lies between them", "", np.nan
     within = np.mean(known <= requested["closure"]) if requested else np.nan
@@ -167,14 +167,14 @@ def _of_directions(curves, settings):
     value = f"{first}: all loads; {', '.join(others)}: {loads}"
     reason = (
         "the study asks for all"
-        if loads == finest.sizes["load"]
+        if loads == finest.sizes["normal_force"]
         else "in the others only the dilatancy under its loads is shown"
     )
     return "directions", value, reason, "", np.nan
 
 
 def _of_resolutions(curves):
-    solved = curves["solved"].any("load")
+    solved = curves["solved"].any("normal_force")
     n_curves = solved.sizes["direction"] * solved.sizes["offset"]
     counts = solved.sum(["direction", "offset"])
     value = ", ".join(
@@ -196,7 +196,7 @@ def _of_resolutions(curves):
 
 def _of_extent(curves):
     extent = curves["extent"].isel(direction=0).sel(resolution=curves["resolution"].min())
-    lightest, heaviest = (float(extent.isel(load=i).median("offset")) for i in (0, -1))
+    lightest, heaviest = (float(extent.isel(normal_force=i).median("offset")) for i in (0, -1))
     reason = (
         f"a rectangle around the contact takes {lightest:.0%} of the window under the smallest "
         f"load and {heaviest:.0%} under the largest, which costs most"

@@ -75,6 +75,23 @@ def forces_of(loads: Sequence[tuple[float, str]], area: float) -> np.ndarray:
     return np.unique([value * area if kind == "pressure" else value for value, kind in loads])
 
 
+def with_pressure(stage: xr.Dataset, area: float) -> xr.Dataset:
+    """A stage with the nominal pressure as a second coordinate of its loads.
+
+    Parameters
+    ----------
+    stage : xr.Dataset
+        Over ``normal_force`` (N), or over no load at all: then it is handed back as it is.
+    area : float
+        A_0, mm2.
+    """
+    if "normal_force" not in stage.dims:
+        return stage
+    pressure = stage["normal_force"].values / area
+    words = cf_attrs("MPa", "nominal pressure sigma_0 = F/A_0")
+    return stage.assign_coords(nominal_pressure=("normal_force", pressure, words))
+
+
 def force_range(
     loads: Sequence[tuple[float, str]] | None, specimen: xr.Dataset
 ) -> tuple[float, float] | None:
@@ -181,7 +198,7 @@ def map_pressure(
 
     Parameters
     ----------
-    pressures : (load, ny, nx) array_like
+    pressures : (normal_force, ny, nx) array_like
         MPa.
     offset : float
         mm.
@@ -191,7 +208,9 @@ def map_pressure(
     """
     of_place = {"offset": offset, "direction": direction, "resolution": factor}
     labels = cf_attrs("MPa", "pressure p at the offset of the contact maps") | of_place
-    return {MAP_PRESSURE: (("load", f"y_{factor}", f"x_{factor}"), np.array(pressures), labels)}
+    return {
+        MAP_PRESSURE: (("normal_force", f"y_{factor}", f"x_{factor}"), np.array(pressures), labels)
+    }
 
 
 def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -205,16 +224,16 @@ def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        ``pressure`` (load, y, x), MPa, with the scalars ``direction``, ``offset`` and
+        ``pressure`` (normal_force, y, x), MPa, with the scalars ``direction``, ``offset`` and
         ``resolution``, the multiple k of the scan's spacing.
     """
     part = next(part for part in parts if MAP_PRESSURE in part)
     pressure = part[MAP_PRESSURE]
     place = pressure.attrs
     return xr.Dataset(
-        {"pressure": (("load", "y", "x"), pressure.values, cf_attrs("MPa", "pressure p"))},
+        {"pressure": (("normal_force", "y", "x"), pressure.values, cf_attrs("MPa", "pressure p"))},
         coords={
-            "load": part["load"],
+            "normal_force": part["normal_force"],
             "direction": place["direction"],
             "offset": ((), place["offset"], cf_attrs("mm", "shear offset v")),
             "resolution": (

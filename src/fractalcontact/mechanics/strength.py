@@ -201,7 +201,7 @@ def joint_strength(
     Returns
     -------
     xr.Dataset
-        Over (contact_direction, interval, load), (contact_direction, load) and
+        Over (contact_direction, interval, normal_force), (contact_direction, normal_force) and
         (contact_direction, sampling): :data:`FIELDS` and what
         :func:`mechanics.jrc.profile_roughness` gives. What rests on solved states has an
         ``_error``, the solver's. ``interval`` holds midpoints of the offsets in the first
@@ -214,7 +214,7 @@ def joint_strength(
     scale then goes from `LABORATORY_LENGTH` to the window's own length along the sliding.
     """
     material = settings["material"]
-    pressure = dilatancy["load"].values / nominal_area(specimen)
+    pressure = dilatancy["normal_force"].values / nominal_area(specimen)
     directions = [str(d) for d in dilatancy["contact_direction"].values]
     parts = [
         _one_direction(dilatancy, joint, specimen, material, direction, pressure)
@@ -223,10 +223,14 @@ def joint_strength(
     result = xr.concat(parts, "contact_direction", join="override", combine_attrs="override")
     result = result.assign_coords(
         contact_direction=directions,
-        load=dilatancy["load"],
+        normal_force=dilatancy["normal_force"],
         interval=("interval", result["midpoint"].values[0], cf_attrs("mm", FIELDS["midpoint"][1])),
     )
-    result["nominal_pressure"] = ("load", pressure, cf_attrs("MPa", "nominal pressure sigma_0"))
+    result["nominal_pressure"] = (
+        "normal_force",
+        pressure,
+        cf_attrs("MPa", "nominal pressure sigma_0"),
+    )
     for name, units, words in (
         ("basic_friction_angle", "degree", "basic friction angle phi_b"),
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),
@@ -334,7 +338,7 @@ def _curves_with_rigid(
     rigid, _ = rigid_dilatancy(specimen, direction, cells)
     offset = curve["offset_made"].values
     elastic, error = (
-        curve[name].transpose("offset", "load").values
+        curve[name].transpose("offset", "normal_force").values
         for name in ("elastic_dilatancy", "elastic_dilatancy_error")
     )
     both = np.column_stack([rigid, elastic])
@@ -364,4 +368,4 @@ def _by_barton(
 def _dims(name: str, values: ArrayLike) -> tuple[str, ...]:
     if name in ("midpoint", "rigid_dilatancy_angle"):
         return ("interval",)
-    return {0: (), 1: ("load",), 2: ("interval", "load")}[np.ndim(values)]
+    return {0: (), 1: ("normal_force",), 2: ("interval", "normal_force")}[np.ndim(values)]

@@ -156,9 +156,10 @@ def contact_states(
     xr.Dataset
         The scalars of :data:`SCALARS` with their :data:`ERRORS`, and ``solved``, over (direction,
         offset, resolution, load), those of :data:`OFFSETS` over (direction, offset) and, for each
-        resolution k, the contact domain ``in_contact_k`` over (direction, offset, load, y_k, x_k).
-        NaN, and no contact, where a state was not solved. Where the states that are looked at
-        closely are among them, :data:`mechanics.states.MAP_PRESSURE` over (load, y_k, x_k).
+        resolution k, the contact domain ``in_contact_k`` over (direction, offset, normal_force,
+        y_k, x_k). NaN, and no contact, where a state was not solved. Where the states that are
+        looked at closely are among them, :data:`mechanics.states.MAP_PRESSURE` over (normal_force,
+        y_k, x_k).
 
     Raises
     ------
@@ -192,7 +193,7 @@ def contact_states(
             ):
                 fields |= map_pressure(pressures, loading.offsets[i], direction, factor)
         fields[f"in_contact_{factor}"] = (
-            ("direction", "offset", "load", f"y_{factor}", f"x_{factor}"),
+            ("direction", "offset", "normal_force", f"y_{factor}", f"x_{factor}"),
             touching,
             cf_attrs("1", f"contact domain at {factor} times the scan's spacing"),
         )
@@ -239,7 +240,7 @@ def _labelled_states(
         "rigid_opening": opened,
         "composite_spread": spread,
     }
-    dims = ("direction", "offset", "resolution", "load")
+    dims = ("direction", "offset", "resolution", "normal_force")
     table: dict[str, tuple] = {name: (dims, *words) for name, words in (SCALARS | ERRORS).items()}
     table["solved"] = (dims, "1", "whether the state was needed, and solved")
     table |= {name: (dims[:2], *words) for name, words in OFFSETS.items()}
@@ -254,7 +255,7 @@ def _labelled_states(
                 np.array(resolutions),
                 cf_attrs("1", "multiple k of the scan's spacing"),
             ),
-            "load": ("load", forces, cf_attrs("N", "normal force F")),
+            "normal_force": ("normal_force", forces, cf_attrs("N", "normal force F")),
         },
     )
 

@@ -77,11 +77,11 @@ def size_test(
     Returns
     -------
     xr.Dataset
-        Over (estimator, load): ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of the whole
-        window with intervals, ``slope_difference`` and ``verdict``. Over (load): the measured
-        ``slope`` of all windows of a size taken together and ``window_slope`` of the median of
-        windows one by one, each with ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``;
-        ``share_exponent`` and ``sensitivity``, which explain it. Over (load, part):
+        Over (estimator, normal_force): ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of
+        the whole window with intervals, ``slope_difference`` and ``verdict``. Over (normal_force):
+        the measured ``slope`` of all windows of a size taken together and ``window_slope`` of the
+        median of windows one by one, each with ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``;
+        ``share_exponent`` and ``sensitivity``, which explain it. Over (normal_force, part):
         ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the solver's, which is
         infinite where the value may not be reached at all), ``windows_below``, ``windows_above``,
         ``windows_unknown``, ``crossings``; and what is predicted for the whole window, see
@@ -116,7 +116,7 @@ def size_test(
 
     states, _ = solve_sub_windows(mapped, parts, estimate)
     result = states.drop_vars(["nodes", "nodes_error", "interface_closure"])
-    result = result.merge(slopes_at_equal_star(states, result.sizes["load"]))
+    result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(_verdicts(result))
     result = result.merge(predict_whole(states, result["delta_sigma"], FEWEST_NODES))
     if loading.slides:
@@ -128,7 +128,7 @@ def size_test(
 # -- what eq. 6 predicts ---------------------------------------------------------------------------
 
 
-_BY_LOAD = ("estimator", "load")
+_BY_LOAD = ("estimator", "normal_force")
 _PREDICTED: dict[str, tuple] = {
     "sigma_star": (
         _BY_LOAD,
@@ -143,8 +143,8 @@ _PREDICTED: dict[str, tuple] = {
             ("predicted_slope", "slope -(2 - Delta_sigma) of eq. 6"),
         )
     },
-    "box_fit_min": ("load", "mm", "smallest box fitted"),
-    "box_fit_max": ("load", "mm", "largest box fitted"),
+    "box_fit_min": ("normal_force", "mm", "smallest box fitted"),
+    "box_fit_max": ("normal_force", "mm", "largest box fitted"),
 }
 
 
@@ -182,7 +182,7 @@ def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> list[n
     s = spacing * areas["resolution"]
     if loading.settings["scaling_range"] is not None:
         areas = areas.where(within(s, *loading.settings["scaling_range"]))
-    by_area = renormalisation(s, areas, whole["load"])
+    by_area = renormalisation(s, areas, whole["normal_force"])
     return [by_area[f"delta_sigma{ending}"].values for ending in INTERVAL]
 
 
@@ -225,7 +225,7 @@ def _verdicts(result: xr.Dataset) -> xr.Dataset:
             "verdict": verdict.astype(str),
             "size_effect": (low > SLOPE_ROUNDING) | (high < -SLOPE_ROUNDING),
         }
-    ).transpose("estimator", "load")
+    ).transpose("estimator", "normal_force")
     for name, words in _VERDICTS.items():
         verdicts[name].attrs = cf_attrs("1", words)
     return verdicts

@@ -83,7 +83,7 @@ def size_laws(
         ``_high``, ``_n``; ``expected_hurst`` with its interval; the curves they come from.
         Closure: ``interface_closure``, ``interface_compliance`` and ``area_share`` (part, offset,
         load) with the interval of the mean over the sub-windows and the ``_error`` of the solver,
-        and their exponents (offset, load). Strength, where the joint slides: see
+        and their exponents (offset, normal_force). Strength, where the joint slides: see
         :func:`size_effect.strength_laws.strength_by_size`.
 
     Notes

@@ -29,7 +29,7 @@ SPARE_DOUBLINGS = 3
 LARGEST_FRACTION = 0.98
 
 #: Takes the dataset of :func:`solve_sub_windows` of the whole window alone, its domains and the
-#: parts, and returns a dataset with ``delta_sigma`` (estimator, load).
+#: parts, and returns a dataset with ``delta_sigma`` (estimator, normal_force).
 Estimate = Callable[[xr.Dataset, np.ndarray, Sequence[int]], xr.Dataset]
 
 
@@ -201,8 +201,8 @@ _TABLE = {
     ),
     "side": ("part", "mm", "side b of the sub-windows"),
     "windows": ("part", "1", "sub-windows solved of each size"),
-    "nominal_pressure": ("load", "MPa", "nominal pressure sigma_0 of the whole window"),
-    "beyond_study": ("load", "1", "whether the load is larger than those of the study"),
+    "nominal_pressure": ("normal_force", "MPa", "nominal pressure sigma_0 of the whole window"),
+    "beyond_study": ("normal_force", "1", "whether the load is larger than those of the study"),
     "ladder_pressure": ("step", "MPa", "nominal pressures that every window was loaded with"),
     "spacing": ("resolution", "mm", "spacing s"),
 }
@@ -244,7 +244,7 @@ def _labelled(
             sizes[0].factors,
             cf_attrs("1", "multiple k of the scan's spacing"),
         ),
-        "load": ("load", tested * area, cf_attrs("N", "force on the whole window")),
+        "normal_force": ("normal_force", tested * area, cf_attrs("N", "force on the whole window")),
     }
     return labelled_dataset(_TABLE, values, coords=coords)
 
@@ -282,11 +282,11 @@ def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.DataArray:
 
     Returns
     -------
-    xr.DataArray (resolution, load)
+    xr.DataArray (resolution, normal_force)
         mm2.
     """
     composite = loading.composite(loading.cells.item())
-    factors, loads = loading.settings["resolutions"], states["load"]
+    factors, loads = loading.settings["resolutions"], states["normal_force"]
     solved = states["nodes"].sel(part=1).isel(window=0, step=slice(len(loads)))
     # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)
@@ -300,8 +300,8 @@ def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.DataArray:
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
         areas.append([state.area for state in steps])
-    coords = {"resolution": factors, "load": loads}
-    return xr.DataArray(areas, dims=("resolution", "load"), coords=coords)
+    coords = {"resolution": factors, "normal_force": loads}
+    return xr.DataArray(areas, dims=("resolution", "normal_force"), coords=coords)
 
 
 def _ladder(pressures: np.ndarray, hardness: float) -> np.ndarray:

@@ -21,7 +21,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
     ----------
     states : xr.Dataset
         From :func:`size_effect.load_ladder.solve_sub_windows`.
-    delta_sigma : xr.DataArray (estimator, load)
+    delta_sigma : xr.DataArray (estimator, normal_force)
         Of the whole window.
     fewest_nodes : int
         A size is used where its windows hold so many nodes on the average.
@@ -29,8 +29,8 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
     Returns
     -------
     xr.Dataset
-        ``predicted_closure``, ``predicted_area`` (predictor, load) with intervals,
-        ``direct_closure``, ``direct_area`` (load), and ``closure_error``, ``area_error``
+        ``predicted_closure``, ``predicted_area`` (predictor, normal_force) with intervals,
+        ``direct_closure``, ``direct_area`` (normal_force), and ``closure_error``, ``area_error``
         (predictor, load) = predicted / direct - 1. At the finest resolution.
 
     Notes
@@ -42,7 +42,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
     the paper does not say it. Without a size effect the whole is as its parts at the same sigma_0.
     """
     b, pressures = states["side"].values, states["ladder_pressure"].values
-    loads = pressures[: states.sizes["load"]]
+    loads = pressures[: states.sizes["normal_force"]]
     powers = [*(2 - delta_sigma.values), np.zeros(len(loads))]
     fraction, closure = _mean_curves(states, fewest_nodes)
 
@@ -70,7 +70,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
     ):
         by_law = _power_law(b, curves[:, : len(loads)])
         predictions = np.array([by_law, *(_mean(each) for each in by_eq6[name])])
-        _add(result, name, predictions, curves[0, : len(loads)], "load", units, words)
+        _add(result, name, predictions, curves[0, : len(loads)], "normal_force", units, words)
     return result
 
 
@@ -104,7 +104,7 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
     ----------
     laws : xr.Dataset
         From :func:`size_effect.laws.joint_by_size`, of a joint that slides.
-    delta_sigma : xr.DataArray (estimator, load)
+    delta_sigma : xr.DataArray (estimator, normal_force)
         Of the whole window.
 
     Returns
@@ -120,12 +120,12 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
     Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0 fall as
     b^-(2 - Delta).
     """
-    at = int(np.argmax(laws["similar_slope"].notnull().all("load").sum("part").values))
+    at = int(np.argmax(laws["similar_slope"].notnull().all("normal_force").sum("part").values))
     chosen = laws.isel(share=at)
-    strength = chosen["similar_strength"].transpose("part", "load").values
+    strength = chosen["similar_strength"].transpose("part", "normal_force").values
     strength = np.where(strength > 0, strength, np.nan)
-    b, forces = laws["side"].values, laws["load"].values
-    delta = delta_sigma.sel(load=forces, method="nearest").values
+    b, forces = laws["side"].values, laws["normal_force"].values
+    delta = delta_sigma.sel(normal_force=forces, method="nearest").values
     ratio = b[1:] / b[0]
     smaller = strength[1:].T
     predictions = [_power_law(b, strength)]

@@ -99,9 +99,9 @@ def _places(
 
     Returns
     -------
-    equal, times : (load, part) ndarray
+    equal, times : (normal_force, part) ndarray
         Pressures and crossings of all windows of a size.
-    one : (load, part, window) ndarray
+    one : (normal_force, part, window) ndarray
         Pressures of the windows one by one.
     """
     together, single = curves
@@ -142,7 +142,7 @@ def _error_bound(pressures: np.ndarray, ends: list[np.ndarray]) -> np.ndarray:
     return np.where(np.isfinite(pressures) & ~np.isfinite(off), np.inf, off)
 
 
-_OF_STEPS, _OF_SIZE = ("part", "step"), ("load", "part")
+_OF_STEPS, _OF_SIZE = ("part", "step"), ("normal_force", "part")
 _TABLE = {
     "real_pressure": (
         _OF_STEPS,
@@ -162,7 +162,7 @@ _TABLE = {
     "windows_below": (_OF_SIZE, "1", "windows above that sigma* at all loads with nodes enough"),
     "windows_above": (_OF_SIZE, "1", "windows below that sigma* at all loads solved"),
     "windows_unknown": (_OF_SIZE, "1", "windows without nodes enough at any load"),
-    "sensitivity": ("load", "1", "d log sigma* / d log sigma_0 of the whole window"),
+    "sensitivity": ("normal_force", "1", "d log sigma* / d log sigma_0 of the whole window"),
 }
 
 #: Slopes over log b: what they are of.
@@ -223,7 +223,7 @@ def slopes_at_equal_star(states: xr.Dataset, n_loads: int) -> xr.Dataset:
     }
     for name, words in _SLOPES.items():
         lines = [fit_line(log_b, row) for row in np.log(over_sizes[name])]
-        add_exponents(result, name, lines, "load", words)
+        add_exponents(result, name, lines, "normal_force", words)
     return result
 
 

@@ -40,11 +40,11 @@ def strength_by_size(
     xr.Dataset
         Means over sub-windows with ``_low``, ``_high`` and the ``_error`` of the solver:
         ``peak_strength``, ``peak_dilatancy_angle`` (which is not held), ``residual_strength``
-        (part, load) and ``shear_strength`` (interval, part, load); ``held_share`` (part, load), the
-        fraction of sub-windows whose peak was held; ``strength_exponent``, ``residual_exponent``
-        (load) and ``shear_exponent`` (interval, load); ``barton_strength`` (part, load) with the
-        JRC and JCS of that size by Barton and Bandis' law (which was measured on joints of 50 mm
-        and more).
+        (part, normal_force) and ``shear_strength`` (interval, part, normal_force); ``held_share``
+        (part, normal_force), the fraction of sub-windows whose peak was held;
+        ``strength_exponent``, ``residual_exponent`` (normal_force) and ``shear_exponent``
+        (interval, normal_force); ``barton_strength`` (part, normal_force) with the JRC and JCS of
+        that size by Barton and Bandis' law (which was measured on joints of 50 mm and more).
 
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
         ``similar_strength`` and ``similar_slope`` (d delta/dv, not held), ``similar_held`` (the
@@ -104,7 +104,7 @@ def strength_by_size(
     )
 
 
-_DIMS = ("part", "window", "load")
+_DIMS = ("part", "window", "normal_force")
 
 #: What is compared at one v/b: unit, long name.
 _SIMILAR = {
@@ -123,14 +123,14 @@ _EXPONENTS = {
 
 _OF_HELD = f"fraction of sub-windows held at {LARGEST_FRICTION_ANGLE:g} degrees"
 _HELD = {
-    "held_share": (("part", "load"), "1", f"{_OF_HELD} at their peak"),
-    "similar_held": (("share", "part", "load"), "1", f"{_OF_HELD} at one v/b"),
+    "held_share": (("part", "normal_force"), "1", f"{_OF_HELD} at their peak"),
+    "similar_held": (("share", "part", "normal_force"), "1", f"{_OF_HELD} at one v/b"),
 }
 
 _BARTON = {
     "barton_roughness": ("part", "1", "JRC_n by Barton and Bandis' scale law"),
     "barton_strength": (
-        ("part", "load"),
+        ("part", "normal_force"),
         "MPa",
         "peak strength by Barton's law with JRC_n and JCS_n of each size",
     ),
@@ -140,7 +140,7 @@ _BARTON = {
 def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Offsets (n,), elastic dilatancy (n, part, window, load) of the sub-windows, its error, mm."""
     elastic = states["rigid_opening"] - states["interface_closure"]
-    order = ("offset", "part", "window", "load")
+    order = ("offset", "part", "window", "normal_force")
     curve = elastic.transpose(*order).values
     error = states["interface_closure_error"].transpose(*order).values
     offset = states["offset"].values
@@ -179,7 +179,7 @@ def _at_fractions(offset: np.ndarray, side: np.ndarray, values: np.ndarray) -> n
 
     Returns
     -------
-    (share, part, window, load) ndarray
+    (share, part, window, normal_force) ndarray
         NaN where v is smaller than the first step of sliding or larger than the last offset.
     """
     taken = np.full((len(OFFSET_FRACTIONS), *values.shape[1:]), np.nan)

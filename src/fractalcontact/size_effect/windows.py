@@ -46,12 +46,15 @@ SHAPES = {
 }
 
 _TABLE = {
-    **{name: (("part", "window", "offset", "load"), *words) for name, words in STATES.items()},
+    **{
+        name: (("part", "window", "offset", "normal_force"), *words)
+        for name, words in STATES.items()
+    },
     **{name: (("part", "window", "offset"), *words) for name, words in SHAPES.items()},
     "side": ("part", "mm", "side b of the sub-windows"),
     "side_along": ("part", "mm", "length of the sub-windows along the sliding"),
-    "bulk_settlement": (("part", "load"), "mm", "bulk settlement w_b of a sub-window"),
-    "nominal_pressure": ("load", "MPa", "nominal pressure sigma_0"),
+    "bulk_settlement": (("part", "normal_force"), "mm", "bulk settlement w_b of a sub-window"),
+    "nominal_pressure": ("normal_force", "MPa", "nominal pressure sigma_0"),
 }
 
 
@@ -79,10 +82,10 @@ def window_states(
     Returns
     -------
     xr.Dataset
-        :data:`STATES` over (part, window, offset, load) and :data:`SHAPES` over (part, window,
-        offset), NaN where there are fewer sub-windows; ``side`` b (part), the square root of their
-        area. And ``face_sigma_z`` (scale) and ``sigma_z_all`` (offset, scale) with the interval of
-        their mean over all sub-windows of many more sizes (``scale_side``), see
+        :data:`STATES` over (part, window, offset, normal_force) and :data:`SHAPES` over (part,
+        window, offset), NaN where there are fewer sub-windows; ``side`` b (part), the square root
+        of their area. And ``face_sigma_z`` (scale) and ``sigma_z_all`` (offset, scale) with the
+        interval of their mean over all sub-windows of many more sizes (``scale_side``), see
         :func:`size_effect.local_roughness.roughness_by_size`.
 
     Raises
@@ -132,7 +135,11 @@ def window_states(
         coords={
             "part": ("part", parts, cf_attrs("1", "sub-windows along a side of the window")),
             "offset": ("offset", loading.offsets, cf_attrs("mm", "shear offset v")),
-            "load": ("load", pressures * area, cf_attrs("N", "force on the whole window")),
+            "normal_force": (
+                "normal_force",
+                pressures * area,
+                cf_attrs("N", "force on the whole window"),
+            ),
             "direction": loading.direction,
         },
         attrs={"opposite": loading.specimen.attrs["opposite"], "seated": int(seated)},

@@ -9,10 +9,10 @@ from ..domain.measures import measures_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
 from ..mechanics.plan import solve_plan
-from ..mechanics.states import combine, domains_of, force_range, map_states
+from ..mechanics.states import combine, domains_of, force_range, map_states, with_pressure
 from ..mechanics.strength import joint_strength
 from ..roughness.dimension import best_dimension
-from ..surface.specimen import cell_side, window_sides
+from ..surface.specimen import cell_side, nominal_area, window_sides
 
 
 def state_stages(
@@ -72,4 +72,5 @@ def state_stages(
     }
     if specimens.attrs["opposite"] != "flat":
         stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)
-    return stages
+    area = nominal_area(specimens)
+    return {name: with_pressure(stage, area) for name, stage in stages.items()}

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..mechanics.loading import JointLoading
+from ..mechanics.states import with_pressure
 from ..roughness.dimension import best_dimension
 from ..size_effect.eq6 import size_test
 from ..size_effect.laws import joint_by_size
@@ -38,4 +39,5 @@ def window_stages(
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at(np.sort(joint.cells))
     laws = joint_by_size(loading, best_dimension(surface_dimension))
-    return {"windows": laws, "size_test": size_test(loading, laws)}
+    stages = {"windows": laws, "size_test": size_test(loading, laws)}
+    return {name: with_pressure(stage, joint.area) for name, stage in stages.items()}

@@ -53,7 +53,7 @@ class Joint:
         """A variable over offsets, at the load of the maps."""
         values = self.stages[stage][name].sel(direction=self.direction)
         values = values.sel(resolution=values["resolution"].min())
-        return values.sel(load=self.force, method="nearest").values
+        return values.sel(normal_force=self.force, method="nearest").values
 
     def map_states(self, stage: str) -> xr.Dataset:
         """A stage at the offset of the contact maps (and the finest resolution), over loads."""
@@ -65,12 +65,12 @@ class Joint:
 
     def map_state(self, stage: str) -> xr.Dataset:
         """A stage at the offset and load of the contact maps."""
-        return self.map_states(stage).sel(load=self.force, method="nearest")
+        return self.map_states(stage).sel(normal_force=self.force, method="nearest")
 
     def map_windows(self) -> xr.Dataset:
         """Parts of the window at the offset and nearest to the load of the contact maps."""
         windows = self.stages["windows"].sel(offset=self.map_offset, method="nearest")
-        return windows.sel(load=self.force, method="nearest")
+        return windows.sel(normal_force=self.force, method="nearest")
 
     @cached_property
     def map_offset(self) -> float:

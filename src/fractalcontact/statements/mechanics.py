@@ -179,10 +179,11 @@ def no_correlation_is_left(joint: Joint) -> Finding:
 def larger_samples_close_more(joint: Joint) -> Finding:
     """Exponent of w_int against window size, at every offset."""
     windows = joint.stages["windows"]
-    load = int(np.argmin(np.abs(windows["load"].values - joint.force)))
+    load = int(np.argmin(np.abs(windows["normal_force"].values - joint.force)))
     slid = windows["offset"].values > 0
     exponent, low = (
-        windows[f"closure_exponent{end}"].isel(load=load).values[slid] for end in ("", "_low")
+        windows[f"closure_exponent{end}"].isel(normal_force=load).values[slid]
+        for end in ("", "_low")
     )
     known = np.isfinite(exponent)
     if not known.any():

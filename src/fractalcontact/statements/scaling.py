@@ -166,7 +166,7 @@ def _over_load(joint, key):
     """Whether an estimate of Delta_sigma rises with log F, beyond the interval of the line."""
     states = joint.map_states("scaling")
     values = states[f"delta_{key}"].values
-    line = fit_line(np.log10(states["load"].values), values)
+    line = fit_line(np.log10(states["normal_force"].values), values)
     if not np.isfinite(line.slope):
         return Finding(UNKNOWN, f"{line.n} loads with an estimate {ESTIMATES[key]}, three needed")
     verdict = HOLDS if line.slope_low > 0 else PARTLY if line.slope > 0 else FAILS

@@ -180,6 +180,10 @@ def _checksums(specimens):
 
 
 def _demand_labels(dataset, where):
+    for name in dataset.variables:
+        # What a Dataset has as a method, users could not reach as an attribute.
+        if hasattr(xr.Dataset, str(name)):
+            raise ValueError(f"{where}: variable {name} has the name of a method of xarray.Dataset")
     for name, variable in dataset.data_vars.items():
         missing = [key for key in ("units", "long_name") if key not in variable.attrs]
         if missing:

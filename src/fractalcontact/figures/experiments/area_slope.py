@@ -44,7 +44,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for which, axes, kind in zip("ab", panels, slopes["surface"].values, strict=True):
         chosen = slopes.sel(surface=kind)
         _draw_surfaces(axes, chosen)
-        kappa_lines(axes, slopes["load"].values, slopes.attrs)
+        kappa_lines(axes, slopes["reduced_pressure"].values, slopes.attrs)
         share = f"1/{1 / slopes.attrs['roll_off_share']:.3g}"
         label_short_span(axes.xaxis)
         letter(axes, which, _TITLES[kind].format(share=share))
@@ -108,22 +108,21 @@ def _draw_surfaces(axes, chosen):
     for n, seed in enumerate(chosen["seed"].values):
         one = chosen.sel(seed=seed)
         style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "lw": 0.7}
-        axes.plot(one["load"], one["corrected_kappa"], label=f"seed {seed}", **style)
-        axes.plot(one["load"], one["kappa"], mfc="none", ls=":", **style)
+        axes.plot(one["reduced_pressure"], one["corrected_kappa"], label=f"seed {seed}", **style)
+        axes.plot(one["reduced_pressure"], one["kappa"], mfc="none", ls=":", **style)
 
 
 def _table(slopes):
     """One row a surface and load."""
     columns = ["kappa", "corrected_kappa", "area_share", "corrected_share", "rms_slope"]
     table = slopes[columns].to_dataframe().reset_index()
-    table = table.rename(columns={"load": "reduced_pressure"})
     return table[["surface", "seed", "reduced_pressure", *columns]]
 
 
 def _caption(slopes):
     with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
     low, high = (number(slopes.attrs[f"{name}_kappa"], 3) for name in _THEORIES)
-    loads = slopes["load"].values
+    loads = slopes["reduced_pressure"].values
     return (
         f"{supplementary()} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces of "
         f"Delta_g = {slopes.attrs['dimension']:g}, raw (hollow) and corrected, at reduced "
@@ -144,7 +143,7 @@ def _range_words(chosen):
 
 def _scatter_words(slopes):
     """Standard deviation between seeds, of the corrected values."""
-    deviation = slopes["corrected_mean_kappa_deviation"].max("load")
+    deviation = slopes["corrected_mean_kappa_deviation"].max("reduced_pressure")
     with_one, without = (float(deviation.sel(surface=kind)) for kind in _TITLES)
     if not np.isfinite([with_one, without]).all():
         return "One seed has no scatter."

@@ -40,7 +40,7 @@ _ESTIMATORS = {
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Delta_sigma against load by dimension and size, their difference, and the way to 2."""
     test = group(atlas, "dimension_test", "surfaces")
-    capped = "capped_load" in test.dims
+    capped = "capped_pressure" in test.dims
     n = test.sizes["dimension"]
     figure = Figure(figsize=(WIDTH, 6.4))
     above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))  # type: ignore[misc]  # an array
@@ -62,7 +62,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 def _draw_loads(axes, test, dimension, which):
     """Delta_sigma over the load, by estimator and size."""
     one = test.sel(dimension=dimension)
-    load = one["load"].values
+    load = one["reduced_pressure"].values
     for name, (colour, line, _) in _ESTIMATORS.items():
         for i in range(one.sizes["size"]):
             mean, low, high = (
@@ -86,8 +86,8 @@ def _draw_difference(axes, test, which):
     """Difference of the two over the size; a line style a load, a colour a dimension."""
     size = test["size"].values
     for i in range(test.sizes["dimension"]):
-        for j in range(test.sizes["load"]):
-            one = test.isel(dimension=i, load=j)
+        for j in range(test.sizes["reduced_pressure"]):
+            one = test.isel(dimension=i, reduced_pressure=j)
             mean, low, high = (one[f"mean_difference{end}"].values for end in ("", "_low", "_high"))
             beside = size * 1.03 ** (j + 4 * i - 5)
             colour = colour_of(i)
@@ -108,8 +108,8 @@ def _draw_boxes(axes, test, which):
     largest = test.isel(size=-1)
     k = test["resolution"].values
     for i in range(test.sizes["dimension"]):
-        for j in range(test.sizes["load"]):
-            ratio = largest["boxes_per_node"].isel(dimension=i, load=j).mean("seed")
+        for j in range(test.sizes["reduced_pressure"]):
+            ratio = largest["boxes_per_node"].isel(dimension=i, reduced_pressure=j).mean("seed")
             style = {"color": colour_of(i), "ls": LINES[j % len(LINES)], "marker": MARKERS[i]}
             axes.plot(k, ratio, **style)
     axes.set_xscale("log")
@@ -123,7 +123,7 @@ def _draw_boxes(axes, test, which):
 
 def _draw_capped(axes, test, which):
     """Both estimators with a hardness, up to where the whole window yields."""
-    part = test["capped_load"].values
+    part = test["capped_pressure"].values
     for i in range(test.sizes["dimension"]):
         one = test.isel(dimension=i)
         for name, face in (("delta_area", colour_of(i)), ("delta_box", "white")):
@@ -161,7 +161,7 @@ def _legends(test):
     ]
     loads = [heading(" ")] + [
         Line2D([], [], color="k", ls=LINES[j % len(LINES)], label=rf"load {p:g}")
-        for j, p in enumerate(test["load"].values)
+        for j, p in enumerate(test["reduced_pressure"].values)
     ]
     upper = [heading("upper row"), *lines, theory, paper]
     return upper, sizes, [heading("lower row"), *dimensions], loads
@@ -171,16 +171,18 @@ def _table(test):
     names = [f"mean_{name}{end}" for name in _ESTIMATORS for end in ("", "_low", "_high", "_n")]
     names += [f"mean_difference{end}" for end in ("", "_low", "_high", "_n")]
     free = test[names].to_dataframe().reset_index().assign(branch="elastic")
-    free = free.rename(columns={"load": "p_over_E_slope"})
+    free = free.rename(columns={"reduced_pressure": "p_over_E_slope"})
     tables = [free]
     ratio = test["boxes_per_node"].mean("seed").to_dataframe().reset_index()
     tables.append(
-        ratio.rename(columns={"load": "p_over_E_slope"}).assign(branch="boxes and pre-fractals")
+        ratio.rename(columns={"reduced_pressure": "p_over_E_slope"}).assign(
+            branch="boxes and pre-fractals"
+        )
     )
-    if "capped_load" in test.dims:
+    if "capped_pressure" in test.dims:
         capped = test[[f"capped_{name}" for name in names]].to_dataframe().reset_index()
         capped.columns = [
-            "F_over_H_A0" if column == "capped_load" else column.removeprefix("capped_")
+            "F_over_H_A0" if column == "capped_pressure" else column.removeprefix("capped_")
             for column in capped.columns
         ]
         tables.append(capped.assign(branch="with hardness"))
@@ -232,9 +234,9 @@ def _paper_words(test):
 
 def _capped_words(test, letters):
     """Where box counting tends as the material yields."""
-    if "capped_load" not in test.dims:
+    if "capped_pressure" not in test.dims:
         return ""
-    last = test.isel(capped_load=-1)
+    last = test.isel(capped_pressure=-1)
     values = last["capped_mean_delta_box"].values
     known = values[np.isfinite(last["capped_mean_delta_box_low"].values)]
     if not known.size:

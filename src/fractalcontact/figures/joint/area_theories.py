@@ -67,7 +67,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _drawn_offset(settings, laws):
     """The offset of the maps, unless the faces are flush there and have slid elsewhere."""
     offsets = laws["offset"].values
-    rough = offsets[np.isfinite(laws["reduced_pressure"]).all("load").values]
+    rough = offsets[np.isfinite(laws["reduced_pressure"]).all("normal_force").values]
     return chosen_offset(settings["map_offset"], rough if rough.size else offsets)
 
 
@@ -185,7 +185,7 @@ def _table(curve, law):
     """One row a load."""
     columns = {
         "offset_mm": float(law["offset"]),
-        "force_N": law["load"].values,
+        "force_N": law["normal_force"].values,
         "nominal_pressure_MPa": curve["nominal_pressure"].values,
         "reduced_pressure": law["reduced_pressure"].values,
         "area_share": curve["area_share"].values,

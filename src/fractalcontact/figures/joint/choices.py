@@ -91,8 +91,8 @@ def _errors(atlas, name, direction):
         states = group(atlas, stage, name)[[variable, key]].sel(direction=direction)
         states = states.sel(resolution=states["resolution"].min())
         errors = states[key] / abs(states[variable]) if relative else states[key]
-        for load in errors["load"].values:
-            here = errors.sel(load=load).values
+        for load in errors["normal_force"].values:
+            here = errors.sel(normal_force=load).values
             known = here[np.isfinite(here)]
             if known.size:
                 row = {"quantity": words, "force_N": load, "offsets": known.size}

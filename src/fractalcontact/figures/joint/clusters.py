@@ -72,11 +72,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     direction, finest = str(curves["direction"].values), int(curves["resolution"])
     domains = group(atlas, "domains", name).sel(direction=direction, resolution=finest)
     cell = (finest * cell_side(specimen)) ** 2
-    loads = curves["load"].values
+    loads = curves["normal_force"].values
     shown = dilatancy_loads(loads, settings, specimen)
     mapped = nearest_load(loads, settings["map_load"], specimen)
     table = _domain_table(domains, curves["area"] / cell, shown)
-    sizes = _size_table(domains.isel(load=mapped), cell)
+    sizes = _size_table(domains.isel(normal_force=mapped), cell)
 
     figure = Figure(figsize=(WIDTH, 6.0))
     number, share, localised, distribution = figure.subplots(2, 2).ravel()
@@ -96,11 +96,11 @@ def _domain_table(domains, nodes, shown):
     rows = []
     for j in shown:
         row = {
-            "force_N": float(domains["load"][j]),
+            "force_N": float(domains["normal_force"][j]),
             "offset_mm": domains["offset"].values,
-            "nodes": np.round(nodes.isel(load=j).values),
+            "nodes": np.round(nodes.isel(normal_force=j).values),
         }
-        row |= {column: domains[key].isel(load=j).values for key, column in COLUMNS.items()}
+        row |= {column: domains[key].isel(normal_force=j).values for key, column in COLUMNS.items()}
         rows.append(pd.DataFrame(row))
     table = pd.concat(rows, ignore_index=True)
     return table.assign(in_trend=(table["nodes"] >= RESOLVED_NODES) & (table["offset_mm"] > 0))
@@ -114,7 +114,7 @@ def _size_table(domains, cell):
         counts = domain["cluster_octaves"].values
         larger = np.cumsum(counts[::-1])[::-1]
         row = {
-            "force_N": float(domain["load"]),
+            "force_N": float(domain["normal_force"]),
             "offset_mm": float(domain["offset"]),
             "cluster_area_mm2": 2.0 ** np.arange(len(counts)) * cell,
             "clusters_at_least": larger,

@@ -43,7 +43,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     joint = group(atlas, "joints", name)
     curves = finest_curves(atlas, name)
     direction = str(curves["direction"].values)
-    shown = dilatancy_loads(curves["load"].values, settings, specimen)
+    shown = dilatancy_loads(curves["normal_force"].values, settings, specimen)
     closures = _closure_table(curves, shown)
 
     figure = Figure(figsize=(WIDTH, 7.4))
@@ -72,7 +72,7 @@ def _closure_table(curves, shown):
             {
                 "curve": "closure",
                 "direction": str(curves["direction"].values),
-                "force_N": float(curves["load"][j]),
+                "force_N": float(curves["normal_force"][j]),
                 "offset_mm": curves["offset"].values,
                 "interface_closure_mm": curves["interface_closure"][:, j].values,
                 "interface_compliance_mm_per_MPa": 1 / curves["interface_stiffness"][:, j].values,

@@ -37,7 +37,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """
     settings = settings_of(atlas, name)
     measures = group(atlas, "domain_measures", name)
-    forces = measures["load"].values
+    forces = measures["normal_force"].values
     mapped = nearest_load(forces, settings["map_load"], group(atlas, "specimens", name))
     table = _table(measures, _shown(measures, mapped))
 
@@ -51,7 +51,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     where = place(str(measures["direction"].item()), float(measures["offset"]))
     headline(figure, settings["label"], where)
     start = opening("section 6", settings["label"], where)
-    return Drawing(figure, table, f"{start} {_caption(measures.isel(load=mapped), table)}")
+    return Drawing(figure, table, f"{start} {_caption(measures.isel(normal_force=mapped), table)}")
 
 
 def _shown(measures, mapped):
@@ -73,9 +73,13 @@ def _table(measures, shown):
     x_names = {"slope": "box_side_mm", "lacunarity": "box_side_mm", "spectrum": "order_q"}
     rows = [pd.DataFrame({"kind": [], "force_N": [], "value": [], "low": [], "high": []})]
     for i in shown:
-        state = measures.isel(load=i)
+        state = measures.isel(normal_force=i)
         for kind, (axis, key, bounded) in curves.items():
-            row = {"kind": kind, "force_N": float(state["load"]), x_names[kind]: state[axis].values}
+            row = {
+                "kind": kind,
+                "force_N": float(state["normal_force"]),
+                x_names[kind]: state[axis].values,
+            }
             row["value"] = state[key].values
             if bounded:
                 row |= {end: state[f"{key}_{end}"].values for end in ("low", "high")}
@@ -138,7 +142,7 @@ def _draw_spectrum(axes, table, mapped):
 def _caption(state, table):
     words = (
         "(a) Local slopes of box counts, (b) gliding-box lacunarity, (c) generalised dimensions of "
-        f"pressure. At F = {force_label(float(state['load']))} "
+        f"pressure. At F = {force_label(float(state['normal_force']))} "
     )
     dimensions = [
         f"{_interval(state, key)} from {label}"
@@ -166,7 +170,7 @@ def _interval(state, key):
 
 def _law(state, table):
     """Whether local slopes under the map load are those of one power law."""
-    points = table[(table["kind"] == "slope") & (table["force_N"] == float(state["load"]))]
+    points = table[(table["kind"] == "slope") & (table["force_N"] == float(state["normal_force"]))]
     low, high = state["box_dimension_r_min"].item(), state["box_dimension_r_max"].item()
     inside = points[(points["box_side_mm"] >= low) & (points["box_side_mm"] <= high)]["value"]
     if inside.size < 2:

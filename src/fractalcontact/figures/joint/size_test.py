@@ -48,8 +48,8 @@ _PREDICTORS = {
     "no_size_effect": "no size effect",
 }
 _QUANTITIES = {
-    "closure": ("load", r"closure $w_{int}$"),
-    "area": ("load", "$A_r/A_0$"),
+    "closure": ("normal_force", r"closure $w_{int}$"),
+    "area": ("normal_force", "$A_r/A_0$"),
     "strength": ("dilatancy_load", r"strength $\tau$"),
 }
 
@@ -183,7 +183,7 @@ def _draw_errors(axes, test, quantity, which):
 
 def _table(test):
     tables = []
-    for i, force in enumerate(test["load"].values):
+    for i, force in enumerate(test["normal_force"].values):
         common = {
             "load_N": force,
             "nominal_pressure_MPa": float(test["nominal_pressure"][i]),

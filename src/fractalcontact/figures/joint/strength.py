@@ -39,7 +39,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     specimen = group(atlas, "specimens", name)
     direction = settings["contact_directions"][0]
     strength = group(atlas, "strength", name).sel(contact_direction=direction)
-    shown = dilatancy_loads(strength["load"].values, settings, specimen)
+    shown = dilatancy_loads(strength["normal_force"].values, settings, specimen)
 
     figure = Figure(figsize=(WIDTH, 5.6))
     (angles, curves), (summary, legends) = figure.subplots(2, 2)
@@ -204,7 +204,9 @@ def _strength_words(strength, shown):
         )
     j = shown[-1]
     pressure = short(strength["nominal_pressure"][j])
-    return f"{words} Residual i at {pressure} MPa: {_residual_words(strength.isel(load=j))}."
+    return (
+        f"{words} Residual i at {pressure} MPa: {_residual_words(strength.isel(normal_force=j))}."
+    )
 
 
 def _residual_words(strength):

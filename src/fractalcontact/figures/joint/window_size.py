@@ -155,7 +155,7 @@ def _closure_table(laws):
             }
         )
         for i in range(laws.sizes["offset"])
-        for j in range(laws.sizes["load"])
+        for j in range(laws.sizes["normal_force"])
     ]
     return pd.concat(tables, ignore_index=True)
 

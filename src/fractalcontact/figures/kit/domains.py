@@ -100,7 +100,7 @@ class Loading:
     @property
     def forces(self) -> np.ndarray:
         """F of every load, N, ascending."""
-        return self.scaling["load"].values
+        return self.scaling["normal_force"].values
 
     @property
     def sides(self) -> tuple[float, float]:
@@ -171,10 +171,10 @@ class Loading:
     def fit_ranges(self, load: int | None = None) -> str:
         """Words on what the estimates are fitted over, under one load, or the widest of all."""
         which = slice(None) if load is None else [load]
-        scaling = self.scaling.isel(load=which)
-        box = self.counts.isel(load=which)
+        scaling = self.scaling.isel(normal_force=which)
+        box = self.counts.isel(normal_force=which)
         products = scaling["sigma_n"] * scaling["delta_sigma"]
-        used = xr.apply_ufunc(np.isfinite, products).any("load")
+        used = xr.apply_ufunc(np.isfinite, products).any("normal_force")
         spacing = scaling["spacing"].where(used)
         spans = (("s", spacing, spacing), ("r", box["fit_min"], box["fit_max"]))
         words = [
@@ -186,7 +186,7 @@ class Loading:
 
     def domain(self, factor: int, load: int) -> np.ndarray:
         """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""
-        return self.contact[f"in_contact_{factor}"].isel(load=load).values
+        return self.contact[f"in_contact_{factor}"].isel(normal_force=load).values
 
     @property
     def finest_spacing(self) -> float:

@@ -158,7 +158,7 @@ def group(atlas: DataTree, stage: str, specimen: str) -> xr.Dataset:
 
 
 def finest_curves(atlas: DataTree, specimen: str) -> xr.Dataset:
-    """Closure curves (offset, load) in the first contact direction, at the finest resolution."""
+    """Closure curves in the first contact direction, at the finest resolution."""
     closure = group(atlas, "closure", specimen)
     direction = settings_of(atlas, specimen)["contact_directions"][0]
     return closure.sel(direction=direction, resolution=closure["resolution"].min())

@@ -32,7 +32,7 @@ def fractal_pressure(scaling: xr.Dataset, key: str, delta: float) -> float:
     fitted = scaling["area"].where(np.isfinite(scaling["sigma_n"]))
     area = fitted if key == "area" else scaling["area"].sel(resolution=[scaling.resolution.min()])
     measure = hausdorff_measure(scaling["spacing"], area, delta)
-    return float(scaling["load"] / np.exp(np.log(measure).mean(RESOLUTION)))
+    return float(scaling["normal_force"] / np.exp(np.log(measure).mean(RESOLUTION)))
 
 
 def size_effect(loading: Loading, i: int) -> pd.DataFrame:
@@ -56,7 +56,7 @@ def size_effect(loading: Loading, i: int) -> pd.DataFrame:
 
 
 def _by_one_estimate(loading, estimate, i):
-    scaling = loading.scaling.isel(load=i)
+    scaling = loading.scaling.isel(normal_force=i)
     sides = loading.side * _SIDES
     dimensions = (estimate.value[i], estimate.low[i], estimate.high[i])
     stars = [fractal_pressure(scaling, estimate.key, delta) for delta in dimensions]

@@ -62,7 +62,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _draw_strength(axes, laws, share):
-    b, loads = laws["side"].values, laws.sizes["load"]
+    b, loads = laws["side"].values, laws.sizes["normal_force"]
     drawn = np.isfinite(laws["similar_strength"][share].values).any()
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
@@ -95,7 +95,7 @@ def _held_label():
 
 
 def _draw_slope(axes, laws, share):
-    b, loads = laws["side"].values, laws.sizes["load"]
+    b, loads = laws["side"].values, laws.sizes["normal_force"]
     drawn = False
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}

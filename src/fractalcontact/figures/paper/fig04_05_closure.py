@@ -74,7 +74,7 @@ def _hyperbola(curve, pressure):
 
 
 def _draw_closure(axes, curves, drawn, direction, area):
-    unit, size = force_unit(curves["load"].max())
+    unit, size = force_unit(curves["normal_force"].max())
     high = float(curves["nominal_pressure"][-1])
     pressure = np.linspace(0, high, 200)
     largest = float(curves["interface_closure"].isel(offset=drawn).max())
@@ -90,7 +90,7 @@ def _draw_closure(axes, curves, drawn, direction, area):
         style = {"color": colour_of(n)}
         axes.plot(
             curve["interface_closure"],
-            curve["load"] / size,
+            curve["normal_force"] / size,
             MARKERS[n],
             label=f"{_state(direction, float(curve['offset']))}: {fit}",
             **style,
@@ -125,8 +125,8 @@ def _asymptote(curve):
 
 
 def _draw_area(axes, curves, drawn, direction, laws, area):
-    unit, size = force_unit(curves["load"].max())
-    force = curves["load"].values
+    unit, size = force_unit(curves["normal_force"].max())
+    force = curves["normal_force"].values
     for n, i in enumerate(drawn):
         law = laws.isel(offset=i)
         fitted = law["fitted"].values
@@ -167,7 +167,7 @@ def _table(curves, drawn, laws):
             pd.DataFrame(
                 {
                     "offset_mm": float(curve["offset"]),
-                    "force_N": curve["load"].values,
+                    "force_N": curve["normal_force"].values,
                     "nominal_pressure_MPa": curve["nominal_pressure"].values,
                     "interface_closure_mm": curve["interface_closure"].values,
                     "area_mm2": curve["area"].values,
@@ -202,7 +202,7 @@ def _hyperbola_words(curves):
     fitted = np.isfinite(curves["hyperbola_w_m"].values)
     if not fitted.any():
         return f"No hyperbola could be fitted ({curves['hyperbola_reason'].values[0]})"
-    largest = curves["interface_closure"].max("load")
+    largest = curves["interface_closure"].max("normal_force")
     beyond = int((largest > curves["hyperbola_w_m"]).values[fitted].sum())
     misfit = percent(curves["hyperbola_misfit"].max())
     return f"{beyond} of {fitted.sum()} curves pass their asymptote (rms misfit within {misfit})"
@@ -223,9 +223,9 @@ def _linearity_words(laws):
 
 def _compliance_words(curves):
     """Whether the joint closes more, under the largest load, the farther it has slid."""
-    slid = curves.isel(load=-1, offset=curves["offset"].values > 0)
+    slid = curves.isel(normal_force=-1, offset=curves["offset"].values > 0)
     line = fit_line(np.log(slid["offset"].values), slid["interface_closure"].values)
-    load = force_label(float(curves["load"][-1]))
+    load = force_label(float(curves["normal_force"][-1]))
     if not np.isfinite(line.slope):
         return f"Too few offsets for a trend of the closure at {load}"
     trend = (

@@ -49,7 +49,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     dilatancy = group(atlas, "dilatancy", name)
     curves = finest_curves(atlas, name)
     direction, finest = str(curves["direction"].values), int(curves["resolution"])
-    share, loads = curves["area_share"], curves["load"].values
+    share, loads = curves["area_share"], curves["normal_force"].values
     mapped = nearest_load(loads, settings["map_load"], specimen)
     asked = [nearest_load(loads, load, specimen) for load in settings["dilatancy_loads"]]
     shown = sorted({*asked, mapped})
@@ -137,7 +137,7 @@ def _elastic_curves(axes, dilatancy, direction, shown):
             elastic[:, j],
             marker=MARKERS[n % len(MARKERS)],
             color=colour_of(n + 1),
-            label=f"$F$ = {force_label(float(elastic['load'][j]))}",
+            label=f"$F$ = {force_label(float(elastic['normal_force'][j]))}",
         )
 
 
@@ -197,7 +197,7 @@ def _table(dilatancy, direction, shown, share):
                 {
                     "curve": "elastic",
                     "direction": direction,
-                    "force_N": float(elastic["load"]),
+                    "force_N": float(elastic["normal_force"]),
                     "offset_mm": elastic["offset"].values,
                     "dilatancy_mm": elastic.values,
                     "area_share": share[:, j].values,

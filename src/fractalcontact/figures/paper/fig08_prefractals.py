@@ -49,7 +49,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 def _table(loading, i):
     """One row a resolution, fine to coarse."""
-    scaling = loading.scaling.isel(load=i).sortby(RESOLUTION)
+    scaling = loading.scaling.isel(normal_force=i).sortby(RESOLUTION)
     area = scaling["area"].values
     force = loading.forces[i]
     return pd.DataFrame(
@@ -71,7 +71,7 @@ def _caption(loading, i, table):
         f"{loading.opening('Fig. 8')} Contact domains (black) at {len(table)} resolutions, "
         f"F = {force_label(loading.forces[i])}. {_verdict(table)} Delta_sigma is {by_area.text(i)} "
         f"by A_r(s), {by_box.text(i)} by box counting ({loading.fit_ranges(i)}). "
-        f"{disagreement(loading.scaling.isel(load=i))}"
+        f"{disagreement(loading.scaling.isel(normal_force=i))}"
     )
 
 

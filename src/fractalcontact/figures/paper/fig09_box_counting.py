@@ -22,7 +22,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """A contact domain, its box counts N(r) with the line fitted, and their local slopes."""
     loading = Loading.of(atlas, name)
     i = loading.map_load
-    counts = loading.counts.isel(load=i)
+    counts = loading.counts.isel(normal_force=i)
     table = _table(counts)
     figure = Figure(figsize=(WIDTH, 3.1))
     left, middle, right = figure.subplots(1, 3)

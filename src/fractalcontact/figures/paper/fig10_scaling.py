@@ -45,15 +45,15 @@ def _area_table(loading):
     measure = scaling["hausdorff_measure"].to_series()
     delta = scaling["delta_sigma"].to_series()
     s = frame["resolution"].map(spacing)
-    exponent = 2 - frame["load"].map(delta)
+    exponent = 2 - frame["normal_force"].map(delta)
     return pd.DataFrame(
         {
             "panel": "a",
-            "load_N": frame["load"],
+            "load_N": frame["normal_force"],
             "spacing_mm": s,
             "area_mm2": frame["area"],
             "used": np.isfinite(frame["sigma_n"]) & np.isfinite(exponent),
-            "fitted_area_mm2": frame["load"].map(measure) * s**exponent,
+            "fitted_area_mm2": frame["normal_force"].map(measure) * s**exponent,
         }
     ).sort_values(["load_N", "spacing_mm"], ignore_index=True)
 
