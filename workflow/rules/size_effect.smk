@@ -22,3 +22,57 @@ rule windows:
         solver=SOLVER,
     script:
         "../scripts/stage.py"
+
+
+# The decisive experiment: surfaces of one class a job, minutes each, in any order.
+SIZE_TASKS = (
+    {task.name: task for task in size_tasks(config["size_effect"])}
+    if "size_effect" in config
+    else {}
+)
+
+
+rule size_effect_part:
+    output:
+        f"{RESULTS}/size_effect_parts/{{task}}.nc",
+    log:
+        f"{RESULTS}/logs/size_effect_parts/{{task}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/size_effect_parts/{{task}}.tsv"
+    wildcard_constraints:
+        task=one_of(SIZE_TASKS),
+    conda:
+        "../../environment.yml"
+    # The longest first: begun last it would keep one core busy and the others idle.
+    priority: 1
+    resources:
+        mem_mb=lambda wc, attempt: (1000 + SIZE_TASKS[wc.task].size ** 2 // 4000) * attempt,
+        runtime=lambda wc, attempt: 60 * attempt,
+    params:
+        task=lambda wc: list(SIZE_TASKS[wc.task]),
+        loads=config.get("size_effect", {}).get("loads"),
+        rtol=SOLVER["rtol"],
+        code=code("size_effect_part"),
+    script:
+        "../scripts/size_effect_part.py"
+
+
+rule size_effect:
+    input:
+        parts=expand(rules.size_effect_part.output[0], task=SIZE_TASKS),
+    output:
+        **outputs_of("size_effect"),
+    log:
+        f"{RESULTS}/logs/size_effect.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/size_effect.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=20,
+    params:
+        **calling("size_effect"),
+        recipe=config.get("size_effect"),
+    script:
+        "../scripts/stage.py"

@@ -63,7 +63,9 @@ def _parts(shape):
             yield slice(*edges[0][y : y + 2]), slice(*edges[1][x : x + 2])
 
 
-def correlation_dimension(domain: np.ndarray, spacing: float) -> Slope:
+def correlation_dimension(
+    domain: np.ndarray, spacing: float, fit_range: tuple[float, float] | None = None
+) -> Slope:
     """Correlation dimension D_2: pairs no farther apart than r grow as r^D_2.
 
     Parameters
@@ -72,6 +74,9 @@ def correlation_dimension(domain: np.ndarray, spacing: float) -> Slope:
         Nodes in contact.
     spacing : float
         mm.
+    fit_range : (float, float), optional
+        Smallest and largest distance of the fit, mm; by default `SMALLEST_DISTANCE` cells and
+        `LARGEST_DISTANCE` of the window.
 
     Returns
     -------
@@ -91,8 +96,9 @@ def correlation_dimension(domain: np.ndarray, spacing: float) -> Slope:
     Physica D 9.
     """
     domain = np.asarray(domain, dtype=bool)
-    largest = LARGEST_DISTANCE * min(domain.shape)
-    distances = geometric_sizes(SMALLEST_DISTANCE, largest)
+    if fit_range is None:
+        fit_range = SMALLEST_DISTANCE * spacing, LARGEST_DISTANCE * min(domain.shape) * spacing
+    distances = geometric_sizes(fit_range[0] / spacing, fit_range[1] / spacing)
     if distances[-1] >= min(domain.shape) or not domain.any():
         return NO_SLOPE
     pairs, lags = pair_counts(domain, distances)

@@ -26,6 +26,15 @@ KAPPA_ATTRS = {
     "computed_kappa": list(COMPUTED_KAPPA),
 }
 
+#: g of :func:`fudged_persson_area`, the middle of what computations want.
+FUDGE = 0.435
+
+#: Published areas of periodic surfaces of H = 0.8 by Green's function molecular dynamics: p/E*,
+#: A/A0 and h'_rms. A second series lies 2 to 6 % lower.
+PERIODIC_AREAS = {1e-3: 0.00827, 5e-3: 0.0399, 0.01: 0.0779, 0.025: 0.1852}
+PERIODIC_SLOPE = 0.2766
+PERIODIC_SCATTER = 0.06
+
 #: Ratio of successive frequencies of the Weierstrass-Mandelbrot profile, as Majumdar and Bhushan
 #: take it.
 FREQUENCY_RATIO = 1.5
@@ -73,6 +82,35 @@ def persson_area(pressure: Numbers, modulus: Numbers, rms_slope: Numbers) -> Num
     J. Chem. Phys. 115 (2001) 3840; this form in Manners & Greenwood, Wear 261 (2006) 600.
     """
     return special.erf(np.sqrt(2) * pressure / (modulus * rms_slope))
+
+
+def fudged_persson_area(
+    pressure: Numbers, modulus: Numbers, rms_slope: Numbers, fudge: float = FUDGE
+) -> np.ndarray:
+    """Fraction of the nominal area in contact by Persson's theory with its elastic energy lessened.
+
+    A = erf(p / sqrt(2 (g + (1 - g) A) V)), V = (E* h'_rms)^2 / 4: Persson's for g = 1, steeper by
+    1/sqrt(g) at light load, the same at full contact. Xu et al., J. Mech. Phys. Solids (2024).
+
+    Parameters
+    ----------
+    pressure, modulus, rms_slope : array_like
+        As for :func:`linear_area`.
+    fudge : float
+        g; computations without adhesion want 0.42 to 0.45.
+
+    Returns
+    -------
+    ndarray
+        By fixed-point iteration, which contracts for g > 0.
+    """
+    ratio = np.sqrt(2) * np.asarray(pressure / (modulus * rms_slope), float)
+    area = special.erf(ratio)
+    for _ in range(200):
+        last, area = area, special.erf(ratio / np.sqrt(fudge + (1 - fudge) * area))
+        if np.all(np.abs(area - last) <= 1e-14):
+            break
+    return area
 
 
 def asperities(m0: Numbers, m2: Numbers, m4: Numbers) -> Asperities:

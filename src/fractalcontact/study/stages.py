@@ -148,6 +148,11 @@ _TABLE = (
         "estimators of Delta_g on surfaces of known dimension",
         "experiments.delta_g:estimator_bias",
     ),
+    _experiment(
+        "size_effect",
+        "which exponent carries the size effect: resolution, size and geometry one by one",
+        "experiments.size_effect_test:size_effect_test",
+    ),
     Stage(
         "statements",
         "what the paper says, and whether it holds here",

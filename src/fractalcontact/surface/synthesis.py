@@ -67,14 +67,86 @@ def self_affine(
     if roll_off is not None and roll_off <= 0:
         raise ValueError(f"roll_off must be positive, not {roll_off}")
 
-    side = scipy.fft.next_fast_len(EMBEDDING * max(shape), real=True)
-    noise = np.random.Generator(np.random.PCG64(seed)).standard_normal((side, side))
-    # One worker: the result must not depend on how many cores there are.
-    spectrum = scipy.fft.rfft2(noise, workers=1)
-    spectrum *= np.sqrt(_power_spectral_density(side, spacing, hurst, roll_off))
-    surface = scipy.fft.irfft2(spectrum, s=(side, side), workers=1)
+    density = _power_spectral_density(_grid_side(shape), spacing, hurst, roll_off)
+    return levelled(_filtered_noise(density, shape, seed), rms)
 
-    return levelled(surface[: shape[0], : shape[1]], rms)
+
+def band_limited(
+    shape: tuple[int, int],
+    spacing: float,
+    hurst: float,
+    *,
+    prefactor: float,
+    cut_off: float,
+    roll_off: float | None,
+    seed: int,
+) -> np.ndarray:
+    """Isotropic, Gaussian surface between two cut-offs, whose spectrum does not depend on its size.
+
+    Its power spectral density is C(q) = C_0 q^(-2 (1 + H)) for q_r < q <= q_s, C(q_r) below and 0
+    above, with q_r = 2 pi / roll_off and q_s = 2 pi / cut_off. The heights are not scaled: larger
+    surfaces continue smaller ones in the mean, and the mean square height is the integral of
+    C(q) d^2q / (2 pi)^2.
+
+    Parameters
+    ----------
+    shape, spacing, hurst, seed
+        As for :func:`self_affine`, as are the noise and the patch that is cut from it.
+    prefactor : float
+        C_0, mm^(2 - 2H).
+    cut_off : float
+        Shortest wavelength, mm; two spacings or more.
+    roll_off : float or None
+        Wavelength above which the spectrum is flat, mm; None without one.
+
+    Returns
+    -------
+    (ny, nx) float64
+        Heights about their mean plane, mm.
+
+    Raises
+    ------
+    ValueError
+        If H, a length, the prefactor or the shape is out of range.
+
+    Notes
+    -----
+    Convention of the spectrum: Jacobs, Junge & Pastewka, Surf. Topogr. 5 (2017) 013001.
+    """
+    check_surface(shape, hurst, spacing, prefactor)
+    if not 2 * spacing <= cut_off <= (roll_off or np.inf):
+        raise ValueError(
+            f"a cut-off of {cut_off} mm: expected two spacings ({2 * spacing} mm) or more, and no "
+            f"more than the roll-off ({roll_off} mm)"
+        )
+    q = _wave_numbers(_grid_side(shape), spacing)
+    density = _band(q, hurst, prefactor, cut_off, roll_off) / spacing**2
+    return without_mean_plane(_filtered_noise(density, shape, seed))
+
+
+def band_slope(
+    shape: tuple[int, int],
+    spacing: float,
+    hurst: float,
+    *,
+    prefactor: float,
+    cut_off: float,
+    roll_off: float | None,
+) -> float:
+    """Root mean square slope h'_rms that surfaces of :func:`band_limited` have in the mean.
+
+    Parameters as there; the sum of q^2 C(q) over the waves of the grid the patch is cut from.
+    """
+    side = _grid_side(shape)
+    q = _wave_numbers(side, spacing)
+    density = _band(q, hurst, prefactor, cut_off, roll_off)
+    # The half plane of a real transform: all but its edges stand for two waves.
+    twice = np.full(q.shape[1], 2.0)
+    twice[0] = 1.0
+    if side % 2 == 0:
+        twice[-1] = 1.0
+    finite = np.where(np.isfinite(q), q, 0.0)
+    return float(np.sqrt(np.sum(density * finite**2 * twice)) / (side * spacing))
 
 
 def check_surface(shape: tuple[int, int], hurst: float, spacing: float, rms: float) -> None:
@@ -99,16 +171,48 @@ def levelled(heights: np.ndarray, rms: float) -> np.ndarray:
     return heights * (rms / np.sqrt(np.mean(heights**2)))
 
 
+def _grid_side(shape: tuple[int, int]) -> int:
+    """Nodes along the periodic grid from which a patch is cut."""
+    return int(scipy.fft.next_fast_len(EMBEDDING * max(shape), real=True))
+
+
+def _filtered_noise(density: np.ndarray, shape: tuple[int, int], seed: int) -> np.ndarray:
+    """Patch of white noise of variance one whose spectrum is multiplied by a density."""
+    side = len(density)
+    noise = np.random.Generator(np.random.PCG64(seed)).standard_normal((side, side))
+    # One worker: the result must not depend on how many cores there are.
+    spectrum = scipy.fft.rfft2(noise, workers=1)
+    spectrum *= np.sqrt(density)
+    surface = scipy.fft.irfft2(spectrum, s=(side, side), workers=1)
+    return surface[: shape[0], : shape[1]]
+
+
+def _wave_numbers(side: int, spacing: float) -> np.ndarray:
+    """Wave numbers q on the half plane of `scipy.fft.rfft2`, 1/mm; infinite for the mean height."""
+    qy = 2 * np.pi * scipy.fft.fftfreq(side, spacing)[:, np.newaxis]
+    qx = 2 * np.pi * scipy.fft.rfftfreq(side, spacing)[np.newaxis, :]
+    q = np.hypot(qy, qx)
+    q[0, 0] = np.inf
+    return q
+
+
+def _band(
+    q: np.ndarray, hurst: float, prefactor: float, cut_off: float, roll_off: float | None
+) -> np.ndarray:
+    """C(q) between the cut-offs, mm^4; zero for the mean height and beyond the short one."""
+    lowest = 0.0 if roll_off is None else 2 * np.pi / roll_off
+    density = prefactor * np.maximum(q, lowest) ** (-2 * (1 + hurst))
+    # The small number keeps a wave that is exactly as long as the cut-off.
+    return np.where(q <= 2 * np.pi / cut_off * (1 + 1e-12), density, 0.0)
+
+
 def _power_spectral_density(
     side: int, spacing: float, hurst: float, roll_off: float | None
 ) -> np.ndarray:
     """C(q) up to a factor, on the half plane of `scipy.fft.rfft2`; zero for the mean height."""
-    qy = 2 * np.pi * scipy.fft.fftfreq(side, spacing)[:, np.newaxis]
-    qx = 2 * np.pi * scipy.fft.rfftfreq(side, spacing)[np.newaxis, :]
-    q = np.hypot(qy, qx)
+    q = _wave_numbers(side, spacing)
     # In units of the roll-off (or of the longest wave), so that no power under- or overflows.
     q /= 2 * np.pi / (roll_off if roll_off is not None else side * spacing)
-    q[0, 0] = np.inf
     floor = 1.0 if roll_off is not None else 0.0
     return np.maximum(q, floor) ** (-2 * (1 + hurst))
 
