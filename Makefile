@@ -51,6 +51,12 @@ verify: $(VENV)/installed
 smoke:
 	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
 
+# The experiment on the size effect in minutes, and its page in results/size_effect_small.
+size-effect-small:
+	@$(MAKE) --no-print-directory study STUDY=config/size_effect_small.yaml
+	@$(BIN)/python -m fractalcontact.commands.size_effect_page \
+	  results/size_effect_small/atlas.nc results/size_effect_small/size_effect.md
+
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"

@@ -54,11 +54,11 @@ def test_every_surface_has_a_job_of_its_own_or_shares_one():
     counted = {}
     for task in tasks:
         key = task.arm, task.hurst, task.size, task.cut_off
-        counted.setdefault(key, []).extend(range(task.first, task.first + task.count))
+        counted.setdefault(key, []).extend(range(task.first, task.first + task.surfaces))
     assert counted["S1", 0.5, 4096, 8] == [0, 1, 2]
     assert counted["S1", 0.8, 128, 8] == list(range(40))
     assert len(counted) == 2 * (2 + 2)
-    assert max(task.count for task in tasks if task.size == 4096) == 1
+    assert max(task.surfaces for task in tasks if task.size == 4096) == 1
 
 
 @pytest.mark.parametrize(
@@ -174,14 +174,14 @@ def test_the_order_of_the_parts_does_not_matter(parts, found):
 
 
 def _made(parts, exponent):
-    """The parts with areas that go with the side as a power, and with the cut-off as eq. 6 has it."""
+    """The parts with areas that go as a power of the side, and with the cut-off as eq. 6 has it."""
     made = []
     for part in parts:
         side = part["of_size"] / 64.0
         fine = part["of_cut_off"] / 4.0
         noise = np.random.default_rng(int(part["number"][0]) + part["of_size"].values[0])
         shape = part["corrected_share"].shape
-        area = 0.01 * side**exponent(part["of_hurst"]) * fine ** (1 - part["of_hurst"])
+        area = 0.01 * side ** exponent(part["of_hurst"]) * fine ** (1 - part["of_hurst"])
         values = area.values[:, np.newaxis] * np.exp(noise.normal(0, 0.01, shape))
         made.append(part.assign(corrected_share=(part["corrected_share"].dims, values)))
     return made
@@ -208,18 +208,18 @@ def _empty(task, loads):
     """States of a job that nobody solved: ones, but for what the class is."""
     from fractalcontact.experiments import size_states
 
-    shape = (task.count, len(loads))
+    shape = (task.surfaces, len(loads))
     values = {
         name: np.ones(shape if len(dims) == 2 else shape[:1])
         for name, (dims, _, _) in (size_states.STATES | size_states.SURFACES).items()
     }
     values |= {
-        "of_arm": np.array([task.arm] * task.count),
-        "of_hurst": np.full(task.count, task.hurst),
-        "of_size": np.full(task.count, task.size),
-        "of_cut_off": np.full(task.count, task.cut_off),
-        "number": np.arange(task.first, task.first + task.count),
-        "rms_slope": np.full(task.count, float(task.cut_off) ** (task.hurst - 1)),
+        "of_arm": np.array([task.arm] * task.surfaces),
+        "of_hurst": np.full(task.surfaces, task.hurst),
+        "of_size": np.full(task.surfaces, task.size),
+        "of_cut_off": np.full(task.surfaces, task.cut_off),
+        "number": np.arange(task.first, task.first + task.surfaces),
+        "rms_slope": np.full(task.surfaces, float(task.cut_off) ** (task.hurst - 1)),
     }
     tables = size_states.STATES | size_states.SURFACES
     return size_states.labelled_dataset(

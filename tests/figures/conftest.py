@@ -8,6 +8,8 @@ from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.experiments.delta_g import estimator_bias
 from fractalcontact.experiments.delta_sigma import dimension_test
 from fractalcontact.experiments.roll_off import roll_off_effect
+from fractalcontact.experiments.size_effect_test import size_effect_test
+from fractalcontact.experiments.size_states import solve_task
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.stages.specimen import specimen_stages
@@ -15,6 +17,7 @@ from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
+from fractalcontact.study.size_tasks import size_tasks
 from fractalcontact.study.stages import EXPERIMENT, STAGES
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
@@ -78,6 +81,17 @@ DIMENSION_TEST = {
     "capped_size": 32,
 }
 ESTIMATOR_BIAS = {"hurst": [0.8], "sizes": [64], "seeds": [1, 2]}
+SIZE_EFFECT = {
+    "hurst": [0.5, 0.8],
+    "loads": [0.01, 0.1],
+    "cut_off": 4,
+    "roll_off": 8,
+    "roll_off_fraction": 0.25,
+    "arms": {
+        "R": {"sizes": [32], "surfaces": [2], "cut_offs": [4, 8]},
+        "S1": {"sizes": [32, 48], "surfaces": [2, 2]},
+    },
+}
 ROLL_OFF = {
     "label": "made joints",
     "size": 9.6,
@@ -155,6 +169,10 @@ def _experiments():
         "dimension_test": dimension_test(DIMENSION_TEST),
         "estimator_bias": estimator_bias(ESTIMATOR_BIAS),
         "roll_off": roll_off_effect(ROLL_OFF, 4.8, [1, 2]),
+        "size_effect": size_effect_test(
+            [solve_task(task, SIZE_EFFECT["loads"], 1e-4) for task in size_tasks(SIZE_EFFECT)],
+            SIZE_EFFECT,
+        ),
     }
     assert computed.keys() <= {name for name, s in STAGES.items() if s.grain == EXPERIMENT}
     return computed

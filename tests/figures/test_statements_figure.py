@@ -40,7 +40,15 @@ def test_no_row_is_cut_off(atlas):
 
 def test_figures_of_a_study(atlas_file, atlas, tmp_path):
     names = study_figures_of(paths_of(EXPERIMENT))
-    assert names == ["plateau", "area_slope", "dimension_test", "estimator_bias"]
+    assert names == [
+        "size_effect",
+        "resolution_law",
+        "contact_geometry",
+        "plateau",
+        "area_slope",
+        "dimension_test",
+        "estimator_bias",
+    ]
     assert study_figures_of({"study": "x", "area_slope": {}}) == ["area_slope"]
     captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, names[1:2])
     assert list(captions) == ["area_slope"]

@@ -41,10 +41,10 @@ rule size_effect_part:
         f"{RESULTS}/benchmarks/size_effect_parts/{{task}}.tsv"
     wildcard_constraints:
         task=one_of(SIZE_TASKS),
-    conda:
-        "../../environment.yml"
     # The longest first: begun last it would keep one core busy and the others idle.
     priority: 1
+    conda:
+        "../../environment.yml"
     resources:
         mem_mb=lambda wc, attempt: (1000 + SIZE_TASKS[wc.task].size ** 2 // 4000) * attempt,
         runtime=lambda wc, attempt: 60 * attempt,

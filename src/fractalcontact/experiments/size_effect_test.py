@@ -183,9 +183,7 @@ def _dimensions(samples, hursts, recipe) -> dict[str, list[Exponent]]:
             found[name] += [mean_exponent(2 - row) for row in of_surfaces]
         finest = fine.isel(surface=fine["of_cut_off"].values == fine["of_cut_off"].values.min())
         largest = _of(samples, arm="S1", hurst=hurst)
-        largest = largest.isel(
-            surface=largest["of_size"].values == largest["of_size"].values.max()
-        )
+        largest = largest.isel(surface=largest["of_size"].values == largest["of_size"].values.max())
         for name, one, column in (
             ("box_delta", largest, "box_dimension"),
             ("band_delta", finest, "band_dimension"),

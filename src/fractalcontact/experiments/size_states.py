@@ -30,7 +30,7 @@ PREFACTOR = 1e-6
 
 _STATE = ("surface", "reduced_pressure")
 #: What is kept of every state: dimensions, unit and long name.
-STATES = {
+STATES: dict[str, tuple] = {
     "area_share": (_STATE, "1", "real contact area A_r / A_0"),
     "corrected_share": (_STATE, "1", "real contact area A_r / A_0, corrected for the perimeter"),
     "nodes": (_STATE, "1", "nodes in contact"),
@@ -45,12 +45,16 @@ STATES = {
     "residual": (_STATE, "1", "largest KKT residual, fraction of the closure"),
 }
 #: What is kept of every surface.
-SURFACES = {
+SURFACES: dict[str, tuple] = {
     "of_arm": ("surface", "1", "arm of the experiment"),
     "of_hurst": ("surface", "1", "Hurst exponent H"),
     "of_size": ("surface", "1", "nodes per side"),
     "of_cut_off": ("surface", "1", "shortest wavelength, nodes"),
-    "of_roll_off": ("surface", "1", "longest self-affine wavelength, nodes; none without a roll-off"),
+    "of_roll_off": (
+        "surface",
+        "1",
+        "longest self-affine wavelength, nodes; none without a roll-off",
+    ),
     "number": ("surface", "1", "number of the surface in its class"),
     "rms_slope": ("surface", "1", "h'_rms of the surface, from its waves"),
     "rms_height": ("surface", "mm", "h_rms of the surface about its mean plane"),
@@ -79,23 +83,23 @@ def solve_task(task: SizeTask, loads: Sequence[float], rtol: float) -> xr.Datase
     NotConverged
         If a state could not be verified; the message names it.
     """
-    loads = np.unique(loads)
+    pressures = np.unique(loads)
     slope = _mean_slope(task._replace(cut_off=task.finest))
-    numbers = range(task.first, task.first + task.count)
-    each = [_one_surface(task, number, loads * slope, slope, rtol) for number in numbers]
+    numbers = range(task.first, task.first + task.surfaces)
+    each = [_one_surface(task, number, pressures * slope, slope, rtol) for number in numbers]
     values = {name: np.array([one[name] for one in each]) for name in each[0]}
     of_class = {
-        "of_arm": np.array([task.arm] * task.count),
-        "of_hurst": np.full(task.count, task.hurst),
-        "of_size": np.full(task.count, task.size),
-        "of_cut_off": np.full(task.count, task.cut_off),
-        "of_roll_off": np.full(task.count, np.nan if task.roll_off is None else task.roll_off),
+        "of_arm": np.array([task.arm] * task.surfaces),
+        "of_hurst": np.full(task.surfaces, task.hurst),
+        "of_size": np.full(task.surfaces, task.size),
+        "of_cut_off": np.full(task.surfaces, task.cut_off),
+        "of_roll_off": np.full(task.surfaces, np.nan if task.roll_off is None else task.roll_off),
         "number": np.array(numbers),
     }
     return labelled_dataset(
         STATES | SURFACES,
         values | of_class,
-        {"reduced_pressure": ("reduced_pressure", loads, cf_attrs("1", "p / (E* h'_rms)"))},
+        {"reduced_pressure": ("reduced_pressure", pressures, cf_attrs("1", "p / (E* h'_rms)"))},
     )
 
 

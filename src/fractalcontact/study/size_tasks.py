@@ -37,8 +37,8 @@ class SizeTask(NamedTuple):
     """Longest wavelength below which the surface is self-affine, in nodes; None without one."""
     first: int
     """Number of the first surface."""
-    count: int
-    """Surfaces."""
+    surfaces: int
+    """How many."""
 
     @property
     def name(self) -> str:
@@ -52,7 +52,8 @@ def size_tasks(recipe: Mapping[str, Any]) -> list[SizeTask]:
     Parameters
     ----------
     recipe : mapping
-        ``hurst``; ``cut_off`` and ``roll_off`` in nodes, ``roll_off_fraction`` of the side; ``arms``,
+        ``hurst``; ``cut_off`` and ``roll_off`` in nodes, ``roll_off_fraction`` of the side;
+        ``arms``,
         by name ``sizes`` (nodes per side) and as many numbers of ``surfaces``, that of R with
         ``cut_offs`` beside them.
 
@@ -76,7 +77,7 @@ def size_tasks(recipe: Mapping[str, Any]) -> list[SizeTask]:
             for size, surfaces in zip(stated["sizes"], stated["surfaces"], strict=True):
                 for cut_off in stated.get("cut_offs", [recipe["cut_off"]]):
                     tasks += _jobs(arm, hurst, size, cut_off, surfaces, recipe)
-    return sorted(tasks, key=lambda task: -task.count * task.size**2)
+    return sorted(tasks, key=lambda task: -task.surfaces * task.size**2)
 
 
 def _jobs(arm, hurst, size, cut_off, surfaces, recipe):

@@ -1,0 +1,149 @@
+"""The decision on eq. 6 at a glance: exponent of the contact area over the size, and prediction."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from xarray import DataTree
+
+from ..kit.drawing import (
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    group,
+    legends_below,
+    letter,
+)
+from ..kit.words import number, supplementary
+
+TITLE = "Which exponent carries the size effect"
+SUBJECT = "study"
+NEEDS = ("size_effect",)
+KEY = "size_effect"
+ORDER = 5
+
+#: Arms that vary the size, in words.
+_ARMS = {
+    "S1": "roll-off fixed",
+    "S2": "roll-off in proportion to $b$",
+    "S3": "no roll-off",
+}
+#: Estimators of Delta_sigma: variable, words, filled.
+_ESTIMATORS = (("area_delta", "$A_r(s)$", True), ("box_delta", "box counts", False))
+_ENDS = ("", "_low", "_high")
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """alpha of every class and load against what eq. 6 wants by both estimators."""
+    test = group(atlas, "size_effect", "surfaces")
+    arms = test["arm"].values
+    figure = Figure(figsize=(WIDTH, 4.1))
+    panels = np.atleast_1d(figure.subplots(1, len(arms), sharey=True))
+    table = _table(test)
+    for which, axes, arm in zip("abc", panels, arms, strict=False):
+        _draw_arm(axes, table[table["arm"] == arm], test)
+        letter(axes, which, f"{arm}: {_ARMS[str(arm)]}")
+        axes.set_xlabel(r"eq. 6: $-(2-\Delta_\sigma)$")
+    panels[0].set_ylabel(r"found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$")
+    legends_below(figure, _classes(test), _loads(test), _lines())
+    return Drawing(figure, table, _caption(test, table))
+
+
+def _table(test: xr.Dataset) -> pd.DataFrame:
+    """One row a class, load and estimator: alpha and the prediction, with their intervals."""
+    rows = []
+    for arm in test["arm"].values:
+        for hurst in test["hurst"].values:
+            for load in test["reduced_pressure"].values:
+                one = test.sel(arm=arm, hurst=hurst, reduced_pressure=load)
+                for name, words, _ in _ESTIMATORS:
+                    rows.append(
+                        {
+                            "arm": arm,
+                            "hurst": hurst,
+                            "p_over_E_slope": load,
+                            "estimator": words.strip("$"),
+                            **{f"alpha{end}": float(one[f"alpha{end}"]) for end in _ENDS},
+                            **{f"eq6{end}": float(one[f"{name}{end}"]) - 2 for end in _ENDS},
+                            "central_alpha": float(one["central_alpha"]),
+                            "theory_alpha": float(one["theory_alpha"]),
+                            "verdict": str(one["verdict"].values),
+                            "no_size_effect": bool(one["no_size_effect"]),
+                        }
+                    )
+    return pd.DataFrame(rows)
+
+
+def _draw_arm(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
+    """Points of one arm: colours are Hurst exponents, markers loads, hollow ones box counts."""
+    axes.axhline(0, color="0.6", lw=0.8)
+    axes.axline((0, 0), slope=1, color="0.6", lw=0.8, ls="--")
+    hursts, loads = list(test["hurst"].values), list(test["reduced_pressure"].values)
+    for _, row in table.dropna(subset=["alpha", "eq6"]).iterrows():
+        colour = colour_of(hursts.index(row["hurst"]))
+        filled = row["estimator"] == _ESTIMATORS[0][1].strip("$")
+        axes.errorbar(
+            row["eq6"],
+            row["alpha"],
+            xerr=_reach(row, "eq6"),
+            yerr=_reach(row, "alpha"),
+            fmt=MARKERS[loads.index(row["p_over_E_slope"])],
+            color=colour,
+            mfc=colour if filled else "white",
+            elinewidth=0.7,
+        )
+
+
+def _reach(row: pd.Series, name: str) -> list[list[float]]:
+    return [[row[name] - row[f"{name}_low"]], [row[f"{name}_high"] - row[name]]]
+
+
+def _classes(test: xr.Dataset) -> list:
+    return [
+        Line2D([], [], color=colour_of(i), marker="o", ls="none", label=f"$H$ = {hurst:g}")
+        for i, hurst in enumerate(test["hurst"].values)
+    ]
+
+
+def _loads(test: xr.Dataset) -> list:
+    return [
+        Line2D([], [], color="0.3", marker=MARKERS[i], ls="none", label=f"$p^*$ = {load:g}")
+        for i, load in enumerate(test["reduced_pressure"].values)
+    ]
+
+
+def _lines() -> list:
+    marks = [
+        Line2D(
+            [], [], color="0.3", marker="o", ls="none", mfc=fill, label=r"$\Delta_\sigma$ by " + of
+        )
+        for (_, of, filled) in _ESTIMATORS
+        for fill in ["0.3" if filled else "white"]
+    ]
+    return [
+        *marks,
+        Line2D([], [], color="0.6", lw=0.8, ls="--", label="eq. 6"),
+        Line2D([], [], color="0.6", lw=0.8, label="no size effect"),
+    ]
+
+
+def _caption(test: xr.Dataset, table: pd.DataFrame) -> str:
+    classes = test["overall"]
+    refuted = int((classes == "eq. 6 refuted").sum())
+    supported = int((classes == "eq. 6 supported").sum())
+    flat = int(test["no_size_effect"].sum())
+    largest = float(np.nanmax(abs(test["alpha"].values)))
+    return (
+        f"{supplementary('synthetic surfaces against a plane')} Exponent of the corrected contact "
+        f"area over the side b (from {test.attrs['smallest_side']} nodes on) against that of "
+        "eq. 6; "
+        f"bars: 99 % over surfaces; p* = p/(E* h'_rms). Eq. 6 is refuted for {refuted} of "
+        f"{classes.size} classes and supported for {supported}; in {flat} of "
+        f"{test['no_size_effect'].size} cases there is no size effect; |alpha| is at most "
+        f"{number(largest)}."
+    )

@@ -1,0 +1,93 @@
+"""Figures of the experiment on the size effect, and the page that is written from it."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fractalcontact.commands import size_effect_page
+from fractalcontact.core.errors import InputError
+from fractalcontact.figures.experiments import contact_geometry, resolution_law, size_effect
+from fractalcontact.figures.kit.drawing import print_style
+
+
+@pytest.fixture(scope="module")
+def test_of(atlas):
+    return atlas["size_effect/surfaces"].to_dataset()
+
+
+def drawn(module, atlas):
+    with print_style():
+        drawing = module.draw(atlas, [])
+    drawing.figure.draw_without_rendering()
+    return drawing
+
+
+@pytest.mark.parametrize("module", [size_effect, resolution_law, contact_geometry])
+def test_labels_and_caption(atlas, module):
+    drawing = drawn(module, atlas)
+    assert len(drawing.caption.split()) < 70
+    assert drawing.caption.startswith("Supplementary figure: synthetic surfaces")
+    assert "nan" not in drawing.caption
+    for axes in drawing.figure.axes:
+        assert axes.get_xlabel()
+
+
+def test_decision_drawn_is_that_of_the_atlas(atlas, test_of):
+    table = drawn(size_effect, atlas).data
+    assert len(table) == 2 * test_of["alpha"].size
+    for _, row in table.iterrows():
+        one = test_of.sel(arm=row["arm"], hurst=row["hurst"])
+        one = one.sel(reduced_pressure=row["p_over_E_slope"])
+        name = "box_delta" if row["estimator"] == "box counts" else "area_delta"
+        np.testing.assert_allclose(row["alpha"], one["alpha"])
+        np.testing.assert_allclose(row["eq6"], one[name] - 2)
+        assert row["verdict"] == one["verdict"].item()
+
+
+def test_decision_counts_the_classes(atlas, test_of):
+    caption = drawn(size_effect, atlas).caption
+    refuted = int((test_of["overall"] == "eq. 6 refuted").sum())
+    assert f"refuted for {refuted} of {test_of['overall'].size} classes" in caption
+
+
+def test_resolution_law_drawn_is_that_of_the_atlas(atlas, test_of):
+    table = drawn(resolution_law, atlas).data
+    fine = test_of.isel(surface=(test_of["of_arm"] == "R").values)
+    assert len(table) == fine["corrected_share"].size
+    np.testing.assert_allclose(table["kappa"] * table["p_over_E_slope"], table["corrected_share"])
+    # In the finest class the loads are those of the recipe; longer cut-offs have more of them.
+    finest = table[table["cut_off_nodes"] == table["cut_off_nodes"].min()]
+    np.testing.assert_allclose(finest["p_over_E_slope"], finest["reduced_pressure"])
+    coarse = table[table["cut_off_nodes"] == table["cut_off_nodes"].max()]
+    assert (coarse["p_over_E_slope"] > coarse["reduced_pressure"]).all()
+
+
+def test_geometry_drawn_is_that_of_the_atlas(atlas, test_of):
+    table = drawn(contact_geometry, atlas).data.set_index(["hurst", "reduced_pressure"])
+    for (hurst, load), row in table.iterrows():
+        one = test_of.sel(hurst=hurst, reduced_pressure=load)
+        np.testing.assert_allclose(row["cut_delta"], one["cut_delta"])
+
+
+def test_page_states_every_class(test_of):
+    page = size_effect_page.page(test_of, "tiny")
+    rows = [line for line in page.splitlines() if line.startswith("| S1")]
+    assert len(rows) == test_of["alpha"].size
+    first = test_of.isel(arm=0, hurst=0, reduced_pressure=0)
+    assert f"{float(first['alpha']):+.3f}" in rows[0]
+    assert first["verdict"].item() in rows[0]
+    assert "nan" not in page
+    assert "make STUDY=config/tiny.yaml" in page
+
+
+def test_page_is_written_from_an_atlas(atlas_file, tmp_path):
+    size_effect_page.main([str(atlas_file), str(tmp_path / "page.md")])
+    text = (tmp_path / "page.md").read_text(encoding="utf-8")
+    assert text.startswith("# What carries the size effect")
+
+
+def test_page_of_another_study_is_refused(tmp_path):
+    empty = tmp_path / "atlas.nc"
+    xr.DataTree.from_dict({"/speed/one": xr.Dataset()}).to_netcdf(empty)
+    with pytest.raises(InputError, match="no stage size_effect"):
+        size_effect_page.main([str(empty), str(tmp_path / "page.md")])
