@@ -29,7 +29,7 @@ export STUDY SCANS
 RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study smoke keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench problems fuzz lint format lock clean
+.PHONY: all study smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench problems fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed

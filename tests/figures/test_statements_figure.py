@@ -50,7 +50,7 @@ def test_figures_of_a_study(atlas_file, atlas, tmp_path):
         "estimator_bias",
     ]
     assert study_figures_of({"study": "x", "area_slope": {}}) == ["area_slope"]
-    captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, names[1:2])
+    captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, ["area_slope"])
     assert list(captions) == ["area_slope"]
     assert (tmp_path / "area_slope.txt").read_text(encoding="utf-8") == captions[
         "area_slope"
