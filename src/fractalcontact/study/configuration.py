@@ -163,7 +163,8 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
     Raises
     ------
     InputError
-        If a length has no unit of length or is not positive, or the nodes are too few or too many.
+        If a length has no unit of length or is not positive, the nodes are too few or too many, or
+        the construction has no such surface.
     """
     numbers = dict(recipe)
     for key in ("size", "spacing", "rms", "roll_off"):
@@ -180,6 +181,17 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
         )
     numbers.setdefault("outline", "square")
     numbers.setdefault("roll_off", None)
+    construction = numbers.setdefault("construction", "spectrum")
+    if construction != "spectrum" and numbers["roll_off"] is not None:
+        raise InputError(
+            f"{where}.roll_off: a surface by {construction} has none; write null, or the "
+            "construction spectrum"
+        )
+    if construction == "cantor-punch" and 3 ** round(math.log(nodes, 3)) != round(nodes):
+        raise InputError(
+            f"{where}.size: a cantor-punch has 3^n nodes per side, not {round(nodes)}; "
+            f"write a size of {3 ** round(math.log(nodes, 3)) * numbers['spacing']:g} mm"
+        )
     return numbers
 
 
