@@ -15,7 +15,7 @@ from ..core.slope_of_sums import FEWEST_SCALES
 from .box_counts import RATIOS, box_count, box_sizes, cropped, window_sizes
 from .count_law import NO_TERMS, LawTerms
 from .cut_offs import between_cut_offs
-from .mean_law import FittedLaw, MeanCounts, law_of_means
+from .mean_law import NO_MEANS, FittedLaw, MeanCounts, law_of_means
 from .ordinary_slope import OrdinarySlope, dyadic_sizes, ordinary_slope
 
 #: No set in the plane has another dimension, whatever a regression says.
@@ -53,7 +53,7 @@ class BoxDimension:
     estimator: str = ""
     misfit: float = float("nan")
     terms: LawTerms = NO_TERMS
-    means: MeanCounts = MeanCounts(np.empty(0, np.int64), np.empty(0))
+    means: MeanCounts = NO_MEANS
     ordinary: OrdinarySlope | None = None
 
     @property
@@ -173,10 +173,7 @@ def box_dimension(
         return replace(_of_cover(cover, ladder, "exact", side), ordinary=ordinary)
     of_cover = -_line(sizes, count, used).slope
     law, means = law_of_means(extent, limits, of_cover, whole_cells)
-    if law is None:
-        found = _of_cover(cover, ladder, "cover", side)
-    else:
-        found = _of_law(cover, law, spacing)
+    found = _of_law(cover, law, spacing) if law else _of_cover(cover, ladder, "cover", side)
     return replace(found, ordinary=ordinary, means=means)
 
 
@@ -196,7 +193,7 @@ def dimension_of_domain(
     spacing: float,
     *,
     fit_range: tuple[float, float] | None = None,
-    whole_cells: bool | None = None,
+    whole_cells: bool | None = False,
 ) -> BoxDimension:
     """Box-counting dimension of a contact domain, as every stage states it.
 
@@ -213,13 +210,11 @@ def dimension_of_domain(
     spacing : float
         In mm.
     fit_range, whole_cells
-        As :func:`box_dimension` takes them.
+        As :func:`box_dimension` takes them; the nodes of a solution are centres of cells.
     """
     domain = np.asarray(domain, dtype=bool)
     sizes = window_sizes(domain.shape).astype(float)
-    box = box_dimension(
-        domain, spacing, fit_range=fit_range, sizes=sizes, whole_cells=whole_cells
-    )
+    box = box_dimension(domain, spacing, fit_range=fit_range, sizes=sizes, whole_cells=whole_cells)
     return no_dimension(box.r, box.count, ONE_NODE) if np.sum(domain) == 1 else box
 
 
@@ -274,9 +269,7 @@ def _of_law(cover: _Cover, law: FittedLaw, spacing) -> BoxDimension:
         reason="",
         estimator="mean",
         misfit=law.law.misfit,
-        terms=terms._replace(
-            node_width=terms.node_width * spacing, extent=terms.extent * spacing
-        ),
+        terms=terms._replace(node_width=terms.node_width * spacing, extent=terms.extent * spacing),
     )
 
 

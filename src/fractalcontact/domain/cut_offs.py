@@ -1,4 +1,7 @@
-"""Cut-offs of box counts: sizes at which every node is alone or every box occupied are saturated."""
+"""Cut-offs of box counts, beyond which they are saturated.
+
+Small boxes hold one node each, large ones are all occupied: their counts carry no information.
+"""
 
 import numpy as np
 

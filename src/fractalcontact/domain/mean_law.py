@@ -48,6 +48,9 @@ class FittedLaw(NamedTuple):
     """In cells."""
 
 
+NO_MEANS = MeanCounts(np.empty(0, np.int64), np.empty(0))
+
+
 def mean_sizes(shape: tuple[int, ...]) -> np.ndarray:
     """Box sides in cells at which mean counts are taken: whole ones to `LARGEST_BOX` of an extent.
 
@@ -107,7 +110,7 @@ def law_of_means(
 def _fitted(means, extent, limits, whole_cells):
     """Law, rivals and the sizes kept for it; None with too few between the cut-offs."""
     sizes, count = means.sizes, means.count
-    alone, full = _saturated(means, extent)
+    alone, full = _beyond_cut_offs(means, extent)
     between = ~alone & ~full & (sizes >= SMALLEST_SEPARATING) & within(sizes, *limits)
     kept = between & (sizes >= SMALLEST)
     if np.count_nonzero(kept) < FEWEST_SCALES:
@@ -118,7 +121,7 @@ def _fitted(means, extent, limits, whole_cells):
     return None if law is None else (law, rivals, kept)
 
 
-def _saturated(means, extent):
+def _beyond_cut_offs(means, extent):
     """Sizes at which the mean counts are those of lone nodes, and those of occupied boxes."""
     sizes, count = means
     all_boxes = np.prod([(n - 1) / sizes + 1 for n in extent.shape], axis=0)
@@ -127,6 +130,40 @@ def _saturated(means, extent):
     filled = nodes >= (1 - SATURATED) * extent.size
     alone = count >= (1 - SATURATED) * nodes
     return alone, (count >= (1 - SATURATED) * all_boxes) & (not filled)
+
+
+class FoundLaw(NamedTuple):
+    """A law found, without the interval of its dimension."""
+
+    law: Law
+    sizes: np.ndarray
+    """(k,) int64, cells: those it was fitted to."""
+    side: float
+    """Extent of the domain, cells."""
+
+    def dimension_of(self, count: np.ndarray) -> float:
+        """Dimension of a law of this form fitted to other counts at these sizes; NaN without."""
+        if not (count > 0).all():
+            return np.nan
+        return law_dimension(self.law, self.sizes.astype(float), count, self.side)
+
+
+def find_law(
+    domain: np.ndarray, limits: tuple[float, float], whole_cells: bool | None
+) -> FoundLaw | None:
+    """The law that the mean counts of a domain follow; None where too few sizes are between.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+    limits, whole_cells
+        As :func:`law_of_means` takes them.
+    """
+    extent = cropped(domain)
+    sizes = mean_sizes(extent.shape)
+    means = MeanCounts(sizes, cover_and_mean(extent, np.empty(0, np.int64), sizes)[1])
+    found = _fitted(means, extent, limits, whole_cells)
+    return None if found is None else FoundLaw(found[0], sizes[found[2]], max(extent.shape))
 
 
 def dimension_by_means(
@@ -160,7 +197,9 @@ def dimension_by_means(
     found = _fitted(means, extent, limits, whole_cells)
     if found is not None:
         return found[0].dimension, cover
-    alone, full = (np.count_nonzero(beyond[sizes > 1]) for beyond in _saturated(means, extent))
+    alone, full = (
+        np.count_nonzero(beyond[sizes > 1]) for beyond in _beyond_cut_offs(means, extent)
+    )
     if max(alone, full) < FEWEST_SCALES:
         return np.nan, cover
     return 2.0 if full >= alone else 0.0, cover

@@ -18,7 +18,7 @@ from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
 from ..domain.box_counts import box_count
-from ..domain.box_dimension import box_dimension
+from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
 from ..domain.renormalisation import renormalisation
 from ..elastic.halfspace import HalfSpace
@@ -174,7 +174,7 @@ def _estimates(
         for i, state in enumerate(states):
             nodes[i, j] = np.count_nonzero(state.in_contact)
             if j == 0:
-                boxes.append(box_dimension(state.in_contact, spacing))
+                boxes.append(dimension_of_domain(state.in_contact, spacing))
                 pairs.append(correlation_dimension(state.in_contact, spacing))
                 occupied[i] = box_count(state.in_contact, np.array(factors, float))
     s = xr.DataArray(spacing * np.array(factors), dims="resolution")

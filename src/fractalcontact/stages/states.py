@@ -68,7 +68,9 @@ def state_stages(
         "scaling": scaling_over_resolutions(
             curves, domains, spacing, fit_range=settings["scaling_range"]
         ),
-        "domain_measures": measures_of_map_states(map_states(parts), spacing),
+        "domain_measures": measures_of_map_states(
+            map_states(parts), spacing, joints["composite"], settings["box_range"]
+        ),
     }
     if specimens.attrs["opposite"] != "flat":
         stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)
