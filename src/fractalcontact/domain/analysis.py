@@ -136,7 +136,8 @@ def analyse_domains(
     # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
     n_octaves = int(np.prod(window)).bit_length()
     solved, ambiguous = _solver_state(fields, shape)
-    table = _empty_table(shape, *(max(map(len, of_all)) for of_all in sizes.values()), n_octaves)
+    n_scales, n_means = (max(map(len, of_all)) for of_all in sizes.values())
+    table = _empty_table(shape, n_scales, n_means, n_octaves)
     directions = [str(direction) for direction in fields["direction"].values]
     for place in np.ndindex(shape):
         direction, offset, k, load = place
@@ -214,7 +215,7 @@ def _row(domain, spacing, ambiguous, direction, **how) -> dict:
         "determined": box.determined,
         "box_count": box.count,
         "box_used": box.used,
-        "mean_count": box.means.count,
+        "mean_count": box.means.counts,
     }
 
 

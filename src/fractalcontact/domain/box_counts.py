@@ -116,7 +116,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     -------
     (k,) int64
         N(r): the minimum over every grid origin where :func:`is_minimal` says so, else an upper
-        bound of it. Time grows with the number of cells for each size, no more than that.
+        bound of it. Linear in cells for each size.
 
     Raises
     ------
@@ -125,9 +125,8 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
 
     Notes
     -----
-    Of boxes r cells wide there are r origins along each axis, and the (n / r)^2 boxes of each: all
-    together meet every place of a box once. So all r^2 grids cost no more than one look at every
-    place, and a place knows the smallest box there that meets the domain from its neighbours.
+    The boxes of all r x r grids together are the places of one gliding box, each met once: every
+    origin costs no more than one look at every place.
     """
     sizes = _checked_sizes(sizes)
     max_shifts = whole_number(max_shifts, "max_shifts", least=1, most=_MOST_CELLS)
@@ -257,15 +256,12 @@ def _summed(domain):
 def _over_origins(domain, cover_sizes, mean_sizes):
     """Minimal cover, and places of a gliding box that meets the domain, for each size.
 
-    A box whose lowest cell is p meets the domain if its side is at least d(p), and d(p) is 1 at a
-    node, else one more than the least of its upper neighbours'. The boxes of one grid are the
-    places alike modulo r along both axes.
+    A box whose lowest cell is p meets the domain if its side is at least d(p): 1 at a node, else
+    one more than the least of the upper neighbours'. One grid has the places alike modulo r.
     """
     ny, nx = domain.shape
     reach = 1
-    for size in cover_sizes:
-        reach = max(reach, size)
-    for size in mean_sizes:
+    for size in np.concatenate((cover_sizes, mean_sizes)):
         reach = max(reach, size)
     starts = np.zeros(cover_sizes.size + 1, np.int64)
     starts[1:] = np.cumsum(cover_sizes**2)

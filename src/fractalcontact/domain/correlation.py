@@ -55,7 +55,8 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
 def lags_of(distances: np.ndarray) -> np.ndarray:
     """How many lags of the grid but 0 are no longer than each distance, (k,) int64."""
     reach = int(distances[-1])
-    ring = _rings(*np.mgrid[-reach : reach + 1, -reach : reach + 1], distances)
+    lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    ring = _rings(lag_y, lag_x, distances)
     return np.cumsum(np.bincount(ring.ravel(), minlength=len(distances) + 1)[:-1])
 
 

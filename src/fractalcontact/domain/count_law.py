@@ -220,8 +220,9 @@ def law_terms(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> La
     # As in the fit, what is least is the relative misfit.
     columns = powers * ((side / sizes) ** 2 / count)[:, np.newaxis]
     a = np.linalg.lstsq(columns, np.ones(sizes.size), rcond=None)[0]
-    outline, square, *_ = *(a[1:] / a[0]), 0.0, 0.0
-    return LawTerms(float(a[0]), float(outline), float(square), float(law.c), float(side))
+    outline = np.zeros(2)
+    outline[: law.outline] = a[1:] / a[0]
+    return LawTerms(float(a[0]), outline[0], outline[1], float(law.c), float(side))
 
 
 def _checked(sizes, count):

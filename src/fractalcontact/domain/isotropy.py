@@ -43,7 +43,7 @@ def contact_at_lag(domain: np.ndarray, direction: str, lag: int = LAG) -> dict[s
         fraction of the window in contact.
     """
     along = 0 if direction in ("N", "S") else 1
-    found = {}
+    found: dict[str, float] = {}
     for way, axis in (("along", along), ("across", 1 - along)):
         estimate = _conditional(domain, axis, lag)
         found |= {

@@ -33,7 +33,7 @@ class MeanCounts(NamedTuple):
 
     sizes: np.ndarray
     """(k,) int64, cells."""
-    count: np.ndarray
+    counts: np.ndarray
     """(k,)"""
 
 
@@ -109,7 +109,7 @@ def law_of_means(
 
 def _fitted(means, extent, limits, whole_cells):
     """Law, rivals and the sizes kept for it; None with too few between the cut-offs."""
-    sizes, count = means.sizes, means.count
+    sizes, count = means
     alone, full = _beyond_cut_offs(means, extent)
     between = ~alone & ~full & (sizes >= SMALLEST_SEPARATING) & within(sizes, *limits)
     kept = between & (sizes >= SMALLEST)

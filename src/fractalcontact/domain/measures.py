@@ -163,7 +163,7 @@ def measures_of_states(
         )
     curves = [lacunarity(domain, spacing) for domain in domains]
     states = zip(domains, curves, pressures, strict=True)
-    rows = [_row(domain, spacing, *of, fit_range) for domain, *of in states]
+    rows = [_row(domain, spacing, curve, p, fit_range) for domain, curve, p in states]
     side, local = _local_slopes(domains, spacing)
     variables: dict[str, Any] = {}
     for name, long_name in SLOPES.items():

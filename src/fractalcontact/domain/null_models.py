@@ -216,7 +216,7 @@ def _compare_with_cut(domain, cut, box, cut_box, how):
         compared[name] = theirs[name], difference, difference - error, difference + error
     count = np.full(dyadic_sizes(domain.shape).size, np.nan)
     if cut_box.ordinary is not None:
-        count = cut_box.ordinary.count
+        count = cut_box.ordinary.counts
     return compared, count
 
 

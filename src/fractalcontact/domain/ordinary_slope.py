@@ -28,7 +28,7 @@ class OrdinarySlope(NamedTuple):
     n: int
     sizes: np.ndarray
     """(k,) int64, cells: the powers of two to half of the window."""
-    count: np.ndarray
+    counts: np.ndarray
     """(k,)"""
     used: np.ndarray
     """(k,) bool"""
