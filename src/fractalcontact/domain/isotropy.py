@@ -59,8 +59,7 @@ def _conditional(domain, axis, lag):
     if domain.shape[0] <= lag:
         return (np.nan,) * 3
     first, second = domain[:-lag], domain[lag:]
-    both, either = first & second, first.astype(int) + second
-    sums = np.array([_by_part(2 * both), _by_part(either)])
+    sums = np.array([_by_part(first & second), (_by_part(first) + _by_part(second)) / 2])
     total = sums.sum(axis=1)
     if total[1] == 0:
         return (np.nan,) * 3
@@ -76,5 +75,5 @@ def _by_part(values):
     for axis in (0, 1):
         n = values.shape[axis]
         starts = np.unique(np.arange(BLOCKS) * n // BLOCKS)
-        values = np.add.reduceat(values, starts, axis=axis)
+        values = np.add.reduceat(values, starts, axis=axis, dtype=np.int32)
     return values.ravel()

@@ -14,8 +14,8 @@ from ..core.slope_of_sums import NO_SLOPE
 from .box_counts import box_count, window_sizes
 from .box_dimension import dimension_of_domain, local_slopes
 from .correlation import correlation_dimension
+from .isotropy import LAG_FIELDS, contact_at_lag
 from .multifractal import ORDERS, generalised_dimensions, lacunarity
-from .null_models import null_models
 
 #: Measures of a domain that are slopes, with their long names.
 SLOPES = {
@@ -85,7 +85,6 @@ def _row(domain, spacing, gliding, pressure, fit_range):
 def measures_of_map_states(
     states: xr.Dataset,
     spacing: float,
-    composites: xr.DataArray | None = None,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
     """:func:`measures_of_states` of the states that are looked at closely.
@@ -96,26 +95,22 @@ def measures_of_map_states(
         From :func:`mechanics.states.map_states`.
     spacing : float
         Of the scan, mm.
-    composites : DataArray (offset, window_y, window_x), optional
-        Composite topographies of the joint, whose bearing-area cuts are compared with the contact.
     fit_range : (float, float), optional
         Smallest and largest box of the dimensions, mm; by default all between the cut-offs.
 
     Returns
     -------
     xr.Dataset
-        With the scalars ``direction``, ``offset`` and ``resolution``, and what
-        :func:`domain.null_models.null_models` gives.
+        With the scalars ``direction``, ``offset`` and ``resolution``, and over load the
+        probabilities of :data:`domain.isotropy.LAG_FIELDS`.
     """
     pressures, factor = states["pressure"].values, int(states["resolution"])
     side, forces = spacing * factor, states["normal_force"].values
     measures = measures_of_states(pressures > 0, pressures, side, forces, fit_range)
-    surface = None
-    if composites is not None:
-        here = composites.sel(offset=float(states["offset"]), method="nearest").values
-        surface = here[::factor, ::factor]
-    nulls = null_models(pressures > 0, side, surface, fit_range=fit_range)
-    measures = measures.merge(nulls.assign_coords(normal_force=measures["normal_force"]))
+    lags = [contact_at_lag(p > 0, str(states["direction"].item())) for p in pressures]
+    by_load = {name: ("normal_force", *words) for name, words in LAG_FIELDS.items()}
+    values = {name: [row[name] for row in lags] for name in LAG_FIELDS}
+    measures = measures.assign(labelled(by_load, values))
     place = {name: states[name] for name in ("direction", "offset", "resolution")}
     return measures.assign_coords(place)
 

@@ -56,8 +56,12 @@ _TABLE: dict[str, tuple] = {
         f"{name}_departure": ("normal_force", "1", f"{words}: departure from the null models")
         for name, words in QUANTITIES.items()
     },
-    "departure": ("normal_force", "1", "departure of both box dimensions from the null models"),
-    "verdict": ("normal_force", "1", "that departure where the dimension is determined"),
+    "null_departure": (
+        "normal_force",
+        "1",
+        "departure of both box dimensions from the null models",
+    ),
+    "null_verdict": ("normal_force", "1", "that departure where the dimension is determined"),
     "null_count_random": (_BY_SIDE, "1", "minimal cover N(r) of as many random nodes, mean"),
     "null_count_random_low": (_BY_SIDE, "1", "minimal cover of random nodes, lower end of 95 %"),
     "null_count_random_high": (_BY_SIDE, "1", "minimal cover of random nodes, upper end of 95 %"),
@@ -104,7 +108,7 @@ def null_models(
     xr.Dataset
         Over ``normal_force`` (without coordinate): each of :data:`QUANTITIES` with ``_random``,
         ``_random_low``, ``_random_high``, ``_cut``, ``_cut_difference`` with its ends and
-        ``_departure`` in words; ``departure`` and ``verdict`` of the domain, by
+        ``_departure`` in words; ``null_departure`` and ``null_verdict`` of the domain, by
         :func:`domain.departure.departure_of` and :func:`domain.departure.verdict_of`. The counts of
         the null models over the box sides ``null_side`` and ``null_mean_side`` (mm).
 
@@ -122,6 +126,73 @@ def null_models(
     values["null_side"] = dyadic_sizes(shape) * float(spacing)
     values["null_mean_side"] = mean_sizes(shape) * float(spacing)
     return labelled_dataset(_TABLE, values)
+
+
+def nulls_of_map_states(
+    states: xr.Dataset,
+    spacing: float,
+    composites: xr.DataArray,
+    fit_range: tuple[float, float] | None = None,
+) -> xr.Dataset:
+    """Null models of the contact domains that are looked at closely, under every load.
+
+    Parameters
+    ----------
+    states : xr.Dataset
+        From :func:`mechanics.states.map_states`.
+    spacing : float
+        Of the scan, mm.
+    composites : DataArray (offset, window_y, window_x)
+        Composite topographies of the joint in the direction of the states.
+    fit_range : (float, float), optional
+        Smallest and largest box of the dimensions, mm; by default all between the cut-offs.
+
+    Returns
+    -------
+    xr.Dataset
+        From :func:`null_models`, with the loads and the scalars ``direction``, ``offset`` and
+        ``resolution`` of the states.
+    """
+    factor = int(states["resolution"])
+    here = composites.sel(offset=float(states["offset"]), method="nearest").values
+    domains = states["pressure"].values > 0
+    nulls = null_models(domains, spacing * factor, here[::factor, ::factor], fit_range=fit_range)
+    names = ("normal_force", "direction", "offset", "resolution")
+    return nulls.assign_coords({name: states[name] for name in names})
+
+
+def beside_domains(domains: xr.Dataset, nulls: xr.Dataset) -> xr.Dataset:
+    """The table of contact domains with the null models of those that are looked at closely.
+
+    Parameters
+    ----------
+    domains : xr.Dataset
+        From :func:`domain.analysis.analyse_domains`.
+    nulls : xr.Dataset
+        From :func:`nulls_of_map_states`.
+
+    Returns
+    -------
+    xr.Dataset
+        What is known by load stands over all dimensions of the table, missing in other domains.
+    """
+    order = ("direction", "offset", "resolution", "normal_force")
+    sizes = tuple(domains.sizes[name] for name in order)
+    place = (
+        domains.get_index("direction").get_loc(nulls["direction"].item()),
+        int(np.argmin(np.abs(domains["offset"].values - nulls["offset"].item()))),
+        domains.get_index("resolution").get_loc(nulls["resolution"].item()),
+    )
+    added = {}
+    for name, values in nulls.data_vars.items():
+        if values.dims != ("normal_force",):
+            added[name] = values.variable
+            continue
+        words = values.dtype.kind == "U"
+        spread = np.full(sizes, "", values.dtype) if words else np.full(sizes, np.nan)
+        spread[place] = values.values
+        added[name] = xr.Variable(order, spread, values.attrs)
+    return domains.assign(added)
 
 
 def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
@@ -149,8 +220,8 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
         compared[name] = Comparison(values[name], *beside[1:3], *beside[5:])
         row[f"{name}_departure"] = departure_of([compared[name]], surface=surface)
     both = [compared["delta_sigma"], compared["delta_sigma_ordinary"]]
-    row["departure"] = departure_of(both, surface=surface)
-    row["verdict"] = verdict_of(row["departure"], is_determined(box.low, box.high))
+    row["null_departure"] = departure_of(both, surface=surface)
+    row["null_verdict"] = verdict_of(row["null_departure"], is_determined(box.low, box.high))
     for name, value in zip(("", "_low", "_high"), counts, strict=True):
         row[f"null_count_random{name}"] = value
     row["null_count_cut"] = cut_count

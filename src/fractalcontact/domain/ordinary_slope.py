@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.fitting import fit_line
+from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.ranges import within
 from ..core.slope_of_sums import BLOCKS
 from .box_counts import mean_count
@@ -104,6 +104,8 @@ def cover_used(
 
 def cover_slope(count: np.ndarray, sizes: np.ndarray) -> float:
     """Least-squares slope -d log N / d log r; NaN where a count is 0 or sizes are too few."""
-    if not (count > 0).all():
+    if sizes.size < FEWEST_POINTS or not (count > 0).all():
         return np.nan
-    return 0.0 - fit_line(np.log(sizes), np.log(count)).slope
+    x = np.log(sizes)
+    x -= x.mean()
+    return float(0.0 - x @ np.log(count) / (x @ x))
