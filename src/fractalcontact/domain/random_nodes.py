@@ -12,7 +12,7 @@ from .mean_law import dimension_by_means
 from .ordinary_slope import cover_slope, cover_used, dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
-DRAWS = 24
+DRAWS = 20
 
 #: Draws of numbers that cost next to nothing.
 CHEAP_DRAWS = 200

@@ -48,7 +48,13 @@ COLUMNS = {
     "morisita_scatter": "morisita_scatter",
     "half_share": "half_share",
     "half_share_random": "half_share_random",
+    "clusters_random": "clusters_random",
+    "clusters_cut": "clusters_cut",
+    "morisita_cut": "morisita_cut",
 }
+
+#: Null models that are drawn where they are known, at the offset of the maps: column, marker.
+NULLS = {"random": "+", "cut": "x"}
 EXPONENTS = {
     "cluster_exponent": "exponent",
     "cluster_exponent_low": "exponent_low",
@@ -82,7 +88,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     number, share, localised, distribution = figure.subplots(2, 2).ravel()
     _draw_domains((number, share, localised), table)
     _draw_sizes(distribution, sizes)
-    by_load = [heading("(a) to (c); hollow: few nodes, not fitted"), *entries(number)]
+    by_load = [
+        heading("(a) to (c); hollow: few nodes; +: random nodes, ×: bearing-area cut"),
+        *entries(number),
+    ]
     at = f"(d) $F$ = {force_label(loads[mapped])}; lines are fits"
     legends_below(figure, by_load, [heading(at), *entries(distribution)])
     headline(figure, settings["label"], place(direction))
@@ -144,6 +153,10 @@ def _draw_domains(panels, table):
         above = 1 + 1.96 * points["morisita_scatter"]
         below = (1 - 1.96 * points["morisita_scatter"]).clip(lower=0.1)
         localised.fill_between(v, below, above, color=colour_of(n), alpha=0.15, lw=0)
+        for axes, column in ((number, "clusters"), (localised, "morisita")):
+            for null, marker in NULLS.items():
+                if f"{column}_{null}" in points:
+                    axes.plot(v, points[f"{column}_{null}"], marker, color=colour_of(n))
     localised.axhline(1, color="0.4", lw=0.8)
     for axes in panels:
         offset_axis(axes, table["offset_mm"].values)
