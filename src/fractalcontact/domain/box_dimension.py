@@ -158,6 +158,7 @@ def box_dimension(
     extent = cropped(domain)
     # A single node has no extent to divide: it is seen at the scales of the window.
     shape = extent.shape if extent.size > 1 else domain.shape
+    fitting = sizes is None
     sizes = box_sizes(shape, min(domain.shape)) if sizes is None else np.asarray(sizes, dtype=float)
     limits = (0, np.inf) if fit_range is None else tuple(np.asarray(fit_range) / spacing)
     count, ordinary = _minimal_covers(domain, extent, sizes, limits)
@@ -169,7 +170,8 @@ def box_dimension(
     cover = _Cover(sizes, r, count, used)
     ladder = _best_scales(cover, {max(extent.shape), max(domain.shape)})
     side = max(extent.shape) * float(spacing)
-    if nodes in (1, domain.size) or _is_exact(cover, ladder):
+    # Boxes of sizes that fit a filled window count it exactly, others overhang it.
+    if nodes == 1 or (fitting and nodes == domain.size) or _is_exact(cover, ladder):
         return replace(_of_cover(cover, ladder, "exact", side), ordinary=ordinary)
     of_cover = -_line(sizes, count, used).slope
     law, means = law_of_means(extent, limits, of_cover, whole_cells)

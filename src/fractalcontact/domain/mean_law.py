@@ -92,7 +92,8 @@ def law_of_means(
     found = _fitted(means, extent, limits, whole_cells)
     if found is None:
         return None, means
-    law, rivals, kept = found
+    law, rivals, between = found
+    kept = between & (sizes >= SMALLEST)
     sizes, parts, count = sizes[kept].astype(float), parts[kept], count[kept]
     slopes = [law.dimension, of_cover, *(rival.dimension for rival in rivals)]
     if sizes.size // 2 >= FEWEST_SCALES:
@@ -108,17 +109,16 @@ def law_of_means(
 
 
 def _fitted(means, extent, limits, whole_cells):
-    """Law, rivals and the sizes kept for it; None with too few between the cut-offs."""
+    """Law, rivals and the sizes between the cut-offs, where they are enough; else None."""
     sizes, count = means
     alone, full = _beyond_cut_offs(means, extent)
     between = ~alone & ~full & (sizes >= SMALLEST_SEPARATING) & within(sizes, *limits)
-    kept = between & (sizes >= SMALLEST)
-    if np.count_nonzero(kept) < FEWEST_SCALES:
+    if np.count_nonzero(between & (sizes >= SMALLEST)) < FEWEST_SCALES:
         return None
     law, rivals = best_law(
         sizes[between].astype(float), count[between], max(extent.shape), whole_cells
     )
-    return None if law is None else (law, rivals, kept)
+    return None if law is None else (law, rivals, between)
 
 
 def _beyond_cut_offs(means, extent):
@@ -138,8 +138,15 @@ class FoundLaw(NamedTuple):
     law: Law
     sizes: np.ndarray
     """(k,) int64, cells: those it was fitted to."""
+    separating: np.ndarray
+    """(m,) int64, cells: those by which its form was chosen."""
     side: float
     """Extent of the domain, cells."""
+
+    def refound(self, count: np.ndarray, whole_cells: bool | None) -> float:
+        """Dimension of the best law of other counts at `separating`; NaN where none fits."""
+        law, _ = best_law(self.separating.astype(float), count, self.side, whole_cells)
+        return np.nan if law is None else law.dimension
 
     def dimension_of(self, count: np.ndarray) -> float:
         """Dimension of a law of this form fitted to other counts at these sizes; NaN without."""
@@ -163,7 +170,11 @@ def find_law(
     sizes = mean_sizes(extent.shape)
     means = MeanCounts(sizes, cover_and_mean(extent, np.empty(0, np.int64), sizes)[1])
     found = _fitted(means, extent, limits, whole_cells)
-    return None if found is None else FoundLaw(found[0], sizes[found[2]], max(extent.shape))
+    if found is None:
+        return None
+    law, _, between = found
+    separating = sizes[between]
+    return FoundLaw(law, separating[separating >= SMALLEST], separating, max(extent.shape))
 
 
 def dimension_by_means(

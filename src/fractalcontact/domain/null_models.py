@@ -202,7 +202,8 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
     ordinary = np.nan if box.ordinary is None else box.ordinary.dimension
     values = {"delta_sigma": box.dimension, "delta_sigma_ordinary": ordinary}
     used = box.ordinary.used if box.ordinary is not None else None
-    bands, counts = random_bands(domain.shape, nodes, mask=mask, used=used, **how)
+    law = find_law(domain, **how) if box.estimator == "mean" else None
+    bands, counts = random_bands(domain.shape, nodes, mask=mask, law=law, used=used, **how)
     cut: dict[str, tuple] = {}
     cut_count = np.full(dyadic_sizes(domain.shape).size, np.nan)
     if surface and nodes > 1:

@@ -6,9 +6,10 @@ import numpy as np
 import scipy.ndimage
 
 from ..core.intervals import CONFIDENCE, t_quantile
+from .box_counts import cover_and_mean
 from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
 from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope
-from .mean_law import dimension_by_means
+from .mean_law import FoundLaw, dimension_by_means
 from .ordinary_slope import cover_slope, cover_used, dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
@@ -66,6 +67,7 @@ def random_bands(
     mask: np.ndarray | None = None,
     limits: tuple[float, float] = (0.0, np.inf),
     whole_cells: bool | None = False,
+    law: FoundLaw | None = None,
     used: np.ndarray | None = None,
     draws: int = DRAWS,
 ) -> tuple[dict[str, Band], Band]:
@@ -83,9 +85,11 @@ def random_bands(
         Smallest and largest box side that may be fitted, cells.
     whole_cells : bool, optional
         As :func:`domain.count_law.best_law` takes it.
+    law : FoundLaw, optional
+        Law of the domain that is compared: the draws' laws are fitted over the same boxes. By
+        default each draw has its own range, between its own cut-offs.
     used : (k,) bool ndarray, optional
-        Sizes of the ordinary slope that is compared: it is taken over the same boxes. By default
-        those between the cut-offs of each draw.
+        Likewise the sizes of the ordinary slope that is compared.
     draws : int
 
     Returns
@@ -98,9 +102,10 @@ def random_bands(
 
     Notes
     -----
-    The same shape and number draw the same nodes on every run. By the law of mean counts each draw
-    has its own range between its own cut-offs, as the domain has; one without, for its nodes are
-    alone or its boxes full at all sizes, has the limit 0 or 2.
+    The same shape and number draw the same nodes on every run. Nodes at random cross over from
+    points alone to full boxes, a slope of 2 + ln f / ln R over R cells at a fraction f in contact:
+    what a domain is compared with is that slope over its own boxes. A draw of its own range without
+    one, for its nodes are alone or its boxes full at all sizes, has the limit 0 or 2.
     """
     sizes = dyadic_sizes(shape)
     cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
@@ -110,7 +115,13 @@ def random_bands(
     covers = []
     for seed in range(draws if nodes > 1 else 0):
         domain = random_nodes(shape, nodes, cells, seed)
-        dimension, cover = dimension_by_means(domain, sizes, limits=limits, whole_cells=whole_cells)
+        if law is None:
+            dimension, cover = dimension_by_means(
+                domain, sizes, limits=limits, whole_cells=whole_cells
+            )
+        else:
+            cover, mean = cover_and_mean(domain, sizes, law.separating)
+            dimension = law.refound(mean, whole_cells)
         covers.append(cover)
         rows["delta_sigma"].append(dimension)
         kept = cover_used(cover, sizes, nodes, shape, limits) if used is None else used
