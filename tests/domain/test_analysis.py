@@ -5,8 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.domain.analysis import analyse_domains, scaling_over_resolutions
-from fractalcontact.domain.box_counts import box_sizes
-from fractalcontact.domain.box_dimension import ONE_NODE, box_dimension
+from fractalcontact.domain.box_dimension import ONE_NODE, dimension_of_domain
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1
@@ -34,7 +33,7 @@ def test_each_domain_has_the_dimension_of_its_box_counts(fields):
     for k in (1, 2):
         row = table.sel(resolution=k, normal_force=4)
         domain = fields[f"in_contact_{k}"].values[0, 0, 4]
-        expected = box_dimension(domain, k * SPACING, sizes=box_sizes(domain.shape))
+        expected = dimension_of_domain(domain, k * SPACING)
         assert row.delta_sigma.item() == expected.dimension
         assert row.delta_sigma_low.item() == expected.low
         assert row.reason.item() == ""

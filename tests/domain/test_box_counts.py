@@ -7,7 +7,15 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from places import BENCHMARKS
 
-from fractalcontact.domain.box_counts import box_count, mean_count, whole_sizes
+from fractalcontact.domain.box_counts import (
+    box_count,
+    box_sizes,
+    cover_and_mean,
+    is_minimal,
+    mean_count,
+    whole_sizes,
+    window_sizes,
+)
 
 DOMAINS = arrays(bool, st.tuples(st.integers(1, 14), st.integers(1, 14)))
 
@@ -44,6 +52,47 @@ def test_mean_counts_agree_with_counting_by_hand(domain, r, blocks):
                 part_x = np.clip((2 * x + r) * blocks // (2 * nx), 0, blocks - 1)
                 places[part_y, part_x] += 1
     np.testing.assert_allclose(mean_count(domain, [r], blocks=blocks)[0], places / r**2)
+
+
+def counted_at_every_origin(domain, size, step):
+    """N(r) by putting every centre in its box, at origins a step apart along both axes."""
+    y, x = np.nonzero(domain)
+    origins = np.arange(step / 2, size, step)
+    rows = [np.floor((y + 0.5 + origin) / size).astype(int) for origin in origins]
+    columns = [np.floor((x + 0.5 + origin) / size).astype(int) for origin in origins]
+    return min(len(set(zip(row, column, strict=True))) for row in rows for column in columns)
+
+
+@pytest.mark.parametrize("size", [17, 20, 23, 32])
+def test_cover_is_minimal_over_every_origin_of_large_boxes(size):
+    # More origins along an axis than the 16 that were once tried.
+    for seed in range(3):
+        domain = np.random.default_rng(seed).random((70, 55)) < 0.02
+        assert box_count(domain, [size])[0] == counted_at_every_origin(domain, size, 1)
+
+
+@given(DOMAINS, st.integers(3, 20), st.integers(2, 4))
+@settings(max_examples=30, deadline=None)
+def test_cover_of_parts_of_cells_is_minimal(domain, numerator, denominator):
+    size = max(numerator / denominator, 1.0)
+    assert is_minimal([size]).all()
+    expected = counted_at_every_origin(domain, size, 0.05) if domain.any() else 0
+    assert box_count(domain, [size])[0] == expected
+
+
+def test_bounds_are_told_from_minimal_covers():
+    assert is_minimal([1, 7, 12.5, 200 / 3, 200 / 7]).tolist() == [True, True, True, True, False]
+    assert is_minimal(window_sizes((200, 248))).all()
+    assert not is_minimal(box_sizes(200)).all()
+
+
+@given(DOMAINS, st.lists(st.integers(1, 20), min_size=1, max_size=4))
+@settings(max_examples=40, deadline=None)
+def test_one_pass_counts_covers_and_means_alike(domain, sizes):
+    sizes = np.array(sizes)
+    cover, mean = cover_and_mean(domain, sizes, sizes)
+    np.testing.assert_array_equal(cover, box_count(domain, sizes))
+    np.testing.assert_allclose(mean, mean_count(domain, sizes).sum(axis=(1, 2)))
 
 
 # -- properties ------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from ensembles import ensemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 
 from fractalcontact.domain.box_counts import box_count, box_sizes
 from fractalcontact.domain.box_dimension import box_dimension, local_slopes
@@ -15,27 +16,6 @@ LEAST_STEP = 0.1
 
 CARPET = np.log(8) / np.log(3)
 DUST = np.log(4) / np.log(3)
-
-
-def ternary_digits(n, levels):
-    """Base-3 digits of the places of n cell centres in the unit interval, (levels, n)."""
-    place = ((2 * np.arange(n) + 1) * 3**levels) // (2 * n)
-    return np.array([(place // 3**level) % 3 for level in range(levels)])
-
-
-def levels_of(n):
-    """Generations that n cells resolve: the last one is at least a cell wide."""
-    return int(np.floor(np.log(n) / np.log(3) + 1e-9))
-
-
-def sierpinski_carpet(n):
-    middle = ternary_digits(n, levels_of(n)) == 1
-    return ~(middle[:, :, np.newaxis] & middle[:, np.newaxis, :]).any(axis=0)
-
-
-def cantor_dust(n):
-    line = (ternary_digits(n, levels_of(n)) != 1).all(axis=0)
-    return line[:, np.newaxis] & line[np.newaxis, :]
 
 
 def drawn(points, n):
@@ -64,14 +44,6 @@ def carpet_points(levels):
     corners = np.argwhere(sierpinski_carpet(3**levels))
     inside = np.array([[y, x] for y in (1e-6, 1 - 1e-6) for x in (1e-6, 1 - 1e-6)])
     return (corners[:, np.newaxis] + inside).reshape(-1, 2) / 3**levels
-
-
-def percolation_cluster(n, seed):
-    from scipy import ndimage
-
-    label, _ = ndimage.label(np.random.default_rng(seed).random((n, n)) < 0.592746)
-    sizes = np.bincount(label.ravel())
-    return label == 1 + np.argmax(sizes[1:])
 
 
 @numba.njit

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact.domain.box_dimension import box_dimension
+from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.correlation import correlation_dimension
 from fractalcontact.domain.measures import domain_measures, measures_of_states, order_name
 from fractalcontact.domain.multifractal import ORDERS, lacunarity
@@ -19,9 +19,9 @@ def states():
 def test_row_holds_what_the_measures_say():
     domains, pressures = states()
     row = domain_measures(domains[2], 0.1, pressures[2])
-    box = box_dimension(domains[2], 0.1)
-    assert row["box_dimension"] == box.dimension
-    assert (row["box_dimension_low"], row["box_dimension_r_max"]) == (box.low, box.r_max)
+    box = dimension_of_domain(domains[2], 0.1)
+    assert row["delta_sigma"] == box.dimension
+    assert (row["delta_sigma_low"], row["delta_sigma_r_max"]) == (box.low, box.r_max)
     assert row["correlation_dimension"] == correlation_dimension(domains[2], 0.1).value
     assert row["lacunarity_slope"] == lacunarity(domains[2], 0.1).slope.value
     assert all(isinstance(value, float) for value in row.values())
@@ -50,9 +50,9 @@ def test_states_of_a_specimen():
         assert {"units", "long_name"} <= set(variable.attrs)
     row = domain_measures(domains[1], 0.1, pressures[1])
     state = found.sel(normal_force=10.0)
-    assert state["box_dimension"] == row["box_dimension"]
+    assert state["delta_sigma"] == row["delta_sigma"]
     assert state["generalised_dimension_high"].sel(order=-1) == row["d_minus_1_high"]
-    assert np.isnan(found["box_dimension"].sel(normal_force=0.0))
+    assert np.isnan(found["delta_sigma"].sel(normal_force=0.0))
     assert np.isnan(found["lacunarity"].sel(normal_force=0.0)).all()
     assert np.isnan(found["local_slope"].sel(normal_force=0.0)).all()
     assert np.isfinite(found["local_slope"].sel(normal_force=100.0)).all()

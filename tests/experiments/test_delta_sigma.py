@@ -6,7 +6,7 @@ from ensembles import ensemble
 
 from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.intervals import mean_interval
-from fractalcontact.domain.box_dimension import box_dimension
+from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.experiments.delta_sigma import dimension_test, synthetic_surface
 from fractalcontact.experiments.units import SIDE
@@ -58,7 +58,7 @@ def test_boxes_are_counted_on_the_same_state(found):
     space = HalfSpace((size, size), (SIDE / size,) * 2, 1.0)
     domain = solve_contact(surface, space, force=force).in_contact
     assert int(chosen["nodes"].sel(resolution=1)) == domain.sum()
-    box = box_dimension(domain, SIDE / size)
+    box = dimension_of_domain(domain, SIDE / size)
     assert float(chosen["delta_box"]) == pytest.approx(box.dimension)
     assert float(chosen["boxes_per_node"].sel(resolution=1)) == 1
 

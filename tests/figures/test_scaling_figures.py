@@ -11,6 +11,7 @@ from cases import representative
 from matplotlib.figure import Figure
 
 from fractalcontact.core.fitting import fit_line
+from fractalcontact.domain.box_dimension import ESTIMATORS
 from fractalcontact.domain.renormalisation import renormalisation
 from fractalcontact.figures import draw as figures
 from fractalcontact.figures.draw import drawer_of
@@ -123,13 +124,18 @@ def test_prefractals_balance_the_force(atlas):
 def test_box_counts_give_the_dimension_of_the_atlas(atlas, specimen):
     drawing = draw(atlas, "fig09_box_counting", specimen)
     stored = finest(atlas, "domains", specimen).isel(normal_force=-1)
-    used = drawing.data[drawing.data["used"]]
-    line = fit_line(np.log(used["box_side_mm"]), np.log(used["fitted_count"]))
-    np.testing.assert_allclose(-line.slope, stored["delta_sigma"].item(), atol=1e-9)
-    # The line goes through the counts, whose own slope differs by what averaging does.
+    used = drawing.data[drawing.data["ordinary_used"]]
+    line = fit_line(np.log(used["box_side_mm"]), np.log(used["box_count"]))
+    np.testing.assert_allclose(-line.slope, stored["delta_sigma_ordinary"].item(), atol=1e-9)
     np.testing.assert_allclose(
-        np.log(used["fitted_count"]).mean(), np.log(used["box_count"]).mean(), atol=1e-9
+        np.log(used["ordinary_count"]), line.intercept + line.slope * np.log(used["box_side_mm"])
     )
+    law = drawing.data[np.isfinite(drawing.data["law_count"])]
+    if str(stored["estimator"].item()) == ESTIMATORS["mean"]:
+        misfit = np.sqrt(np.mean((law["law_count"] / law["mean_count"] - 1) ** 2))
+        np.testing.assert_allclose(misfit, stored["fit_misfit"].item(), rtol=0.05)
+    null = drawing.data[np.isfinite(drawing.data["random_count"])]
+    assert (null["random_count_low"] <= null["random_count_high"]).all()
     reason = str(stored["reason"].item())
     assert (f"no dimension: {reason}" in drawing.caption) == bool(reason)
 

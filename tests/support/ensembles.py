@@ -45,6 +45,11 @@ ENSEMBLES: dict[str, tuple] = {
     "pair percolation clusters": ((256, 6), (512, 6)),
     "random domains": (60, 200),
     "thinned domains": (25, 100),
+    "random domains and nulls": (
+        ((128, 40, 20),),
+        ((128, 40, 200), (128, 300, 200), (200, 30, 200), (200, 305, 200)),
+    ),
+    "fractals beside nulls": (1, 6),
     "sets of power-law sizes": (60, 200),
     # surface
     "synthetic seeds": (8, 20),

@@ -22,7 +22,7 @@ from ..core.child_process import ChildFailed, in_child
 from ..core.datasets import labelled_dataset
 from ..core.errors import NotConverged
 from ..core.labels import cf_attrs
-from ..domain.box_dimension import box_dimension
+from ..domain.box_dimension import dimension_of_domain
 from ..elastic.halfspace import HalfSpace
 from ..methods.peers import PATIENCE, Load, PublicCode, clearance_of, state_of
 from ..methods.registry import METHODS, Method, installed_peers
@@ -137,7 +137,7 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
 
 def _first_runs(problem, recipe):
     """A row for every way tried, and the ways that gave a state, each run once."""
-    dimension = box_dimension(problem.single.state.in_contact, 1.0).dimension
+    dimension = dimension_of_domain(problem.single.state.in_contact, 1.0).dimension
     table, ways = [], []
     for ladder in _ladders(problem, recipe):
         for way in ladder:
@@ -285,7 +285,7 @@ def errors_of(
     """
     exact = reference.state
     same = np.array_equal(state.in_contact, exact.in_contact)
-    reached = dimension if same else box_dimension(state.in_contact, 1.0).dimension
+    reached = dimension if same else dimension_of_domain(state.in_contact, 1.0).dimension
     norm = np.sqrt(np.mean(exact.pressure**2))
     return {
         "force_error": float(reference.error(state)),

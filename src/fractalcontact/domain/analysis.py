@@ -9,20 +9,41 @@ from ..core.arrays import padded
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.ranges import within
-from .box_counts import box_sizes
-from .box_dimension import contact_dimension
+from .box_counts import window_sizes
+from .box_dimension import ESTIMATORS, dimension_of_domain, is_determined
 from .clusters import CLUSTER_FIELDS, cluster_statistics
+from .isotropy import LAG_FIELDS, contact_at_lag
+from .mean_law import mean_sizes
 from .renormalisation import compare_dimensions, renormalisation
 
 #: Numbers kept of every contact domain: name, unit, long name.
 DOMAIN_FIELDS = {
-    "delta_sigma": ("1", "box-counting dimension Delta_sigma of the contact domain"),
+    "delta_sigma": (
+        "1",
+        "box-counting dimension Delta_sigma of the contact domain",
+    ),
     "delta_sigma_low": ("1", "Delta_sigma, lower end of the 95 % interval"),
     "delta_sigma_high": ("1", "Delta_sigma, upper end of the 95 % interval"),
     "delta_sigma_error": ("1", "Delta_sigma, solver error bound"),
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
     "fit_n": ("1", "box sizes fitted"),
+    "fit_misfit": ("1", "root mean square of the counts about the law, fraction of them"),
+    "law_amplitude": ("1", "A of the count law: boxes as large as the domain's extent"),
+    "law_outline": ("1", "b_1 of the count law: outline of the domain"),
+    "law_outline_square": ("1", "b_2 of the count law: outline of the domain"),
+    "law_node_width": ("mm", "c of the count law: what a node stands for"),
+    "law_extent": ("mm", "L of the count law: longer side of the domain's extent"),
+    "delta_sigma_ordinary": (
+        "1",
+        "ordinary box-counting dimension: least-squares slope of log N over log r, minimal cover",
+    ),
+    "delta_sigma_ordinary_low": ("1", "ordinary dimension, lower end of the 95 % interval"),
+    "delta_sigma_ordinary_high": ("1", "ordinary dimension, upper end of the 95 % interval"),
+    "ordinary_fit_min": ("mm", "smallest box in the fit of the ordinary dimension"),
+    "ordinary_fit_max": ("mm", "largest box in the fit of the ordinary dimension"),
+    "ordinary_fit_n": ("1", "box sizes in the fit of the ordinary dimension"),
+    **LAG_FIELDS,
     **CLUSTER_FIELDS,
 }
 
@@ -40,9 +61,27 @@ _TABLE = {
         "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k",
     ),
     "reason": (_ORDER, "1", "why there is no dimension"),
-    "box_count": ((*_ORDER, "scale"), "1", "occupied boxes N(r), minimal cover over grid origins"),
+    "estimator": (_ORDER, "1", "what delta_sigma is estimated by"),
+    "determined": (_ORDER, "1", "whether the interval of delta_sigma is no wider than 1"),
+    "ordinary_determined": (
+        _ORDER,
+        "1",
+        "whether the interval of delta_sigma_ordinary is no wider than 1",
+    ),
+    "box_count": (
+        (*_ORDER, "scale"),
+        "1",
+        "occupied boxes N(r), minimal cover over all grid origins",
+    ),
     "box_used": ((*_ORDER, "scale"), "1", "box size used in the fit"),
+    "ordinary_used": (
+        (*_ORDER, "scale"),
+        "1",
+        "box size used in the fit of the ordinary dimension",
+    ),
     "box_side": (("resolution", "scale"), "mm", "side of the boxes r"),
+    "mean_count": ((*_ORDER, "mean_scale"), "1", "occupied boxes N(r), mean over all grid origins"),
+    "mean_side": (("resolution", "mean_scale"), "mm", "side of the boxes of the mean counts r"),
 }
 
 
@@ -51,7 +90,7 @@ def analyse_domains(
     spacing: float,
     *,
     fit_range: tuple[float, float] | None = None,
-    whole_cells: bool | None = None,
+    whole_cells: bool | None = False,
 ) -> xr.Dataset:
     """Box counts, Delta_sigma and clusters of every contact domain.
 
@@ -66,31 +105,40 @@ def analyse_domains(
     fit_range : (float, float), optional
         Smallest and largest box of the fits, mm; by default all between the cut-offs.
     whole_cells : bool, optional
-        What is known of the nodes, see :func:`domain.box_dimension.box_dimension`.
+        What is known of the nodes, see :func:`domain.box_dimension.box_dimension`; those of a
+        solution are centres of cells.
 
     Returns
     -------
     xr.Dataset
-        :data:`DOMAIN_FIELDS` and ``reason`` (why there is no dimension) over (direction, offset,
-        resolution, load); ``box_count`` and ``box_used`` with a last dimension scale, and
-        ``cluster_octaves`` with a last dimension octave; ``box_side`` (resolution, scale) in mm.
+        :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension) and ``determined`` over
+        (direction, offset, resolution, load); ``box_count`` and ``box_used`` with a last dimension
+        scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with octave; ``box_side`` and
+        ``mean_side`` (resolution, ...) in mm. The curve of the count law is that of
+        :func:`domain.count_law.law_count` with the terms ``law_...``.
 
     Notes
     -----
-    The dimension is that of :func:`domain.box_dimension.contact_dimension`. Its solver error bound
-    is the fraction of the nodes whose contact is ambiguous: in 95 to 98 % of 250 states of three
-    twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
+    The dimension is that of :func:`domain.box_dimension.dimension_of_domain`. Its solver error
+    bound is the fraction of the nodes whose contact is ambiguous: in 95 to 98 % of 250 states of
+    three twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
     """
     names = [name for name in fields.data_vars if str(name).startswith("in_contact_")]
     factors = sorted(int(str(name).removeprefix("in_contact_")) for name in names)
     domains = {k: fields[f"in_contact_{k}"].values for k in factors}
-    sizes = {k: box_sizes(domains[k].shape[-2:]) for k in factors}
+    shapes = {k: domains[k].shape[-2:] for k in factors}
+    sizes = {
+        "box_side": [window_sizes(shapes[k]) * k * spacing for k in factors],
+        "mean_side": [mean_sizes(shapes[k]) * k * spacing for k in factors],
+    }
     n_direction, n_offset, n_load, *window = domains[factors[0]].shape
     shape = (n_direction, n_offset, len(factors), n_load)
     # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
     n_octaves = int(np.prod(window)).bit_length()
     solved, ambiguous = _solver_state(fields, shape)
-    table = _empty_table(shape, max(len(s) for s in sizes.values()), n_octaves)
+    n_scales, n_means = (max(map(len, of_all)) for of_all in sizes.values())
+    table = _empty_table(shape, n_scales, n_means, n_octaves)
+    directions = [str(direction) for direction in fields["direction"].values]
     for place in np.ndindex(shape):
         direction, offset, k, load = place
         if not solved[place]:
@@ -101,8 +149,8 @@ def analyse_domains(
             domains[factor][direction, offset, load],
             factor * spacing,
             ambiguous[place],
+            directions[direction],
             fit_range=fit_range,
-            sizes=sizes[factor],
             whole_cells=whole_cells,
         )
         table["cluster_octaves"][place] = 0
@@ -111,8 +159,8 @@ def analyse_domains(
                 table[name][place][: len(value)] = value
             else:
                 table[name][place] = value
-    table["reason"] = table["reason"].astype(str)
-    table["box_side"] = padded([sizes[k] * k * spacing for k in factors])
+    table |= {name: table[name].astype(str) for name in ("reason", "estimator")}
+    table |= {name: padded(of_all) for name, of_all in sizes.items()}
     multiples = ("resolution", factors, cf_attrs("1", "multiple k of the scan's spacing"))
     octaves = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
     coords: dict[str, Any] = {
@@ -129,21 +177,25 @@ def _solver_state(fields, shape):
     return tuple(fields[name].transpose(*_ORDER).values for name in ("solved", "nodes_error"))
 
 
-def _empty_table(shape, n_scales, n_octaves) -> dict[str, np.ndarray]:
+def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
     """Values of :data:`_TABLE` before any domain is measured, but the sides of the boxes."""
     return {
         **{name: np.full(shape, np.nan) for name in DOMAIN_FIELDS},
         "cluster_octaves": np.full((*shape, n_octaves), np.nan),
         "reason": np.full(shape, "", object),
+        "estimator": np.full(shape, "", object),
+        "determined": np.zeros(shape, bool),
+        "ordinary_determined": np.zeros(shape, bool),
         "box_count": np.full((*shape, n_scales), np.nan),
         "box_used": np.zeros((*shape, n_scales), bool),
+        "ordinary_used": np.zeros((*shape, n_scales), bool),
+        "mean_count": np.full((*shape, n_means), np.nan),
     }
 
 
-def _row(domain, spacing, ambiguous, **how) -> dict:
+def _row(domain, spacing, ambiguous, direction, **how) -> dict:
     """What the table holds of one domain; ``how`` its dimension is to be found."""
-    box = contact_dimension(domain, spacing, **how)
-    clusters = cluster_statistics(domain, spacing)
+    box = dimension_of_domain(domain, spacing, **how)
     has_dimension = not np.isnan(box.dimension)
     return {
         "delta_sigma": box.dimension,
@@ -153,10 +205,35 @@ def _row(domain, spacing, ambiguous, **how) -> dict:
         "fit_min": box.r_min,
         "fit_max": box.r_max,
         "fit_n": box.n,
-        **clusters,
+        "fit_misfit": box.misfit,
+        **{f"law_{name}": value for name, value in box.terms._asdict().items()},
+        **_ordinary(box, spacing),
+        **contact_at_lag(domain, direction),
+        **cluster_statistics(domain, spacing),
         "reason": box.reason,
+        "estimator": ESTIMATORS.get(box.estimator, ""),
+        "determined": box.determined,
         "box_count": box.count,
         "box_used": box.used,
+        "mean_count": box.means.counts,
+    }
+
+
+def _ordinary(box, spacing) -> dict:
+    """The ordinary dimension of a domain, nothing where there is none."""
+    slope = box.ordinary
+    if slope is None:
+        return {}
+    used = np.isin(np.round(box.r / spacing), slope.sizes[slope.used])
+    return {
+        "delta_sigma_ordinary": slope.dimension,
+        "delta_sigma_ordinary_low": slope.low,
+        "delta_sigma_ordinary_high": slope.high,
+        "ordinary_fit_min": slope.r_min * spacing,
+        "ordinary_fit_max": slope.r_max * spacing,
+        "ordinary_fit_n": slope.n,
+        "ordinary_determined": is_determined(slope.low, slope.high),
+        "ordinary_used": used,
     }
 
 

@@ -1,5 +1,7 @@
 """Box counts of a contact domain: minimal cover over grid origins, and mean over grid origins."""
 
+from fractions import Fraction
+
 import numpy as np
 
 from ..core import arguments
@@ -14,6 +16,9 @@ RATIOS = (2, 3, 4, 5)
 
 #: Compiled code counts nodes in four bytes.
 _MOST_CELLS = 2**31 - 1
+
+#: Sizes of whole parts of a cell are tried at every origin up to so many parts.
+_MOST_PARTS = 4
 
 #: Boxes of no size cover more than this many times an oblong extent.
 MOST_OVERHANG = 1.1
@@ -64,6 +69,14 @@ def boxes_along(n: int, sizes: float | np.ndarray) -> np.ndarray:
     return np.ceil(n / sizes - 1e-9)
 
 
+def window_sizes(shape: tuple[int, ...]) -> np.ndarray:
+    """Whole box sides in cells for a window, to half of its shorter side: the axis of stages.
+
+    Every grid origin is tried for whole sizes, and the powers of two are among them.
+    """
+    return whole_sizes(min(shape) / 2)
+
+
 def whole_sizes(largest: float) -> np.ndarray:
     """Whole box sides from 1 to a largest, `SIZES_PER_OCTAVE` in each doubling where there are."""
     return np.unique(np.round(geometric_sizes(1, largest)).astype(np.int64))
@@ -97,46 +110,117 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     sizes : (k,) array_like
         Box sides in cells, at least 1, not necessarily whole.
     max_shifts : int
-        Origins tried along each axis, evenly spaced over a box; never more than cells in its side.
+        Origins tried along each axis where not all of them are: evenly spaced over a box.
 
     Returns
     -------
     (k,) int64
-        N(r). Time grows with the number of cells for each size, no more than that.
+        N(r): the minimum over every grid origin where :func:`is_minimal` says so, else an upper
+        bound of it. Linear in cells for each size.
 
     Raises
     ------
     ValueError
         If a size is below 1, or no number, or the domain is not a (y, x) grid.
+
+    Notes
+    -----
+    The boxes of all r x r grids together are the places of one gliding box, each met once: every
+    origin costs no more than one look at every place.
     """
     sizes = _checked_sizes(sizes)
     max_shifts = whole_number(max_shifts, "max_shifts", least=1, most=_MOST_CELLS)
-    nodes = nodes_below(domain)
-    return np.array([_minimal_cover(nodes, size, max_shifts) for size in sizes], dtype=np.int64)
+    extent = cropped(_checked_domain(domain))
+    counts = np.ones(sizes.size, np.int64)  # by a box as large as the extent
+    smaller = sizes < max(extent.shape)
+    whole = smaller & (sizes == np.round(sizes))
+    counts[whole] = cover_and_mean(extent, sizes[whole].astype(np.int64))[0]
+    nodes = _summed(extent) if (smaller & ~whole).any() else None
+    for k in np.flatnonzero(smaller & ~whole):
+        origins = _origins(sizes[k], max_shifts)
+        counts[k] = _minimal_cover(nodes, sizes[k], origins)
+    return counts if extent.any() else np.zeros(sizes.size, np.int64)
 
 
-def nodes_below(domain: np.ndarray) -> np.ndarray:
-    """Nodes below and left of each corner: four look-ups then tell how many are in a box.
+def is_minimal(sizes: np.ndarray) -> np.ndarray:
+    """Whether :func:`box_count` tries every grid origin; otherwise its count is an upper bound.
+
+    Boxes of p / q cells have p origins along each axis that part the nodes in different ways. All
+    are tried for whole sizes, and for halves, thirds and quarters of cells.
 
     Parameters
     ----------
-    domain : (ny, nx) bool array_like
+    sizes : (k,) array_like
+        Box sides in cells.
 
     Returns
     -------
-    (ny + 1, nx + 1) int32
+    (k,) bool
+    """
+    return np.array([_ratio(size) is not None for size in _checked_sizes(sizes)], bool)
+
+
+def _ratio(size: float) -> Fraction | None:
+    """A box side as p / q with a small q, or None."""
+    ratio = Fraction(size).limit_denominator(_MOST_PARTS)
+    return ratio if abs(float(ratio) - size) < 1e-9 * size else None
+
+
+def _origins(size: float, max_shifts: int) -> np.ndarray:
+    """Origins of a grid of boxes along one axis, cells: one for each way to part the nodes."""
+    ratio = _ratio(size)
+    if ratio is None:
+        shifts = max(min(int(np.ceil(size)), max_shifts), 1)
+        return size * np.arange(shifts) / shifts
+    # Nodes change boxes where an edge passes a centre: at 1/2 + whole parts 1/q of a cell.
+    return 0.5 + (np.arange(ratio.numerator) + 0.5) / ratio.denominator
+
+
+def cropped(domain: np.ndarray) -> np.ndarray:
+    """The part of the grid that a domain spans; one empty cell for an empty domain."""
+    if not domain.any():
+        return np.zeros((1, 1), dtype=bool)
+    rows, columns = (np.flatnonzero(domain.any(axis=axis)) for axis in (1, 0))
+    return domain[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+
+
+def cover_and_mean(
+    domain: np.ndarray, cover_sizes: np.ndarray, mean_sizes: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Minimal cover and mean number of boxes over all grid origins, in one pass over the domain.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+    cover_sizes, mean_sizes : (k,) and (m,) int64 ndarray
+        Box sides in cells, at least 1.
+
+    Returns
+    -------
+    cover : (k,) int64
+        Minimum over all origins.
+    mean : (m,) float64
+        Of all origins, as :func:`mean_count`.
+    """
+    mean_sizes = np.empty(0, np.int64) if mean_sizes is None else mean_sizes
+    cover, places = _over_origins(np.ascontiguousarray(domain), cover_sizes, mean_sizes)
+    return cover, places / mean_sizes.astype(float) ** 2
+
+
+def _checked_domain(domain):
+    """A contact domain as (ny, nx) bool.
 
     Raises
     ------
     ValueError
-        If the domain is not a (y, x) grid.
+        If the domain is not a (y, x) grid, or too large to count in four bytes.
     """
     domain = arguments.domain(domain, "a contact domain")
     if domain.size > _MOST_CELLS:
         raise ValueError(
             f"a contact domain of {domain.shape}: expected {_MOST_CELLS} cells at most"
         )
-    return _summed(domain)
+    return domain
 
 
 def _checked_sizes(sizes):
@@ -157,7 +241,7 @@ def _checked_sizes(sizes):
 
 @njit(cache=True)
 def _summed(domain):
-    """Sums of all cells below and left of each corner, in one pass."""
+    """Nodes below and left of each corner: four look-ups then tell how many are in a box."""
     ny, nx = domain.shape
     nodes = np.zeros((ny + 1, nx + 1), np.int32)
     for y in range(ny):
@@ -169,14 +253,70 @@ def _summed(domain):
 
 
 @njit(cache=True)
-def _edges(n, size, max_shifts):
+def _over_origins(domain, cover_sizes, mean_sizes):
+    """Minimal cover, and places of a gliding box that meets the domain, for each size.
+
+    A box whose lowest cell is p meets the domain if its side is at least d(p): 1 at a node, else
+    one more than the least of the upper neighbours'. One grid has the places alike modulo r.
+    """
+    ny, nx = domain.shape
+    reach = 1
+    for size in np.concatenate((cover_sizes, mean_sizes)):
+        reach = max(reach, size)
+    starts = np.zeros(cover_sizes.size + 1, np.int64)
+    starts[1:] = np.cumsum(cover_sizes**2)
+    counts = np.zeros(starts[-1], np.int32)
+    places = np.zeros(reach + 1, np.int64)
+    smallest = np.full(nx + reach, reach + 1, np.int32)  # place x stands at x + reach - 1
+    for y in range(ny - 1, -reach, -1):
+        nearest = _next_row(domain, y, smallest, reach)
+        if nearest > reach:
+            continue
+        if mean_sizes.size:
+            for i in range(nx + reach - 1):
+                if smallest[i] <= reach:
+                    places[smallest[i]] += 1
+        for k in range(cover_sizes.size):
+            size = cover_sizes[k]
+            if nearest > size or y <= -size:
+                continue
+            row = counts[starts[k] + (y + size - 1) % size * size :][:size]
+            for first in range(reach - size, nx + reach - 1, size):
+                part = smallest[first : min(first + size, nx + reach - 1)]
+                for i in range(part.size):
+                    row[i] += part[i] <= size
+    cover = np.empty(cover_sizes.size, np.int64)
+    for k in range(cover_sizes.size):
+        cover[k] = counts[starts[k] : starts[k + 1]].min()
+    return cover, np.cumsum(places)[mean_sizes]
+
+
+@njit(cache=True)
+def _next_row(domain, y, smallest, reach):
+    """Smallest box sides of one row from those of the row above, in place; their least."""
+    nx = domain.shape[1]
+    least = reach + 1
+    above = right = np.int32(reach + 1)
+    for i in range(nx + reach - 2, -1, -1):
+        x = i - reach + 1
+        diagonal, above = above, smallest[i]
+        right = min(min(above, diagonal), right) + 1
+        if y >= 0 and x >= 0 and domain[y, x]:
+            right = 1
+        right = min(right, reach + 1)
+        smallest[i] = right
+        least = min(least, right)
+    return least
+
+
+@njit(cache=True)
+def _edges(n, size, origins):
     """First cell of each box along one axis, a row for each origin of the grid."""
-    shifts = max(min(int(np.ceil(size)), max_shifts), 1)
     boxes = int(np.ceil(n / size)) + 2
-    edges = np.empty((shifts, boxes), np.int64)
-    for shift in range(shifts):
+    edges = np.empty((origins.size, boxes), np.int64)
+    for shift in range(origins.size):
         for box in range(boxes):
-            edge = -size * shift / shifts + size * box
+            edge = size * box - origins[shift] % size
             # The cell whose centre is the first beyond the edge; the small number keeps n/k * k
             # at n.
             edges[shift, box] = min(max(int(np.ceil(edge - 0.5 - 1e-9)), 0), n)
@@ -184,10 +324,10 @@ def _edges(n, size, max_shifts):
 
 
 @njit(cache=True)
-def _minimal_cover(nodes, size, max_shifts):
+def _minimal_cover(nodes, size, origins):
     """N(r) over all pairs of origins along y and x."""
-    edges_y = _edges(nodes.shape[0] - 1, size, max_shifts)
-    edges_x = _edges(nodes.shape[1] - 1, size, max_shifts)
+    edges_y = _edges(nodes.shape[0] - 1, size, origins)
+    edges_x = _edges(nodes.shape[1] - 1, size, origins)
     fewest = nodes[-1, -1]  # no more boxes than nodes
     for ys in edges_y:
         for xs in edges_x:
@@ -232,7 +372,7 @@ def mean_count(domain: np.ndarray, sizes: np.ndarray, *, blocks: int = 1) -> np.
     """
     sizes = whole_numbers(_checked_sizes(sizes), "sizes of boxes", least=1, most=_MOST_CELLS)
     blocks = whole_number(blocks, "blocks", least=1, most=_MOST_CELLS)
-    nodes = nodes_below(domain)
+    nodes = _summed(_checked_domain(domain))
     counts = [_places(nodes, int(size), blocks) / size**2 for size in sizes]
     return np.array(counts).reshape(sizes.size, blocks, blocks)
 

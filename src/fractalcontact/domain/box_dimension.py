@@ -5,26 +5,32 @@ counts themselves are those of :mod:`domain.box_counts`.
 """
 
 import itertools
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
-from ..core.intervals import jackknife_error
 from ..core.ranges import within
-from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, interval, wave_error
-from .box_counts import RATIOS, box_count, box_sizes, boxes_along, mean_count, whole_sizes
-from .count_law import SMALLEST, SMALLEST_SEPARATING, Law, best_law, law_dimension
-
-#: Box sizes with all but this fraction of the nodes alone, or of the boxes occupied, are saturated.
-SATURATED = 0.02
-
-#: Largest box of the law of mean counts, as a fraction of the domain's extent.
-LARGEST_BOX = 1 / 3
+from ..core.slope_of_sums import FEWEST_SCALES
+from .box_counts import RATIOS, box_count, box_sizes, cropped, window_sizes
+from .count_law import NO_TERMS, LawTerms
+from .cut_offs import between_cut_offs
+from .mean_law import NO_MEANS, FittedLaw, MeanCounts, law_of_means
+from .ordinary_slope import OrdinarySlope, dyadic_sizes, ordinary_slope
 
 #: No set in the plane has another dimension, whatever a regression says.
 DIMENSIONS = (0.0, 2.0)
+
+#: A dimension whose 95 % interval is wider than this is undetermined: half of all that sets in the
+#: plane can have.
+WIDEST = 1.0
+
+#: The estimators of the dimension by their names in results.
+ESTIMATORS = {
+    "exact": "exact power law of the minimal cover",
+    "mean": "count law fitted to the mean counts",
+    "cover": "line through the minimal cover",
+}
 
 #: Why the contact domain of one node has no dimension.
 ONE_NODE = "one node is in contact, and what touches within its cell is not known"
@@ -46,6 +52,25 @@ class BoxDimension:
     reason: str
     estimator: str = ""
     misfit: float = float("nan")
+    terms: LawTerms = NO_TERMS
+    means: MeanCounts = NO_MEANS
+    ordinary: OrdinarySlope | None = None
+
+    @property
+    def determined(self) -> bool:
+        """Whether the dimension is determined: its interval is no wider than `WIDEST`."""
+        return is_determined(self.low, self.high)
+
+
+def is_determined(low: float, high: float) -> bool:
+    """Whether an interval of a dimension says something: no wider than `WIDEST`.
+
+    Parameters
+    ----------
+    low, high : float
+        NaN where there is no dimension.
+    """
+    return bool(high - low <= WIDEST)
 
 
 def box_dimension(
@@ -81,7 +106,9 @@ def box_dimension(
         `count` (of the minimal cover) and `used` of all sizes; `reason` why there is no dimension
         (NaN), else ""; `estimator`, "exact", "mean" or "cover" (for "mean", `n` are the sizes of
         the law and `used` those of the minimal cover within its range); `misfit`, the root mean
-        square of the counts about the law, as a fraction of them.
+        square of the counts about the law, as a fraction of them; `terms` (mm) of the law, from
+        which :func:`domain.count_law.law_count` draws its curve; `means`, the mean counts over grid
+        origins; `ordinary`, the ordinary slope of :mod:`domain.ordinary_slope`, where any count is.
 
     Notes
     -----
@@ -128,42 +155,68 @@ def box_dimension(
     of several sizes are left: a dust of 650 of its 729 cells reads 0.09 low, inside its interval.
     """
     domain = np.asarray(domain, dtype=bool)
-    extent = _cropped(domain)
+    extent = cropped(domain)
     # A single node has no extent to divide: it is seen at the scales of the window.
     shape = extent.shape if extent.size > 1 else domain.shape
+    fitting = sizes is None
     sizes = box_sizes(shape, min(domain.shape)) if sizes is None else np.asarray(sizes, dtype=float)
-    limits = (0, np.inf) if fit_range is None else np.asarray(fit_range) / spacing
-    count = box_count(extent, sizes)
+    limits = (0, np.inf) if fit_range is None else tuple(np.asarray(fit_range) / spacing)
+    count, ordinary = _minimal_covers(domain, extent, sizes, limits)
     r = sizes * float(spacing)
     nodes = int(extent.sum())
-    used, reason = _between_cut_offs(domain, nodes, sizes, count, limits)
+    used, reason = _used_sizes(domain, nodes, sizes, count, limits)
     if reason:
-        return no_dimension(r, count, reason)
+        return replace(no_dimension(r, count, reason), ordinary=ordinary)
     cover = _Cover(sizes, r, count, used)
     ladder = _best_scales(cover, {max(extent.shape), max(domain.shape)})
-    if nodes in (1, domain.size) or _is_exact(cover, ladder):
-        return _of_cover(cover, ladder, "exact")
-    law = _law_of_means(extent, limits, -_line(sizes, count, used).slope, whole_cells)
-    return _of_cover(cover, ladder, "cover") if law is None else _of_law(cover, law, spacing)
+    side = max(extent.shape) * float(spacing)
+    # Boxes of sizes that fit a filled window count it exactly, others overhang it.
+    if nodes == 1 or (fitting and nodes == domain.size) or _is_exact(cover, ladder):
+        return replace(_of_cover(cover, ladder, "exact", side), ordinary=ordinary)
+    of_cover = -_line(sizes, count, used).slope
+    law, means = law_of_means(extent, limits, of_cover, whole_cells)
+    found = _of_law(cover, law, spacing) if law else _of_cover(cover, ladder, "cover", side)
+    return replace(found, ordinary=ordinary, means=means)
 
 
-def contact_dimension(domain: np.ndarray, spacing: float, **how: Any) -> BoxDimension:
-    """Box-counting dimension of a contact domain; a single node has none.
+def _minimal_covers(domain, extent, sizes, limits) -> tuple[np.ndarray, OrdinarySlope | None]:
+    """Minimal cover at all sizes, and the ordinary slope at the powers of two among them."""
+    dyadic = dyadic_sizes(domain.shape)
+    every, place = np.unique(np.concatenate([sizes, dyadic]), return_inverse=True)
+    count = box_count(extent, every)[place]
+    if not extent.any():
+        return count[: sizes.size], None
+    of_dyadic = count[sizes.size :]
+    return count[: sizes.size], ordinary_slope(extent, domain.shape, dyadic, of_dyadic, limits)
 
-    To box counting it is a point, of dimension 0 without error; the node, though, stands for
-    contact somewhere in a cell, and whether that is a point, a line or the whole cell no count at
-    this spacing can show.
+
+def dimension_of_domain(
+    domain: np.ndarray,
+    spacing: float,
+    *,
+    fit_range: tuple[float, float] | None = None,
+    whole_cells: bool | None = False,
+) -> BoxDimension:
+    """Box-counting dimension of a contact domain, as every stage states it.
+
+    One set of nodes in one window has one dimension, whoever asks: box sizes are those of the
+    window, whole numbers of cells, so that every grid origin is tried. To box counting a single
+    node is a point, of dimension 0 without error; the node, though, stands for contact somewhere in
+    a cell, and whether that is a point, a line or the whole cell no count at this spacing can show:
+    it has none.
 
     Parameters
     ----------
     domain : (ny, nx) bool array_like
-        Nodes in contact.
+        Nodes in contact, over the whole window.
     spacing : float
         In mm.
-    **how
-        ``fit_range``, ``sizes`` and ``whole_cells`` of :func:`box_dimension`.
+    fit_range, whole_cells
+        As :func:`box_dimension` takes them; the nodes of a solution are centres of cells.
     """
-    box = box_dimension(domain, spacing, **how)
+    domain = np.asarray(domain, dtype=bool)
+    sizes = window_sizes(domain.shape).astype(float)
+    box = box_dimension(domain, spacing, fit_range=fit_range, sizes=sizes, whole_cells=whole_cells)
     return no_dimension(box.r, box.count, ONE_NODE) if np.sum(domain) == 1 else box
 
 
@@ -181,16 +234,11 @@ class _Cover:
     """(k,) bool: between the cut-offs, and within the range asked for."""
 
 
-def _between_cut_offs(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, str]:
+def _used_sizes(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, str]:
     """Sizes at which the counts are not saturated, and why these are too few, or ""."""
-    used = np.ones(sizes.size, dtype=bool)
     if nodes == 0:
-        return used, "no node is in contact"
-    alone, full = np.zeros((2, sizes.size), dtype=bool)
-    if 1 < nodes < (1 - SATURATED) * domain.size:
-        boxes = np.prod([boxes_along(n, sizes) for n in domain.shape], axis=0)
-        alone, full = _saturated(count, sizes, nodes, boxes)
-        used = ~alone & ~full & (count > 1)
+        return np.ones(sizes.size, dtype=bool), "no node is in contact"
+    used, alone, full = between_cut_offs(count, sizes, nodes, domain.shape)
     used &= within(sizes, *limits)
     if used.sum() < FEWEST_SCALES:
         return used, (
@@ -203,84 +251,15 @@ def _between_cut_offs(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, 
     return used, ""
 
 
-def _saturated(count, sizes, nodes, boxes):
-    """Sizes at which nearly every node is alone in its box, and nearly every box occupied."""
-    alone = (count >= (1 - SATURATED) * nodes) & (sizes > 1)
-    alone |= (sizes == 1) & alone.any()
-    return alone, count >= (1 - SATURATED) * boxes
-
-
 # -- by the law of the mean counts -----------------------------------------------------------------
 
 
-class _FittedLaw(NamedTuple):
-    """The law of the mean counts with the ends of its interval and the sizes it was fitted to."""
-
-    dimension: float
-    ends: tuple[float, float]
-    sizes: np.ndarray
-    """(k,), cells."""
-    misfit: float
-
-
-def _law_of_means(extent, limits, of_cover, whole_cells) -> _FittedLaw | None:
-    """The law fitted to the mean counts; None with too few box sizes between the cut-offs."""
-    side = max(extent.shape)
-    sizes = whole_sizes(LARGEST_BOX * side)
-    sizes = sizes[within(sizes, *limits)]
-    parts = mean_count(extent, sizes, blocks=BLOCKS)
-    count = parts.sum(axis=(1, 2))
-    all_boxes = np.prod([(n - 1) / sizes + 1 for n in extent.shape], axis=0)
-    # What fills its own extent is dense at every scale: then no scale is saturated.
-    nodes = np.count_nonzero(extent)
-    filled = nodes >= (1 - SATURATED) * extent.size
-    between = count < (1 - SATURATED) * nodes
-    between &= filled | (count < (1 - SATURATED) * all_boxes)
-    between &= sizes >= SMALLEST_SEPARATING
-    sizes, parts, count = sizes[between].astype(float), parts[between], count[between]
-    if np.count_nonzero(sizes >= SMALLEST) < FEWEST_SCALES:
-        return None
-    law, rivals = best_law(sizes, count, side, whole_cells)
-    if law is None:
-        return None
-    kept = sizes >= SMALLEST
-    sizes, parts, count = sizes[kept], parts[kept], count[kept]
-    slopes = [law.dimension, of_cover, *(rival.dimension for rival in rivals)]
-    if sizes.size // 2 >= FEWEST_SCALES:
-        small, large = (
-            law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
-        )
-        # What drifts by so much from half to half need not stop where the scales end, either way.
-        drift = np.abs(large - small)
-        slopes += [small, large, law.dimension - drift, law.dimension + drift]
-    error = _jackknife(law, sizes, parts, side)
-    ends = interval(law.dimension, slopes, error, wave_error(law.misfit, sizes))
-    return _FittedLaw(law.dimension, ends, sizes, law.misfit)
-
-
-def _jackknife(law: Law, sizes, parts, side):
-    """The larger error of two: by parts of the domain left out, and by rows or columns of them.
-
-    Neighbouring parts of one set are alike, the more so as the largest boxes are wider than one,
-    and each tells much of what the one left out told. A strip has fewer neighbours; but of strips
-    there are few.
-    """
-    divisions = parts.reshape(sizes.size, -1), parts.sum(axis=2), parts.sum(axis=1)
-    squares, *strips = (_without_parts(law, sizes, division, side) for division in divisions)
-    return max(jackknife_error(squares), jackknife_error(*strips))
-
-
-def _without_parts(law: Law, sizes, parts, side):
-    """Dimensions of a law with one occupied part of the domain after another left out."""
-    left = parts.sum(axis=1)[:, np.newaxis] - parts[:, parts[0] > 0]
-    return [law_dimension(law, sizes, count, side) for count in left.T]
-
-
-def _of_law(cover: _Cover, law: _FittedLaw, spacing) -> BoxDimension:
+def _of_law(cover: _Cover, law: FittedLaw, spacing) -> BoxDimension:
     """The dimension by the law of the mean counts."""
     low, high = np.clip(law.ends, *DIMENSIONS)
+    terms = law.terms
     return BoxDimension(
-        dimension=law.dimension,
+        dimension=law.law.dimension,
         low=float(low),
         high=float(high),
         r_min=float(law.sizes[0] * spacing),
@@ -291,14 +270,15 @@ def _of_law(cover: _Cover, law: _FittedLaw, spacing) -> BoxDimension:
         used=cover.used & within(cover.sizes, law.sizes[0], law.sizes[-1]),
         reason="",
         estimator="mean",
-        misfit=law.misfit,
+        misfit=law.law.misfit,
+        terms=terms._replace(node_width=terms.node_width * spacing, extent=terms.extent * spacing),
     )
 
 
 # -- by the minimal cover --------------------------------------------------------------------------
 
 
-def _of_cover(cover: _Cover, ladder, estimator) -> BoxDimension:
+def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
     """The line through the minimal cover, and an interval that spans the choice of range."""
     r, count, used = cover.r, cover.count, cover.used
     line = _line(r, count, used)
@@ -320,6 +300,9 @@ def _of_cover(cover: _Cover, ladder, estimator) -> BoxDimension:
         reason="",
         estimator=estimator,
         misfit=float(np.sqrt(np.mean((law / count[ladder] - 1) ** 2))),
+        terms=LawTerms(
+            float(np.exp(line.intercept + line.slope * np.log(extent))), 0.0, 0.0, 0.0, extent
+        ),
     )
 
 
@@ -343,14 +326,6 @@ def _best_scales(cover: _Cover, sides: set[int]) -> np.ndarray:
 def _is_exact(cover: _Cover, used: np.ndarray) -> bool:
     """Whether counts lie on a line but for rounding; False where they are all the same."""
     return _line(cover.sizes, cover.count, used).r2 > 1 - 1e-12
-
-
-def _cropped(domain: np.ndarray) -> np.ndarray:
-    """The part of the grid that the domain spans; one empty cell for an empty domain."""
-    if not domain.any():
-        return np.zeros((1, 1), dtype=bool)
-    rows, columns = (np.flatnonzero(domain.any(axis=axis)) for axis in (1, 0))
-    return domain[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
 
 def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -44,7 +44,7 @@ FEWEST_CLUSTERS = 50
 LARGEST_DISTANCE = 0.85
 
 #: Nodes that touch over a side or a corner belong together.
-_NEIGHBOURS = np.ones((3, 3), int)
+NEIGHBOURS = np.ones((3, 3), int)
 
 
 def cluster_statistics(domain: ArrayLike, spacing: float) -> dict[str, Any]:
@@ -95,7 +95,7 @@ def cluster_sizes(domain: ArrayLike) -> np.ndarray:
     -------
     (clusters,) int64 ndarray
     """
-    labels, _ = scipy.ndimage.label(domain, structure=_NEIGHBOURS)
+    labels, _ = scipy.ndimage.label(domain, structure=NEIGHBOURS)
     return np.bincount(labels.ravel())[1:]
 
 

@@ -3,18 +3,23 @@
 import numpy as np
 from scipy import fft
 
-from ..core.slope_of_sums import BLOCKS, NO_SLOPE, Slope, slope_of_sums
+from ..core.fitting import fit_line
+from ..core.kernel_cache import njit
+from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, NO_SLOPE, Slope, slope_of_sums
 from .box_counts import geometric_sizes
 
 #: Smallest and largest distance of the fit: cells, and fraction of the window's shorter side.
 SMALLEST_DISTANCE = 2
 LARGEST_DISTANCE = 1 / 8
 
+#: So many comparisons of two nodes cost no more than the Fourier transforms of a window.
+_MOST_COMPARED = 3e7
+
 
 def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of nodes no farther apart than some distances, by the part that holds the first.
 
-    Exact, by fast Fourier transform.
+    Exact: pair by pair where nodes are few, else by fast Fourier transform.
 
     Parameters
     ----------
@@ -32,17 +37,65 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
     """
     domain = np.asarray(domain, dtype=bool)
     reach = int(distances[-1])
-    # Zeros as wide as the largest lag keep opposite sides of the window apart.
-    shape = [fft.next_fast_len(n + reach, real=True) for n in domain.shape]
-    spectrum = np.conj(fft.rfft2(domain, shape))
     lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     inside = (1 - np.abs(lag_y) / domain.shape[0]) * (1 - np.abs(lag_x) / domain.shape[1])
+    ring = _rings(lag_y, lag_x, distances)
+    rings, lags = len(distances) + 1, lags_of(distances)
+    nodes = np.nonzero(domain)
+    if nodes[0].size ** 2 * min(reach / domain.shape[0], 1) < _MOST_COMPARED:
+        part = np.zeros(domain.shape, np.int64)
+        for i, where in enumerate(_parts(domain.shape)):
+            part[where] = i
+        corner = slice(reach, None), slice(reach, None)
+        by_ring = _compare_pairs(*nodes, part[nodes], ring[corner], 1 / inside[corner], rings)
+        return np.cumsum(by_ring[:-1], axis=0), lags
+    return _transformed_pairs(domain, ring, inside, len(distances)), lags
+
+
+def lags_of(distances: np.ndarray) -> np.ndarray:
+    """How many lags of the grid but 0 are no longer than each distance, (k,) int64."""
+    reach = int(distances[-1])
+    lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    ring = _rings(lag_y, lag_x, distances)
+    return np.cumsum(np.bincount(ring.ravel(), minlength=len(distances) + 1)[:-1])
+
+
+def _rings(lag_y, lag_x, distances):
+    """Place of each lag's distance among the distances; beyond them what is no pair."""
     lag = np.hypot(lag_y, lag_x)
-    # Lag 0 is no pair; the small number keeps a lag at its own distance.
-    ring = np.searchsorted(np.asarray(distances) + 1e-9, lag.ravel())
-    ring[lag.ravel() == 0] = len(distances)
-    rings = len(distances) + 1
-    pairs = np.zeros((len(distances), 2, BLOCKS**2))
+    # The small number keeps a lag at its own distance.
+    ring = np.searchsorted(np.asarray(distances) + 1e-9, lag)
+    ring[lag == 0] = len(distances)
+    return ring
+
+
+@njit(cache=True)
+def _compare_pairs(y, x, part, ring, weight, rings):
+    """Pairs of each ring, weighted and as they are, by the part of their first node."""
+    pairs = np.zeros((rings, 2, BLOCKS**2))
+    reach = ring.shape[0] - 1
+    for i in range(y.size):
+        for j in range(i + 1, y.size):
+            dy = y[j] - y[i]
+            if dy > reach:
+                break
+            dx = abs(x[j] - x[i])
+            if dx <= reach:
+                at = ring[dy, dx]
+                for first in (part[i], part[j]):
+                    pairs[at, 0, first] += weight[dy, dx]
+                    pairs[at, 1, first] += 1
+    return pairs
+
+
+def _transformed_pairs(domain, ring, inside, n):
+    """Pairs up to each of n distances, weighted and as they are, by Fourier transform."""
+    reach = len(ring) // 2
+    # Zeros as wide as the largest lag keep opposite sides of the window apart.
+    shape = [fft.next_fast_len(side + reach, real=True) for side in domain.shape]
+    spectrum = np.conj(fft.rfft2(domain, shape))
+    lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    pairs = np.zeros((n, 2, BLOCKS**2))
     for i, part in enumerate(_parts(domain.shape)):
         first = np.zeros(domain.shape)
         first[part] = domain[part]
@@ -50,9 +103,9 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
             counts = np.round(fft.irfft2(fft.rfft2(first, shape) * spectrum, shape))
             counts = counts[lag_y, lag_x]
             for j, weighted in enumerate((counts / inside, counts)):
-                by_ring = np.bincount(ring, weights=weighted.ravel(), minlength=rings)
+                by_ring = np.bincount(ring.ravel(), weights=weighted.ravel(), minlength=n + 1)
                 pairs[:, j, i] = np.cumsum(by_ring[:-1])
-    return pairs, np.cumsum(np.bincount(ring, minlength=rings)[:-1])
+    return pairs
 
 
 def _parts(shape):
@@ -97,8 +150,9 @@ def correlation_dimension(
     """
     domain = np.asarray(domain, dtype=bool)
     if fit_range is None:
-        fit_range = SMALLEST_DISTANCE * spacing, LARGEST_DISTANCE * min(domain.shape) * spacing
-    distances = geometric_sizes(fit_range[0] / spacing, fit_range[1] / spacing)
+        distances = pair_distances(domain.shape)
+    else:
+        distances = geometric_sizes(fit_range[0] / spacing, fit_range[1] / spacing)
     if distances[-1] >= min(domain.shape) or not domain.any():
         return NO_SLOPE
     pairs, lags = pair_counts(domain, distances)
@@ -109,3 +163,67 @@ def correlation_dimension(
         lambda sums: sums[:, 1] / lags,
     )
     return slope._replace(value=2 + slope.value, low=2 + slope.low, high=2 + slope.high)
+
+
+def pair_distances(shape: tuple[int, ...]) -> np.ndarray:
+    """Distances of the fit in a window, cells, ascending."""
+    return geometric_sizes(SMALLEST_DISTANCE, LARGEST_DISTANCE * min(shape))
+
+
+def pairs_slope(distances: np.ndarray, pairs: np.ndarray, lags: np.ndarray) -> float:
+    """Correlation dimension from the pairs of a whole window, without its interval.
+
+    Parameters
+    ----------
+    distances : (k,) ndarray
+    pairs : (k,) ndarray
+        With the translation correction, as the first of :func:`pair_counts`.
+    lags : (k,) ndarray
+
+    Returns
+    -------
+    float
+        NaN with too few distances that have a pair.
+    """
+    known = pairs > 0
+    if np.count_nonzero(known) < FEWEST_SCALES:
+        return np.nan
+    return 2 + fit_line(np.log(distances[known]), np.log(pairs[known] / lags[known])).slope
+
+
+def expected_pairs(
+    shape: tuple[int, int], nodes: int, mask: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs that as many random nodes are expected to have in each ring of distances.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Cells of the window.
+    nodes : int
+    mask : (ny, nx) bool ndarray, optional
+        Cells that nodes may lie in; all by default.
+
+    Returns
+    -------
+    pairs : (k,) float64
+        Of two nodes, each counted once.
+    weight : (k,) float64
+        Mean translation correction of a ring.
+    """
+    distances = pair_distances(shape)
+    reach = int(distances[-1])
+    lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    inside = (1 - np.abs(lag_y) / shape[0]) * (1 - np.abs(lag_x) / shape[1])
+    cells = int(np.prod(shape)) if mask is None else int(np.count_nonzero(mask))
+    overlap = inside * np.prod(shape)
+    if mask is not None:
+        padded = [fft.next_fast_len(n + reach, real=True) for n in shape]
+        spectrum = fft.rfft2(mask.astype(float), padded)
+        overlap = np.round(fft.irfft2(np.abs(spectrum) ** 2, padded))[lag_y, lag_x]
+    ring = _rings(lag_y, lag_x, distances).ravel()
+    rings = len(distances) + 1
+    places = np.bincount(ring, weights=overlap.ravel(), minlength=rings)[:-1]
+    corrected = np.bincount(ring, weights=(overlap / inside).ravel(), minlength=rings)[:-1]
+    chance = nodes * (nodes - 1) / max(cells * (cells - 1), 1)
+    return places * chance / 2, corrected / np.maximum(places, 1)

@@ -23,8 +23,10 @@ Whoever drew a set knows which they are, and may state it.
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..core.arguments import real_array
 from ..core.kernel_cache import njit
@@ -59,6 +61,48 @@ SMALLEST = 4
 
 #: What a node can stand for: all of its cell, or its centre.
 _WHOLE, _CENTRE = 0, 1
+
+
+class LawTerms(NamedTuple):
+    """Terms of a count law, all lengths in one unit: what draws its curve."""
+
+    amplitude: float
+    """A, boxes as large as the extent."""
+    outline: float
+    """b_1"""
+    outline_square: float
+    """b_2"""
+    node_width: float
+    """c"""
+    extent: float
+    """L"""
+
+
+NO_TERMS = LawTerms(*(np.nan,) * 5)
+
+
+def law_count(r: ArrayLike, dimension: float, terms: LawTerms) -> np.ndarray:
+    """Boxes of side r by a count law.
+
+    N(r) = A (rho/L)^(2 - D) (L/r)^2 [1 + b_1 rho/L + b_2 (rho/L)^2], rho = r - c: the law at the
+    top of this module, with A = a_0 L^-D, b = a/a_0. Without outline and with c = 0 it is the
+    line N = A (L/r)^D.
+
+    Parameters
+    ----------
+    r : (k,) array_like
+        Box sides in the unit of the terms, larger than c.
+    dimension : float
+    terms : LawTerms
+
+    Returns
+    -------
+    (k,) float64
+    """
+    r = np.asarray(r, float)
+    rho = (r - terms.node_width) / terms.extent
+    bracket = 1 + terms.outline * rho + terms.outline_square * rho**2
+    return terms.amplitude * rho ** (2 - dimension) * (terms.extent / r) ** 2 * bracket
 
 
 @dataclass(frozen=True)
@@ -156,6 +200,29 @@ def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -
     sizes, count = _checked(sizes, count)
     fitted = _fit(law, sizes, count, side)
     return np.nan if fitted is None else fitted.dimension
+
+
+def law_terms(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> LawTerms:
+    """Terms of a fitted law, in cells.
+
+    Parameters
+    ----------
+    law : Law
+        From :func:`best_law`.
+    sizes, count : (k,) float ndarray
+        What it was fitted to.
+    side : float
+        Extent L of the set, cells.
+    """
+    sizes, count = _checked(sizes, count)
+    rho = (sizes - law.c) / side
+    powers = rho[:, np.newaxis] ** (2 - law.dimension + np.arange(law.outline + 1))
+    # As in the fit, what is least is the relative misfit.
+    columns = powers * ((side / sizes) ** 2 / count)[:, np.newaxis]
+    a = np.linalg.lstsq(columns, np.ones(sizes.size), rcond=None)[0]
+    outline = np.zeros(2)
+    outline[: law.outline] = a[1:] / a[0]
+    return LawTerms(float(a[0]), outline[0], outline[1], float(law.c), float(side))
 
 
 def _checked(sizes, count):

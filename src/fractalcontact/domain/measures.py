@@ -11,14 +11,15 @@ from ..core.datasets import labelled
 from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
 from ..core.slope_of_sums import NO_SLOPE
-from .box_counts import box_count, box_sizes
-from .box_dimension import box_dimension, local_slopes
+from .box_counts import box_count, window_sizes
+from .box_dimension import dimension_of_domain, local_slopes
 from .correlation import correlation_dimension
+from .isotropy import LAG_FIELDS, contact_at_lag
 from .multifractal import ORDERS, generalised_dimensions, lacunarity
 
 #: Measures of a domain that are slopes, with their long names.
 SLOPES = {
-    "box_dimension": "box-counting dimension Delta_sigma",
+    "delta_sigma": "box-counting dimension Delta_sigma",
     "correlation_dimension": "correlation dimension of the nodes in contact",
     "lacunarity_slope": "slope of log lacunarity against log box side",
 }
@@ -34,7 +35,10 @@ def order_name(q: float) -> str:
 
 
 def domain_measures(
-    domain: np.ndarray, spacing: float, pressure: np.ndarray | None = None
+    domain: np.ndarray,
+    spacing: float,
+    pressure: np.ndarray | None = None,
+    fit_range: tuple[float, float] | None = None,
 ) -> dict[str, float]:
     """Every measure of a contact domain as one row of a table.
 
@@ -46,6 +50,8 @@ def domain_measures(
         mm.
     pressure : (ny, nx) array_like, optional
         MPa; without it the generalised dimensions are those of the nodes, each of the same mass.
+    fit_range : (float, float), optional
+        Smallest and largest box of Delta_sigma, mm; by default all between the cut-offs.
 
     Returns
     -------
@@ -55,14 +61,14 @@ def domain_measures(
         where there is none.
     """
     domain = np.asarray(domain, dtype=bool)
-    return _row(domain, spacing, lacunarity(domain, spacing), pressure)
+    return _row(domain, spacing, lacunarity(domain, spacing), pressure, fit_range)
 
 
-def _row(domain, spacing, gliding, pressure):
+def _row(domain, spacing, gliding, pressure, fit_range):
     """:func:`domain_measures` of a domain whose lacunarity is known."""
-    box = box_dimension(domain, spacing)
+    box = dimension_of_domain(domain, spacing, fit_range=fit_range)
     slopes = {
-        "box_dimension": (box.dimension, box.low, box.high, box.r_min, box.r_max, box.n),
+        "delta_sigma": (box.dimension, box.low, box.high, box.r_min, box.r_max, box.n),
         "correlation_dimension": correlation_dimension(domain, spacing),
         "lacunarity_slope": gliding.slope if domain.any() else NO_SLOPE,
     }
@@ -76,7 +82,11 @@ def _row(domain, spacing, gliding, pressure):
     }
 
 
-def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
+def measures_of_map_states(
+    states: xr.Dataset,
+    spacing: float,
+    fit_range: tuple[float, float] | None = None,
+) -> xr.Dataset:
     """:func:`measures_of_states` of the states that are looked at closely.
 
     Parameters
@@ -85,21 +95,32 @@ def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
         From :func:`mechanics.states.map_states`.
     spacing : float
         Of the scan, mm.
+    fit_range : (float, float), optional
+        Smallest and largest box of the dimensions, mm; by default all between the cut-offs.
 
     Returns
     -------
     xr.Dataset
-        With the scalars ``direction``, ``offset`` and ``resolution``.
+        With the scalars ``direction``, ``offset`` and ``resolution``, and over load the
+        probabilities of :data:`domain.isotropy.LAG_FIELDS`.
     """
-    pressures = states["pressure"].values
-    side = spacing * int(states["resolution"])
-    measures = measures_of_states(pressures > 0, pressures, side, states["normal_force"].values)
+    pressures, factor = states["pressure"].values, int(states["resolution"])
+    side, forces = spacing * factor, states["normal_force"].values
+    measures = measures_of_states(pressures > 0, pressures, side, forces, fit_range)
+    lags = [contact_at_lag(p > 0, str(states["direction"].item())) for p in pressures]
+    by_load = {name: ("normal_force", *words) for name, words in LAG_FIELDS.items()}
+    values = {name: [row[name] for row in lags] for name in LAG_FIELDS}
+    measures = measures.assign(labelled(by_load, values))
     place = {name: states[name] for name in ("direction", "offset", "resolution")}
     return measures.assign_coords(place)
 
 
 def measures_of_states(
-    domains: ArrayLike, pressures: ArrayLike, spacing: float, forces: ArrayLike
+    domains: ArrayLike,
+    pressures: ArrayLike,
+    spacing: float,
+    forces: ArrayLike,
+    fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
     """Measures of one joint's contact under every load: dataset of the stage domain_measures.
 
@@ -112,6 +133,8 @@ def measures_of_states(
         mm.
     forces : (normal_force,) array_like
         F, N.
+    fit_range : (float, float), optional
+        Smallest and largest box of Delta_sigma, mm; by default all between the cut-offs.
 
     Returns
     -------
@@ -134,7 +157,8 @@ def measures_of_states(
             "do not belong together"
         )
     curves = [lacunarity(domain, spacing) for domain in domains]
-    rows = [_row(d, spacing, *of) for d, *of in zip(domains, curves, pressures, strict=True)]
+    states = zip(domains, curves, pressures, strict=True)
+    rows = [_row(domain, spacing, curve, p, fit_range) for domain, curve, p in states]
     side, local = _local_slopes(domains, spacing)
     variables: dict[str, Any] = {}
     for name, long_name in SLOPES.items():
@@ -201,10 +225,11 @@ def _slope_variables(dims, name, long_name, rows, keys):
 
 def _local_slopes(domains, spacing):
     """Local slopes of all domains' box counts at the window's box sizes; NaN without a node."""
-    r = box_sizes(domains.shape[1:]) * float(spacing)
+    sizes = window_sizes(domains.shape[1:])
+    r = sizes * float(spacing)
     rows = []
     for domain in domains:
-        count = box_count(domain, r / spacing).astype(float)
+        count = box_count(domain, sizes).astype(float)
         middle, slope = local_slopes(r, np.where(count > 0, count, np.nan))
         rows.append(slope)
     return middle, padded(rows)

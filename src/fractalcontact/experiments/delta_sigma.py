@@ -18,8 +18,9 @@ from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
 from ..domain.box_counts import box_count
-from ..domain.box_dimension import box_dimension
+from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
+from ..domain.ordinary_slope import OrdinarySlope
 from ..domain.renormalisation import renormalisation
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.joint import prefractal
@@ -39,6 +40,9 @@ ESTIMATES = {
     "delta_box": "Delta_sigma from box counts at the finest resolution",
     "delta_box_low": "Delta_sigma from box counts, lower end of its 95 % interval",
     "delta_box_high": "Delta_sigma from box counts, upper end of its 95 % interval",
+    "delta_ordinary": "ordinary slope of the box counts at the finest resolution",
+    "delta_ordinary_low": "ordinary slope of box counts, lower end of its 95 % interval",
+    "delta_ordinary_high": "ordinary slope of box counts, upper end of its 95 % interval",
     "delta_pairs": "correlation dimension of the contact domain at the finest resolution",
     "delta_pairs_low": "correlation dimension, lower end of its 95 % interval",
     "delta_pairs_high": "correlation dimension, upper end of its 95 % interval",
@@ -66,7 +70,8 @@ def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     -------
     xr.Dataset
         :data:`ESTIMATES`, ``difference`` (area less box) and ``boxes_per_node`` over (dimension,
-        size, seed, load); ``mean_delta_area``, ``mean_delta_box``, ``mean_delta_pairs`` and
+        size, seed, load); ``mean_delta_area``, ``mean_delta_box``,
+        ``mean_delta_ordinary``, ``mean_delta_pairs`` and
         ``mean_difference`` over the seeds with ``_low`` and ``_high`` (95 %, Student's t) and
         ``_n``; ``light_load_delta`` (dimension) = 4 - Delta_g; ``growth`` (dimension, load), change
         of the difference with each doubling of the size, ``decade`` (dimension, size) with each
@@ -174,7 +179,7 @@ def _estimates(
         for i, state in enumerate(states):
             nodes[i, j] = np.count_nonzero(state.in_contact)
             if j == 0:
-                boxes.append(box_dimension(state.in_contact, spacing))
+                boxes.append(dimension_of_domain(state.in_contact, spacing))
                 pairs.append(correlation_dimension(state.in_contact, spacing))
                 occupied[i] = box_count(state.in_contact, np.array(factors, float))
     s = xr.DataArray(spacing * np.array(factors), dims="resolution")
@@ -185,6 +190,7 @@ def _estimates(
         "delta_box": [box.dimension for box in boxes],
         "delta_box_low": [box.low for box in boxes],
         "delta_box_high": [box.high for box in boxes],
+        **_ordinary([box.ordinary for box in boxes]),
         "delta_pairs": [line.value for line in pairs],
         "delta_pairs_low": [line.low for line in pairs],
         "delta_pairs_high": [line.high for line in pairs],
@@ -192,6 +198,14 @@ def _estimates(
         "box_fit_max": [box.r_max / spacing for box in boxes],
         "nodes": nodes,
         "occupied": occupied,
+    }
+
+
+def _ordinary(slopes: Sequence[OrdinarySlope | None]) -> dict[str, list[float]]:
+    """Ordinary slopes (load) with their intervals; NaN without contact."""
+    return {
+        f"delta_ordinary{end}": [np.nan if s is None else getattr(s, field) for s in slopes]
+        for end, field in zip(INTERVAL, ("dimension", "low", "high"), strict=True)
     }
 
 
@@ -251,7 +265,7 @@ def _labelled(axes: Mapping[str, Any], values: Mapping[str, np.ndarray]) -> xr.D
 
 def _add_means(result: xr.Dataset) -> None:
     """Means over the seeds with their intervals, into ``result``."""
-    for name in ("delta_area", "delta_box", "delta_pairs", "difference"):
+    for name in ("delta_area", "delta_box", "delta_ordinary", "delta_pairs", "difference"):
         values = result[name]
         dims = tuple(dim for dim in values.dims if dim != "seed")
         means = mean_interval(values.values, axis=values.dims.index("seed"))

@@ -14,7 +14,7 @@ import xarray as xr
 from ..contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
-from ..domain.box_dimension import box_dimension
+from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.area import corrected_area
@@ -163,7 +163,7 @@ def _numbers_of(
         "compliance": (1 / state.stiffness - bulk) * side**2 * E_STAR / rms,
         "central_share": corrected_area(central, space.spacing) / (central.size * SPACING**2),
         "central_pressure": float(state.pressure[centre, centre].mean()) / (E_STAR * slope),
-        "box_dimension": box_dimension(domain, SPACING).dimension,
+        "box_dimension": dimension_of_domain(domain, SPACING).dimension,
         "correlation_dimension": correlation_dimension(domain, SPACING).value,
         "band_dimension": correlation_dimension(domain, SPACING, band).value,
         "cut_dimension": correlation_dimension(_bearing_cut(heights, domain), SPACING, band).value,

@@ -19,13 +19,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy import special
 
 from ..core.datasets import labelled_dataset
 from ..core.fitting import LineFit, fit_line
-from ..core.intervals import INTERVAL
+from ..core.intervals import CONFIDENCE, INTERVAL
 from ..core.labels import cf_attrs
 from ..core.ranges import within
-from ..domain.box_dimension import box_dimension
+from ..domain.box_dimension import dimension_of_domain
 from ..domain.renormalisation import FEWEST_NODES, renormalisation
 from ..mechanics.loading import JointLoading
 from ..surface.specimen import cell_side
@@ -153,7 +154,7 @@ def _dimensions(
 ) -> xr.Dataset:
     """Delta_sigma of the whole window by every estimator, with sigma* and the slope predicted."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
-    boxes = [box_dimension(d, spacing, fit_range=settings["box_range"]) for d in domains]
+    boxes = [dimension_of_domain(d, spacing, fit_range=settings["box_range"]) for d in domains]
     lines = [_line_through_occupied(domain, parts) for domain in domains]
     by_estimator: dict[str, Any] = {
         "area": _by_area(loading, whole, spacing),
@@ -187,10 +188,19 @@ def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> list[n
 
 
 def _line_through_occupied(domain: np.ndarray, parts: Sequence[int]) -> LineFit:
-    """Line through log N over log b, N sub-windows that the domain of the whole window occupies."""
+    """Line through log N over log b, N sub-windows that the domain of the whole window occupies.
+
+    Few whole counts may lie on a line by chance: its interval is never narrower than what counting
+    leaves open, N of n x n occupied with the error of a fraction, (1 - N / n^2) / N of log N.
+    """
     occupied = [split(domain, n).any(axis=(1, 2)).sum() for n in parts]
-    count = np.array(occupied, float)
-    return fit_line(-np.log(parts), np.log(np.where(count > 0, count, np.nan)))
+    count = np.where(np.array(occupied) > 0, np.array(occupied, float), np.nan)
+    x = -np.log(parts)
+    line = fit_line(x, np.log(count))
+    dx = x - x.mean()
+    variance = np.sum(dx**2 * (1 - count / np.square(parts)) / count) / np.sum(dx**2) ** 2
+    half = max(line.slope_high - line.slope, special.ndtri((1 + CONFIDENCE) / 2) * variance**0.5)
+    return line._replace(slope_low=line.slope - half, slope_high=line.slope + half)
 
 
 # -- verdicts --------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ import xarray as xr
 
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
+from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
 from ..mechanics.plan import solve_plan
@@ -58,6 +59,10 @@ def state_stages(
     )
     fields = domains_of(states)
     domains = analyse_domains(fields, spacing, fit_range=settings["box_range"])
+    nulls = nulls_of_map_states(
+        map_states(parts), spacing, joints["composite"], settings["box_range"]
+    )
+    domains = beside_domains(domains, nulls)
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,
@@ -68,7 +73,9 @@ def state_stages(
         "scaling": scaling_over_resolutions(
             curves, domains, spacing, fit_range=settings["scaling_range"]
         ),
-        "domain_measures": measures_of_map_states(map_states(parts), spacing),
+        "domain_measures": measures_of_map_states(
+            map_states(parts), spacing, settings["box_range"]
+        ),
     }
     if specimens.attrs["opposite"] != "flat":
         stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)

@@ -221,7 +221,11 @@ def _paper_words(test):
         return ""
     one = test.sel(dimension=wanted, method="nearest").isel(size=-1)
     ranges = []
-    for name, words in (("delta_area", "by A_r(s)"), ("delta_box", "by box counting")):
+    for name, words in (
+        ("delta_area", "by A_r(s)"),
+        ("delta_box", "by the count law"),
+        ("delta_ordinary", "by ordinary boxes"),
+    ):
         values = one[f"mean_{name}"].values
         known = values[np.isfinite(values)]
         if known.size:

@@ -48,7 +48,13 @@ COLUMNS = {
     "morisita_scatter": "morisita_scatter",
     "half_share": "half_share",
     "half_share_random": "half_share_random",
+    "clusters_random": "clusters_random",
+    "clusters_cut": "clusters_cut",
+    "morisita_cut": "morisita_cut",
 }
+
+#: Null models that are drawn where they are known, at the offset of the maps: column, marker.
+NULLS = {"random": "+", "cut": "x"}
 EXPONENTS = {
     "cluster_exponent": "exponent",
     "cluster_exponent_low": "exponent_low",
@@ -82,7 +88,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     number, share, localised, distribution = figure.subplots(2, 2).ravel()
     _draw_domains((number, share, localised), table)
     _draw_sizes(distribution, sizes)
-    by_load = [heading("(a) to (c); hollow: few nodes, not fitted"), *entries(number)]
+    by_load = [
+        heading("(a) to (c); hollow: few nodes; +: random nodes, ×: bearing-area cut"),
+        *entries(number),
+    ]
     at = f"(d) $F$ = {force_label(loads[mapped])}; lines are fits"
     legends_below(figure, by_load, [heading(at), *entries(distribution)])
     headline(figure, settings["label"], place(direction))
@@ -144,17 +153,21 @@ def _draw_domains(panels, table):
         above = 1 + 1.96 * points["morisita_scatter"]
         below = (1 - 1.96 * points["morisita_scatter"]).clip(lower=0.1)
         localised.fill_between(v, below, above, color=colour_of(n), alpha=0.15, lw=0)
+        for axes, column in ((number, "clusters"), (localised, "morisita")):
+            for null, marker in NULLS.items():
+                if f"{column}_{null}" in points:
+                    axes.plot(v, points[f"{column}_{null}"], marker, color=colour_of(n))
     localised.axhline(1, color="0.4", lw=0.8)
     for axes in panels:
         offset_axis(axes, table["offset_mm"].values)
     number.set_yscale("log")
-    number.set_ylabel("contact clusters (number)")
+    number.set_ylabel("contact clusters (1)")
     share.set_ylim(bottom=0)
-    share.set_ylabel("largest cluster / contact area (–)")
+    share.set_ylabel("largest cluster / contact area (1)")
     localised.set_yscale("log")
     lowest = table["morisita"].where(table["morisita"] > 0).min()
     localised.set_ylim(bottom=min(0.7, 0.8 * lowest))
-    localised.set_ylabel("Morisita's index $I$ (–)")
+    localised.set_ylabel("Morisita's index $I$ (1)")
     letter(number, "a", "number of clusters")
     letter(share, "b", "largest cluster")
     letter(localised, "c", "localisation (line and bands: random nodes)")
@@ -179,7 +192,7 @@ def _draw_sizes(axes, sizes):
     axes.set_yscale("log")
     axes.set_ylim(bottom=0.7)
     axes.set_xlabel("cluster area $a$ (mm$^2$)")
-    axes.set_ylabel(r"clusters of area $\geq a$ (number)")
+    axes.set_ylabel(r"clusters of area $\geq a$ (1)")
     label_short_span(axes.xaxis)
     letter(axes, "d", "sizes of clusters")
 

@@ -146,7 +146,7 @@ def _caption(state, table):
     )
     dimensions = [
         f"{_interval(state, key)} from {label}"
-        for key, label in (("box_dimension", "boxes"), ("correlation_dimension", "pairs"))
+        for key, label in (("delta_sigma", "boxes"), ("correlation_dimension", "pairs"))
         if np.isfinite(state[key])
     ]
     if not dimensions:
@@ -171,7 +171,7 @@ def _interval(state, key):
 def _law(state, table):
     """Whether local slopes under the map load are those of one power law."""
     points = table[(table["kind"] == "slope") & (table["force_N"] == float(state["normal_force"]))]
-    low, high = state["box_dimension_r_min"].item(), state["box_dimension_r_max"].item()
+    low, high = state["delta_sigma_r_min"].item(), state["delta_sigma_r_max"].item()
     inside = points[(points["box_side_mm"] >= low) & (points["box_side_mm"] <= high)]["value"]
     if inside.size < 2:
         return "Too few local slopes to test for one power law."

@@ -8,6 +8,8 @@ from numpy.typing import ArrayLike
 from xarray import DataTree
 
 from ...core.fitting import FEWEST_POINTS
+from ...domain.box_dimension import is_determined
+from ...domain.departure import BEYOND_BOTH, UNDETERMINED, is_fractal
 from ...domain.renormalisation import RESOLUTION
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
@@ -41,12 +43,23 @@ class Estimate:
 
     def text(self, i: int) -> str:
         """Delta_sigma under the i-th load in words."""
-        return self.reason[i] or interval(self.value[i], self.low[i], self.high[i])
+        if self.reason[i]:
+            return self.reason[i]
+        if not self.determined[i]:
+            return "undetermined"
+        return interval(self.value[i], self.low[i], self.high[i])
+
+    @property
+    def determined(self) -> np.ndarray:
+        """Whether each value is determined: not where its interval is too wide to say anything."""
+        return np.array([is_determined(*ends) for ends in zip(self.low, self.high, strict=True)])
 
     def entry(self, i: int) -> str:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
         if self.reason[i]:
             return self.reason[i].split(":")[0]
+        if not self.determined[i]:
+            return r"$\Delta_\sigma$ undetermined"
         return rf"$\Delta_\sigma$ = {self.text(i)}"
 
     @property
@@ -201,6 +214,35 @@ class Loading:
         return np.unique(chosen)
 
 
+def nulls_words(counts: xr.Dataset) -> str:
+    """Departure of one domain from its null models in words, and whether it may be called fractal.
+
+    Parameters
+    ----------
+    counts : xr.Dataset
+        Of the stage ``domains``, of one domain that is looked at closely.
+    """
+    departure, verdict = (str(counts[f"null_{name}"].item()) for name in ("departure", "verdict"))
+    if is_fractal(verdict):
+        return f"{departure}, fractal"
+    return departure if departure == verdict else f"{departure}, its value undetermined"
+
+
+def departures(counts: xr.Dataset) -> str:
+    """Words on the loads at which domains depart from both null models.
+
+    Parameters
+    ----------
+    counts : xr.Dataset
+        Of the stage ``domains``, over load, of domains that are looked at closely.
+    """
+    found = counts["null_departure"].values.astype(str)
+    decided = found[found != UNDETERMINED]
+    if not decided.size:
+        return "Nulls: undetermined."
+    return f"Beyond both nulls: {int((decided == BEYOND_BOTH).sum())} of {decided.size}."
+
+
 def trend(
     forces: ArrayLike, value: np.ndarray, low: np.ndarray, high: np.ndarray, *, rising: bool
 ) -> str:
@@ -216,9 +258,10 @@ def trend(
     Returns
     -------
     str
-        Holds, or does not, if the value moves by more than the intervals at both ends.
+        Holds, or does not, if the value moves by more than the intervals at both ends; loads at
+        which it is undetermined do not count.
     """
-    known = np.flatnonzero(np.isfinite(value))
+    known = np.flatnonzero([is_determined(*ends) for ends in zip(low, high, strict=True)])
     if len(known) < 2:
         return "undetermined (fewer than two loads)"
     first, last = known[0], known[-1]

@@ -5,9 +5,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.fitting import fit_line
+from ...core.ranges import within
 from ...domain.box_dimension import local_slopes, spans
-from ..kit.domains import Loading
+from ...domain.count_law import LawTerms, law_count
+from ..kit.domains import Loading, nulls_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
 from ..kit.maps import draw_domain
 from ..kit.words import force_label, interval, short
@@ -17,61 +18,102 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "contact", "domains", "scaling")
 ORDER = 140
 
+#: Columns of the null models and the variables that they hold.
+NULLS = {
+    "random_count": "null_count_random",
+    "random_count_low": "null_count_random_low",
+    "random_count_high": "null_count_random_high",
+    "cut_count": "null_count_cut",
+}
+
 
 def draw(atlas: DataTree, name: str) -> Drawing:
-    """A contact domain, its box counts N(r) with the line fitted, and their local slopes."""
+    """A contact domain, its box counts N(r) with count law and ordinary slope, local slopes."""
     loading = Loading.of(atlas, name)
     i = loading.map_load
     counts = loading.counts.isel(normal_force=i)
     table = _table(counts)
-    figure = Figure(figsize=(WIDTH, 3.1))
+    figure = Figure(figsize=(WIDTH, 3.6))
     left, middle, right = figure.subplots(1, 3)
     draw_domain(left, loading.domain(loading.finest, i), loading.sides)
     letter(left, "a", "contact domain")
-    _draw_counts(middle, table, loading.estimates[1], i)
+    _draw_counts(middle, table, counts)
     _draw_slopes(right, table, counts)
-    # The marks of the counts are those of their slopes too: one legend.
     handles, _ = middle.get_legend_handles_labels()
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
-    return Drawing(figure, table, _caption(loading, i, counts, table))
+    return Drawing(figure, table, _caption(loading, i, counts))
 
 
 def _table(counts):
-    """One row a box size, with the fitted N(r) and the local slope over a doubling."""
+    """One row a box size: minimal cover and mean counts, their fits, null models, local slope."""
     kept = np.isfinite(counts["box_side"].values) & np.isfinite(counts["box_count"].values)
     r, n = counts["box_side"].values[kept], counts["box_count"].values[kept]
-    used = counts["box_used"].values[kept]
-    # Delta_sigma is that of the counts averaged over all origins; its line is drawn through these.
-    delta = counts["delta_sigma"].item()
-    level = np.mean(np.log(n[used]) + delta * np.log(r[used])) if used.any() else np.nan
+    ordinary = counts["ordinary_used"].values[kept]
+    table = pd.DataFrame(
+        {
+            "box_side_mm": r,
+            "box_count": n,
+            "used": counts["box_used"].values[kept],
+            "ordinary_used": ordinary,
+        }
+    )
+    table["ordinary_count"] = np.nan
+    if ordinary.any():
+        slope = counts["delta_sigma_ordinary"].item()
+        level = np.mean(np.log(n[ordinary]) + slope * np.log(r[ordinary]))
+        line = within(r, *(counts[f"ordinary_fit_{end}"].item() for end in ("min", "max")))
+        table.loc[line, "ordinary_count"] = np.exp(level) * r[line] ** -slope
+    table["mean_count"] = _at(r, counts["mean_side"].values, counts["mean_count"].values)
+    fitted = within(r, counts["fit_min"].item(), counts["fit_max"].item())
+    terms = LawTerms(*(counts[f"law_{name}"].item() for name in LawTerms._fields))
+    table["law_count"] = np.nan
+    table.loc[fitted, "law_count"] = law_count(r[fitted], counts["delta_sigma"].item(), terms)
+    for column, name in NULLS.items():
+        table[column] = _at(r, counts["null_side"].values, counts[name].values)
+    table["random_mean_count"] = _at(
+        r, counts["null_mean_side"].values, counts["null_mean_count"].values
+    )
     to_side, slope = np.full((2, r.size), np.nan)
     start, end = spans(r)
     to_side[start] = r[end]
     _, slope[start] = local_slopes(r, n)
-    return pd.DataFrame(
-        {
-            "box_side_mm": r,
-            "box_count": n,
-            "used": used,
-            "fitted_count": np.where(used, np.exp(level - delta * np.log(r)), np.nan),
-            "slope_to_mm": to_side,
-            "local_slope": slope,
-        }
+    return table.assign(slope_to_mm=to_side, local_slope=slope)
+
+
+def _at(r, side, count):
+    """Counts at the sizes r, NaN at those that have none."""
+    nearest = np.abs(np.subtract.outer(r, side))
+    nearest[~np.isfinite(nearest)] = np.inf
+    place = nearest.argmin(axis=1)
+    return np.where(nearest[np.arange(r.size), place] < 1e-6 * r, count[place], np.nan)
+
+
+def _draw_counts(axes, table, counts):
+    r = table["box_side_mm"]
+    null = table[np.isfinite(table["random_count"])]
+    axes.fill_between(
+        null["box_side_mm"],
+        null["random_count_low"].clip(lower=0.5),
+        null["random_count_high"],
+        color="0.75",
+        lw=1.5,
+        label="minimal cover of random nodes, 95 %",
+        zorder=0,
     )
-
-
-def _draw_counts(axes, table, estimate, i):
-    r, n, used = (table[key] for key in ("box_side_mm", "box_count", "used"))
-    axes.loglog(r[~used], n[~used], "o", mfc="white", mec=COLOURS[0], label="not used")
-    axes.loglog(r[used], n[used], "o", color=COLOURS[0], label="used")
-    axes.loglog(r, table["fitted_count"], color=COLOURS[2], label=estimate.entry(i), zorder=1)
-    # Guides go through the point that all lines share best: the largest box, where N is smallest.
-    r_last, n_last = r.iloc[-1], n.iloc[-1]
-    for slope, style in ((1, ":"), (2, "-.")):
-        guide = n_last * (r / r_last) ** -slope
-        axes.loglog(r, guide, style, color="0.6", lw=0.8, label=f"slope $-${slope}", zorder=0)
-    axes.set_ylim(0.7, n.max() ** 1.1 * 2)
+    axes.loglog(
+        null["box_side_mm"], null["cut_count"], "-.", color=COLOURS[4], label="bearing-area cut"
+    )
+    for used, face in ((table["ordinary_used"], COLOURS[0]), (~table["ordinary_used"], "white")):
+        words = "minimal cover, in the ordinary slope" if face != "white" else "minimal cover"
+        axes.loglog(
+            r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
+        )
+    axes.loglog(r, table["ordinary_count"], "--", color=COLOURS[0], zorder=1)
+    axes.loglog(r, table["mean_count"], "x", ms=4, color=COLOURS[2], label="mean over origins")
+    if np.isfinite(table["law_count"]).any():
+        axes.loglog(r, table["law_count"], color=COLOURS[2], label=str(counts["estimator"].item()))
+    axes.set_ylim(0.7, table["box_count"].max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
     label_short_span(axes.xaxis)
     letter(axes, "b", "box counts")
@@ -79,50 +121,45 @@ def _draw_counts(axes, table, estimate, i):
 
 def _draw_slopes(axes, table, counts):
     middle = np.sqrt(table["box_side_mm"] * table["slope_to_mm"])
-    fitted = table["used"] & table["slope_to_mm"].isin(table["box_side_mm"][table["used"]])
-    for mask, face in ((fitted, COLOURS[0]), (~fitted, "white")):
-        axes.semilogx(middle[mask], table["local_slope"][mask], "o", mfc=face, mec=COLOURS[0])
-    if not str(counts["reason"].item()):
-        ends = [counts["fit_min"].item(), counts["fit_max"].item()]
-        axes.plot(ends, [counts["delta_sigma"].item()] * 2, color=COLOURS[2])
-        low, high = counts["delta_sigma_low"].item(), counts["delta_sigma_high"].item()
-        axes.fill_between(ends, low, high, color=COLOURS[2], alpha=0.2, lw=0)
-    for slope, style in ((1, ":"), (2, "-.")):
-        axes.axhline(slope, color="0.6", ls=style, lw=0.8, zorder=0)
+    axes.semilogx(middle, table["local_slope"], "o", ms=4, mfc="white", mec=COLOURS[0])
+    null = table[np.isfinite(table["random_count"])]
+    for column, style in (
+        ("random_count", {"color": "0.6", "ls": "-"}),
+        ("cut_count", {"color": COLOURS[4], "ls": "-."}),
+    ):
+        if np.isfinite(null[column]).all() and len(null) > 1:
+            axes.plot(*local_slopes(null["box_side_mm"], null[column]), lw=1, **style)
+    for name, fit, colour, style in (
+        ("delta_sigma", "fit", COLOURS[2], "-"),
+        ("delta_sigma_ordinary", "ordinary_fit", COLOURS[0], "--"),
+    ):
+        ends = [counts[f"{fit}_min"].item(), counts[f"{fit}_max"].item()]
+        if np.isfinite(counts[name].item()):
+            axes.plot(ends, [counts[name].item()] * 2, color=colour, ls=style)
+            low, high = (counts[f"{name}_{end}"].item() for end in ("low", "high"))
+            axes.fill_between(ends, low, high, color=colour, alpha=0.12, lw=0)
     axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
     letter(axes, "c", "local slopes")
 
 
-def _caption(loading, i, counts, table):
-    start = (
-        f"{loading.opening('Fig. 9')} (a) Contact domain, F = {force_label(loading.forces[i])}; "
-        "(b) box counts, "
-    )
+def _caption(loading, i, counts):
+    start = f"{loading.opening('Fig. 9')} F = {force_label(loading.forces[i])}; "
+    ordinary = _ordinary(counts)
     reason = str(counts["reason"].item())
     if reason:
-        return f"{start}no dimension: {reason}; (c) local slopes."
+        return f"{start}box counts: no dimension: {reason}; ordinary slope {ordinary}."
     return (
-        f"{start}line fitted to the filled ones; (c) local slopes. Delta_sigma = "
-        f"{loading.estimates[1].text(i)} (r = {short(counts['fit_min'])}–"
-        f"{short(counts['fit_max'])} mm) {_verdict(counts, table)}"
+        f"{start}box counts beside null models. Delta_sigma = {loading.estimates[1].text(i)} "
+        f"({counts['estimator'].item()}, r = {short(counts['fit_min'])}–"
+        f"{short(counts['fit_max'])} mm); ordinary slope {ordinary}: {nulls_words(counts)}."
     )
 
 
-def _verdict(counts, table):
-    """Whether the counts are those of one lacunar fractal: below 2, one slope throughout."""
-    high = counts["delta_sigma_high"].item()
-    lacunar = "is below 2, as in the paper" if high < 2 else "cannot be separated from 2"
-    used = table[table["used"]]
-    half = len(used) // 2
-    parts = [
-        fit_line(np.log(part["box_side_mm"]), np.log(part["box_count"]))
-        for part in (used[:half], used[half:])
-    ]
-    fine, coarse = (interval(-p.slope, -p.slope_high, -p.slope_low) for p in parts)
-    if not all(np.isfinite(p.slope) for p in parts):
-        return f"{lacunar}; too few sizes to test for one power law."
-    apart = parts[0].slope_low > parts[1].slope_high or parts[1].slope_low > parts[0].slope_high
-    law = "no single power law" if apart else "one power law"
-    return f"{lacunar}; smaller boxes give {fine}, larger {coarse} (regression alone): {law}."
+def _ordinary(counts):
+    """The ordinary dimension with its interval, or that it is undetermined."""
+    if not bool(counts["ordinary_determined"]):
+        return "undetermined"
+    name = "delta_sigma_ordinary"
+    return interval(*(counts[f"{name}{end}"].item() for end in ("", "_low", "_high")))

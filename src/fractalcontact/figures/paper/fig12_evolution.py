@@ -6,8 +6,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ..kit.domains import Loading, disagreement, trend
-from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
+from ..kit.domains import Loading, departures, disagreement, trend
+from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
 from ..kit.maps import draw_domain
 from ..kit.words import force_label, percent, wrapped
 
@@ -18,6 +18,9 @@ ORDER = 190
 
 #: Contact domains drawn.
 _MOST_MAPS = 6
+
+#: Null models of box counting, in words.
+NULLS = {"random": "random nodes (95 % band)", "cut": "bearing-area cut"}
 
 #: The two estimates stand this factor of F apart, so that neither hides the other.
 _APART = {"area": 1 / 1.04, "box": 1.04}
@@ -41,6 +44,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         axes.label_outer()
     axes = bottom.subplots()
     measured = measured_maps(atlas)
+    _draw_nulls(axes, loading)
     _draw_dimensions(axes, loading)
     _draw_measured(axes, measured, nominal)
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
@@ -121,15 +125,42 @@ def _table(loading, area):
                 }
             )
             for estimate in loading.estimates
-        ],
+        ]
+        + [_null_table(loading, area, null) for null in NULLS],
         ignore_index=True,
     )
+
+
+def _null_table(loading, area, null):
+    """One row a load of a null model of box counting."""
+    columns = {
+        f"delta_sigma{end}": loading.counts[f"delta_sigma_{null}{end}"].values
+        for end in (("", "_low", "_high") if null == "random" else ("",))
+    }
+    return pd.DataFrame(
+        {
+            "load_N": loading.forces,
+            "offset_mm": loading.offset,
+            "area_mm2": area,
+            "estimator": f"box counting, {NULLS[null]}",
+            **columns,
+            "reason": "",
+        }
+    )
+
+
+def _draw_nulls(axes, loading):
+    """Delta_sigma by box counting of the null models."""
+    counts, forces = loading.counts, loading.forces
+    low, high = (counts[f"delta_sigma_random_{end}"].values for end in ("low", "high"))
+    axes.fill_between(forces, low, high, color="0.8", lw=0, zorder=0)
+    axes.plot(forces, counts["delta_sigma_random"], color="0.5", lw=1, label=NULLS["random"])
+    axes.plot(forces, counts["delta_sigma_cut"], "-.", color=COLOURS[4], lw=1, label=NULLS["cut"])
 
 
 def _draw_dimensions(axes, loading):
     for estimate in loading.estimates:
         reach = np.array([estimate.value - estimate.low, estimate.high - estimate.value])
-        known = np.isfinite(estimate.value)
         axes.errorbar(
             loading.forces * _APART[estimate.key],
             estimate.value,
@@ -138,7 +169,14 @@ def _draw_dimensions(axes, loading):
             **estimate.style,
             capsize=2,
             elinewidth=0.8,
-            label=f"{estimate.symbol},\n{known.sum()} of {known.size} loads",
+            alpha=0.35,
+        )
+        sure = estimate.determined
+        axes.plot(
+            loading.forces[sure] * _APART[estimate.key],
+            estimate.value[sure],
+            **estimate.style | {"linestyle": "none"},
+            label=f"{estimate.symbol},\n{sure.sum()} of {sure.size} loads (faint: undetermined)",
         )
     if not any(np.isfinite(estimate.value).any() for estimate in loading.estimates):
         first = "\n".join(wrapped(estimate.reason[0]) for estimate in loading.estimates)
@@ -158,7 +196,7 @@ def _caption(loading):
         for e in loading.estimates
     )
     return (
-        f"{loading.opening('Fig. 12')} Contact domains and Delta_sigma under rising load "
-        f"({loading.fit_ranges()}). The paper's rise with F: {verdicts}. "
-        f"{disagreement(loading.scaling)}"
+        f"{loading.opening('Fig. 12')} Delta_sigma over load "
+        f"({loading.fit_ranges()}). Rise with F: {verdicts}. "
+        f"{departures(loading.counts)} {disagreement(loading.scaling)}"
     )

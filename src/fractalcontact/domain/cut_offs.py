@@ -1,0 +1,49 @@
+"""Cut-offs of box counts, beyond which they are saturated.
+
+Small boxes hold one node each, large ones are all occupied: their counts carry no information.
+"""
+
+import numpy as np
+
+from .box_counts import boxes_along
+
+#: Box sizes with all but this fraction of the nodes alone, or of the boxes occupied, are saturated.
+SATURATED = 0.02
+
+
+def between_cut_offs(
+    count: np.ndarray, sizes: np.ndarray, nodes: int, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Box sizes whose minimal cover carries information, and those beyond either cut-off.
+
+    Parameters
+    ----------
+    count : (k,) ndarray
+        Minimal cover N(r).
+    sizes : (k,) ndarray
+        Box sides, cells.
+    nodes : int
+        In contact.
+    shape : (ny, nx)
+        Cells of the window.
+
+    Returns
+    -------
+    used, alone, full : (k,) bool
+        Between the cut-offs; with nearly every node alone; with nearly every box occupied. Of a
+        single node and of a window that nearly all touches, every size is used.
+    """
+    used = np.ones(sizes.size, dtype=bool)
+    alone, full = np.zeros((2, sizes.size), dtype=bool)
+    if 1 < nodes < (1 - SATURATED) * np.prod(shape):
+        boxes = np.prod([boxes_along(n, sizes) for n in shape], axis=0)
+        alone, full = _saturated(count, sizes, nodes, boxes)
+        used = ~alone & ~full & (count > 1)
+    return used, alone, full
+
+
+def _saturated(count, sizes, nodes, boxes):
+    """Sizes at which nearly every node is alone in its box, and nearly every box occupied."""
+    alone = (count >= (1 - SATURATED) * nodes) & (sizes > 1)
+    alone |= (sizes == 1) & alone.any()
+    return alone, count >= (1 - SATURATED) * boxes

@@ -1,0 +1,247 @@
+"""The count law fitted to the mean box counts of a contact domain, with its interval.
+
+The law is that of :mod:`domain.count_law`; here are the box sizes it is fitted to and the interval
+of its dimension.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.intervals import jackknife_error
+from ..core.ranges import within
+from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, interval, wave_error
+from .box_counts import cover_and_mean, cropped, mean_count, whole_sizes
+from .count_law import (
+    SMALLEST,
+    SMALLEST_SEPARATING,
+    Law,
+    LawTerms,
+    best_law,
+    law_dimension,
+    law_terms,
+)
+from .cut_offs import SATURATED
+
+#: Largest box of the law of mean counts, as a fraction of the domain's extent.
+LARGEST_BOX = 1 / 3
+
+
+class MeanCounts(NamedTuple):
+    """Mean box counts of a domain over all grid origins."""
+
+    sizes: np.ndarray
+    """(k,) int64, cells."""
+    counts: np.ndarray
+    """(k,)"""
+
+
+class FittedLaw(NamedTuple):
+    """The law of the mean counts with the ends of its interval and the sizes it was fitted to."""
+
+    law: Law
+    ends: tuple[float, float]
+    sizes: np.ndarray
+    """(k,), cells."""
+    terms: LawTerms
+    """In cells."""
+
+
+NO_MEANS = MeanCounts(np.empty(0, np.int64), np.empty(0))
+
+
+def mean_sizes(shape: tuple[int, ...]) -> np.ndarray:
+    """Box sides in cells at which mean counts are taken: whole ones to `LARGEST_BOX` of an extent.
+
+    Those of a domain's extent are the first of those of its window.
+    """
+    return whole_sizes(LARGEST_BOX * max(shape))
+
+
+def law_of_means(
+    extent: np.ndarray,
+    limits: tuple[float, float],
+    of_cover: float,
+    whole_cells: bool | None,
+) -> tuple[FittedLaw | None, MeanCounts]:
+    """The law fitted to the mean counts of a domain, and these.
+
+    Parameters
+    ----------
+    extent : (ny, nx) bool ndarray
+        The domain, without empty rows and columns about it.
+    limits : (float, float)
+        Smallest and largest box side that may be fitted, cells.
+    of_cover : float
+        Slope of the minimal cover, which the interval is to span.
+    whole_cells : bool, optional
+        As :func:`domain.count_law.best_law` takes it.
+
+    Returns
+    -------
+    law : FittedLaw or None
+        None with too few box sizes between the cut-offs.
+    counts : MeanCounts
+    """
+    sizes = mean_sizes(extent.shape)
+    parts = mean_count(extent, sizes, blocks=BLOCKS)
+    count = parts.sum(axis=(1, 2))
+    means = MeanCounts(sizes, count)
+    side = max(extent.shape)
+    found = _fitted(means, extent, limits, whole_cells)
+    if found is None:
+        return None, means
+    law, rivals, between = found
+    kept = between & (sizes >= SMALLEST)
+    sizes, parts, count = sizes[kept].astype(float), parts[kept], count[kept]
+    slopes = [law.dimension, of_cover, *(rival.dimension for rival in rivals)]
+    if sizes.size // 2 >= FEWEST_SCALES:
+        small, large = (
+            law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
+        )
+        # What drifts by so much from half to half need not stop where the scales end, either way.
+        drift = np.abs(large - small)
+        slopes += [small, large, law.dimension - drift, law.dimension + drift]
+    error = block_error(parts, lambda left: law_dimension(law, sizes, left, side))
+    ends = interval(law.dimension, slopes, error, wave_error(law.misfit, sizes))
+    return FittedLaw(law, ends, sizes, law_terms(law, sizes, count, side)), means
+
+
+def _fitted(means, extent, limits, whole_cells):
+    """Law, rivals and the sizes between the cut-offs, where they are enough; else None."""
+    sizes, count = means
+    alone, full = _beyond_cut_offs(means, extent)
+    between = ~alone & ~full & (sizes >= SMALLEST_SEPARATING) & within(sizes, *limits)
+    if np.count_nonzero(between & (sizes >= SMALLEST)) < FEWEST_SCALES:
+        return None
+    law, rivals = best_law(
+        sizes[between].astype(float), count[between], max(extent.shape), whole_cells
+    )
+    return None if law is None else (law, rivals, between)
+
+
+def _beyond_cut_offs(means, extent):
+    """Sizes at which the mean counts are those of lone nodes, and those of occupied boxes."""
+    sizes, count = means
+    all_boxes = np.prod([(n - 1) / sizes + 1 for n in extent.shape], axis=0)
+    # What fills its own extent is dense at every scale: then no scale is saturated.
+    nodes = np.count_nonzero(extent)
+    filled = nodes >= (1 - SATURATED) * extent.size
+    alone = count >= (1 - SATURATED) * nodes
+    return alone, (count >= (1 - SATURATED) * all_boxes) & (not filled)
+
+
+class FoundLaw(NamedTuple):
+    """A law found, without the interval of its dimension."""
+
+    law: Law
+    sizes: np.ndarray
+    """(k,) int64, cells: those it was fitted to."""
+    separating: np.ndarray
+    """(m,) int64, cells: those by which its form was chosen."""
+    side: float
+    """Extent of the domain, cells."""
+
+    def refound(self, count: np.ndarray, whole_cells: bool | None) -> float:
+        """Dimension of the best law of other counts at `separating`; NaN where none fits."""
+        law, _ = best_law(self.separating.astype(float), count, self.side, whole_cells)
+        return np.nan if law is None else law.dimension
+
+    def dimension_of(self, count: np.ndarray) -> float:
+        """Dimension of a law of this form fitted to other counts at these sizes; NaN without."""
+        if not (count > 0).all():
+            return np.nan
+        return law_dimension(self.law, self.sizes.astype(float), count, self.side)
+
+
+def find_law(
+    domain: np.ndarray, limits: tuple[float, float], whole_cells: bool | None
+) -> FoundLaw | None:
+    """The law that the mean counts of a domain follow; None where too few sizes are between.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+    limits, whole_cells
+        As :func:`law_of_means` takes them.
+    """
+    extent = cropped(domain)
+    sizes = mean_sizes(extent.shape)
+    means = MeanCounts(sizes, cover_and_mean(extent, np.empty(0, np.int64), sizes)[1])
+    found = _fitted(means, extent, limits, whole_cells)
+    if found is None:
+        return None
+    law, _, between = found
+    separating = sizes[between]
+    return FoundLaw(law, separating[separating >= SMALLEST], separating, max(extent.shape))
+
+
+def dimension_by_means(
+    domain: np.ndarray,
+    cover_sizes: np.ndarray,
+    *,
+    limits: tuple[float, float] = (0, np.inf),
+    whole_cells: bool | None = None,
+) -> tuple[float, np.ndarray]:
+    """Dimension by the law of the mean counts without its interval, and the minimal cover.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+    cover_sizes : (k,) int64 ndarray
+        Box sides in cells of the minimal cover.
+    limits, whole_cells
+        As :func:`law_of_means` takes them.
+
+    Returns
+    -------
+    dimension : float
+        Where too few sizes lie between the cut-offs the limit that the counts have reached: 2 where
+        every box is occupied, 0 where every node is alone; NaN where neither.
+    cover : (k,) int64
+    """
+    extent = cropped(domain)
+    sizes = mean_sizes(extent.shape)
+    cover, count = cover_and_mean(extent, cover_sizes, sizes)
+    means = MeanCounts(sizes, count)
+    found = _fitted(means, extent, limits, whole_cells)
+    if found is not None:
+        return found[0].dimension, cover
+    alone, full = (
+        np.count_nonzero(beyond[sizes > 1]) for beyond in _beyond_cut_offs(means, extent)
+    )
+    if max(alone, full) < FEWEST_SCALES:
+        return np.nan, cover
+    return 2.0 if full >= alone else 0.0, cover
+
+
+def block_error(
+    parts: np.ndarray, statistic: Callable[[np.ndarray], float], firsts: Sequence[int] = (0,)
+) -> float:
+    """Half the t-interval of a statistic of counts, by the jackknife over parts of the window.
+
+    The larger error of two: by parts left out, and by rows or columns of them. Neighbouring parts
+    of one set are alike, the more so as the largest boxes are wider than one, and each tells much
+    of what the one left out told. A strip has fewer neighbours; but of strips there are few.
+
+    Parameters
+    ----------
+    parts : (k, blocks, blocks) ndarray
+        Counts by part of the window.
+    statistic : callable
+        (k,) counts to a number, NaN where there is none.
+    firsts : sequence of int
+        Counts that show which parts are occupied: those of the smallest boxes, of each set where
+        counts of several are stacked.
+    """
+    divisions = parts.reshape(len(parts), -1), parts.sum(axis=2), parts.sum(axis=1)
+    squares, *strips = (_without_parts(division, statistic, firsts) for division in divisions)
+    return max(jackknife_error(squares), jackknife_error(*strips))
+
+
+def _without_parts(parts, statistic, firsts):
+    """Values of a statistic with one occupied part after another left out."""
+    occupied = (parts[list(firsts)] > 0).any(axis=0)
+    left = parts.sum(axis=1)[:, np.newaxis] - parts[:, occupied]
+    return [statistic(count) for count in left.T]

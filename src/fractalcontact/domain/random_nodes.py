@@ -1,0 +1,216 @@
+"""Random nodes, the first null model of a contact domain: bands of draws, exact expectations."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.ndimage
+
+from ..core.intervals import CONFIDENCE, t_quantile
+from .box_counts import cover_and_mean
+from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
+from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope
+from .mean_law import FoundLaw, dimension_by_means
+from .ordinary_slope import cover_slope, cover_used, dyadic_sizes
+
+#: Draws of random nodes. The band allows for their number.
+DRAWS = 20
+
+#: Draws of numbers that cost next to nothing.
+CHEAP_DRAWS = 200
+
+
+class Band(NamedTuple):
+    """Mean of random draws and the band in which 95 % of further draws lie; NaN without any."""
+
+    value: Any
+    low: Any
+    high: Any
+
+
+def band_of(draws: np.ndarray) -> Band:
+    """Mean of draws and the band in which one more lies with 95 % probability (normal draws).
+
+    Parameters
+    ----------
+    draws : (n, ...) array_like
+        NaN where a draw has no value.
+
+    Returns
+    -------
+    Band
+        NaN where fewer than half of the draws have a value.
+    """
+    draws = np.asarray(draws, float)
+    known = np.isfinite(draws)
+    n = known.sum(axis=0)
+    enough = n >= max(len(draws) / 2, 2)
+    count = np.maximum(n, 2)
+    mean = np.where(known, draws, 0).sum(axis=0) / count
+    variance = np.where(known, (draws - mean) ** 2, 0).sum(axis=0) / (count - 1)
+    half = t_quantile(count - 1) * np.sqrt(variance * (1 + 1 / count))
+    return Band(*(np.where(enough, end, np.nan) for end in (mean, mean - half, mean + half)))
+
+
+def _quantiles(draws: np.ndarray) -> Band:
+    """Mean of many draws and the band that holds 95 % of them; NaN where half have no value."""
+    known = draws[np.isfinite(draws)]
+    if known.size < max(draws.size / 2, 2):
+        return Band(*(np.nan,) * 3)
+    low, high = np.quantile(known, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
+    return Band(float(known.mean()), float(low), float(high))
+
+
+def random_bands(
+    shape: tuple[int, int],
+    nodes: int,
+    *,
+    mask: np.ndarray | None = None,
+    limits: tuple[float, float] = (0.0, np.inf),
+    whole_cells: bool | None = False,
+    law: FoundLaw | None = None,
+    used: np.ndarray | None = None,
+    draws: int = DRAWS,
+) -> tuple[dict[str, Band], Band]:
+    """Bands of what as many nodes drawn at random in a window have, by the same estimators.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Cells of the window.
+    nodes : int
+        To draw; with fewer than two there is nothing to compare.
+    mask : (ny, nx) bool ndarray, optional
+        Cells that nodes may lie in; all by default.
+    limits : (float, float)
+        Smallest and largest box side that may be fitted, cells.
+    whole_cells : bool, optional
+        As :func:`domain.count_law.best_law` takes it.
+    law : FoundLaw, optional
+        Law of the domain that is compared: the draws' laws are fitted over the same boxes. By
+        default each draw has its own range, between its own cut-offs.
+    used : (k,) bool ndarray, optional
+        Likewise the sizes of the ordinary slope that is compared.
+    draws : int
+
+    Returns
+    -------
+    bands : dict of str to Band
+        ``delta_sigma``, ``delta_sigma_ordinary``, ``correlation_dimension``, ``clusters`` and
+        ``morisita``.
+    counts : Band
+        Of the minimal cover, each (k,) over :func:`domain.ordinary_slope.dyadic_sizes`.
+
+    Notes
+    -----
+    The same shape and number draw the same nodes on every run. Nodes at random cross over from
+    points alone to full boxes, a slope of 2 + ln f / ln R over R cells at a fraction f in contact:
+    what a domain is compared with is that slope over its own boxes. A draw of its own range without
+    one, for its nodes are alone or its boxes full at all sizes, has the limit 0 or 2.
+    """
+    sizes = dyadic_sizes(shape)
+    cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
+    rows: dict[str, list[float]] = {
+        name: [] for name in ("delta_sigma", "delta_sigma_ordinary", "clusters")
+    }
+    covers = []
+    for seed in range(draws if nodes > 1 else 0):
+        domain = random_nodes(shape, nodes, cells, seed)
+        if law is None:
+            dimension, cover = dimension_by_means(
+                domain, sizes, limits=limits, whole_cells=whole_cells
+            )
+        else:
+            cover, mean = cover_and_mean(domain, sizes, law.separating)
+            dimension = law.refound(mean, whole_cells)
+        covers.append(cover)
+        rows["delta_sigma"].append(dimension)
+        kept = cover_used(cover, sizes, nodes, shape, limits) if used is None else used
+        rows["delta_sigma_ordinary"].append(cover_slope(cover[kept], sizes[kept]))
+        rows["clusters"].append(scipy.ndimage.label(domain, NEIGHBOURS)[1])
+    if not covers:
+        names = (*rows, "correlation_dimension", "morisita")
+        nothing = dict.fromkeys(names, Band(*(np.nan,) * 3))
+        return nothing, Band(*np.full((3, sizes.size), np.nan))
+    bands = {name: band_of(np.array(values)) for name, values in rows.items()}
+    bands["correlation_dimension"] = _quantiles(_pair_draws(shape, nodes, mask))
+    bands["morisita"] = _quantiles(_index_draws(shape, nodes, mask))
+    return bands, band_of(np.array(covers))
+
+
+def random_nodes(shape: tuple[int, int], nodes: int, cells: np.ndarray, seed: int) -> np.ndarray:
+    """As many different nodes at random, (ny, nx) bool; the same ones for the same arguments.
+
+    Parameters
+    ----------
+    shape : (int, int)
+    nodes : int
+    cells : (m,) int ndarray
+        Flat places to draw from.
+    seed : int
+    """
+    rng = np.random.default_rng([*shape, cells.size, nodes, seed])
+    domain = np.zeros(int(np.prod(shape)), bool)
+    domain[cells[rng.choice(cells.size, nodes, replace=False, shuffle=False)]] = True
+    return domain.reshape(shape)
+
+
+def _pair_draws(shape, nodes, mask):
+    """Correlation dimensions of random nodes, drawn ring by ring.
+
+    Pairs at different lags go together by the number of nodes alone, which is given; those of a
+    ring vary as Poisson's law has it where nodes are few, less by 1 - f at a fraction f.
+    """
+    distances = pair_distances(shape)
+    expected, weight = expected_pairs(shape, nodes, mask)
+    lags = lags_of(distances)
+    cells = np.prod(shape) if mask is None else np.count_nonzero(mask)
+    rng = np.random.default_rng([*shape, int(cells), nodes])
+    pairs = rng.poisson(expected, (CHEAP_DRAWS, expected.size))
+    pairs = expected + (pairs - expected) * (1 - nodes / cells)
+    sums = np.cumsum(2 * pairs * weight, axis=1)
+    return np.array([pairs_slope(distances, row, lags) for row in sums])
+
+
+def _index_draws(shape, nodes, mask):
+    """Indices of Morisita of random nodes: their quadrat counts are hypergeometric."""
+    inside = np.ones(shape, bool) if mask is None else mask
+    places, cells = quadrat_counts(inside)
+    rng = np.random.default_rng([*shape, int(places.sum()), nodes, 1])
+    contact = rng.multivariate_hypergeometric(places, nodes, size=CHEAP_DRAWS)
+    return np.array([morisita_index(row, cells)[0] for row in contact])
+
+
+def expected_mean_counts(shape: tuple[int, int], nodes: int, sizes: np.ndarray) -> np.ndarray:
+    """Mean box counts over all grid origins expected of random nodes, exactly.
+
+    A box that holds m cells of the window is empty with the probability that all nodes lie in the
+    others, C(M - m, N) / C(M, N); the count is the sum of its complement over the places of a
+    gliding box, divided by its area.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Cells of the window.
+    nodes : int
+    sizes : (k,) int ndarray
+        Box sides, cells.
+
+    Returns
+    -------
+    (k,) float64
+    """
+    cells = int(np.prod(shape))
+    left = np.arange(min(int(sizes.max()) ** 2, cells))
+    with np.errstate(divide="ignore"):
+        steps = np.log(np.maximum(cells - nodes - left, 0)) - np.log(cells - left)
+    empty = np.exp(np.concatenate([[0.0], np.cumsum(steps)]))
+    counts = []
+    for size in sizes:
+        held = [
+            np.minimum.reduce([np.full_like(p, min(size, n)), p + size, n - p])
+            for n, p in ((n, np.arange(1 - size, n)) for n in shape)
+        ]
+        (along_y, times_y), (along_x, times_x) = (np.unique(n, return_counts=True) for n in held)
+        occupied = 1 - empty[np.outer(along_y, along_x)]
+        counts.append(times_y @ occupied @ times_x / size**2)
+    return np.array(counts)

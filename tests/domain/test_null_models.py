@@ -1,0 +1,220 @@
+"""Random nodes and bearing-area cuts beside contact domains, and what may be called fractal."""
+
+import numpy as np
+import pytest
+from ensembles import ensemble
+from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
+
+from fractalcontact.domain.box_counts import mean_count, whole_sizes
+from fractalcontact.domain.box_dimension import dimension_of_domain, is_determined
+from fractalcontact.domain.correlation import pair_counts, pair_distances, pairs_slope
+from fractalcontact.domain.departure import (
+    BEYOND_BOTH,
+    BEYOND_RANDOM,
+    LIKE_CUT,
+    LIKE_RANDOM,
+    UNDETERMINED,
+    Comparison,
+    departure_of,
+    is_fractal,
+    verdict_of,
+)
+from fractalcontact.domain.null_models import QUANTITIES, bearing_area_cut, null_models
+from fractalcontact.domain.random_nodes import (
+    band_of,
+    expected_mean_counts,
+    random_bands,
+    random_nodes,
+)
+from fractalcontact.surface.synthesis import self_affine
+
+
+def scattered(shape, nodes, seed):
+    cells = np.arange(np.prod(shape)) < nodes
+    return np.random.default_rng([99, seed]).permutation(cells).reshape(shape)
+
+
+# -- exact -----------------------------------------------------------------------------------------
+
+
+def test_one_random_node_fills_the_places_of_one_box():
+    np.testing.assert_allclose(expected_mean_counts((9, 7), 1, np.array([1, 2, 5])), 1)
+
+
+def test_expected_counts_of_a_full_window_are_its_own():
+    sizes = np.array([1, 3, 4])
+    expected = mean_count(np.ones((9, 7), bool), sizes).sum(axis=(1, 2))
+    np.testing.assert_allclose(expected_mean_counts((9, 7), 63, sizes), expected)
+
+
+def test_cut_holds_the_highest_nodes():
+    heights = self_affine((40, 30), 1.0, 0.7, rms=1.0, seed=0)
+    cut = bearing_area_cut(heights, 25)
+    assert cut.sum() == 25
+    assert heights[cut].min() > heights[~cut].max()
+    level = bearing_area_cut(np.array([[1.0, 2.0, np.nan], [2.0, 2.0, 0.0]]), 2)
+    assert level.tolist() == [[False, True, False], [True, False, False]]
+
+
+def test_band_is_that_of_one_more_normal_draw():
+    # t of 4 degrees of freedom 2.776, standard deviation 1.5811, root of 1 + 1/5.
+    band = band_of(np.array([1.0, 2, 3, 4, 5]))
+    np.testing.assert_allclose(band, (3, 3 - 4.8090, 3 + 4.8090), atol=1e-3)
+    assert np.isnan(band_of(np.array([1.0, np.nan, np.nan, np.nan]))).all()
+
+
+BESIDE = [
+    ([Comparison(1.0, 1.2, 1.4, -0.3, -0.1)], True, BEYOND_BOTH),
+    ([Comparison(1.5, 1.2, 1.4, -0.3, 0.1)], True, LIKE_CUT),
+    ([Comparison(1.3, 1.2, 1.4, -0.3, -0.1)], True, LIKE_RANDOM),
+    ([Comparison(1.5, 1.2, 1.4)], True, UNDETERMINED),
+    ([Comparison(1.5, 1.2, 1.4)], False, BEYOND_RANDOM),
+    ([Comparison(np.nan, 1.2, 1.4, 0.1, 0.2)], True, UNDETERMINED),
+    # Two estimates of one dimension: one alone shows nothing.
+    ([Comparison(1.5, 1.2, 1.4, 1, 2), Comparison(1.3, 1.2, 1.4, 1, 2)], True, LIKE_RANDOM),
+    ([Comparison(1.5, 1.2, 1.4, 1, 2), Comparison(1.5, 1.2, 1.4, -1, 2)], True, LIKE_CUT),
+    ([Comparison(1.5, 1.2, 1.4, 1, 2), Comparison(1.0, 1.2, 1.4, -2, -1)], True, BEYOND_BOTH),
+]
+
+
+@pytest.mark.parametrize(("comparisons", "surface", "expected"), BESIDE)
+def test_departure_is_what_both_nulls_say(comparisons, surface, expected):
+    assert departure_of(comparisons, surface=surface) == expected
+
+
+def test_only_a_determined_domain_beyond_every_null_is_fractal():
+    for departure in (BEYOND_BOTH, BEYOND_RANDOM):
+        assert is_fractal(verdict_of(departure, determined=True))
+        assert not is_fractal(verdict_of(departure, determined=False))
+    for departure in (LIKE_RANDOM, LIKE_CUT, UNDETERMINED):
+        assert not is_fractal(verdict_of(departure, determined=True))
+
+
+def test_wide_and_missing_intervals_determine_nothing():
+    assert is_determined(0.5, 1.5)
+    assert not is_determined(0.14, 2.0)
+    assert not is_determined(np.nan, np.nan)
+
+
+# -- independent -----------------------------------------------------------------------------------
+
+
+def test_expected_counts_are_the_mean_of_draws():
+    shape, nodes, draws = (24, 31), 20, 400
+    sizes = whole_sizes(10)
+    cells = np.arange(np.prod(shape))
+    counts = np.array(
+        [
+            mean_count(random_nodes(shape, nodes, cells, seed), sizes).sum(axis=(1, 2))
+            for seed in range(draws)
+        ]
+    )
+    error = counts.std(axis=0, ddof=1) / np.sqrt(draws)
+    expected = expected_mean_counts(shape, nodes, sizes)
+    assert (np.abs(counts.mean(axis=0) - expected) <= 4 * error + 1e-9).all()
+
+
+@pytest.mark.parametrize("nodes", [60, 400])
+def test_pairs_drawn_ring_by_ring_are_those_of_drawn_nodes(nodes):
+    shape, draws = (72, 72), 400
+    bands, _ = random_bands(shape, nodes)
+    distances = pair_distances(shape)
+    found = []
+    for seed in range(draws):
+        pairs, lags = pair_counts(scattered(shape, nodes, seed), distances)
+        found.append(pairs_slope(distances, pairs[:, 0].sum(axis=1), lags))
+    found = np.array(found)[np.isfinite(found)]
+    error = found.std(ddof=1) / np.sqrt(found.size)
+    band = bands["correlation_dimension"]
+    assert abs(found.mean() - band.value) <= 4 * error
+    assert 0.9 <= np.mean((found >= band.low) & (found <= band.high)) <= 0.99
+
+
+def test_pairs_compared_are_those_transformed(monkeypatch):
+    domain = scattered((48, 64), 300, 0)
+    distances = pair_distances(domain.shape)
+    compared, lags = pair_counts(domain, distances)
+    monkeypatch.setattr("fractalcontact.domain.correlation._MOST_COMPARED", 0)
+    transformed, same = pair_counts(domain, distances)
+    np.testing.assert_allclose(compared, transformed)
+    np.testing.assert_array_equal(lags, same)
+
+
+# -- properties ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("side", "nodes", "draws"), ensemble("random domains and nulls"))
+def test_random_nodes_are_not_distinguished(side, nodes, draws):
+    """In 95 of 100 draws or more; a draw may also have too few sizes for a dimension."""
+    domains = np.array([scattered((side, side), nodes, seed) for seed in range(draws)])
+    found = null_models(domains, 0.1)["null_departure"].values
+    assert np.mean(found == LIKE_RANDOM) >= 0.95
+
+
+def test_small_random_domains_are_called_nothing_else():
+    domains = np.array([scattered((64, 64), 60, seed) for seed in range(10)])
+    found = null_models(domains, 0.1)["null_departure"].values
+    assert set(found) <= {LIKE_RANDOM, UNDETERMINED}
+
+
+FRACTALS = {
+    "carpet": lambda seed: sierpinski_carpet((81, 200, 243)[seed % 3]),
+    "dust": lambda seed: cantor_dust((81, 200, 243)[seed % 3]),
+    "percolation": lambda seed: percolation_cluster(256, seed),
+}
+
+
+@pytest.mark.parametrize("seed", range(ensemble("fractals beside nulls")))
+@pytest.mark.parametrize("name", FRACTALS)
+def test_known_fractals_are_called_so(name, seed):
+    found = null_models(FRACTALS[name](seed)[np.newaxis], 0.1).isel(normal_force=0)
+    assert found["null_verdict"].item() == BEYOND_RANDOM
+    assert is_fractal(found["null_verdict"].item())
+    assert np.isnan(found["delta_sigma_cut"])
+
+
+def test_a_cut_is_not_distinguished_from_itself():
+    heights = self_affine((96, 96), 0.1, 0.8, rms=1.0, seed=4)
+    found = null_models(bearing_area_cut(heights, 500)[np.newaxis], 0.1, heights)
+    found = found.isel(normal_force=0)
+    for name in QUANTITIES:
+        assert found[f"{name}_cut_difference"] == 0
+        assert found[f"{name}_departure"].item() in (LIKE_CUT, LIKE_RANDOM)
+    assert found["null_departure"].item() in (LIKE_CUT, LIKE_RANDOM)
+    assert not is_fractal(found["null_verdict"].item())
+
+
+def test_the_same_question_has_the_same_answer_bit_for_bit():
+    domains = scattered((64, 48), 90, 1)[np.newaxis]
+    heights = self_affine((64, 48), 0.1, 0.8, rms=1.0, seed=4)
+    first, second = (null_models(domains, 0.1, heights) for _ in range(2))
+    assert first.identical(second)
+    for variable in first.variables.values():
+        assert {"units", "long_name"} <= set(variable.attrs)
+
+
+def test_random_nodes_stay_within_what_was_measured():
+    mask = np.zeros((40, 40), bool)
+    mask[5:30, 10:35] = True
+    drawn = random_nodes((40, 40), 100, np.flatnonzero(mask), 3)
+    assert drawn.sum() == 100
+    assert not drawn[~mask].any()
+    domain = scattered((40, 40), 60, 2) & mask
+    inside, outside = (null_models(domain[np.newaxis], 0.1, mask=m) for m in (mask, None))
+    assert inside["morisita_random"].item() > outside["morisita_random"].item() + 0.3
+
+
+def test_unit_of_length_changes_no_null():
+    domains = scattered((64, 64), 90, 1)[np.newaxis]
+    mm, um = null_models(domains, 0.1), null_models(domains, 100.0)
+    for name in QUANTITIES:
+        assert mm[f"{name}_random"].item() == um[f"{name}_random"].item()
+    np.testing.assert_allclose(um["null_side"], 1e3 * mm["null_side"])
+
+
+@pytest.mark.parametrize("nodes", [0, 1])
+def test_nothing_is_said_of_too_few_nodes(nodes):
+    found = null_models(scattered((32, 32), nodes, 0)[np.newaxis], 0.1)
+    assert found["null_verdict"].item() == UNDETERMINED
+    assert np.isnan(found["delta_sigma_random"]).all()
+    assert np.isnan(dimension_of_domain(scattered((32, 32), nodes, 0), 0.1).dimension)

@@ -1,0 +1,31 @@
+"""Sets of known dimension: Sierpinski's carpet, Cantor dust, percolation clusters."""
+
+import numpy as np
+from scipy import ndimage
+
+
+def ternary_digits(n, levels):
+    """Base-3 digits of the places of n cell centres in the unit interval, (levels, n)."""
+    place = ((2 * np.arange(n) + 1) * 3**levels) // (2 * n)
+    return np.array([(place // 3**level) % 3 for level in range(levels)])
+
+
+def levels_of(n):
+    """Generations that n cells resolve: the last one is at least a cell wide."""
+    return int(np.floor(np.log(n) / np.log(3) + 1e-9))
+
+
+def sierpinski_carpet(n):
+    middle = ternary_digits(n, levels_of(n)) == 1
+    return ~(middle[:, :, np.newaxis] & middle[:, np.newaxis, :]).any(axis=0)
+
+
+def cantor_dust(n):
+    line = (ternary_digits(n, levels_of(n)) != 1).all(axis=0)
+    return line[:, np.newaxis] & line[np.newaxis, :]
+
+
+def percolation_cluster(n, seed):
+    label, _ = ndimage.label(np.random.default_rng(seed).random((n, n)) < 0.592746)
+    sizes = np.bincount(label.ravel())
+    return label == 1 + np.argmax(sizes[1:])
