@@ -45,7 +45,13 @@ def beside(opposite):
 
 
 def configuration_of(wildcards):
-    return {"study": config, "settings": {wildcards.specimen: SETTINGS[wildcards.specimen]}}
+    """What the atlas of one specimen says of the study: what the study says of others is left out.
+
+    So a change of those draws nothing of it again.
+    """
+    name = wildcards.specimen
+    stated = {key: config[key] for key in ("study", "accuracy", "solver") if key in config}
+    return {"study": stated, "settings": {name: SETTINGS[name]}}
 
 
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"

@@ -18,7 +18,7 @@ rule windows:
         runtime=60,
     params:
         **calling("windows"),
-        settings=settings_of,
-        solver=SOLVER,
+        settings=settings_read_by("windows"),
+        solver=solver_read_by("windows"),
     script:
         "../scripts/stage.py"

@@ -5,11 +5,14 @@ so that reading it imports none of them: on a cluster every job reads the workfl
 
 To add a stage: an entry here; its function, which takes its settings and, by their names, the
 datasets of the stages it needs; a rule; a test. Its dataset then stands in the atlas. In a module
-of its own the function makes no other stage out of date.
+of its own the function makes no other stage out of date. A key of the settings that a function
+reads stands in :data:`SETTINGS_READ`, and it gets no others: a change of one that it does not read
+makes nothing of it again.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 #: How often a stage is made: for every specimen, for those that slide, for every measured contact
 #: map; once, on synthetic surfaces, where the study has the stage's key; and of studies of
@@ -63,6 +66,8 @@ class Stage:
 _SPECIMEN_STAGES = "stages.specimen:specimen_stages"
 _STATE_STAGES = "stages.states:state_stages"
 _WINDOW_STAGES = "stages.windows:window_stages"
+#: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
+CONTACT = "mechanics.sweep:joint_states"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
 
@@ -194,6 +199,78 @@ _TABLE = (
 )
 #: Every stage by name, in the order of the atlas.
 STAGES = {stage.name: stage for stage in _TABLE}
+
+_SOLVED = ("loads", "map_offset", "material.e_star", "material.hardness")
+_STRENGTH = ("material.basic_friction_angle", "material.joint_wall_strength")
+#: Keys of a specimen's settings that a function reads; those within another stand behind a point.
+SETTINGS_READ = {
+    _SPECIMEN_STAGES: (
+        "opposite",
+        "outliers",
+        "fill_holes",
+        "window",
+        "window_centre",
+        "directions",
+        "contact_directions",
+        "offsets",
+        "resolutions",
+        "surface_range",
+    ),
+    CONTACT: (*_SOLVED, "contact_directions", "resolutions", "dilatancy_loads", "map_load"),
+    _STATE_STAGES: (
+        "material.e_star",
+        *_STRENGTH,
+        "contact_directions",
+        "hyperbola_range",
+        "box_range",
+        "scaling_range",
+    ),
+    _WINDOW_STAGES: (
+        *_SOLVED,
+        *_STRENGTH,
+        "contact_directions",
+        "resolutions",
+        "dilatancy_loads",
+        "surface_range",
+        "box_range",
+        "scaling_range",
+    ),
+}
+#: Keys of the solver's settings, likewise.
+SOLVER_READ = {
+    CONTACT: ("rtol", "kernel", "accuracy"),
+    _STATE_STAGES: ("rtol", "accuracy"),
+    _WINDOW_STAGES: ("rtol", "kernel", "accuracy"),
+}
+
+
+def read_by(function: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings of a specimen that a function reads: :data:`SETTINGS_READ`, and no others.
+
+    Parameters
+    ----------
+    function : str
+        Of a stage, or :data:`CONTACT`.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    """
+    return _picked(SETTINGS_READ[function], settings)
+
+
+def solver_read_by(function: str, solver: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings of the solver that a function reads: :data:`SOLVER_READ`, and no others."""
+    return _picked(SOLVER_READ[function], solver)
+
+
+def _picked(keys: Collection[str], settings: Mapping[str, Any]) -> dict[str, Any]:
+    picked: dict[str, Any] = {}
+    for key in keys:
+        outer, _, inner = key.partition(".")
+        if inner:
+            picked.setdefault(outer, {})[inner] = settings[outer][inner]
+        else:
+            picked[outer] = settings[outer]
+    return picked
 
 
 def paths_of(*grains: str) -> dict[str, str]:
