@@ -142,12 +142,11 @@ def _stages_of(name, faces, settings):
         settings["resolutions"],
         solver_read(CONTACT),
     )
-    before = {stage: known[stage] for stage in STAGES["closure"].needs}
-    return {
-        **known,
-        **state_stages(**before, parts=[states], **given(STAGES["closure"].function, settings)),
-        **window_stages(**before, **given(STAGES["windows"].function, settings)),
-    }
+    for stage, of_stage in (("window_states", window_stages), ("closure", state_stages)):
+        before = {need: known[need] for need in STAGES[stage].needs}
+        parts = {"parts": [states]} if stage == "closure" else {}
+        known |= of_stage(**before, **parts, **given(STAGES[stage].function, settings))
+    return known
 
 
 def read(function, settings):

@@ -13,12 +13,15 @@ from ..mechanics.states import combine, domains_of, force_range, map_states, wit
 from ..mechanics.strength import joint_strength
 from ..roughness.dimension import best_dimension
 from ..surface.specimen import cell_side, nominal_area, window_sides
+from .sizes import size_laws_of
 
 
 def state_stages(
     specimens: xr.Dataset,
     surface_dimension: xr.Dataset,
     joints: xr.Dataset,
+    window_states: xr.Dataset,
+    size_test: xr.Dataset,
     parts: Sequence[xr.Dataset],
     settings: Mapping,
     solver: Mapping,
@@ -29,6 +32,8 @@ def state_stages(
     ----------
     specimens, surface_dimension, joints : xr.Dataset
         Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
+    window_states, size_test : xr.Dataset
+        Likewise, from :func:`stages.windows.window_stages`.
     parts : sequence of xr.Dataset
         Contact states, from :func:`mechanics.sweep.joint_states`.
     settings : mapping
@@ -69,6 +74,7 @@ def state_stages(
             curves, domains, spacing, fit_range=settings["scaling_range"]
         ),
         "domain_measures": measures_of_map_states(map_states(parts), spacing),
+        "windows": size_laws_of(specimens, surface_dimension, window_states, size_test, settings),
     }
     if specimens.attrs["opposite"] != "flat":
         stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)

@@ -70,10 +70,12 @@ _WINDOW_STAGES = "stages.windows:window_stages"
 CONTACT = "mechanics.sweep:joint_states"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
+#: What all that follows from contact states is made of, beside these.
+_OF_STATES = (*_OF_JOINT, "window_states", "size_test")
 
 
 def _of_states(name, title, grain=SPECIMEN):
-    return Stage(name, title, grain, _STATE_STAGES, _OF_JOINT)
+    return Stage(name, title, grain, _STATE_STAGES, _OF_STATES)
 
 
 def _experiment(name, title, function):
@@ -101,19 +103,20 @@ _TABLE = (
     ),
     Stage("joints", "offsets and composite topographies", SPECIMEN, _SPECIMEN_STAGES),
     Stage(
-        "windows",
-        "closure, roughness and strength of sub-windows",
+        "window_states",
+        "contact states of sub-windows, one by one",
         SPECIMEN,
         _WINDOW_STAGES,
-        _OF_JOINT,
+        ("specimens", "joints"),
     ),
     Stage(
         "size_test",
         "the direct test of eq. 6, and the whole predicted from its parts",
         SPECIMEN,
         _WINDOW_STAGES,
-        _OF_JOINT,
+        ("specimens", "joints"),
     ),
+    _of_states("windows", "closure, roughness and strength of sub-windows against their size"),
     _of_states("closure", "closure curves, stiffness, real contact area"),
     _of_states("dilatancy", "rigid and elastic dilatancy"),
     _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
@@ -221,17 +224,16 @@ SETTINGS_READ = {
         "material.e_star",
         *_STRENGTH,
         "contact_directions",
+        "surface_range",
         "hyperbola_range",
         "box_range",
         "scaling_range",
     ),
     _WINDOW_STAGES: (
         *_SOLVED,
-        *_STRENGTH,
         "contact_directions",
         "resolutions",
         "dilatancy_loads",
-        "surface_range",
         "box_range",
         "scaling_range",
     ),
