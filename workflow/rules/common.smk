@@ -76,13 +76,11 @@ def digests_of(scan):
 
     Times say nothing of a file that was moved, copied or unpacked over another.
     """
-    return {str(path): DIGEST_OF_SCAN[path] for path in (scan.lower, scan.upper) if path}
+    return {str(path): DIGEST_OF_SCAN[path] for path in scan.files}
 
 
 # Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
-DIGEST_OF_SCAN = {
-    path: digest_of(path) for scan in SCANS.values() for path in (scan.lower, scan.upper) if path
-}
+DIGEST_OF_SCAN = {path: digest_of(path) for scan in SCANS.values() for path in scan.files}
 if workflow.is_main_process:
     DIGESTS.save()
 

@@ -103,6 +103,7 @@ use rule analysis as analysis_against_plane with:
 rule contact_map:
     input:
         scan=lambda wc: ancient(str(MAPS[wc.map].lower)),
+        coordinates=lambda wc: [ancient(str(path)) for path in MAPS[wc.map].coordinates],
     output:
         **outputs_of("contact_maps"),
     log:
