@@ -11,6 +11,12 @@ from fractalcontact.study.sidecar import is_contact_map
 OPTIONS = {"kind": "contact-map", "unit": "mm", "spacing": 0.5}
 
 
+@pytest.fixture(autouse=True)
+def few_draws(monkeypatch):
+    """Of random cells, which have tests of their own."""
+    monkeypatch.setattr("fractalcontact.domain.map_nulls.DRAWS", 2)
+
+
 @pytest.fixture
 def carpet(tmp_path):
     """Sierpinski's carpet, 81 x 81: of dimension ln 8 / ln 3."""

@@ -1,6 +1,7 @@
 # Figures of every specimen: PNG, SVG, numbers as CSV, caption as text.
 
-STUDY_FIGURES = study_figures_of(config)
+# Measured contact maps ask for their figures themselves.
+STUDY_FIGURES = study_figures_of([*config, *MAP_FILES])
 
 
 def pictures(opposite):

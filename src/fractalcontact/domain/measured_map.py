@@ -15,12 +15,14 @@ import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.errors import InputError
+from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
 from ..core.units import load as read_load
 from ..scan.coordinates import read_coordinates
 from ..scan.options import coordinate_files
 from ..scan.read import read_matrix
 from .analysis import DOMAIN_FIELDS, analyse_domains
+from .map_nulls import null_verdict, random_cells
 from .map_outline import outline_mask, outline_warning
 
 #: Keys of a sidecar that only maps have.
@@ -36,8 +38,6 @@ _VARIABLES = {
     "nominal_area": ((), "mm2", "nominal area A_0 of the cells measured"),
     "area": ((), "mm2", "real contact area A_r"),
     "area_share": ((), "1", "real contact area A_r / A_0"),
-    "force": ((), "N", "normal force F on the map"),
-    "nominal_pressure": ((), "MPa", "nominal pressure sigma_0 = F / A_0"),
     "threshold_delta_sigma": (
         "threshold",
         "1",
@@ -50,6 +50,15 @@ _VARIABLES = {
     ),
     "delta_sigma_least": ((), "1", f"least Delta_sigma {_OVER_THRESHOLDS}"),
     "delta_sigma_most": ((), "1", f"largest Delta_sigma {_OVER_THRESHOLDS}"),
+    "delta_sigma_random": ((), "1", "mean Delta_sigma of as many cells at random"),
+    "delta_sigma_random_low": ((), "1", "least Delta_sigma of as many cells at random"),
+    "delta_sigma_random_high": ((), "1", "largest Delta_sigma of as many cells at random"),
+    "null_verdict": ((), "1", "whether Delta_sigma lies beyond that of random cells"),
+}
+#: How it was loaded.
+_LOADS = {
+    "force": ((), "N", "normal force F on the map"),
+    "nominal_pressure": ((), "MPa", "nominal pressure sigma_0 = F / A_0"),
 }
 
 
@@ -89,35 +98,19 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
         or the coordinates are none.
     """
     values, y, x, provenance = _read(Path(path), options)
-    measured = np.isfinite(values)
     outline, where = options.get("outline"), f"sidecar of {path}"
-    measured &= outline_mask(outline, values, y, x, f"{where}: outline")
+    measured = outline_mask(outline, values, y, x, f"{where}: outline") & np.isfinite(values)
     thresholds = _thresholds(values[measured], options.get("threshold"), path)
     touching = measured & (np.nan_to_num(values) > thresholds[:, np.newaxis, np.newaxis])
     _require_contact(touching, thresholds, values[measured], path)
     stands_for = options.get("cells")
     dy, dx = y[1] - y[0], x[1] - x[0]
-    table = _analysed(touching, float(np.sqrt(dx * dy)), CELLS.get(str(stands_for)))
     main = (len(thresholds) - 1) // 2
-    nominal, shares = measured.sum() * dx * dy, touching.sum(axis=(1, 2)) / measured.sum()
-    dimensions = table["delta_sigma"].values
-    several = len(thresholds) > 1
+    result = _analysed(touching, measured, main, (dy, dx), CELLS.get(str(stands_for)))
+    nominal = measured.sum() * dx * dy
     pressure = _pressure(options.get("load"), nominal, f"{where}: load")
-    variables = {
-        "in_contact": touching[main],
-        "measured": measured,
-        "nominal_area": nominal,
-        "area": shares[main] * nominal,
-        "area_share": shares[main],
-        "force": pressure * nominal,
-        "nominal_pressure": pressure,
-        "threshold_delta_sigma": dimensions,
-        "threshold_area_share": shares,
-        "delta_sigma_least": np.fmin.reduce(dimensions) if several else np.nan,
-        "delta_sigma_most": np.fmax.reduce(dimensions) if several else np.nan,
-    }
-    result = table[[*DOMAIN_FIELDS, "reason"]].isel(normal_force=main, drop=True)
-    result = result.assign(labelled(_VARIABLES, variables)).assign_coords(
+    loads = {"force": pressure * nominal, "nominal_pressure": pressure}
+    result = result.assign(labelled(_LOADS, loads)).assign_coords(
         y=("y", y, cf_attrs("mm", "y of the cell's centre")),
         x=("x", x, cf_attrs("mm", "x of the cell's centre")),
         threshold=("threshold", thresholds, cf_attrs("1", "threshold, in the unit of the map")),
@@ -126,6 +119,7 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
         "label": label,
         "series": options.get("series", ""),
         "threshold": float(thresholds[main]),
+        "binary": int(_is_binary(values[measured])),
         "outline": json.dumps(outline or "rectangle"),
         "warning": outline_warning(values, touching[main], outline),
         "spacing_y": dy,
@@ -163,19 +157,43 @@ def _read(
     return values, axes["y"][:: ascending["y"]], axes["x"][:: ascending["x"]], provenance
 
 
-def _analysed(touching: np.ndarray, spacing: float, whole_cells: bool | None) -> xr.Dataset:
-    """Numbers of the contact domains above each threshold, over ``normal_force``: their places."""
+def _analysed(
+    touching: np.ndarray,
+    measured: np.ndarray,
+    main: int,
+    sides: tuple[float, float],
+    whole_cells: bool | None,
+) -> xr.Dataset:
+    """What a map holds but its loads, of its domains above each threshold, of which one is main."""
+    spacing = float(np.sqrt(np.prod(sides)))
     dims = ("direction", "offset", "normal_force", "y_1", "x_1")
-    domains = xr.Dataset(
-        {"in_contact_1": (dims, touching[np.newaxis, np.newaxis])},
-        coords={
-            "direction": ["none"],
-            "offset": [0.0],
-            "normal_force": np.arange(len(touching), dtype=float),
-        },
-    )
+    # To the analysis the thresholds are loads of one joint.
+    coords = {"direction": ["none"], "offset": [0.0], "normal_force": np.arange(len(touching))}
+    domains = xr.Dataset({"in_contact_1": (dims, touching[np.newaxis, np.newaxis])}, coords)
     table = analyse_domains(domains, spacing, whole_cells=whole_cells)
-    return table.squeeze(["direction", "offset", "resolution"], drop=True)
+    table = table.squeeze(["direction", "offset", "resolution"], drop=True)
+    dimensions = table["delta_sigma"].values
+    of_main = table[[*DOMAIN_FIELDS, "reason"]].isel(normal_force=main, drop=True)
+    random = random_cells(touching[main], measured, spacing, whole_cells=whole_cells)
+    value, low, high = (float(of_main[f"delta_sigma{end}"]) for end in INTERVAL)
+    nominal, shares = measured.sum() * np.prod(sides), touching.sum(axis=(1, 2)) / measured.sum()
+    several = len(touching) > 1
+    variables = {
+        "in_contact": touching[main],
+        "measured": measured,
+        "nominal_area": nominal,
+        "area": shares[main] * nominal,
+        "area_share": shares[main],
+        "threshold_delta_sigma": dimensions,
+        "threshold_area_share": shares,
+        "delta_sigma_least": np.fmin.reduce(dimensions) if several else np.nan,
+        "delta_sigma_most": np.fmax.reduce(dimensions) if several else np.nan,
+        "delta_sigma_random": random.mean,
+        "delta_sigma_random_low": random.low,
+        "delta_sigma_random_high": random.high,
+        "null_verdict": null_verdict(value, low, high, random),
+    }
+    return of_main.assign(labelled(_VARIABLES, variables))
 
 
 def _thresholds(
@@ -184,12 +202,16 @@ def _thresholds(
     """Above what a cell is in contact, ascending; between the 0 and 1 of a binary map."""
     if stated is not None:
         return np.sort(np.atleast_1d(np.asarray(stated, float)))
-    if np.isin(values, (0, 1)).all():
+    if _is_binary(values):
         return np.array([0.5])
     raise InputError(
         f"{path}: this contact map holds other numbers than 0 and 1; write above which of them a "
         "cell is in contact, for example 'threshold: 5', in its sidecar"
     )
+
+
+def _is_binary(values: np.ndarray) -> bool:
+    return bool(np.isin(values, (0, 1)).all())
 
 
 def _require_contact(touching, thresholds, values, path):
