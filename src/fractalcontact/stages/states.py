@@ -8,6 +8,7 @@ from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
+from ..mechanics.contact_fields import contact_fields
 from ..mechanics.plan import solve_plan
 from ..mechanics.states import combine, domains_of, force_range, map_states, with_pressure
 from ..mechanics.strength import joint_strength
@@ -69,7 +70,7 @@ def state_stages(
         "choices": solve_plan(curves, dilatancy, settings, solver),
         "area": laws,
         "domains": domains,
-        "contact": fields,
+        "contact": contact_fields(fields, parts, joints, settings, nominal_area(specimens)),
         "scaling": scaling_over_resolutions(
             curves, domains, spacing, fit_range=settings["scaling_range"]
         ),

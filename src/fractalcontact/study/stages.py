@@ -224,6 +224,8 @@ SETTINGS_READ = {
         "material.e_star",
         *_STRENGTH,
         "contact_directions",
+        "dilatancy_loads",
+        "map_load",
         "surface_range",
         "hyperbola_range",
         "box_range",
