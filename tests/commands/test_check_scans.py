@@ -176,7 +176,7 @@ def test_an_empty_folder_is_no_error(folder, check):
 
 def test_a_wrong_study_is_one_error(folder, capsys):
     folder.mkdir(parents=True)
-    (folder / "study.yaml").write_text("study: x\n")
+    (folder / "study.yaml").write_text("scans: null\n")
     assert main([str(folder), "--study", str(folder / "study.yaml"), *ARGUMENTS[2:]]) == 1
     assert "missing key" in capsys.readouterr().err
 

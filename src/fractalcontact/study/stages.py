@@ -266,6 +266,12 @@ def solver_read_by(function: str, solver: Mapping[str, Any]) -> dict[str, Any]:
     return _picked(SOLVER_READ[function], solver)
 
 
+def without_label(resolved: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of an experiment, the recipe among them without its label, which is only words."""
+    recipe = {key: value for key, value in resolved.get("recipe", {}).items() if key != "label"}
+    return {**resolved, **({"recipe": recipe} if recipe else {})}
+
+
 def _picked(keys: Collection[str], settings: Mapping[str, Any]) -> dict[str, Any]:
     picked: dict[str, Any] = {}
     for key in keys:

@@ -70,7 +70,7 @@ def _title(name, one):
 def _caption(series, maps):
     shares = [float(one["area_share"]) for _, one in maps]
     verdicts = [one["null_verdict"].item() for _, one in maps]
-    beyond = verdicts.count("beyond random")
+    beyond = sum(verdict.startswith("beyond") for verdict in verdicts)
     warned = sum(bool(one.attrs["warning"]) for _, one in maps)
     words = (
         f"{supplementary('measured contact maps')} Cells in contact (black), "
