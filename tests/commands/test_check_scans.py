@@ -88,6 +88,49 @@ def test_a_pair_and_a_contact_map(folder, check):
     assert code == 0
     assert "gap: mean 0.3 mm" in out
     assert "% in contact above 0.5" in out
+    assert "no load stated" in out
+
+
+def test_a_map_shows_its_area_and_pressure_and_its_coordinates_are_no_scans(folder, check):
+    folder.mkdir()
+    x, y = 0.5 * np.arange(40), 0.5 * np.arange(32)
+    values = np.zeros((32, 40))
+    values[8:24, 12:28] = 7.0
+    for name, numbers in (("film_x", [x]), ("film_y", [y]), ("film", values)):
+        np.savetxt(folder / f"{name}.csv", numbers, delimiter=",")
+    sidecar = (
+        "kind: contact-map\nunit: mm\nx: film_x.csv\ny: film_y.csv\nthreshold: [3, 5]\n"
+        "load: 640 N\nseries: films\n"
+    )
+    (folder / "film.yaml").write_text(sidecar)
+    code, out = check()
+    text = " ".join(out.split())
+    assert code == 0
+    assert "0 ok, 1 with warnings, 0 refused" in text
+    assert "A_0 = 320 mm2 (outline: rectangle), 20 % in contact above 3, series films" in text
+    assert "F = 640 N, F/A_0 = 2 MPa" in text
+    assert "in contact 20 % above 3, 20 % above 5" in text
+    assert "write 'outline: disc'" in text
+    (folder / "film.yaml").write_text(f"{sidecar}outline: {{disc: {{diameter: 12 mm}}}}\n")
+    _, out = check()
+    assert "1 ok, 0 with warnings" in out
+    (folder / "film.yaml").write_text(sidecar.replace("film_x.csv", "nothing.csv"))
+    code, out = check()
+    assert code == 1
+    assert "x: no file nothing.csv beside it" in " ".join(out.split())
+
+
+def test_a_file_of_coordinates_that_a_link_takes_elsewhere_is_not_read(folder, check, tmp_path):
+    folder.mkdir()
+    np.savetxt(tmp_path / "secret.csv", [0.5 * np.arange(40)], delimiter=",")
+    (folder / "film_x.csv").symlink_to(tmp_path / "secret.csv")
+    np.savetxt(folder / "film_y.csv", [0.5 * np.arange(32)], delimiter=",")
+    np.savetxt(folder / "film.csv", np.eye(32, 40), delimiter=",")
+    (folder / "film.yaml").write_text("kind: contact-map\nunit: mm\nx: film_x.csv\ny: film_y.csv\n")
+    code, out = check()
+    assert code == 1
+    assert "no file film_x.csv beside it" in " ".join(out.split())
+    assert "A_0" not in out
 
 
 def test_two_faces_that_do_not_match_or_share_no_frame_are_told(folder, check):
@@ -133,7 +176,7 @@ def test_an_empty_folder_is_no_error(folder, check):
 
 def test_a_wrong_study_is_one_error(folder, capsys):
     folder.mkdir(parents=True)
-    (folder / "study.yaml").write_text("study: x\n")
+    (folder / "study.yaml").write_text("scans: null\n")
     assert main([str(folder), "--study", str(folder / "study.yaml"), *ARGUMENTS[2:]]) == 1
     assert "missing key" in capsys.readouterr().err
 

@@ -95,3 +95,180 @@ def test_points_are_no_map(tmp_path):
 def test_the_sidecar_says_what_is_a_map():
     assert is_contact_map(yaml.safe_load("kind: contact-map"))
     assert not is_contact_map(yaml.safe_load("unit: mm"))
+
+
+# -- outline, thresholds, coordinates --------------------------------------------------------------
+
+
+def random_map(tmp_path, n=64, contact=0.2, seed=1, name="film"):
+    """Cells in contact at random."""
+    values = (np.random.default_rng(seed).random((n, n)) < contact).astype(float)
+    path = tmp_path / f"{name}.npy"
+    np.save(path, values)
+    return path, values
+
+
+CENTRES = 0.5 * (np.arange(64) + 0.5)  # mm
+FROM_CENTRE = np.hypot(*np.meshgrid(CENTRES - 16, CENTRES - 16))
+
+
+@pytest.mark.parametrize(
+    ("outline", "inside"),
+    [
+        ("rectangle", FROM_CENTRE >= 0),
+        ("disc", FROM_CENTRE <= 16),
+        ({"disc": {"diameter": "20 mm"}}, FROM_CENTRE <= 10),
+        (
+            {"disc": {"centre": [4, "0.6 cm"], "diameter": 5}},
+            np.hypot(*np.meshgrid(CENTRES - 4, CENTRES - 6)) <= 2.5,
+        ),
+        # A triangle below the diagonal, either way round; and one that is not convex.
+        ({"polygon": [[0, 0], [32, 0], [32, 32]]}, np.tri(64, k=-1, dtype=bool).T),
+        ({"polygon": [[32, 32], [32, 0], [0, 0]]}, np.tri(64, k=-1, dtype=bool).T),
+        (
+            {"polygon": [[0, 0], [32, 0], [32, 32], [16, 0.001]]},
+            np.add.outer(-CENTRES / 2, CENTRES - 16) > 0,
+        ),
+    ],
+    ids=str,
+)
+def test_an_outline_says_what_was_measured(tmp_path, outline, inside):
+    path, values = random_map(tmp_path)
+    found = read_contact_map(path, OPTIONS | {"outline": outline, "load": "1 kN"}, label="film")
+    # The diagonal runs through centres, where either side is right.
+    doubtful = np.isclose(*np.meshgrid(CENTRES, CENTRES)) if "polygon" in outline else False
+    np.testing.assert_array_equal(found["measured"] | doubtful, inside | doubtful)
+    np.testing.assert_array_equal(found["in_contact"], found["measured"] & (values == 1))
+    cells = int(found["measured"].sum())
+    assert float(found["nominal_area"]) == pytest.approx(cells * 0.25)
+    assert float(found["nominal_pressure"]) == pytest.approx(1000 / (cells * 0.25))
+    assert float(found["force"]) == pytest.approx(1000)
+    assert float(found["area"]) == pytest.approx(float(found["in_contact"].sum()) * 0.25)
+    assert found.attrs["warning"] == ""
+
+
+def test_cells_of_a_mask_and_missing_cells_lie_outside(tmp_path):
+    _, values = random_map(tmp_path)
+    outside = FROM_CENTRE > 16
+    np.save(tmp_path / "nan.npy", np.where(outside, np.nan, values))
+    np.save(tmp_path / "marked.npy", np.where(outside, -1, values))
+    found = [
+        read_contact_map(tmp_path / name, OPTIONS | keys, label="film")
+        for name, keys in (
+            ("nan.npy", {}),
+            ("marked.npy", {"outline": {"mask": -1}}),
+            ("film.npy", {"outline": "disc"}),
+        )
+    ]
+    for of_map in found:
+        assert float(of_map["area_share"]) == pytest.approx(float(found[0]["area_share"]))
+        np.testing.assert_array_equal(of_map["measured"], ~outside)
+
+
+@pytest.mark.parametrize(
+    "outline",
+    [
+        {"polygon": [[0, 0], [1, 1], [2, 2]]},
+        {"disc": {"diameter": 0}},
+        {"disc": {"centre": [99, 99], "diameter": 1}},
+    ],
+    ids=str,
+)
+def test_an_outline_without_area_is_refused(tmp_path, outline):
+    path, _ = random_map(tmp_path)
+    with pytest.raises(InputError, match="outline: "):
+        read_contact_map(path, OPTIONS | {"outline": outline}, label="film")
+
+
+def test_zeros_around_a_round_film_are_warned_of(tmp_path):
+    path, values = random_map(tmp_path)
+    np.save(path, np.where(FROM_CENTRE < 15, values, 0))
+    found = read_contact_map(path, OPTIONS, label="film")
+    assert "write 'outline: disc'" in found.attrs["warning"]
+    for outline in ("disc", "rectangle"):
+        said = read_contact_map(path, OPTIONS | {"outline": outline}, label="film")
+        assert said.attrs["warning"] == ""
+    ratio = float(said["nominal_area"]) / (np.pi * 16**2)
+    assert ratio == pytest.approx(4 / np.pi)
+
+
+def test_thresholds_give_a_band(tmp_path):
+    path = tmp_path / "film.npy"
+    np.save(path, np.random.default_rng(2).random((64, 64)))
+    found = read_contact_map(path, OPTIONS | {"threshold": [0.9, 0.5, 0.99]}, label="film")
+    alone = {
+        level: read_contact_map(path, OPTIONS | {"threshold": level}, label="film")
+        for level in (0.5, 0.9, 0.99)
+    }
+    assert found["threshold"].values.tolist() == [0.5, 0.9, 0.99]
+    assert found.attrs["threshold"] == 0.9
+    for name in ("delta_sigma", "delta_sigma_low", "area_share", "clusters"):
+        assert float(found[name]) == float(alone[0.9][name])
+    dimensions = [float(of_map["delta_sigma"]) for of_map in alone.values()]
+    np.testing.assert_array_equal(found["threshold_delta_sigma"], dimensions)
+    assert float(found["delta_sigma_least"]) == np.nanmin(dimensions)
+    assert float(found["delta_sigma_most"]) == np.nanmax(dimensions)
+    assert np.isnan(alone[0.9]["delta_sigma_least"])
+    with pytest.raises(InputError, match="no cell lies above the threshold of 2"):
+        read_contact_map(path, OPTIONS | {"threshold": [0.5, 2]}, label="film")
+
+
+def three_files(tmp_path, x, y, values):
+    for key, numbers in (("x", x), ("y", y), ("z", values)):
+        np.savetxt(tmp_path / f"film_{key}.csv", np.atleast_2d(numbers), delimiter=",")
+    return tmp_path / "film_z.csv", {"unit": "mm", "x": "film_x.csv", "y": "film_y.csv"}
+
+
+@pytest.mark.parametrize("form", ["lines", "matrices", "downwards"])
+def test_coordinates_may_be_files_of_their_own(tmp_path, form):
+    _, values = random_map(tmp_path, 20)
+    values = values[:, :16]
+    x, y = 3 + 0.2 * np.arange(16), 7 + 0.4 * np.arange(20)
+    written = (x, y, values)
+    if form == "matrices":
+        written = (*np.meshgrid(x, y), values)
+    if form == "downwards":
+        written = (x, y[::-1], values[::-1])
+    path, options = three_files(tmp_path, *written)
+    corners = [[3, 6], [7, 6], [7, 9], [3, 9]]
+    found = read_contact_map(path, options | {"outline": {"polygon": corners}}, label="film")
+    np.testing.assert_allclose(found["x"], x)
+    np.testing.assert_allclose(found["y"], y)
+    inside = (y < 9)[:, np.newaxis] & (x < 7)
+    np.testing.assert_array_equal(found["in_contact"], (values == 1) & inside)
+    assert (found.attrs["spacing_x"], found.attrs["spacing_y"]) == pytest.approx((0.2, 0.4))
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"x": "../film_x.csv"}, "plain name"),
+        ({"x": "/etc/passwd"}, "plain name"),
+        ({"x": "folder\\film_x.csv"}, "plain name"),
+        ({"x": ".hidden.csv"}, "plain name"),
+        ({"x": ".."}, "plain name"),
+        ({"x": "film_z.csv"}, "plain name"),
+        ({"x": "absent.csv"}, "no such file"),
+        ({"x": None}, "key 'x' is missing"),
+        ({"spacing": 0.1}, "say the 'spacing'"),
+        ({"unit": None}, "unit"),
+        ({"y": "film_x.csv"}, "16 coordinates y"),
+        ({"x": "film_z2.csv"}, "no coordinates x"),
+        ({"x": "uneven.csv"}, "an even grid is needed"),
+    ],
+    ids=str,
+)
+def test_files_of_coordinates_are_plain_names_of_even_grids(tmp_path, keys, message):
+    _, values = random_map(tmp_path, 20)
+    path, options = three_files(tmp_path, np.arange(16.0), np.arange(20.0), values[:, :16])
+    np.savetxt(tmp_path / "film_z2.csv", values[:, :16], delimiter=",")
+    np.savetxt(tmp_path / "uneven.csv", np.arange(16.0)[:, np.newaxis] ** 2)
+    options = {key: value for key, value in (options | keys).items() if value is not None}
+    with pytest.raises(InputError, match=message):
+        read_contact_map(path, options, label="film")
+
+
+def test_coordinates_of_the_cells_are_their_centres(carpet):
+    found = read_contact_map(carpet, OPTIONS, label="a carpet")
+    np.testing.assert_allclose(found["x"], 0.5 * (np.arange(81) + 0.5))
+    assert found["y"].attrs["units"] == "mm"

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from declared import Declared
 
 from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.experiments.delta_g import estimator_bias
@@ -18,7 +19,7 @@ from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
 from fractalcontact.study.size_tasks import size_tasks
-from fractalcontact.study.stages import EXPERIMENT, STAGES
+from fractalcontact.study.stages import CONTACT, EXPERIMENT, STAGES, read_by, solver_read_by
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
@@ -143,23 +144,36 @@ def atlas_file(tmp_path_factory):
 
 def _stages_of(name, faces, settings):
     """All stages of a specimen, as the jobs of a study compute them."""
-    specimen = make_specimen(*faces, name=name, **window_arguments(settings))
-    known = specimen_stages(specimen, settings)
+    of_specimen = read(STAGES["specimens"].function, settings)
+    specimen = make_specimen(*faces, name=name, **window_arguments(of_specimen))
+    known = specimen_stages(specimen, of_specimen)
     states = joint_states(
         specimen,
         known["joints"],
         settings["contact_directions"],
         slice(None),
-        settings,
+        read(CONTACT, settings),
         settings["resolutions"],
-        SOLVER,
+        solver_read(CONTACT),
     )
-    before = {stage: known[stage] for stage in STAGES["closure"].needs}
-    return {
-        **known,
-        **state_stages(**before, parts=[states], settings=settings, solver=SOLVER),
-        **window_stages(**before, settings=settings, solver=SOLVER),
-    }
+    for stage, of_stage in (("window_states", window_stages), ("closure", state_stages)):
+        before = {need: known[need] for need in STAGES[stage].needs}
+        parts = {"parts": [states]} if stage == "closure" else {}
+        known |= of_stage(**before, **parts, **given(STAGES[stage].function, settings))
+    return known
+
+
+def read(function, settings):
+    """What a rule hands over: the settings that the function declares; others are refused."""
+    return Declared(read_by(function, settings))
+
+
+def solver_read(function):
+    return Declared(solver_read_by(function, SOLVER))
+
+
+def given(function, settings):
+    return {"settings": read(function, settings), "solver": solver_read(function)}
 
 
 def _experiments():

@@ -22,6 +22,7 @@ from fractalcontact.size_effect.load_ladder import (
 )
 from fractalcontact.size_effect.prediction import PREDICTORS, predict_whole
 from fractalcontact.size_effect.slope import equal_pressure, real_pressures, slopes_at_equal_star
+from fractalcontact.size_effect.windows import window_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
@@ -67,7 +68,8 @@ def found_of(specimen, direction, cells, chosen, solver=SOLVER):
     """The test, with the strength of the parts as the stage before it has it."""
     no_dimension = (np.nan,) * 3
     loading = JointLoading(specimen, direction, cells, chosen, solver)
-    return size_test(loading, joint_by_size(loading, no_dimension))
+    laws = joint_by_size(window_states(loading), specimen, no_dimension, chosen)
+    return size_test(loading, laws)
 
 
 @pytest.fixture(scope="module")

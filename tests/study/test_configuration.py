@@ -9,7 +9,7 @@ from places import ROOT
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.study import scan_files
-from fractalcontact.study.checks import check_names, check_study, read_sidecar
+from fractalcontact.study.checks import check_names, check_study, read_sidecar, resolve_study
 from fractalcontact.study.configuration import (
     MOST_NODES,
     resolve_embedded,
@@ -33,12 +33,23 @@ def test_the_studies_that_ship_are_valid(name):
     check_study(yaml.safe_load((ROOT / f"config/{name}.yaml").read_text()), SCHEMA, name)
 
 
-@pytest.mark.parametrize("change", [{"scans": "scans"}, {"embedded": {}}, {"specimens": {}}])
+@pytest.mark.parametrize("change", [{"embedded": {}}, {"specimens": {}}])
 def test_only_a_study_without_specimens_needs_no_materials(change):
     bare = {"study": "bare", "scans": None}
     check_study(bare, SCHEMA, "bare")
     with pytest.raises(InputError, match=r"missing key 'materials'; expected materials by name"):
         check_study(bare | change, SCHEMA, "bare")
+
+
+def test_a_study_of_contact_maps_alone_needs_no_materials_and_one_of_heights_does(tmp_path):
+    (tmp_path / "film.npy").write_text("")
+    (tmp_path / "film.yaml").write_text("kind: contact-map\nlabel: a film\n")
+    bare = {"study": "bare", "scans": str(tmp_path)}
+    study = resolve_study(bare, SCHEMA, "bare")
+    assert (study.labels, study.settings) == ({"film": "a film"}, {})
+    (tmp_path / "slab.npy").write_text("")
+    with pytest.raises(InputError, match="missing key 'materials', which the specimen slab needs"):
+        resolve_study(bare, SCHEMA, "bare")
 
 
 def broken(study, path, value):
@@ -187,7 +198,7 @@ DIGITS = int("9" * 400)
         (("embedded", "joint_2.1", "seed"), 7.0, "seed: 7.0 is not right; expected a whole number"),
         (("roll_off", "seeds"), [1, DIGITS], r"roll_off.seeds.1: 9{80}\.\.\. is not right; "),
         (("area_slope", "nodes"), DIGITS, r"area_slope.nodes: 9{80}\.\.\. is not right; "),
-        (("dimension_test", "sizes"), [10**6], "sizes.0: 1000000 is not right; expected a whole n"),
+        (("size_effect", "arms", "S1", "sizes"), [10**6], "sizes.0: 1000000 is not right; expected"),
         (("defaults", "resolutions"), [DIGITS], r"resolutions.0: 9{80}\.\.\. is not right; "),
         (("defaults", "fill_holes"), DIGITS, "fill_holes: 9.* is not right; expected rows and col"),
         (("defaults", "loads"), ["5e-324 N"], "loads: '5e-324 N' is beyond what can be computed"),

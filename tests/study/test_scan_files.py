@@ -8,6 +8,7 @@ import pytest
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.file_names import specimen_name
+from fractalcontact.study.checks import with_coordinates
 from fractalcontact.study.scan_files import find_scans
 
 
@@ -189,3 +190,16 @@ def test_a_folder_with_the_name_of_a_scan_file_is_refused_others_are_passed_over
     (tmp_path / "granite.x3p").mkdir()
     with pytest.raises(InputError, match=r"granite\.x3p: a folder, not a file"):
         find_scans(tmp_path)
+
+
+def test_files_of_coordinates_belong_to_their_map(tmp_path):
+    for name in ("film.csv", "film_x.csv", "film_y.csv", "other.csv", "slab.csv"):
+        (tmp_path / name).write_text("1")
+    scans = find_scans(tmp_path)
+    keys = {"kind": "contact-map", "x": "film_x.csv", "y": "film_y.csv"}
+    found = with_coordinates(scans, {"film": keys})
+    assert sorted(found) == ["film", "other", "slab"]
+    assert [path.name for path in found["film"].files] == ["film.csv", "film_x.csv", "film_y.csv"]
+    assert found["slab"].files == (tmp_path / "slab.csv",)
+    with pytest.raises(InputError, match=r"x: no file absent\.csv beside it"):
+        with_coordinates(scans, {"film": keys | {"x": "absent.csv"}})

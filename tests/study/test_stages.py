@@ -68,8 +68,8 @@ def test_files_of_a_job_are_those_of_the_stages_of_its_function():
         for stage in ("specimens", "quality", "surface_dimension", "joints")
     }
     assert set(made_together("closure")) - set(made_together("closure", [SPECIMEN])) == {"strength"}
-    assert needed_by("windows") == {
-        stage: f"{stage}/{{specimen}}.nc" for stage in ("specimens", "surface_dimension", "joints")
+    assert needed_by("window_states") == {
+        stage: f"{stage}/{{specimen}}.nc" for stage in ("specimens", "joints")
     }
     assert paths_of(MAP) == {"contact_maps": "contact_maps/{map}.nc"}
     assert paths_of(EXPERIMENT)["roll_off"] == "roll_off/surfaces.nc"

@@ -34,6 +34,7 @@ ENSEMBLES: dict[str, tuple] = {
     "joints with a roll-off": (6, 8),
     "surfaces of every dimension": (2, 3),
     # domain
+    "maps at random": (4, 100),
     "carpet sizes": ((81, 243, 500), (81, 200, 300, 400, 243, 256, 500, 512, 729, 1000)),
     "dust sizes": ((200, 243, 500), (200, 300, 400, 243, 256, 500, 512, 729, 1000)),
     "drawn dust sizes": ((256, 500), (243, 256, 500, 512, 729, 1000)),

@@ -69,7 +69,7 @@ def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):
     ):
         append(project, name)
     (project / "src/fractalcontact/stages/another.py").write_text("# its function\n")
-    assert set(planned(project)) == {"windows", "atlas"}
+    assert set(planned(project)) == {"windows", "analysis_against_plane", "atlas"}
 
 
 def test_a_scan_replaced_by_an_older_file_is_read(project):
@@ -110,8 +110,10 @@ def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
     for stage in STAGES.values():
         files = _files_behind(stage.module)
         assert f"src/fractalcontact/{stage.module}.py" in files
-    windows = _files_behind(STAGES["windows"].module)
-    assert {"src/fractalcontact/size_effect/laws.py", "src/fractalcontact/contact/solve.py"} <= (
+    windows = _files_behind(STAGES["window_states"].module)
+    assert {"src/fractalcontact/size_effect/eq6.py", "src/fractalcontact/contact/solve.py"} <= (
         windows - alone
     )
     assert "src/fractalcontact/study/stages.py" not in windows
+    # What follows from states takes no solver.
+    assert "src/fractalcontact/contact/solve.py" not in _files_behind(STAGES["windows"].module)

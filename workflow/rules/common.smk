@@ -77,13 +77,11 @@ def digests_of(scan):
 
     Times say nothing of a file that was moved, copied or unpacked over another.
     """
-    return {str(path): DIGEST_OF_SCAN[path] for path in (scan.lower, scan.upper) if path}
+    return {str(path): DIGEST_OF_SCAN[path] for path in scan.files}
 
 
 # Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
-DIGEST_OF_SCAN = {
-    path: digest_of(path) for scan in SCANS.values() for path in (scan.lower, scan.upper) if path
-}
+DIGEST_OF_SCAN = {path: digest_of(path) for scan in SCANS.values() for path in scan.files}
 if workflow.is_main_process:
     DIGESTS.save()
 
@@ -102,10 +100,18 @@ wildcard_constraints:
     part=r"\d+",
 
 
-def settings_of(wildcards):
-    """Settings of a specimen for what is computed: its label changes no number."""
-    settings = SETTINGS[wildcards.specimen]
-    return {key: value for key, value in settings.items() if key != "label"}
+def settings_read_by(stage):
+    """Settings of a specimen that the function of a stage reads: a change of others is no change.
+
+    A friction angle or a label solves nothing again.
+    """
+    function = stages.STAGES[stage].function
+    return lambda wildcards: stages.read_by(function, SETTINGS[wildcards.specimen])
+
+
+def solver_read_by(stage):
+    """Settings of the solver that the function of a stage reads."""
+    return stages.solver_read_by(stages.STAGES[stage].function, SOLVER)
 
 
 def is_pair(specimen):

@@ -35,13 +35,15 @@ rule contact:
         mem_mb=lambda wc, attempt: 2000 * attempt,
         runtime=60,
     params:
-        settings=settings_of,
-        solver=SOLVER,
-        directions=lambda wc: settings_of(wc)["contact_directions"][
+        settings=lambda wc: stages.read_by(stages.CONTACT, SETTINGS[wc.specimen]),
+        solver=stages.solver_read_by(stages.CONTACT, SOLVER),
+        directions=lambda wc: SETTINGS[wc.specimen]["contact_directions"][
             slice(*part_of(wc, "directions"))
         ],
         offsets=lambda wc: part_of(wc, "offsets"),
-        resolutions=lambda wc: settings_of(wc)["resolutions"][slice(*part_of(wc, "resolutions"))],
+        resolutions=lambda wc: SETTINGS[wc.specimen]["resolutions"][
+            slice(*part_of(wc, "resolutions"))
+        ],
         code=code("contact"),
     script:
         "../scripts/contact.py"
@@ -79,8 +81,8 @@ rule analysis:
         runtime=20,
     params:
         **calling("closure"),
-        settings=settings_of,
-        solver=SOLVER,
+        settings=settings_read_by("closure"),
+        solver=solver_read_by("closure"),
     script:
         "../scripts/stage.py"
 
@@ -101,6 +103,7 @@ use rule analysis as analysis_against_plane with:
 rule contact_map:
     input:
         scan=lambda wc: ancient(str(MAPS[wc.map].lower)),
+        coordinates=lambda wc: [ancient(str(path)) for path in MAPS[wc.map].coordinates],
     output:
         **outputs_of("contact_maps"),
     log:

@@ -16,7 +16,8 @@ rule roll_off:
         mem_mb=2000,
         runtime=30,
     params:
-        **(resolve_roll_off(config, SOURCE) or {}),
+        # Without the words for it: a new label makes no new joints.
+        **stages.without_label(resolve_roll_off(config, SOURCE) or {}),
         **calling("roll_off"),
     script:
         "../scripts/stage.py"

@@ -1,6 +1,7 @@
 # Figures of every specimen: PNG, SVG, numbers as CSV, caption as text.
 
-STUDY_FIGURES = study_figures_of(config)
+# Measured contact maps ask for their figures themselves.
+STUDY_FIGURES = study_figures_of([*config, *MAP_FILES])
 
 
 def pictures(opposite):
@@ -45,7 +46,13 @@ def beside(opposite):
 
 
 def configuration_of(wildcards):
-    return {"study": config, "settings": {wildcards.specimen: SETTINGS[wildcards.specimen]}}
+    """What the atlas of one specimen says of the study: what the study says of others is left out.
+
+    So a change of those draws nothing of it again.
+    """
+    name = wildcards.specimen
+    stated = {key: config[key] for key in ("study", "accuracy", "solver") if key in config}
+    return {"study": stated, "settings": {name: SETTINGS[name]}}
 
 
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"

@@ -66,7 +66,7 @@ rule specimen:
         mem_mb=lambda wc, attempt: 2000 * attempt,
         runtime=15,
     params:
-        settings=settings_of,
+        settings=settings_read_by("specimens"),
         options=options_of,
         digests=scan_digests,
         code=code("specimen"),

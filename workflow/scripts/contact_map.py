@@ -11,3 +11,5 @@ with job(snakemake) as log:
     require_unchanged(params.digests)
     netcdf.write(result, snakemake.output[0])
     log.info("%s", result)
+    if result.attrs["warning"]:
+        log.warning("warning: %s", result.attrs["warning"])

@@ -19,7 +19,7 @@ from ..core.labels import printable
 from ..domain.measured_map import read_contact_map
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import length_words
-from ..study.checks import check_study, read_sidecar
+from ..study.checks import check_study, read_sidecar, with_coordinates
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
 from ..study.preparation import prepare_specimen
@@ -95,6 +95,7 @@ def check_scans(
         Sorted by name; what is wrong with one does not keep the others from being read.
     """
     scans, refused = list_scans(folder)
+    scans = _with_coordinates(scans, refused, schema)
     for name in sorted(scans.keys() | refused.keys()):
         if name in refused:
             yield Checked(name, refusal=str(refused[name]))
@@ -105,6 +106,20 @@ def check_scans(
             yield Checked(
                 name, lines=[_file_names(scans[name])], refusal=_shown(error, scans[name])
             )
+
+
+def _with_coordinates(scans, refused, schema):
+    """Scans without the files of x and y of others; what is wrong with one goes to `refused`."""
+    options = {}
+    for name, scan in scans.items():
+        try:
+            keys, _ = read_sidecar(scan.sidecar, schema)
+            with_coordinates(scans, {name: keys})
+        except InputError as error:
+            refused.setdefault(name, InputError(_shown(error, scan)))
+            continue
+        options[name] = keys
+    return with_coordinates(scans, options)
 
 
 def _check(scan, study, schema, source):
@@ -200,11 +215,26 @@ def _map_row(scan, contact):
         "faces": "map",
         "missing": f"{100 * (1 - float(contact['measured'].mean())):.2g} %",
     }
-    share = 100 * float(contact["area_share"])
-    stated = (
-        f"contact map: {attrs['reader']}, {share:.3g} % in contact above {attrs['threshold']:g}"
+    nominal, share, pressure, force = (
+        float(contact[name]) for name in ("nominal_area", "area_share", "nominal_pressure", "force")
     )
-    return Checked(scan.name, cells, [_file_names(scan), stated])
+    series = f", series {attrs['series']}" if attrs["series"] else ""
+    stated = (
+        f"contact map: {attrs['reader']}, A_0 = {nominal:.4g} mm2 (outline: "
+        f"{json.loads(attrs['outline'])}), {100 * share:.3g} % in contact above "
+        f"{attrs['threshold']:g}{series}"
+    )
+    load = f"F = {force:.4g} N, F/A_0 = {pressure:.4g} MPa"
+    lines = [_file_names(scan), stated, load if math.isfinite(pressure) else "no load stated"]
+    if contact.sizes["threshold"] > 1:
+        shares = ", ".join(
+            f"{100 * part:.3g} % above {at:g}"
+            for at, part in zip(
+                contact["threshold"].values, contact["threshold_area_share"].values, strict=True
+            )
+        )
+        lines.append(f"in contact {shares}")
+    return Checked(scan.name, cells, lines, [attrs["warning"]] if attrs["warning"] else [])
 
 
 def _grid_cells(sizes, attrs):
@@ -224,7 +254,7 @@ def _pair(lengths):
 
 
 def _file_names(scan):
-    files = [path for path in (scan.lower, scan.upper, scan.sidecar) if path is not None]
+    files = [*scan.files, *([scan.sidecar] if scan.sidecar else [])]
     return " + ".join(printable(path.name) for path in files)
 
 

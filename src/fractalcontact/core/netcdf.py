@@ -38,15 +38,20 @@ def read(path: Path | str) -> xr.Dataset:
     """A dataset written by :func:`write`, in memory.
 
     How it was kept is forgotten: the length of its longest word would cut off those of others that
-    are put behind it.
+    are put behind it. Integers with an attribute ``_FillValue`` stay integers.
     """
     return read_with_versions(path)[0]
 
 
 def read_with_versions(path: Path | str) -> tuple[xr.Dataset, dict[str, str]]:
     """A dataset written by :func:`write`, and the versions it was made with by library."""
-    with xr.open_dataset(path, engine="netcdf4") as dataset:
+    # Small integers stay such, with the number that marks missing ones: as numbers with NaN they
+    # would take four times the memory.
+    with xr.open_dataset(path, engine="netcdf4", mask_and_scale=False) as dataset:
         dataset = dataset.load().drop_encoding()
+    for variable in dataset.variables.values():
+        if variable.dtype.kind == "f":
+            variable.attrs.pop("_FillValue", None)
     return dataset, json.loads(dataset.attrs.pop(_VERSIONS, "{}"))
 
 

@@ -5,7 +5,8 @@ A map is a file like a scan, a matrix of stresses or of 0 and 1, whose sidecar s
 contact domains.
 """
 
-from collections.abc import Mapping
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,21 +15,56 @@ import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.errors import InputError
+from ..core.labels import cf_attrs
 from ..core.units import load as read_load
+from ..scan.coordinates import read_coordinates
+from ..scan.options import coordinate_files
 from ..scan.read import read_matrix
 from .analysis import DOMAIN_FIELDS, analyse_domains
+from .map_outline import outline_mask, outline_warning
+from .null_models import null_models
 
 #: Keys of a sidecar that only maps have.
-MAP_KEYS = ("kind", "threshold", "load", "cells")
+MAP_KEYS = ("kind", "threshold", "load", "cells", "outline", "series", "x", "y")
 #: What a cell in contact stands for, and whether it is one of those that hold any contact at all.
 CELLS = {"any contact": True, "contact at the centre": False}
 
+_OVER_THRESHOLDS = "over the thresholds stated"
 #: What a map holds beside the numbers of its contact domain.
 _VARIABLES = {
     "in_contact": (("y", "x"), "1", "cell in contact"),
-    "measured": (("y", "x"), "1", "cell where something was measured"),
+    "measured": (("y", "x"), "1", "cell within the outline where something was measured"),
+    "nominal_area": ((), "mm2", "nominal area A_0 of the cells measured"),
+    "area": ((), "mm2", "real contact area A_r"),
     "area_share": ((), "1", "real contact area A_r / A_0"),
-    "nominal_pressure": ((), "MPa", "nominal pressure F / A_0"),
+    "threshold_delta_sigma": (
+        "threshold",
+        "1",
+        "box-counting dimension Delta_sigma of the cells above a threshold",
+    ),
+    "threshold_area_share": (
+        "threshold",
+        "1",
+        "real contact area A_r / A_0 of the cells above a threshold",
+    ),
+    "delta_sigma_least": ((), "1", f"least Delta_sigma {_OVER_THRESHOLDS}"),
+    "delta_sigma_most": ((), "1", f"largest Delta_sigma {_OVER_THRESHOLDS}"),
+    "delta_sigma_random": ((), "1", "mean Delta_sigma of as many cells at random"),
+    "delta_sigma_random_low": ((), "1", "Delta_sigma of as many cells at random, 95 % band, low"),
+    "delta_sigma_random_high": ((), "1", "Delta_sigma of as many cells at random, 95 % band, high"),
+    "null_verdict": ((), "1", "whether Delta_sigma lies beyond that of random cells"),
+}
+#: Of them, what :func:`domain.null_models.null_models` finds.
+_OF_NULLS = (
+    "delta_sigma_random",
+    "delta_sigma_random_low",
+    "delta_sigma_random_high",
+    "null_verdict",
+)
+#: How it was loaded.
+_LOADS = {
+    "force": ((), "N", "normal force F on the map"),
+    "nominal_pressure": ((), "MPa", "nominal pressure sigma_0 = F / A_0"),
 }
 
 
@@ -41,11 +77,14 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
         A matrix file as :func:`scan.read.read_scan` takes it; NaN where nothing was
         measured.
     options : mapping
-        Scan keys of the sidecar; ``unit`` (of x and y) and ``spacing`` as for a scan,
-        ``threshold``: cells above it are in contact (not needed for a map of 0 and 1), ``load``:
+        Scan keys of the sidecar; ``unit`` (of x and y) and ``spacing`` as for a scan, or ``x`` and
+        ``y``, files of the coordinates beside this one;
+        ``threshold``: cells above it are in contact (not needed for a map of 0 and 1), or a list
+        of them, whose middle one counts; ``load``:
         the force on the whole map or its nominal pressure, ``cells``: what a cell in contact
         stands for (:data:`CELLS`), else its counts decide, see
-        :func:`domain.box_dimension.box_dimension`.
+        :func:`domain.box_dimension.box_dimension`; ``outline``, see
+        :func:`domain.map_outline.outline_mask`; ``series``: maps of one name belong together.
     label : str
         What it is, in words.
 
@@ -53,45 +92,42 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
     -------
     xr.Dataset
         ``in_contact`` and ``measured`` (y, x); the numbers of
-        :data:`domain.analysis.DOMAIN_FIELDS`; ``area_share``; ``nominal_pressure`` in MPa,
-        NaN if no load is stated. Attribute ``label``.
+        :data:`domain.analysis.DOMAIN_FIELDS`; areas, ``force`` and ``nominal_pressure``,
+        NaN if no load is stated; Delta_sigma and area over ``threshold``, and the ends of
+        Delta_sigma there. Attributes ``label``, ``series`` and ``warning``, empty where there is
+        none.
 
     Raises
     ------
     InputError
-        If the file is no matrix, the threshold is missing or nothing lies above it.
+        If the file is no matrix, the threshold is missing or nothing lies above it, or the outline
+        or the coordinates are none.
     """
-    reading = {key: value for key, value in options.items() if key not in MAP_KEYS}
-    # What the cells hold is no length: in mm it is taken over as it stands.
-    values, (dx, dy), provenance = read_matrix(path, reading | {"unit_z": "mm"})
-    threshold = _threshold(values, options.get("threshold"), path)
-    measured = np.isfinite(values)
-    touching = measured & (np.nan_to_num(values) > threshold)
-    if not touching.any():
-        raise InputError(
-            f"{path}: no cell lies above the threshold of {threshold:g} (the largest holds "
-            f"{np.nanmax(values):g}); write a lower 'threshold' in its sidecar"
-        )
-    dims = ("direction", "offset", "normal_force", "y_1", "x_1")
-    domains = xr.Dataset(
-        {"in_contact_1": (dims, touching[np.newaxis, np.newaxis, np.newaxis])},
-        coords={"direction": ["none"], "offset": [0.0], "normal_force": [0.0]},
-    )
+    values, y, x, provenance = _read(Path(path), options)
+    outline, where = options.get("outline"), f"sidecar of {path}"
+    measured = outline_mask(outline, values, y, x, f"{where}: outline") & np.isfinite(values)
+    thresholds = _thresholds(values[measured], options.get("threshold"), path)
+    touching = measured & (np.nan_to_num(values) > thresholds[:, np.newaxis, np.newaxis])
+    _require_contact(touching, thresholds, values[measured], path)
     stands_for = options.get("cells")
-    whole_cells = CELLS.get(str(stands_for))
-    spacing = float(np.sqrt(dx * dy))
-    table = analyse_domains(domains, spacing, whole_cells=whole_cells).squeeze(drop=True)
+    dy, dx = y[1] - y[0], x[1] - x[0]
+    main = (len(thresholds) - 1) // 2
+    result = _analysed(touching, measured, main, (dy, dx), CELLS.get(str(stands_for)))
     nominal = measured.sum() * dx * dy
-    variables = {
-        "in_contact": touching,
-        "measured": measured,
-        "area_share": touching.sum() / measured.sum(),
-        "nominal_pressure": _pressure(options.get("load"), nominal, f"sidecar of {path}: load"),
-    }
-    result = table[[*DOMAIN_FIELDS, "reason"]].assign(labelled(_VARIABLES, variables))
+    pressure = _pressure(options.get("load"), nominal, f"{where}: load")
+    loads = {"force": pressure * nominal, "nominal_pressure": pressure}
+    result = result.assign(labelled(_LOADS, loads)).assign_coords(
+        y=("y", y, cf_attrs("mm", "y of the cell's centre")),
+        x=("x", x, cf_attrs("mm", "x of the cell's centre")),
+        threshold=("threshold", thresholds, cf_attrs("1", "threshold, in the unit of the map")),
+    )
     result.attrs = {
         "label": label,
-        "threshold": float(threshold),
+        "series": options.get("series", ""),
+        "threshold": float(thresholds[main]),
+        "binary": int(_is_binary(values[measured])),
+        "outline": json.dumps(outline or "rectangle"),
+        "warning": outline_warning(values, touching[main], outline),
         "spacing_y": dy,
         "spacing_x": dx,
         **({"cells": stands_for} if stands_for else {}),
@@ -100,16 +136,97 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
     return result
 
 
-def _threshold(values, threshold, path):
-    """Above what a cell is in contact: as stated, or between the 0 and 1 of a binary map."""
-    if threshold is not None:
-        return float(threshold)
-    if np.isin(values[np.isfinite(values)], (0, 1)).all():
-        return 0.5
+def _read(
+    path: Path, options: Mapping[str, Any]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, dict]:
+    """Values (ny, nx) of a map as they stand, its coordinates y and x in mm, and its source."""
+    reading = {key: value for key, value in options.items() if key not in MAP_KEYS}
+    files = coordinate_files(path, options)
+    axes = read_coordinates(files, options.get("unit_xy", options.get("unit")))
+    if axes:
+        steps = [float(abs(np.diff(axes[key]).mean())) for key in "xy"]
+        reading |= {"spacing": [f"{step:.12g} mm" for step in steps]}
+    # What the cells hold is no length: in mm it is taken over as it stands.
+    values, (dx, dy), provenance = read_matrix(path, reading | {"unit_z": "mm"})
+    ny, nx = values.shape
+    if not axes:
+        return values, dy * (np.arange(ny) + 0.5), dx * (np.arange(nx) + 0.5), provenance
+    for key, n in (("x", nx), ("y", ny)):
+        if len(axes[key]) != n:
+            raise InputError(
+                f"{files[key]}: {len(axes[key])} coordinates {key}, but {path.name} has "
+                f"{ny} rows of {nx} cells"
+            )
+    ascending = {key: 1 if line[-1] > line[0] else -1 for key, line in axes.items()}
+    values = values[:: ascending["y"], :: ascending["x"]].copy()
+    provenance["coordinates"] = ", ".join(file.name for file in files.values())
+    return values, axes["y"][:: ascending["y"]], axes["x"][:: ascending["x"]], provenance
+
+
+def _analysed(
+    touching: np.ndarray,
+    measured: np.ndarray,
+    main: int,
+    sides: tuple[float, float],
+    whole_cells: bool | None,
+) -> xr.Dataset:
+    """What a map holds but its loads, of its domains above each threshold, of which one is main."""
+    spacing = float(np.sqrt(np.prod(sides)))
+    dims = ("direction", "offset", "normal_force", "y_1", "x_1")
+    # To the analysis the thresholds are loads of one joint.
+    coords = {"direction": ["none"], "offset": [0.0], "normal_force": np.arange(len(touching))}
+    domains = xr.Dataset({"in_contact_1": (dims, touching[np.newaxis, np.newaxis])}, coords)
+    table = analyse_domains(domains, spacing, whole_cells=whole_cells)
+    table = table.squeeze(["direction", "offset", "resolution"], drop=True)
+    dimensions = table["delta_sigma"].values
+    of_main = table[[*DOMAIN_FIELDS, "reason"]].isel(normal_force=main, drop=True)
+    nulls = null_models(
+        touching[[main]], spacing, mask=measured, whole_cells=whole_cells
+    ).squeeze("normal_force")
+    nominal, shares = measured.sum() * np.prod(sides), touching.sum(axis=(1, 2)) / measured.sum()
+    several = len(touching) > 1
+    variables = {
+        "in_contact": touching[main],
+        "measured": measured,
+        "nominal_area": nominal,
+        "area": shares[main] * nominal,
+        "area_share": shares[main],
+        "threshold_delta_sigma": dimensions,
+        "threshold_area_share": shares,
+        "delta_sigma_least": np.fmin.reduce(dimensions) if several else np.nan,
+        "delta_sigma_most": np.fmax.reduce(dimensions) if several else np.nan,
+    }
+    variables |= {name: nulls[name].item() for name in _OF_NULLS}
+    return of_main.assign(labelled(_VARIABLES, variables))
+
+
+def _thresholds(
+    values: np.ndarray, stated: float | Sequence[float] | None, path: Path | str
+) -> np.ndarray:
+    """Above what a cell is in contact, ascending; between the 0 and 1 of a binary map."""
+    if stated is not None:
+        return np.sort(np.atleast_1d(np.asarray(stated, float)))
+    if _is_binary(values):
+        return np.array([0.5])
     raise InputError(
         f"{path}: this contact map holds other numbers than 0 and 1; write above which of them a "
         "cell is in contact, for example 'threshold: 5', in its sidecar"
     )
+
+
+def _is_binary(values: np.ndarray) -> bool:
+    return bool(np.isin(values, (0, 1)).all())
+
+
+def _require_contact(touching, thresholds, values, path):
+    """Refuse a threshold that nothing lies above."""
+    for domain, threshold in zip(touching, thresholds, strict=True):
+        if not domain.any():
+            largest = f"{values.max():g}" if values.size else "nothing"
+            raise InputError(
+                f"{path}: no cell lies above the threshold of {threshold:g} (the largest holds "
+                f"{largest}); write a lower 'threshold' in its sidecar"
+            )
 
 
 def _pressure(text, area, where):

@@ -80,7 +80,7 @@ def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[in
     for (ending, end), values in zip(INTERVAL.items(), means, strict=True):
         words = f"slope of the rigid dilatancy over the second half of v, mean over seeds{end}"
         result[f"slope{ending}"] = ("surface", values, cf_attrs("1", words))
-    result.attrs = {"roll_off": recipe["roll_off"], "window": window, "label": recipe["label"]}
+    result.attrs = {"roll_off": recipe["roll_off"], "window": window}
     return result
 
 

@@ -12,7 +12,7 @@ from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
 from ..roughness.dimension import slope_statistics
 from . import theory
-from .joint import composite_topography, direction_spacing
+from .joint import composite_topography, direction_spacing, offsets_of
 from .states import error_attrs
 
 #: Area that the cells along the edge of contact have too much, as a part of cell side times
@@ -131,7 +131,7 @@ def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike)
         for n in cells
     ]
     result = xr.concat(each, "offset", combine_attrs="override")
-    offset = cells * direction_spacing(specimen, direction)
+    offset = offsets_of(cells, direction_spacing(specimen, direction))
     result["offset"] = ("offset", offset, cf_attrs("mm", "shear offset v"))
     result.attrs = {"spacing_y": float(spacing[0]), "spacing_x": float(spacing[1])}
     return result

@@ -75,6 +75,14 @@ def direction_spacing(specimen: xr.Dataset, direction: str) -> float:
     return float(specimen.attrs[f"spacing_{'yx'[sliding_axis(direction)]}"])
 
 
+def offsets_of(cells: ArrayLike, spacing: float) -> np.ndarray:
+    """Offsets (n,) of whole cells, mm, to twelve digits: 3 cells of 0.1 mm are 0.3 mm.
+
+    Products have rounding in their last digit, and nobody finds 0.30000000000000004 by its value.
+    """
+    return np.array([float(f"{n * spacing:.12g}") for n in np.atleast_1d(cells)])
+
+
 def choose_offsets(
     specimen: xr.Dataset, offsets: Sequence[float] | None, directions: Sequence[str]
 ) -> dict[str, np.ndarray]:
@@ -103,8 +111,8 @@ def choose_offsets(
     chosen = {}
     for direction in directions:
         spacing = direction_spacing(specimen, direction)
-        cells = np.array([round(offset / spacing) for offset in offsets])
-        for offset, n in zip(offsets, cells, strict=True):
+        cells = np.array([round(offset / spacing) for offset in sorted(offsets)])
+        for offset, n in zip(sorted(offsets), cells, strict=True):
             if n == 0 and offset > 0:
                 raise InputError(
                     f"specimen {specimen.attrs['name']}: offset {offset:g} mm is less than half "
@@ -294,7 +302,7 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
         | labelled(table, values)
     ).assign_coords(
         contact_direction=solved,
-        offset=("offset", cells * spacing, cf_attrs("mm", "shear offset v")),
+        offset=("offset", offsets_of(cells, spacing), cf_attrs("mm", "shear offset v")),
         window_y=("window_y", specimen.y.values[window_y], specimen.y.attrs),
         window_x=("window_x", specimen.x.values[window_x], specimen.x.attrs),
     )
@@ -311,7 +319,7 @@ def _describe_slide(
         own = np.round(cells * ratio).astype(int)
         dilatancy[i], spread[i] = rigid_dilatancy(specimen, direction, own)
         correlation[i] = face_correlation(specimen, direction, own)
-    slid = cells * spacing
+    slid = offsets_of(cells, spacing)
     length, uncorrelated, limit = correlation_ranges(slid, correlation, nominal_area(specimen))
     table = RIGID_SLIDE | _CORRELATION
     values = (dilatancy, spread, correlation, length, uncorrelated, limit)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..elastic.halfspace import HalfSpace
 from ..surface.specimen import nominal_area
-from .joint import composite_topography, direction_spacing
+from .joint import composite_topography, direction_spacing, offsets_of
 from .states import chosen_offset, forces_of, hardness_of
 
 
@@ -82,7 +82,7 @@ class JointLoading:
     @property
     def offsets(self) -> np.ndarray:
         """Shear offsets v (n,), mm."""
-        return self.cells * direction_spacing(self.specimen, self.direction)
+        return offsets_of(self.cells, direction_spacing(self.specimen, self.direction))
 
     @property
     def spacing(self) -> np.ndarray:

@@ -52,6 +52,9 @@ OFFSETS = {
 #: Pressures of the states that are looked at closely: those of the contact maps, in the first
 #: direction and at the finest resolution, under every load. They are in one part of several.
 MAP_PRESSURE = "map_pressure"
+#: Gaps of the same states, and both.
+MAP_GAP = "map_gap"
+MAP_FIELDS = (MAP_PRESSURE, MAP_GAP)
 
 
 def error_attrs(attrs: Mapping[str, str]) -> dict[str, str]:
@@ -164,7 +167,7 @@ def combine(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     groups: dict[tuple, list[xr.Dataset]] = {}
     for part in parts:
         if part.sizes["offset"]:
-            states = part.drop_vars(MAP_PRESSURE, errors="ignore")
+            states = part.drop_vars(MAP_FIELDS, errors="ignore")
             for i, direction in enumerate(part["direction"].values):
                 key = (direction, tuple(part["resolution"].values))
                 groups.setdefault(key, []).append(states.isel(direction=[i]))
@@ -177,11 +180,11 @@ def combine(parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def side_by_side(directions: Sequence[xr.Dataset]) -> xr.Dataset:
     """One dataset of the states of several directions, at the offsets of the first."""
-    states = [part.drop_vars(MAP_PRESSURE, errors="ignore") for part in directions]
+    states = [part.drop_vars(MAP_FIELDS, errors="ignore") for part in directions]
     joined = xr.concat(states, "direction", data_vars="minimal", join="override")
     for part in directions:
         if MAP_PRESSURE in part:
-            joined[MAP_PRESSURE] = part[MAP_PRESSURE]
+            joined = joined.assign({name: part[name] for name in MAP_FIELDS})
     return joined
 
 
@@ -191,15 +194,15 @@ def domains_of(states: xr.Dataset) -> xr.Dataset:
     return states.drop_vars([name for name in (*OF_STATES, *OFFSETS) if name not in kept])
 
 
-def map_pressure(
-    pressures: ArrayLike, offset: float, direction: str, factor: int
+def map_fields(
+    pressures: ArrayLike, gaps: ArrayLike, offset: float, direction: str, factor: int
 ) -> dict[str, tuple]:
-    """The variable :data:`MAP_PRESSURE` of a dataset; its attributes say where it was solved.
+    """The variables :data:`MAP_FIELDS` of a dataset; their attributes say where they were solved.
 
     Parameters
     ----------
-    pressures : (normal_force, ny, nx) array_like
-        MPa.
+    pressures, gaps : (normal_force, ny, nx) array_like
+        MPa, mm.
     offset : float
         mm.
     direction : str
@@ -207,9 +210,14 @@ def map_pressure(
         Resolution k.
     """
     of_place = {"offset": offset, "direction": direction, "resolution": factor}
-    labels = cf_attrs("MPa", "pressure p at the offset of the contact maps") | of_place
+    dims = ("normal_force", f"y_{factor}", f"x_{factor}")
+    labels = {
+        MAP_PRESSURE: cf_attrs("MPa", "pressure p at the offset of the contact maps"),
+        MAP_GAP: cf_attrs("mm", "gap g at the offset of the contact maps"),
+    }
+    fields = {MAP_PRESSURE: pressures, MAP_GAP: gaps}
     return {
-        MAP_PRESSURE: (("normal_force", f"y_{factor}", f"x_{factor}"), np.array(pressures), labels)
+        name: (dims, np.array(values), labels[name] | of_place) for name, values in fields.items()
     }
 
 

@@ -18,7 +18,7 @@ from .joint import prefractal, rigid_dilatancy
 from .loading import JointLoading
 from .plan import solved_loads
 from .state_scalars import numbers_of
-from .states import ERRORS, OFFSETS, SCALARS, chosen_offset, map_pressure, side_by_side
+from .states import ERRORS, OFFSETS, SCALARS, chosen_offset, map_fields, side_by_side
 
 #: Tolerances are tightened by so much where that of the study leaves too large an error.
 TIGHTENING = 10.0
@@ -158,7 +158,7 @@ def contact_states(
         offset, resolution, load), those of :data:`OFFSETS` over (direction, offset) and, for each
         resolution k, the contact domain ``in_contact_k`` over (direction, offset, normal_force,
         y_k, x_k). NaN, and no contact, where a state was not solved. Where the states that are
-        looked at closely are among them, :data:`mechanics.states.MAP_PRESSURE` over (normal_force,
+        looked at closely are among them, :data:`mechanics.states.MAP_FIELDS` over (normal_force,
         y_k, x_k).
 
     Raises
@@ -179,9 +179,10 @@ def contact_states(
         space = loading.half_space(grid, factor)
         touching = np.zeros((1, len(cells), len(forces), *grid), bool)
         for i, n in enumerate(cells):
-            pressures = []
+            pressures, gaps = [], []
             for j, state in _load_curve(loading, n, factor, space, mapped=n == mapped):
                 pressures.append(state.pressure.astype(np.float32))
+                gaps.append(state.gap.astype(np.float32))
                 solved[0, i, k, j] = True
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state).items():
@@ -191,7 +192,7 @@ def contact_states(
                 and n == mapped
                 and factor == min(settings["resolutions"])
             ):
-                fields |= map_pressure(pressures, loading.offsets[i], direction, factor)
+                fields |= map_fields(pressures, gaps, loading.offsets[i], direction, factor)
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "normal_force", f"y_{factor}", f"x_{factor}"),
             touching,

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputError
@@ -31,6 +32,8 @@ class ScanOptions:
 REGISTRATIONS = ("rigid", "translation", "none")
 #: Keys that say how two faces lie to each other.
 PAIR_KEYS = ("registration", "mirror_upper")
+#: Keys that name the files of the coordinates, where x, y and z are three files.
+COORDINATE_KEYS = ("x", "y")
 #: Keys that mean nothing for the other layout, and what is meant by them.
 MATRIX_KEYS = ("spacing", "first_row")
 POINT_KEYS = ("columns", "grid")
@@ -72,6 +75,39 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
     if isinstance(options.get("spacing"), list):
         options["spacing"] = tuple(options["spacing"])
     return ScanOptions(**options)
+
+
+def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
+    """Files of the coordinates of a matrix, by key: none where its sidecar names none.
+
+    Parameters
+    ----------
+    path : Path
+        Of the matrix.
+    options : mapping
+        Scan keys of its sidecar.
+
+    Raises
+    ------
+    InputError
+        If one of the two is missing, or a name is not that of another file in the same folder.
+    """
+    named = {key: str(options[key]) for key in COORDINATE_KEYS if options.get(key) is not None}
+    if not named:
+        return {}
+    if missing := [key for key in COORDINATE_KEYS if key not in named]:
+        raise InputError(f"sidecar of {path}: key '{missing[0]}' is missing; x and y are two files")
+    for key in ("spacing", "first_row"):
+        if options.get(key) is not None:
+            raise InputError(f"sidecar of {path}: the files of x and y say the '{key}'; remove it")
+    for key, name in named.items():
+        # Sidecars are untrusted input: nothing outside the folder is read.
+        if Path(name).name != name or "\\" in name or name.startswith(".") or name == path.name:
+            raise InputError(
+                f"sidecar of {path}: {key}: {name!r}; write the plain name of another file beside "
+                "it"
+            )
+    return {key: path.with_name(name) for key, name in named.items()}
 
 
 def length_mm(value: Any, unit_xy: str | None, where: str) -> float:

@@ -61,7 +61,7 @@ VERDICTS = (
 
 
 def size_test(
-    loading: JointLoading, windows: xr.Dataset, parts: Sequence[int] = PARTS
+    loading: JointLoading, windows: xr.Dataset | None = None, parts: Sequence[int] = PARTS
 ) -> xr.Dataset:
     """Slope of log sigma_0 over log b at equal sigma*, beside what eq. 6 predicts.
 
@@ -69,8 +69,9 @@ def size_test(
     ----------
     loading : JointLoading
         Offsets ascending. Contact is tested at the study's map offset (without one the third).
-    windows : xr.Dataset
-        From :func:`size_effect.laws.joint_by_size`: strength of the parts at all offsets.
+    windows : xr.Dataset, optional
+        From :func:`size_effect.laws.joint_by_size`: strength of the parts at all offsets. Without
+        it no strength is predicted.
     parts : sequence of int
         Sub-windows along each side; all of those are solved that
         :func:`size_effect.division.solvable_parts` takes.
@@ -120,7 +121,7 @@ def size_test(
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(_verdicts(result))
     result = result.merge(predict_whole(states, result["delta_sigma"], FEWEST_NODES))
-    if loading.slides:
+    if loading.slides and windows is not None:
         result = result.merge(predict_whole_strength(windows, result["delta_sigma"]))
     opposite = loading.specimen.attrs["opposite"]
     return result.assign_attrs(opposite=opposite, summary=summary(result))

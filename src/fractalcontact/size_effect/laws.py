@@ -1,6 +1,7 @@
 """How sigma_z, closure, compliance and strength go with the side b of a joint (eq. 2, sect. 5)."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,10 +10,8 @@ from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
 from ..core.ranges import within
 from ..mechanics.jrc import profile_roughness
-from ..mechanics.loading import JointLoading
 from .strength_laws import strength_by_size
 from .window_means import add_law, add_mean
-from .windows import window_states
 
 #: Eq. 2 is fitted from so many cells to this fraction of the window's side unless a range is given:
 #: the range of the roughness-length estimator of :mod:`roughness.dimension`.
@@ -26,25 +25,31 @@ _OVER_LOADS = {
 }
 
 
-def joint_by_size(loading: JointLoading, dimension: Sequence[float]) -> xr.Dataset:
-    """Size laws of a joint: solve sub-windows, and fit closure, roughness and strength against b.
+def joint_by_size(
+    states: xr.Dataset,
+    specimen: xr.Dataset,
+    dimension: Sequence[float],
+    settings: Mapping[str, Any],
+) -> xr.Dataset:
+    """Size laws of a joint: closure, roughness and strength of its sub-windows against b.
 
     Parameters
     ----------
-    loading : JointLoading
-        Offsets ascending.
-    dimension : (float, float, float)
+    states, dimension
         As for :func:`size_laws`.
+    specimen : xr.Dataset
+        From :func:`surface.specimen.make_specimen`.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
 
     Returns
     -------
     xr.Dataset
         From :func:`size_laws`.
     """
-    states, settings = window_states(loading), loading.settings
-    roughness = np.nan
-    if loading.slides:
-        roughness = float(profile_roughness(loading.specimen, loading.direction)["jrc_used"])
+    roughness, direction = np.nan, states["direction"].item()
+    if direction != "none":
+        roughness = float(profile_roughness(specimen, direction)["jrc_used"])
     lags = settings["surface_range"]
     # A window of side b looks at waves of b, a lag at waves of twice its length.
     sides = None if lags is None else [2 * lag for lag in lags]

@@ -9,17 +9,21 @@ from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
+from ..mechanics.contact_fields import contact_fields
 from ..mechanics.plan import solve_plan
 from ..mechanics.states import combine, domains_of, force_range, map_states, with_pressure
 from ..mechanics.strength import joint_strength
 from ..roughness.dimension import best_dimension
 from ..surface.specimen import cell_side, nominal_area, window_sides
+from .sizes import size_laws_of
 
 
 def state_stages(
     specimens: xr.Dataset,
     surface_dimension: xr.Dataset,
     joints: xr.Dataset,
+    window_states: xr.Dataset,
+    size_test: xr.Dataset,
     parts: Sequence[xr.Dataset],
     settings: Mapping,
     solver: Mapping,
@@ -30,6 +34,8 @@ def state_stages(
     ----------
     specimens, surface_dimension, joints : xr.Dataset
         Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
+    window_states, size_test : xr.Dataset
+        Likewise, from :func:`stages.windows.window_stages`.
     parts : sequence of xr.Dataset
         Contact states, from :func:`mechanics.sweep.joint_states`.
     settings : mapping
@@ -69,13 +75,14 @@ def state_stages(
         "choices": solve_plan(curves, dilatancy, settings, solver),
         "area": laws,
         "domains": domains,
-        "contact": fields,
+        "contact": contact_fields(fields, parts, joints, settings, nominal_area(specimens)),
         "scaling": scaling_over_resolutions(
             curves, domains, spacing, fit_range=settings["scaling_range"]
         ),
         "domain_measures": measures_of_map_states(
             map_states(parts), spacing, settings["box_range"]
         ),
+        "windows": size_laws_of(specimens, surface_dimension, window_states, size_test, settings),
     }
     if specimens.attrs["opposite"] != "flat":
         stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)

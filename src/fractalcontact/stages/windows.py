@@ -1,4 +1,4 @@
-"""Size effect of a specimen: its sub-windows solved, and eq. 6 tested on them."""
+"""Sub-windows of a specimen solved: their states, and eq. 6 tested on them."""
 
 from collections.abc import Mapping
 
@@ -7,23 +7,21 @@ import xarray as xr
 
 from ..mechanics.loading import JointLoading
 from ..mechanics.states import with_pressure
-from ..roughness.dimension import best_dimension
+from ..size_effect import windows
 from ..size_effect.eq6 import size_test
-from ..size_effect.laws import joint_by_size
 
 
 def window_stages(
-    specimens: xr.Dataset,
-    surface_dimension: xr.Dataset,
-    joints: xr.Dataset,
-    settings: Mapping,
-    solver: Mapping,
+    specimens: xr.Dataset, joints: xr.Dataset, settings: Mapping, solver: Mapping
 ) -> dict[str, xr.Dataset]:
     """Stages that solve sub-windows of one specimen, along its first direction of contact.
 
+    What no solve needs is made of them by :func:`stages.sizes.size_laws_of`: a friction angle
+    solves nothing again.
+
     Parameters
     ----------
-    specimens, surface_dimension, joints : xr.Dataset
+    specimens, joints : xr.Dataset
         Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
     settings : mapping
         From :func:`study.configuration.resolve_settings`.
@@ -33,11 +31,10 @@ def window_stages(
     Returns
     -------
     dict of str to xr.Dataset
-        By stage: windows and size_test.
+        By stage: window_states and size_test.
     """
     direction = settings["contact_directions"][0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at(np.sort(joint.cells))
-    laws = joint_by_size(loading, best_dimension(surface_dimension))
-    stages = {"windows": laws, "size_test": size_test(loading, laws)}
+    stages = {"window_states": windows.window_states(loading), "size_test": size_test(loading)}
     return {name: with_pressure(stage, joint.area) for name, stage in stages.items()}

@@ -1,11 +1,12 @@
 """Checks of a study before anything runs: its configuration, sidecars, names and scan files."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..core.errors import InputError
 from ..core.file_names import specimen_name
+from ..scan.options import coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
 from .scan_files import ScanFiles, find_scans
 from .schema import shortened, validate
@@ -68,8 +69,10 @@ def resolve_study(config: Mapping, schema: Mapping, source: str) -> Study:
             f"{source}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
         )
     settings, options, labels = {}, {}, {}
-    for name, scan in scans.items():
-        options[name], own = read_sidecar(scan.sidecar, schema)
+    sidecars = {name: read_sidecar(scan.sidecar, schema) for name, scan in scans.items()}
+    scans = with_coordinates(scans, {name: keys for name, (keys, _) in sidecars.items()})
+    for name in scans:
+        options[name], own = sidecars[name]
         if is_contact_map(options[name]):
             labels[name] = own.get("label", name)
         else:
@@ -77,6 +80,37 @@ def resolve_study(config: Mapping, schema: Mapping, source: str) -> Study:
     for name in embedded:
         settings[name] = resolve_settings(config, name, {}, source)
     return Study(scans, settings, options, labels, solver_settings(config, source))
+
+
+def with_coordinates(
+    scans: Mapping[str, ScanFiles], options: Mapping[str, Mapping]
+) -> dict[str, ScanFiles]:
+    """Scans with the files of x and y that their sidecars name, which are no scans themselves.
+
+    Parameters
+    ----------
+    scans : mapping of str to ScanFiles
+        From :func:`study.scan_files.find_scans`, which lists every file for itself.
+    options : mapping of str to mapping
+        Scan keys of their sidecars.
+
+    Raises
+    ------
+    InputError
+        If a sidecar names a file that is not there, or one that is no plain name.
+    """
+    listed = {scan.lower.name: name for name, scan in scans.items() if scan.upper is None}
+    found, taken = dict(scans), set()
+    for name, scan in scans.items():
+        if not is_contact_map(options.get(name, {})):
+            continue
+        files = coordinate_files(scan.lower, options[name])
+        for key, path in files.items():
+            if path.name not in listed:
+                raise InputError(f"{scan.sidecar}: {key}: no file {path.name} beside it")
+            taken.add(listed[path.name])
+        found[name] = replace(scan, coordinates=tuple(files.values()))
+    return {name: scan for name, scan in found.items() if name not in taken}
 
 
 def check_study(config: Mapping, schema: Mapping, source: str) -> None:

@@ -42,6 +42,12 @@ def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source
     InputError
         If a quantity has the wrong unit, a material no definition, or a needed key is missing.
     """
+    for key in ("materials", "defaults"):
+        if key not in config:
+            raise InputError(
+                f"{source}: missing key '{key}', which the specimen {name} needs (contact maps say "
+                "'kind: contact-map' in their sidecar)"
+            )
     stated = _Stated(config, name, sidecar, source)
     loads = stated.loads("loads")
     flat = stated.get("opposite", "match") == "flat"

@@ -30,6 +30,8 @@ class ScanFiles:
         What the user says about the scan, for both faces.
     original_name : str
         The name as the files spell it.
+    coordinates : tuple of Path
+        Files of x and y of a contact map, where its sidecar names them.
     """
 
     name: str
@@ -37,6 +39,12 @@ class ScanFiles:
     upper: Path | None
     sidecar: Path | None
     original_name: str
+    coordinates: tuple[Path, ...] = ()
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All that is measured: what its results are made of, beside the sidecar."""
+        return tuple(path for path in (self.lower, self.upper, *self.coordinates) if path)
 
 
 def find_scans(folder: Path | str) -> dict[str, ScanFiles]:

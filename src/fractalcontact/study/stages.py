@@ -5,11 +5,14 @@ so that reading it imports none of them: on a cluster every job reads the workfl
 
 To add a stage: an entry here; its function, which takes its settings and, by their names, the
 datasets of the stages it needs; a rule; a test. Its dataset then stands in the atlas. In a module
-of its own the function makes no other stage out of date.
+of its own the function makes no other stage out of date. A key of the settings that a function
+reads stands in :data:`SETTINGS_READ`, and it gets no others: a change of one that it does not read
+makes nothing of it again.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 #: How often a stage is made: for every specimen, for those that slide, for every measured contact
 #: map; once, on synthetic surfaces, where the study has the stage's key; and of studies of
@@ -63,12 +66,16 @@ class Stage:
 _SPECIMEN_STAGES = "stages.specimen:specimen_stages"
 _STATE_STAGES = "stages.states:state_stages"
 _WINDOW_STAGES = "stages.windows:window_stages"
+#: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
+CONTACT = "mechanics.sweep:joint_states"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
+#: What all that follows from contact states is made of, beside these.
+_OF_STATES = (*_OF_JOINT, "window_states", "size_test")
 
 
 def _of_states(name, title, grain=SPECIMEN):
-    return Stage(name, title, grain, _STATE_STAGES, _OF_JOINT)
+    return Stage(name, title, grain, _STATE_STAGES, _OF_STATES)
 
 
 def _experiment(name, title, function):
@@ -96,19 +103,20 @@ _TABLE = (
     ),
     Stage("joints", "offsets and composite topographies", SPECIMEN, _SPECIMEN_STAGES),
     Stage(
-        "windows",
-        "closure, roughness and strength of sub-windows",
+        "window_states",
+        "contact states of sub-windows, one by one",
         SPECIMEN,
         _WINDOW_STAGES,
-        _OF_JOINT,
+        ("specimens", "joints"),
     ),
     Stage(
         "size_test",
         "the direct test of eq. 6, and the whole predicted from its parts",
         SPECIMEN,
         _WINDOW_STAGES,
-        _OF_JOINT,
+        ("specimens", "joints"),
     ),
+    _of_states("windows", "closure, roughness and strength of sub-windows against their size"),
     _of_states("closure", "closure curves, stiffness, real contact area"),
     _of_states("dilatancy", "rigid and elastic dilatancy"),
     _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
@@ -199,6 +207,85 @@ _TABLE = (
 )
 #: Every stage by name, in the order of the atlas.
 STAGES = {stage.name: stage for stage in _TABLE}
+
+_SOLVED = ("loads", "map_offset", "material.e_star", "material.hardness")
+_STRENGTH = ("material.basic_friction_angle", "material.joint_wall_strength")
+#: Keys of a specimen's settings that a function reads; those within another stand behind a point.
+SETTINGS_READ = {
+    _SPECIMEN_STAGES: (
+        "opposite",
+        "outliers",
+        "fill_holes",
+        "window",
+        "window_centre",
+        "directions",
+        "contact_directions",
+        "offsets",
+        "resolutions",
+        "surface_range",
+    ),
+    CONTACT: (*_SOLVED, "contact_directions", "resolutions", "dilatancy_loads", "map_load"),
+    _STATE_STAGES: (
+        "material.e_star",
+        *_STRENGTH,
+        "contact_directions",
+        "dilatancy_loads",
+        "map_load",
+        "surface_range",
+        "hyperbola_range",
+        "box_range",
+        "scaling_range",
+    ),
+    _WINDOW_STAGES: (
+        *_SOLVED,
+        "contact_directions",
+        "resolutions",
+        "dilatancy_loads",
+        "box_range",
+        "scaling_range",
+    ),
+}
+#: Keys of the solver's settings, likewise.
+SOLVER_READ = {
+    CONTACT: ("rtol", "kernel", "accuracy"),
+    _STATE_STAGES: ("rtol", "accuracy"),
+    _WINDOW_STAGES: ("rtol", "kernel", "accuracy"),
+}
+
+
+def read_by(function: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings of a specimen that a function reads: :data:`SETTINGS_READ`, and no others.
+
+    Parameters
+    ----------
+    function : str
+        Of a stage, or :data:`CONTACT`.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    """
+    return _picked(SETTINGS_READ[function], settings)
+
+
+def solver_read_by(function: str, solver: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings of the solver that a function reads: :data:`SOLVER_READ`, and no others."""
+    return _picked(SOLVER_READ[function], solver)
+
+
+def without_label(resolved: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of an experiment, the recipe among them without its label, which is only words."""
+    recipe = {key: value for key, value in resolved.get("recipe", {}).items() if key != "label"}
+    return {**resolved, **({"recipe": recipe} if recipe else {})}
+
+
+def _picked(keys: Collection[str], settings: Mapping[str, Any]) -> dict[str, Any]:
+    picked: dict[str, Any] = {}
+    for key in keys:
+        outer, _, inner = key.partition(".")
+        if inner:
+            picked.setdefault(outer, {})[inner] = settings[outer][inner]
+        else:
+            picked[outer] = settings[outer]
+    return picked
 
 
 def paths_of(*grains: str) -> dict[str, str]:

@@ -27,7 +27,7 @@ from ..kit.words import estimate, interval, place, short, supplementary
 
 TITLE = "Direct test of eq. 6 on parts of the window"
 SUBJECT = "specimen"
-NEEDS = ("size_test",)
+NEEDS = ("size_test", "windows")
 ORDER = 170
 
 #: Loads shown in (a).
@@ -58,6 +58,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """Windows of several sizes at equal sigma*, slopes of eq. 6, predictions of the whole."""
     settings = settings_of(atlas, name)
     test = group(atlas, "size_test", name)
+    laws = group(atlas, "windows", name)
+    predicted = [of for of in laws if {"predictor", "dilatancy_load"} & set(laws[of].dims)]
+    test = test.assign({of: laws[of] for of in predicted})
     figure = Figure(figsize=(WIDTH, 6.2))
     (equal, slopes), errors = figure.subplots(2, 2)
     shown = _draw_equal(equal, test)

@@ -199,7 +199,7 @@ class Loading:
 
     def domain(self, factor: int, load: int) -> np.ndarray:
         """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""
-        return self.contact[f"in_contact_{factor}"].isel(normal_force=load).values
+        return self.contact[f"in_contact_{factor}"].isel(normal_force=load).values == 1
 
     @property
     def finest_spacing(self) -> float:

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..kit.domains import Loading, departures, disagreement, trend
-from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
+from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, letter
 from ..kit.maps import draw_domain
+from ..kit.measured import draw_series, map_table, measured_series, threshold_words
 from ..kit.words import force_label, percent, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
@@ -22,6 +22,8 @@ _MOST_MAPS = 6
 #: Null models of box counting, in words.
 NULLS = {"random": "random nodes (95 % band)", "cut": "bearing-area cut"}
 
+#: Points between the panel's title and its upper edge, where an axis stands.
+_ABOVE = 30
 #: The two estimates stand this factor of F apart, so that neither hides the other.
 _APART = {"area": 1 / 1.04, "box": 1.04}
 
@@ -32,8 +34,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     shown = loading.spread_loads(_MOST_MAPS)
     aspect = loading.sides[0] / loading.sides[1]
     map_height = WIDTH / _MOST_MAPS * aspect + 0.75
-    figure = Figure(figsize=(WIDTH, map_height + 2.6))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 2.6])  # type: ignore[misc]  # an array
+    figure = Figure(figsize=(WIDTH, map_height + 3))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 3])  # type: ignore[misc]  # an array
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
     nominal = np.prod(loading.sides)
     finest = loading.scaling["area"].sel(resolution=loading.finest).values
@@ -43,78 +45,73 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         letter(axes, which, f"{force_label(loading.forces[i])}\n$A_r/A_0$ = {share}")
         axes.label_outer()
     axes = bottom.subplots()
-    measured = measured_maps(atlas)
+    measured = measured_series(atlas)
     _draw_nulls(axes, loading)
     _draw_dimensions(axes, loading)
     _draw_measured(axes, measured, nominal)
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
+    _pressure_axis(axes, nominal)
     headline(figure, *loading.title)
-    table = pd.concat([_table(loading, finest), *_measured_rows(measured, nominal)])
-    caption = f"{_caption(loading)}{_measured_words(measured)}"
+    table = pd.concat([_table(loading, finest, nominal), *_measured_rows(measured)])
+    # Of both there is no room.
+    last = _measured_words(measured) or f" {disagreement(loading.scaling)}"
+    caption = f"{_caption(loading)}{last}"
     return Drawing(figure, table.reset_index(drop=True), caption)
 
 
-def measured_maps(atlas: DataTree) -> dict[str, xr.Dataset]:
-    """Measured contact maps that were dropped in with the scans, by name."""
-    if "contact_maps" not in atlas.children:
-        return {}
-    return {name: group(atlas, "contact_maps", name) for name in atlas["contact_maps"].children}
+def _measured_rows(series):
+    """Rows of the table for the maps: their own load and area, not those of the window."""
+    if not series:
+        return []
+    table = map_table(series)
+    table["estimator"] = "box counting, measured: " + table.pop("label").astype(str)
+    return [table[[name for name in table if not name.startswith(("random", "verdict"))]]]
 
 
-def _measured_rows(measured, nominal):
-    """Rows of the table for the maps: their load is that of the window at their pressure."""
-    return [
-        pd.DataFrame(
-            {
-                "load_N": [float(found["nominal_pressure"]) * nominal],
-                "area_mm2": [float(found["area_share"]) * nominal],
-                "estimator": [f"box counting, measured: {found.attrs['label']}"],
-                "delta_sigma": [float(found["delta_sigma"])],
-                "delta_sigma_low": [float(found["delta_sigma_low"])],
-                "delta_sigma_high": [float(found["delta_sigma_high"])],
-                "reason": [found["reason"].item()],
-            }
-        )
-        for found in measured.values()
-    ]
-
-
-def _draw_measured(axes, measured, nominal):
-    """Measured domains at the force that gives the window their nominal pressure."""
-    for n, one in enumerate(measured.values()):
-        value, low, high = (float(one[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
-        pressure = float(one["nominal_pressure"])
-        style = {"color": colour_of(n + 3), "marker": MARKERS[(n + 3) % len(MARKERS)]}
-        label = f"measured: {one.attrs['label']}"
-        if np.isfinite(pressure):
-            reach = [[max(value - low, 0)], [max(high - value, 0)]]
-            axes.errorbar(
-                pressure * nominal, value, yerr=reach, ls="none", capsize=2, label=label, **style
-            )
-        else:  # without a load it has no place along F
-            axes.axhline(value, color=style["color"], ls="-.", lw=0.9, label=f"{label}, no load")
-    if measured:
+def _draw_measured(axes, series, nominal):
+    """Measured domains at their nominal pressure: F is of this window, their area is another."""
+    for each in series:
+        pressure = each.pressure
+        without = np.flatnonzero(~np.isfinite(pressure))
+        label = f"measured: {each.legend}"
+        if len(without) < len(pressure):
+            draw_series(axes, each, pressure * nominal, label)
+        for one in without:  # without a load it has no place along F
+            value = float(each.maps[one]["delta_sigma"])
+            name = f"{label}, no load" if one == without[0] else None
+            axes.axhline(value, color=each.style["color"], ls="-.", lw=0.9, label=name)
+    if series:
         axes.autoscale(axis="x")
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
 
 
-def _measured_words(measured):
+def _pressure_axis(axes, nominal):
+    """The nominal pressure above the force: where measured maps, whose area is another, stand."""
+    above = axes.secondary_xaxis(
+        "top", functions=(lambda force: force / nominal, lambda pressure: pressure * nominal)
+    )
+    above.set_xlabel(r"nominal pressure $\sigma_0 = F/A_0$ (MPa)")
+    axes.set_title(axes.get_title(loc="left"), loc="left", pad=_ABOVE)
+
+
+def _measured_words(series):
     """Range of Delta_sigma by box counting of the measured domains."""
-    values = [float(one["delta_sigma"]) for one in measured.values()]
-    known = [value for value in values if np.isfinite(value)]
-    if not known:
-        return f" Measured maps: {len(values)}, without a dimension." if values else ""
-    ends = dict.fromkeys(f"{end:.2f}" for end in (min(known), max(known)))
-    return f" Measured maps: {' to '.join(ends)} by box counting."
+    values = np.concatenate([each.values("delta_sigma") for each in series] or [[]]).astype(float)
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return f" Measured maps: {len(values)}, without a dimension." if len(values) else ""
+    ends = dict.fromkeys(f"{end:.2f}" for end in (known.min(), known.max()))
+    return f" Measured ({threshold_words(series)}): {' to '.join(ends)}."
 
 
-def _table(loading, area):
+def _table(loading, area, nominal):
     """One row a load and estimator."""
     return pd.concat(
         [
             pd.DataFrame(
                 {
                     "load_N": loading.forces,
+                    "nominal_pressure_MPa": loading.forces / nominal,
                     "offset_mm": loading.offset,
                     "area_mm2": area,
                     "estimator": estimate.label,
@@ -126,12 +123,12 @@ def _table(loading, area):
             )
             for estimate in loading.estimates
         ]
-        + [_null_table(loading, area, null) for null in NULLS],
+        + [_null_table(loading, area, nominal, null) for null in NULLS],
         ignore_index=True,
     )
 
 
-def _null_table(loading, area, null):
+def _null_table(loading, area, nominal, null):
     """One row a load of a null model of box counting."""
     columns = {
         f"delta_sigma{end}": loading.counts[f"delta_sigma_{null}{end}"].values
@@ -140,6 +137,7 @@ def _null_table(loading, area, null):
     return pd.DataFrame(
         {
             "load_N": loading.forces,
+            "nominal_pressure_MPa": loading.forces / nominal,
             "offset_mm": loading.offset,
             "area_mm2": area,
             "estimator": f"box counting, {NULLS[null]}",
@@ -198,5 +196,5 @@ def _caption(loading):
     return (
         f"{loading.opening('Fig. 12')} Delta_sigma over load "
         f"({loading.fit_ranges()}). Rise with F: {verdicts}. "
-        f"{departures(loading.counts)} {disagreement(loading.scaling)}"
+        f"{departures(loading.counts)}"
     )

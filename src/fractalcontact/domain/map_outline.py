@@ -1,0 +1,145 @@
+"""Outline of a measured contact map: which of its cells belong to the nominal area.
+
+A film or cast is seldom a rectangle, its file always is: cells outside that hold zeros would count
+as nominal area without contact. The sidecar says where the outline runs.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from ..core.errors import InputError
+from ..core.units import quantity
+
+#: A map whose rim is empty is suspicious where the convex hull of its contact takes less of the
+#: rectangle: the largest disc in a square takes 0.785.
+HULL_SHARE = 0.8
+#: Fewer cells in contact leave so much of a rectangle empty by chance: their hull takes
+#: 1 - (8/3) ln N / N of a square on the average (Renyi and Sulanke, 1963), 0.88 for 100 cells.
+FEWEST_CELLS = 100
+
+
+def outline_mask(
+    outline: str | Mapping[str, Any] | None,
+    values: np.ndarray,
+    y: np.ndarray,
+    x: np.ndarray,
+    where: str,
+) -> np.ndarray:
+    """Cells of a map within its outline.
+
+    Parameters
+    ----------
+    outline : str, mapping or None
+        "rectangle", the whole map, as without an outline; "disc", the largest disc in it;
+        ``{"disc": {"centre": [x, y], "diameter": d}}``; ``{"polygon": [[x, y], ...]}``;
+        ``{"mask": value}``: cells of this value lie outside. Numbers are mm in the coordinates of
+        the map, texts have a unit.
+    values : (ny, nx) ndarray
+        As the file has them.
+    y, x : ndarray
+        Centres of the cells, mm, ascending.
+    where : str
+        For errors.
+
+    Returns
+    -------
+    (ny, nx) bool ndarray
+        Whether the centre of the cell lies within.
+
+    Raises
+    ------
+    InputError
+        If the outline is no area, or no cell lies within.
+    """
+    if outline is None or outline == "rectangle":
+        return np.ones(values.shape, bool)
+    whole: tuple[str, Any] = ("disc", {})
+    kind, stated = whole if isinstance(outline, str) else next(iter(outline.items()))
+    if kind == "mask":
+        inside = ~np.isclose(values, stated, rtol=1e-6, atol=0)
+    elif kind == "disc":
+        inside = _disc(stated, y, x, where)
+    else:
+        inside = _polygon(stated, y, x, where)
+    if not inside.any():
+        raise InputError(
+            f"{where}: no cell lies within; the map goes from {_ends(x)} mm in x and from "
+            f"{_ends(y)} mm in y"
+        )
+    return inside
+
+
+def _ends(centres: np.ndarray) -> str:
+    half = (centres[1] - centres[0]) / 2
+    return f"{centres[0] - half:.4g} to {centres[-1] + half:.4g}"
+
+
+def _disc(stated: Mapping[str, Any], y: np.ndarray, x: np.ndarray, where: str) -> np.ndarray:
+    """Cells in a disc; without a centre or a diameter the largest in the middle."""
+    sides = [centres[-1] - centres[0] + centres[1] - centres[0] for centres in (y, x)]
+    centre = [_length(c, where) for c in stated.get("centre", [x.mean(), y.mean()])]
+    diameter = _length(stated.get("diameter", min(sides)), where)
+    if diameter <= 0:
+        raise InputError(f"{where}: a diameter of {diameter:g} mm; it must be positive")
+    return np.hypot(x - centre[0], (y - centre[1])[:, np.newaxis]) <= diameter / 2
+
+
+def _polygon(
+    corners: Sequence[Sequence[Any]], y: np.ndarray, x: np.ndarray, where: str
+) -> np.ndarray:
+    """Cells in a polygon, by the number of its sides that a ray to the East crosses."""
+    points = np.array([[_length(c, where) for c in corner] for corner in corners])
+    after = np.roll(points, -1, axis=0)
+    twice = np.sum(points[:, 0] * after[:, 1] - after[:, 0] * points[:, 1])
+    if twice == 0:
+        raise InputError(f"{where}: these corners enclose no area")
+    inside = np.zeros((len(y), len(x)), bool)
+    for (x0, y0), (x1, y1) in zip(points, after, strict=True):
+        rows = np.flatnonzero((y0 > y) != (y1 > y))
+        crossing = x0 + (y[rows] - y0) * (x1 - x0) / (y1 - y0) if len(rows) else np.empty(0)
+        inside[rows] ^= x < crossing[:, np.newaxis]
+    return inside
+
+
+def _length(value: Any, where: str) -> float:
+    return quantity(value, "length", where) if isinstance(value, str) else float(value)
+
+
+def outline_warning(values: np.ndarray, touching: np.ndarray, outline: object) -> str:
+    """Whether zeros around the measured part seem to be taken for nominal area; else empty.
+
+    Parameters
+    ----------
+    values : (ny, nx) ndarray
+        As the file has them; NaN where nothing was measured.
+    touching : (ny, nx) bool ndarray
+        Cells in contact.
+    outline : object
+        What the sidecar says; anything but None silences the warning.
+    """
+    absent = np.isnan(values)
+    empty = ~(touching | absent)
+    rim = np.concatenate([empty[0], empty[-1], empty[:, 0], empty[:, -1]])
+    if outline is not None or not rim.all() or touching.sum() < FEWEST_CELLS:
+        return ""
+    share = _hull_share(touching)
+    if share >= HULL_SHARE:
+        return ""
+    return (
+        f"no contact all round, which spans {100 * share:.0f} % of the rectangle: if the film "
+        "is smaller than its file, A_0 is too large; write 'outline: disc' (or a polygon, or a "
+        "mask) in the sidecar, or 'outline: rectangle' if it is not"
+    )
+
+
+def _hull_share(touching: np.ndarray) -> float:
+    """Fraction of the rectangle in the convex hull of the cells in contact, whole cells."""
+    row, column = np.nonzero(touching)
+    corners = np.concatenate([np.c_[row + dy, column + dx] for dy in (0, 1) for dx in (0, 1)])
+    try:
+        return float(ConvexHull(corners).volume / touching.size)
+    except QhullError:  # one row of cells, which has an area: not reached with whole cells
+        return 0.0

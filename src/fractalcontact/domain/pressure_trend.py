@@ -1,0 +1,66 @@
+"""Whether the dimension of measured contact maps goes with load, and otherwise than random cells.
+
+Of a map only the random null model can be had: the bearing-area cut needs heights.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.fitting import LineFit, fit_line
+from .departure import BEYOND_RANDOM, LIKE_RANDOM, UNDETERMINED
+
+#: How a dimension goes with load.
+RISES, FALLS = "rises", "falls"
+
+
+class Trend(NamedTuple):
+    """How a dimension goes with the load over a series of maps.
+
+    Attributes
+    ----------
+    verdict : str
+        "rises", "falls" or "undetermined".
+    line : LineFit
+        Of Delta_sigma over the decades of pressure.
+    departure : LineFit
+        Of Delta_sigma less that of random cells.
+    """
+
+    verdict: str
+    line: LineFit
+    departure: LineFit
+
+    @property
+    def beyond_random(self) -> str:
+        """Whether it goes otherwise than that of as many random cells."""
+        if not np.isfinite(self.departure.slope_low):
+            return UNDETERMINED
+        return BEYOND_RANDOM if self.departure.slope_low * self.departure.slope_high > 0 else LIKE_RANDOM
+
+
+def pressure_trend(pressure: ArrayLike, value: ArrayLike, random: ArrayLike) -> Trend:
+    """Trend of Delta_sigma with nominal pressure over the maps of a series.
+
+    Parameters
+    ----------
+    pressure, value, random : (n,) array_like
+        sigma_0 in MPa, Delta_sigma, and that of as many random cells; NaN where not known.
+
+    Notes
+    -----
+    Maps of a series are measured one by one: the line's own interval (Student's t) is that of the
+    trend. More contact raises the dimension of any cells, those at random too, so a rise alone
+    shows no fractal: the departure from random must have a trend of its own.
+    """
+    pressure, value = np.asarray(pressure, float), np.asarray(value, float)
+    decades = np.log10(np.where(pressure > 0, pressure, np.nan))
+    line = fit_line(decades, value)
+    departure = fit_line(decades, value - np.asarray(random, float))
+    verdict = UNDETERMINED
+    if line.slope_low > 0:
+        verdict = RISES
+    elif line.slope_high < 0:
+        verdict = FALLS
+    return Trend(verdict, line, departure)

@@ -1,0 +1,177 @@
+"""Measured contact maps, one by one or in series, for the figures that draw them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from xarray import DataTree
+
+from ...domain.pressure_trend import Trend, pressure_trend
+from .drawing import COLOURS, MARKERS, group
+from .words import short
+
+#: Letters of a label that a legend takes.
+_LONGEST = 34
+
+
+@dataclass(frozen=True)
+class Series:
+    """Measured maps that belong together, or a single one.
+
+    Attributes
+    ----------
+    label : str
+        Of the series, or of its only map.
+    names : tuple of str
+        Of its maps, in the order of their pressure; those of unknown pressure last.
+    maps : tuple of xr.Dataset
+        As :func:`domain.measured_map.read_contact_map` gives them.
+    number : int
+        Its place among all series, which says its colour and marker.
+    """
+
+    label: str
+    names: tuple[str, ...]
+    maps: tuple[xr.Dataset, ...]
+    number: int
+
+    def values(self, name: str) -> np.ndarray:
+        """A number of every map."""
+        return np.array([one[name].item() for one in self.maps])
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """sigma_0 of every map, MPa; NaN where no load is stated."""
+        return self.values("nominal_pressure").astype(float)
+
+    @property
+    def trend(self) -> Trend:
+        """How Delta_sigma goes with the pressure."""
+        return pressure_trend(
+            self.pressure, self.values("delta_sigma"), self.values("delta_sigma_random")
+        )
+
+    @property
+    def legend(self) -> str:
+        """Its label for a legend, with the number of its maps where there are several."""
+        label = self.label if len(self.label) <= _LONGEST else f"{self.label[: _LONGEST - 1]}…"
+        return f"{label} ({len(self.maps)})" if len(self.maps) > 1 else label
+
+    @property
+    def style(self) -> dict:
+        """Colour and marker; beside the three of what is computed."""
+        n = self.number + 3
+        return {"color": COLOURS[n % (len(COLOURS) - 1)], "marker": MARKERS[n % len(MARKERS)]}
+
+
+def measured_series(atlas: DataTree) -> list[Series]:
+    """Measured contact maps that were dropped in with the scans: series first, then single maps."""
+    if "contact_maps" not in atlas.children:
+        return []
+    maps = {name: group(atlas, "contact_maps", name) for name in atlas["contact_maps"].children}
+    members: dict[tuple, list[str]] = {}
+    for name, one in maps.items():
+        series = one.attrs["series"]
+        members.setdefault((0, series) if series else (1, name), []).append(name)
+    found = []
+    for number, ((alone, label), names) in enumerate(sorted(members.items())):
+        pressure = [float(maps[name]["nominal_pressure"]) for name in names]
+        names = [names[i] for i in np.argsort(pressure, kind="stable")]
+        words = maps[names[0]].attrs["label"] if alone else label
+        found.append(Series(words, tuple(names), tuple(maps[name] for name in names), number))
+    return found
+
+
+def draw_series(
+    axes: Axes, series: Series, x: np.ndarray, label: str | None = None, *, nulls: bool = False
+) -> None:
+    """Delta_sigma of the maps of a series over x, with intervals, and the band of thresholds.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    series : Series
+    x : (n,) ndarray
+        NaN leaves a map out.
+    label : str, optional
+        For the legend.
+    nulls : bool
+        Whether to draw the dimension of random cells, too.
+    """
+    known = np.isfinite(x)
+    x = x[known]
+    value, low, high, least, most = (
+        series.values(f"delta_sigma{end}")[known]
+        for end in ("", "_low", "_high", "_least", "_most")
+    )
+    colour = series.style["color"]
+    reach = np.maximum([value - low, high - value], 0)
+    line = "-" if len(x) > 1 else "none"
+    axes.errorbar(
+        x, value, yerr=reach, ls=line, capsize=2, elinewidth=0.8, label=label, **series.style
+    )
+    if np.isfinite(least).any():
+        if len(x) > 1:
+            axes.fill_between(x, least, most, color=colour, alpha=0.15, lw=0)
+        else:
+            axes.vlines(x, least, most, color=colour, alpha=0.25, lw=5)
+    if nulls:
+        mean, low, high = (
+            series.values(f"delta_sigma_random{end}")[known] for end in ("", "_low", "_high")
+        )
+        style = {"color": colour, "lw": 0.8, "ls": ":", "marker": "none"}
+        if len(x) > 1:
+            axes.plot(x, mean, **style)
+            axes.fill_between(
+                x, low, high, facecolor="none", edgecolor=colour, hatch="....", lw=0, alpha=0.4
+            )
+        else:
+            axes.errorbar(x, mean, yerr=np.maximum([mean - low, high - mean], 0), **style)
+
+
+def threshold_words(series: Sequence[Series]) -> str:
+    """Thresholds of maps in words, the least and the largest of all that are not binary."""
+    stated = [
+        one["threshold"].values for each in series for one in each.maps if not one.attrs["binary"]
+    ]
+    if not stated:
+        return "maps of 0 and 1"
+    every = np.concatenate(stated)
+    ends = dict.fromkeys(short(end) for end in (every.min(), every.max()))
+    return f"threshold{'s' if len(ends) > 1 else ''} {' to '.join(ends)}"
+
+
+def map_table(series: Sequence[Series]) -> pd.DataFrame:
+    """One row a map: its load, area and dimension, with the nulls."""
+    columns = {
+        "load_N": "force",
+        "nominal_pressure_MPa": "nominal_pressure",
+        "nominal_area_mm2": "nominal_area",
+        "area_mm2": "area",
+        "area_share": "area_share",
+        "delta_sigma": "delta_sigma",
+        "delta_sigma_low": "delta_sigma_low",
+        "delta_sigma_high": "delta_sigma_high",
+        "least_over_thresholds": "delta_sigma_least",
+        "most_over_thresholds": "delta_sigma_most",
+        "random_cells": "delta_sigma_random",
+        "random_cells_low": "delta_sigma_random_low",
+        "random_cells_high": "delta_sigma_random_high",
+        "verdict": "null_verdict",
+        "reason": "reason",
+    }
+    rows = [
+        {
+            "map": name,
+            "series": one.attrs["series"],
+            "label": one.attrs["label"],
+            "threshold": one.attrs["threshold"],
+            **{column: one[variable].item() for column, variable in columns.items()},
+        }
+        for each in series
+        for name, one in zip(each.names, each.maps, strict=True)
+    ]
+    return pd.DataFrame(rows)

@@ -1,0 +1,84 @@
+"""All measured contact maps with their cells in contact."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from ..kit.drawing import WIDTH, Drawing, headline, spread
+from ..kit.maps import draw_map, missing_patch
+from ..kit.measured import map_table, measured_series, threshold_words
+from ..kit.words import interval, percent, short, supplementary
+
+TITLE = "Measured contact maps"
+SUBJECT = "study"
+NEEDS = ("contact_maps",)
+KEY = "contact_maps"
+ORDER = 300
+
+#: Maps side by side: of a few, and of many; and maps at most, that each can be read.
+_COLUMNS, _NARROW, _MOST = 4, 5, 60
+#: Letters of a map's title.
+_LONGEST = 22
+
+
+def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
+    """Cells in contact of every map, its load, contact fraction and dimension."""
+    series = measured_series(atlas)
+    maps = [(name, one) for each in series for name, one in zip(each.names, each.maps, strict=True)]
+    chosen = [maps[i] for i in spread(len(maps), _MOST)]
+    columns = min(_COLUMNS if len(chosen) <= 2 * _COLUMNS else _NARROW, len(chosen))
+    rows = -(-len(chosen) // columns)
+    side = WIDTH / columns
+    tallest = max(_sides(one)[0] / _sides(one)[1] for _, one in chosen)
+    figure = Figure(figsize=(WIDTH, rows * (0.8 * side * min(tallest, 2) + 0.75) + 0.6))
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes in panels[len(chosen) :]:
+        axes.remove()
+    for n, (axes, (name, one)) in enumerate(zip(panels, chosen, strict=False)):
+        image = np.where(one["measured"], one["in_contact"], np.nan)
+        draw_map(axes, image, _sides(one), ticks=3, cmap="Greys", vmin=0, vmax=1)
+        axes.set_title(_title(name, one), loc="left", fontsize=6)
+        axes.tick_params(labelsize=6)
+        if n % columns:
+            axes.set_ylabel("")
+        if n + columns < len(chosen):
+            axes.set_xlabel("")
+    figure.legend(handles=[missing_patch()], loc="outside lower center")
+    shown = f", {len(chosen)} of {len(maps)}" if len(chosen) < len(maps) else ""
+    headline(figure, f"measured contact maps{shown}")
+    return Drawing(figure, map_table(series), _caption(series, maps))
+
+
+def _sides(one):
+    """Sides (y, x) of a map, mm."""
+    return tuple(one.sizes[axis] * one.attrs[f"spacing_{axis}"] for axis in "yx")
+
+
+def _title(name, one):
+    """Name, load, contact fraction and dimension of a map, a line each."""
+    name = name if len(name) <= _LONGEST else f"{name[: _LONGEST - 1]}…"
+    pressure = float(one["nominal_pressure"])
+    load = f"{short(pressure)} MPa" if np.isfinite(pressure) else "no load"
+    value, low, high = (float(one[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
+    dimension = "no dimension"
+    if np.isfinite(value):
+        dimension = rf"$\Delta_\sigma$ = {interval(value, low, high)}"
+    share = percent(float(one["area_share"]))
+    return f"{name.replace('$', '')}\n{load}, {share}\n{dimension}"
+
+
+def _caption(series, maps):
+    shares = [float(one["area_share"]) for _, one in maps]
+    verdicts = [one["null_verdict"].item() for _, one in maps]
+    beyond = sum(verdict.startswith("beyond") for verdict in verdicts)
+    warned = sum(bool(one.attrs["warning"]) for _, one in maps)
+    words = (
+        f"{supplementary('measured contact maps')} Cells in contact (black), "
+        f"{threshold_words(series)}; above each its nominal pressure, A_r/A_0 "
+        f"({percent(min(shares))} to {percent(max(shares))} in all) and Delta_sigma. By box "
+        f"counting it lies beyond as many random cells in {beyond} of {len(maps)} maps; the "
+        "bearing-area cut needs heights."
+    )
+    if warned:
+        words += f" {warned} have no contact all round and no outline stated: A_0 may be too large."
+    return words

@@ -1,0 +1,85 @@
+"""Dimension of measured contact maps against nominal pressure and against contact fraction."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from xarray import DataTree
+
+from ..kit.drawing import WIDTH, Drawing, entries, headline, label_short_span, legends_below, letter
+from ..kit.measured import draw_series, map_table, measured_series, threshold_words
+from ..kit.words import interval, supplementary
+
+TITLE = "Dimension of measured contact maps against pressure"
+SUBJECT = "study"
+NEEDS = ("contact_maps",)
+KEY = "contact_maps"
+ORDER = 310
+
+#: Series whose trends a caption has room for.
+_IN_WORDS = 2
+
+
+def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
+    """Delta_sigma over sigma_0 and over A_r/A_0, one line a series, beside random cells."""
+    series = measured_series(atlas)
+    figure = Figure(figsize=(WIDTH, 3.9))
+    panels = figure.subplots(1, 2, sharey=True)
+    for each in series:
+        draw_series(panels[0], each, each.pressure, each.legend, nulls=True)
+        draw_series(panels[1], each, each.values("area_share"), each.legend, nulls=True)
+    for axes, which, words in (
+        (panels[0], "a", r"nominal pressure $\sigma_0$ (MPa)"),
+        (panels[1], "b", "contact fraction $A_r/A_0$"),
+    ):
+        axes.set_xlabel(words)
+        letter(axes, which, words.split(" $")[0])
+        axes.axhline(1, color="0.6", ls=":", lw=0.8, zorder=0)
+    if any(np.isfinite(each.pressure).any() for each in series):
+        panels[0].set_xscale("log")
+        label_short_span(panels[0].xaxis)
+    else:
+        panels[0].set_xticks([])
+        panels[0].text(
+            0.5, 0.5, "no map states its load", transform=panels[0].transAxes, ha="center"
+        )
+    panels[1].set_xscale("log")
+    label_short_span(panels[1].xaxis)
+    panels[0].set_ylabel(r"dimension $\Delta_\sigma$ by box counting")
+    panels[0].set_ylim(-0.05, 2.05)
+    legends_below(figure, entries(panels[1]), _marks(series))
+    headline(figure, "measured contact maps")
+    return Drawing(figure, map_table(series), _caption(series))
+
+
+def _marks(series):
+    marks = [
+        Line2D([], [], color="0.3", ls=":", lw=0.8, label="as many random cells"),
+        Patch(facecolor="none", edgecolor="0.3", hatch="....", lw=0, label="95 % of their draws"),
+    ]
+    if any(np.isfinite(each.values("delta_sigma_least")).any() for each in series):
+        marks.append(Patch(facecolor="0.3", alpha=0.15, label="band over thresholds"))
+    return marks
+
+
+def _caption(series):
+    """What is drawn, and of the longest series how the dimension goes with pressure."""
+    longest = sorted(series, key=lambda each: -len(each.maps))
+    words = " ".join(_trend_words(each) for each in longest[:_IN_WORDS])
+    return (
+        f"{supplementary('measured contact maps')} Delta_sigma by box counting "
+        f"({threshold_words(series)}) beside as many random cells. {words}"
+    )
+
+
+def _trend_words(series):
+    trend, label = series.trend, series.legend
+    if not np.isfinite(trend.line.slope):
+        return f"{label}: too few maps with loads for a trend."
+    line, departure = trend.line, trend.departure
+    slope = interval(line.slope, line.slope_low, line.slope_high)
+    words = f"{label}: {slope} a decade of pressure ({trend.verdict})"
+    if np.isfinite(departure.slope):
+        less = interval(departure.slope, departure.slope_low, departure.slope_high)
+        words += f"; less that of random cells {less} ({trend.beyond_random})"
+    return f"{words}."
