@@ -6,7 +6,7 @@ from ..curves import Curve, of_both_axes
 from ..estimator import Estimator
 from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square
 from ..spectra import profile_spectra
-from ..spectrum_model import sampled
+from ..spectrum_model import rolled_off, sampled
 
 
 def power_spectrum_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
@@ -18,9 +18,13 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
     """H that the slope gives on average.
 
     Profiles lack waves that are short across them, or have short waves along them folded back.
-    Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long.
+    Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long. Where the surface
+    rolls off, they lack waves that are long across them too.
     """
-    kept = sampled(sampling, 1 + 2 * HURST_GRID[:, np.newaxis], 2 / fit.length)
+    slope = 1 + 2 * HURST_GRID[:, np.newaxis]
+    kept = sampled(sampling, slope, 2 / fit.length)
+    if np.isfinite(fit.roll_off):
+        kept = kept * rolled_off(slope, 2 / fit.roll_off, 2 / fit.length)
     return hurst_of_mean_square(fit, kept)
 
 

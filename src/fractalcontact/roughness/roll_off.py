@@ -1,0 +1,241 @@
+"""Roll-off of a surface: what it takes from each measure, and whether one is seen.
+
+A surface whose spectrum is flat above a wavelength lacks long waves. Mean squares then grow more
+slowly than h^(2H), and do so long before that wavelength: the variogram loses a part that grows as
+h^(2 - 2H), like the part that levelling takes. The spectrum of the model is C(q) = q^(-2 (1 + H))
+above q_r = 2 pi / roll-off and C(q_r) below, that of :func:`surface.synthesis.self_affine`; all else
+follows from it alone. Fractions are of the power law that the same surface has without a roll-off.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+from ..core.intervals import t_quantile
+from .curves import Curve, jackknife_standard_error
+from .spectrum_model import ALIASED, BAND_LIMITED
+
+#: Exponents at which the mean result of every estimator is known.
+HURST_GRID = np.linspace(0.02, 0.98, 97)
+
+#: Lengths over the roll-off at which fractions are tabulated; shorter ones lack next to nothing.
+SHARES = np.geomspace(2.0**-12, 2.0**5, 137)
+
+#: Lags from which a roll-off is looked for, cells: below, what the grid does shows more.
+FIRST_LAG = 2
+#: Shortest roll-off looked for, cells, and steps in each doubling.
+SHORTEST, STEPS_PER_OCTAVE = 8, 6
+#: Longest one, in longest lags of the second differences (which see waves of twice that).
+LONGEST_PER_LAG = 4.0
+#: Neighbouring parts of one surface share its long waves (`estimator.Estimator.spread`), and no
+#: mean is trusted better than this (relative).
+SPREAD, LEAST_ERROR = 1.3, 0.03
+#: How much better than any power law a roll-off must describe the curve (chi-square).
+EVIDENCE = 20.0
+#: A roll-off that describes it by less than this worse than the best is not excluded.
+EXCLUDED = 4.0
+
+
+class RollOff(NamedTuple):
+    """Wavelength above which a spectrum is flat, in the unit of the curve."""
+
+    value: float
+    """Infinite where none is seen."""
+    low: float
+    high: float
+    """95 % interval. Where none is seen, `low` is the shortest that is not excluded."""
+
+    def scaled(self, factor: float) -> "RollOff":
+        """The same in another unit of length."""
+        return RollOff(*(factor * end for end in self))
+
+
+#: Of a surface that is known to have none.
+NO_ROLL_OFF = RollOff(np.inf, np.inf, np.inf)
+
+
+# -- what a roll-off leaves, (exponents, lengths) --------------------------------------------------
+
+
+@cache
+def _difference_table() -> np.ndarray:
+    """Fraction of the mean square difference (exponents, `SHARES`).
+
+    h^(2H) belongs to the integral of q^(-1 - 2H) (1 - J0(q h)) over all q. Of it (q^(-2 - 2H) -
+    q_r^(-2 - 2H)) q (1 - J0(q h)) below q_r is missing.
+    """
+    h = HURST_GRID[:, np.newaxis]
+    points, weights = np.polynomial.legendre.leggauss(256)
+    u, w = (points + 1) / 2, weights / 2
+    z = 2 * np.pi * SHARES
+    # The square of z u is integrated by hand: with it the rest is smooth at zero.
+    beyond = 1 - special.j0(z[:, np.newaxis] * u) - (z[:, np.newaxis] * u) ** 2 / 4
+    beyond = np.where(z[:, np.newaxis] * u < 0.02, -((z[:, np.newaxis] * u) ** 4) / 64, beyond)
+    steep = (u ** (-1 - 2 * h) * w) @ beyond.T + z**2 / (8 - 8 * h)
+    flat = 0.5 - special.j1(z) / z
+    whole = special.gamma(1 - h) / (2 ** (2 * h + 1) * h * special.gamma(1 + h))
+    missing = np.where(z < 0.02, z**2 / 4 * (1 / (2 - 2 * h) - 0.25), steep - flat)
+    return 1 - missing * z ** (-2 * h) / whole
+
+
+def _looked_up(table: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Linear interpolation over the logarithm of the share; 1 where there is no roll-off."""
+    place = np.log(np.maximum(share, SHARES[0]) / SHARES[0]) / np.log(SHARES[1] / SHARES[0])
+    place = np.minimum(place, len(SHARES) - 1.001)
+    before = place.astype(int)
+    part = place - before
+    found = (1 - part) * table[:, before] + part * table[:, before + 1]
+    return np.where(share > 0, found, 1.0)
+
+
+def difference_fraction(share: np.ndarray) -> np.ndarray:
+    """Fraction left of the mean square difference, (exponents, k).
+
+    Parameters
+    ----------
+    share : (k,) ndarray
+        Lag over the roll-off; 0 without one.
+    """
+    return _looked_up(_difference_table(), np.asarray(share, float))
+
+
+def second_difference_fraction(share: np.ndarray) -> np.ndarray:
+    """Fraction left of the mean square second difference 4 D(h) - D(2h), as above."""
+    return _looked_up(_second_difference_table(), np.asarray(share, float))
+
+
+@cache
+def _second_difference_table() -> np.ndarray:
+    ratio = 4**HURST_GRID[:, np.newaxis]
+    of_both = 4 * difference_fraction(SHARES) - ratio * difference_fraction(2 * SHARES)
+    return of_both / (4 - ratio)
+
+
+def rise_fraction(share: np.ndarray) -> np.ndarray:
+    """Fraction left of a prism facet's mean square rise D(b) + D(sqrt(2) b) / 2, as above."""
+    share = np.asarray(share, float)
+    ratio = 2 ** (HURST_GRID[:, np.newaxis] - 1)
+    across = difference_fraction(np.sqrt(2) * share)
+    return (difference_fraction(share) + ratio * across) / (1 + ratio)
+
+
+def levelled_slope_fraction(share: np.ndarray) -> np.ndarray:
+    """Fraction left of the mean square slope of the plane of a square, of its side, as above."""
+    return _looked_up(_over_pairs("slope"), np.asarray(share, float))
+
+
+def about_plane_fraction(share: np.ndarray) -> np.ndarray:
+    """Fraction left of the mean square about the plane of a square, of its side, as above."""
+    return _looked_up(_over_pairs("plane"), np.asarray(share, float))
+
+
+def about_line_fraction(share: np.ndarray) -> np.ndarray:
+    """Fraction left of a profile's mean square about its line, of its length, as above."""
+    return _looked_up(_over_pairs("line"), np.asarray(share, float))
+
+
+@cache
+def _over_pairs(of: str) -> np.ndarray:
+    """Fractions of means over all pairs of points of a square, or of a profile.
+
+    The slope of the least-squares plane is the integral of 12 (x - 1/2) z; the mean square about
+    the plane half the mean square difference of all pairs, less what the plane holds.
+    """
+    points, weights = np.polynomial.legendre.leggauss(32)
+    u, w = (points + 1) / 2, weights / 2
+    if of == "line":
+        distance, pairs = u, 2 * w * (1 - u) / 2
+        slope = -w * 12 * (1 - 3 * u + 2 * u**3)
+        held = 1 / 12
+    else:
+        distance = np.hypot(u[:, np.newaxis], u).ravel()
+        pairs = 4 * np.outer(w * (1 - u), w * (1 - u)).ravel() / 2
+        slope = -4 * np.outer(w * 12 * (1 - 3 * u + 2 * u**3), w * (1 - u)).ravel() / 2
+        held = 1 / 6
+    weight = slope if of == "slope" else pairs - held * slope
+    power = weight * distance ** (2 * HURST_GRID[:, np.newaxis])
+    left = [np.sum(power * difference_fraction(share * distance), axis=1) for share in SHARES]
+    return np.array(left).T / np.sum(power, axis=1, keepdims=True)
+
+
+# -- whether one is seen ---------------------------------------------------------------------------
+
+
+def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
+    """Roll-off of a surface as its second differences show it.
+
+    Parameters
+    ----------
+    curve : Curve
+        Second differences along both axes, lags in mm.
+    spacing : float
+        mm.
+    missing : (exponents,) ndarray
+        Mean square second difference of the waves that a band-limited surface lacks, over that of
+        a lag of one cell.
+
+    Returns
+    -------
+    RollOff
+        mm.
+
+    Notes
+    -----
+    Second differences are blind to any plane, so that levelling takes nothing from them, and reach
+    waves of half the side. Least squares of their logarithms, weighted by their jackknife errors,
+    over all exponents and roll-offs and for both things that nodes can stand for. One is seen where
+    it lowers chi-square by `EVIDENCE` and the jackknife bounds it. Calibrated on synthetic surfaces
+    without a roll-off: :mod:`experiments.delta_g`.
+    """
+    lag, measure = curve.length / spacing, curve.measure()
+    without = curve.without_each_part()
+    used = (lag >= FIRST_LAG) & (measure > 0) & (without > 0).all(axis=0)
+    if used.sum() < 5 or len(without) < 2:
+        return RollOff(np.inf, SHORTEST * spacing, np.inf)
+    lag, logs = lag[used], np.log(np.vstack([measure, without])[:, used])
+    error = np.hypot(SPREAD * jackknife_standard_error(logs[1:]), LEAST_ERROR)
+    steps = np.log2(LONGEST_PER_LAG * lag[-1] / SHORTEST) * STEPS_PER_OCTAVE
+    tried = np.r_[SHORTEST * 2 ** (np.arange(max(steps, 0) + 1) / STEPS_PER_OCTAVE), np.inf]
+    chi2 = _chi_square(lag, logs, error, tried, missing)  # (rows, roll-offs)
+    best = chi2.argmin(axis=1)
+    scatter = max(1.0, chi2[0, best[0]] / max(len(lag) - 3, 1))
+    allowed = np.flatnonzero(chi2[0] < chi2[0, best[0]] + EXCLUDED * scatter)
+    step = 2 ** (1 / STEPS_PER_OCTAVE)
+    parts = np.log(np.minimum(tried[best[1:]], tried[-2]))
+    half = t_quantile(len(parts) - 1) * SPREAD * float(jackknife_standard_error(parts))
+    seen = chi2[0, -1] - chi2[0, best[0]] > EVIDENCE * scatter and allowed[-1] < len(tried) - 1
+    if not seen:
+        return RollOff(np.inf, float(min(tried[allowed[0]], tried[-2])) * spacing, np.inf)
+    value = tried[best[0]] * step ** _lowest_between(chi2[0, best[0] - 1 : best[0] + 2])
+    low = min(tried[allowed[0]] / step, value * np.exp(-half))
+    high = max(tried[allowed[-1]] * step, value * np.exp(half))
+    return RollOff(float(value), float(low), float(high)).scaled(spacing)
+
+
+def _lowest_between(chi2: np.ndarray) -> float:
+    """Steps from the middle of three values to the lowest point of their parabola, half at most."""
+    if len(chi2) < 3 or not np.isfinite(chi2).all():
+        return 0.0
+    curvature = chi2[0] - 2 * chi2[1] + chi2[2]
+    return float(np.clip((chi2[0] - chi2[2]) / (2 * curvature), -0.5, 0.5)) if curvature else 0.0
+
+
+def _chi_square(lag, logs, error, tried, missing) -> np.ndarray:
+    """Least chi-square (rows of logs, roll-offs tried) over exponents and samplings."""
+    exponent = 2 * HURST_GRID[:, np.newaxis]
+    weight = error**-2 / np.sum(error**-2)
+    best = np.full((len(logs), len(tried)), np.inf)
+    for column, roll_off in enumerate(tried):
+        left = second_difference_fraction(lag / roll_off)
+        for sampling in (ALIASED, BAND_LIMITED):
+            lacking = missing[:, np.newaxis] * lag**-exponent * (sampling == BAND_LIMITED)
+            model = exponent * np.log(lag) + np.log(np.maximum(left - lacking, 1e-12))
+            model -= model @ weight[:, np.newaxis]
+            scaled = model / error
+            own = (logs - logs @ weight[:, np.newaxis]) / error
+            product = own @ scaled.T
+            square = np.sum(own**2, axis=1)[:, np.newaxis] + np.sum(scaled**2, axis=1)
+            best[:, column] = np.minimum(best[:, column], (square - 2 * product).min(axis=1))
+    return best
