@@ -138,7 +138,7 @@ def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
         "mean_coverage": f"fraction of intervals that hold H, {of}",
         "least_coverage": f"smallest coverage of any H, size and roll-off, {of}",
     }
-    values = {
+    values: dict[str, Any] = {
         "worst_bias": abs(natural["bias"]).max(every),
         "overall_error": np.sqrt((natural["rms_error"] ** 2).mean(every)),
         "mean_coverage": natural["coverage"].mean(every),

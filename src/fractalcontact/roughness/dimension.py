@@ -54,7 +54,7 @@ def surface_dimension(
     heights: np.ndarray,
     spacing: float | tuple[float, float],
     *,
-    fit_range: tuple[float, float] | None = None,
+    fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
     known_dimension: float = np.nan,
 ) -> xr.Dataset:
@@ -66,11 +66,12 @@ def surface_dimension(
         In mm, NaN where missing. The mean plane is removed first.
     spacing : float or (dy, dx)
         In mm. Where the two differ, the finer axis is interpolated at the coarser spacing first.
-    fit_range : (float, float), optional
+    fit_range : (float, float) or FitRange, optional
         Shortest and longest lag of the fits, mm; windows, prisms and wavelengths go from and to as
         much longer as they must be to see that lag (variable `fit_min`, `fit_max`). By default from
         4 cells to an eighth of the smaller side, or to a quarter of a roll-off that is seen: see
-        :func:`roughness.fit_range.choose_fit_range`.
+        :func:`roughness.fit_range.choose_fit_range`. A roll-off is looked for whatever the range,
+        unless a FitRange says what it is.
     estimators : sequence of str, optional
         Some of `ESTIMATORS`; all by default.
     known_dimension : float, optional
@@ -105,9 +106,10 @@ def surface_dimension(
     The interval is the wider of the regression's and the jackknife's over parts of the surface (4 x
     4 blocks; 8 strips for the spectrum), the latter widened by the estimator's `spread`, because
     the parts of one surface share its long waves; and `BIAS_LEFT` beyond either end. It spans the
-    interval of the roll-off, or those that cannot be excluded. What is not known, too, is whether the nodes are points of a finer surface, or the surface lacks waves shorter
-    than two nodes, as synthetic surfaces do: then all but cubes and islands give H too high, by up
-    to 0.06 at 0.3, 0.025 at 0.5 and 0.005 at 0.8. The interval spans both.
+    interval of the roll-off, or those that cannot be excluded. What is not known, too, is whether
+    the nodes are points of a finer surface, or the surface lacks waves shorter than two nodes, as
+    synthetic surfaces do: then all but cubes and islands give H too high, by up to 0.06 at 0.3,
+    0.025 at 0.5 and 0.005 at 0.8, and twice that from lags of two cells. The interval spans both.
     :mod:`experiments.delta_g` measures bias, scatter and how often it holds the truth.
     """
     estimates, chosen_range = measured_exponents(
@@ -215,7 +217,7 @@ def hurst_exponents(
     heights: np.ndarray,
     spacing: float | tuple[float, float],
     *,
-    fit_range: tuple[float, float] | None = None,
+    fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
 ) -> dict[str, Estimate]:
     """Hurst exponent by estimator, as plain numbers.
@@ -234,7 +236,7 @@ def measured_exponents(
     heights: np.ndarray,
     spacing: float | tuple[float, float],
     *,
-    fit_range: tuple[float, float] | None = None,
+    fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
 ) -> tuple[dict[str, Estimate], FitRange]:
     """Hurst exponents as :func:`hurst_exponents`, and the range they were fitted over."""
@@ -242,16 +244,16 @@ def measured_exponents(
     if heights.ndim != 2:
         raise ValueError(f"heights must be a (y, x) grid, not of shape {heights.shape}")
     heights, spacing = _on_square_cells(heights, spacing)
-    if fit_range is not None and not 0 < fit_range[0] < fit_range[1]:
-        raise ValueError(f"fit range {fit_range} mm must rise from above 0")
-
     levelled = without_mean_plane(heights)
     if np.nanmax(np.abs(levelled), initial=0) <= FLATNESS * np.nanmax(np.abs(heights), initial=0):
         levelled[...] = 0  # a plane but for rounding, which has no dimension
-    chosen = choose_fit_range(levelled, spacing, fit_range)
+    if isinstance(fit_range, FitRange):
+        chosen = fit_range
+    else:
+        chosen = choose_fit_range(levelled, spacing, fit_range)
     return {
         name: _estimate(ESTIMATORS[name], levelled, spacing, chosen)
-        for name in estimators or ESTIMATORS
+        for name in (ESTIMATORS if estimators is None else estimators)
     }, chosen
 
 

@@ -3,8 +3,9 @@
 A surface whose spectrum is flat above a wavelength lacks long waves. Mean squares then grow more
 slowly than h^(2H), and do so long before that wavelength: the variogram loses a part that grows as
 h^(2 - 2H), like the part that levelling takes. The spectrum of the model is C(q) = q^(-2 (1 + H))
-above q_r = 2 pi / roll-off and C(q_r) below, that of :func:`surface.synthesis.self_affine`; all else
-follows from it alone. Fractions are of the power law that the same surface has without a roll-off.
+above q_r = 2 pi / roll-off and C(q_r) below (Persson et al., J. Phys. Condens. Matter 17 (2005)
+R1); all else follows from it alone. Fractions are of the power law that the same surface has
+without a roll-off.
 """
 
 from functools import cache
@@ -50,10 +51,6 @@ class RollOff(NamedTuple):
     def scaled(self, factor: float) -> "RollOff":
         """The same in another unit of length."""
         return RollOff(*(factor * end for end in self))
-
-
-#: Of a surface that is known to have none.
-NO_ROLL_OFF = RollOff(np.inf, np.inf, np.inf)
 
 
 # -- what a roll-off leaves, (exponents, lengths) --------------------------------------------------
@@ -108,7 +105,7 @@ def second_difference_fraction(share: np.ndarray) -> np.ndarray:
 
 @cache
 def _second_difference_table() -> np.ndarray:
-    ratio = 4**HURST_GRID[:, np.newaxis]
+    ratio = 4 ** HURST_GRID[:, np.newaxis]
     of_both = 4 * difference_fraction(SHARES) - ratio * difference_fraction(2 * SHARES)
     return of_both / (4 - ratio)
 

@@ -26,7 +26,9 @@ _OVER_LOADS = {
 }
 
 
-def joint_by_size(loading: JointLoading, dimension: Sequence[float]) -> xr.Dataset:
+def joint_by_size(
+    loading: JointLoading, dimension: Sequence[float], lags: Sequence[float] | None = None
+) -> xr.Dataset:
     """Size laws of a joint: solve sub-windows, and fit closure, roughness and strength against b.
 
     Parameters
@@ -35,6 +37,9 @@ def joint_by_size(loading: JointLoading, dimension: Sequence[float]) -> xr.Datas
         Offsets ascending.
     dimension : (float, float, float)
         As for :func:`size_laws`.
+    lags : (float, float), optional
+        Range stated for Delta_g, or below a roll-off, mm: eq. 2 is fitted over windows that look at
+        the same waves.
 
     Returns
     -------
@@ -45,7 +50,6 @@ def joint_by_size(loading: JointLoading, dimension: Sequence[float]) -> xr.Datas
     roughness = np.nan
     if loading.slides:
         roughness = float(profile_roughness(loading.specimen, loading.direction)["jrc_used"])
-    lags = settings["surface_range"]
     # A window of side b looks at waves of b, a lag at waves of twice its length.
     sides = None if lags is None else [2 * lag for lag in lags]
     return size_laws(states, settings["material"], roughness, dimension, sides)
@@ -73,8 +77,7 @@ def size_laws(
         Delta_g of the face and its 95 % interval: eq. 2 expects H = 3 - Delta_g.
     fit_range : (float, float), optional
         Smallest and largest b of the fits of sigma_z, mm. By default from `FIRST_FITTED_CELLS`
-        cells to `LAST_FITTED_FRACTION` of the window. Where the study states a range of lags for
-        Delta_g, twice that.
+        cells to `LAST_FITTED_FRACTION` of the window.
 
     Returns
     -------

@@ -38,6 +38,9 @@ def window_stages(
     direction = settings["contact_directions"][0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at(np.sort(joint.cells))
-    laws = joint_by_size(loading, best_dimension(surface_dimension))
+    lags = None
+    if settings["surface_range"] is not None or np.isfinite(surface_dimension["roll_off"]):
+        lags = [float(surface_dimension[f"range_{end}"]) for end in ("min", "max")]
+    laws = joint_by_size(loading, best_dimension(surface_dimension), lags)
     stages = {"windows": laws, "size_test": size_test(loading, laws)}
     return {name: with_pressure(stage, joint.area) for name, stage in stages.items()}

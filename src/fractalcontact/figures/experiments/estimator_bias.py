@@ -126,8 +126,8 @@ def _caption(bias):
     start, first = (bias.attrs[key] for key in ("from_hurst", "first_cells"))
     opening = (
         f"{supplementary()} Estimators of Delta_g = 3 - H on {bias.sizes['seed']} synthetic "
-        f"surfaces of each kind, fitted over lags from {first:g} cells to an eighth of the side or "
-        "a quarter of the roll-off seen."
+        f"surfaces of each kind, lags from {first:g} cells to an eighth of the side or a quarter "
+        "of the roll-off seen."
     )
     known = bias.sel(estimator=bias["worst_bias"].notnull())
     if not known.sizes["estimator"]:
@@ -136,9 +136,9 @@ def _caption(bias):
     least = known["least_coverage"].to_series()
     name = bias.attrs["recommended"]
     return (
-        f"{opening} For H of {start:g} or more {_names([name])[0]} are recommended: rms error "
-        f"{errors[name]:.3f}, {_place(errors, name)}; 95 % intervals hold H in "
-        f"{100 * least[name]:.0f} % or more of any kind, those of all estimators in "
+        f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of "
+        f"{errors[name]:.3f}, {_place(errors, name)}; its 95 % intervals hold H in "
+        f"{100 * least[name]:.0f} % of every kind, those of all in "
         f"{100 * least.min():.0f} %.{_rough_words(bias, start)}"
     )
 
@@ -146,13 +146,12 @@ def _caption(bias):
 def _place(errors, name):
     """Which of all rms errors one is."""
     rank = int((errors < errors[name]).sum())
-    best = str(errors.idxmin()).replace("_", " ")
-    return f"the least of {errors.size}" if rank == 0 else f"{best} {errors.min():.3f}"
+    return "the least" if rank == 0 else f"{_name(errors.idxmin())} {errors.min():.3f}"
 
 
-def _names(estimators):
-    """Estimators in words."""
-    return [str(name).replace("_", " ") for name in estimators]
+def _name(estimator):
+    """An estimator in words."""
+    return str(estimator).replace("_", " ")
 
 
 def _rough_words(bias, start):

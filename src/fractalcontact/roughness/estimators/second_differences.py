@@ -7,7 +7,6 @@ from ..estimator import Estimator
 from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square, short_wave_fraction
 from ..roll_off import second_difference_fraction
 
-
 #: Mean square second difference of independent errors over that of their differences, both in
 #: units of the surface's own.
 NOISE = 3 / (4 - 4**HURST_GRID)
