@@ -63,18 +63,33 @@ def _difference_table() -> np.ndarray:
     h^(2H) belongs to the integral of q^(-1 - 2H) (1 - J0(q h)) over all q. Of it (q^(-2 - 2H) -
     q_r^(-2 - 2H)) q (1 - J0(q h)) below q_r is missing.
     """
+    return 1 - _quadratic_part(SHARES) - _beyond_quadratic_table()
+
+
+def _quadratic_part(share: np.ndarray) -> np.ndarray:
+    """Part of the missing fraction that grows as h^2 / h^(2H): that of a random plane."""
+    h = HURST_GRID[:, np.newaxis]
+    z = 2 * np.pi * share
+    return z ** (2 - 2 * h) / 4 * (1 / (2 - 2 * h) - 0.25) / _whole()
+
+
+def _whole() -> np.ndarray:
+    """Integral of q^(-1 - 2H) (1 - J0(q)) over all q, (exponents, 1)."""
+    h = HURST_GRID[:, np.newaxis]
+    return special.gamma(1 - h) / (2 ** (2 * h + 1) * h * special.gamma(1 + h))
+
+
+@cache
+def _beyond_quadratic_table() -> np.ndarray:
+    """Rest of the missing fraction (exponents, `SHARES`), below zero."""
     h = HURST_GRID[:, np.newaxis]
     points, weights = np.polynomial.legendre.leggauss(256)
     u, w = (points + 1) / 2, weights / 2
     z = 2 * np.pi * SHARES
-    # The square of z u is integrated by hand: with it the rest is smooth at zero.
-    beyond = 1 - special.j0(z[:, np.newaxis] * u) - (z[:, np.newaxis] * u) ** 2 / 4
-    beyond = np.where(z[:, np.newaxis] * u < 0.02, -((z[:, np.newaxis] * u) ** 4) / 64, beyond)
-    steep = (u ** (-1 - 2 * h) * w) @ beyond.T + z**2 / (8 - 8 * h)
-    flat = 0.5 - special.j1(z) / z
-    whole = special.gamma(1 - h) / (2 ** (2 * h + 1) * h * special.gamma(1 + h))
-    missing = np.where(z < 0.02, z**2 / 4 * (1 / (2 - 2 * h) - 0.25), steep - flat)
-    return 1 - missing * z ** (-2 * h) / whole
+    zu = z[:, np.newaxis] * u
+    beyond = 1 - special.j0(zu) - zu**2 / 4
+    beyond = np.where(zu < 0.05, -(zu**4) / 64 * (1 - zu**2 / 36), beyond)
+    return (((u ** (-1 - 2 * h) - u) * w) @ beyond.T) * z ** (-2 * h) / _whole()
 
 
 def _looked_up(table: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -153,8 +168,15 @@ def _over_pairs(of: str) -> np.ndarray:
         held = 1 / 6
     weight = slope if of == "slope" else pairs - held * slope
     power = weight * distance ** (2 * HURST_GRID[:, np.newaxis])
-    left = [np.sum(power * difference_fraction(share * distance), axis=1) for share in SHARES]
-    return np.array(left).T / np.sum(power, axis=1, keepdims=True)
+    whole = np.sum(power, axis=1)
+    left = np.empty((len(HURST_GRID), len(SHARES)))
+    for column, share in enumerate(SHARES):
+        if of == "slope" or share > 1:
+            left[:, column] = np.sum(power * difference_fraction(share * distance), axis=1) / whole
+        else:  # what lies about a plane knows nothing of a missing plane
+            rest = _looked_up(_beyond_quadratic_table(), share * distance)
+            left[:, column] = 1 - np.sum(power * rest, axis=1) / whole
+    return left
 
 
 # -- whether one is seen ---------------------------------------------------------------------------

@@ -45,12 +45,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
             panel = panels[2 * row + 1, column]
             _draw_coverage(panel, bias.sel(size=size, roll_off=roll_off))
             letter(panel, next(letters), "intervals that hold $H$")
-        panels[2 * row, 0].set_ylabel("estimated less true $H$ (dimensionless)")
-        panels[2 * row + 1, 0].set_ylabel("fraction of surfaces")
+        panels[2 * row, 0].set_ylabel("estimated less true $H$ (1)")
+        panels[2 * row + 1, 0].set_ylabel("fraction of surfaces (1)")
     places = np.arange(bias.sizes["hurst"])
     for panel in panels[-1]:
         panel.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
-        panel.set_xlabel("Hurst exponent $H$ of the surfaces")
+        panel.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
     figure.legend(handles=entries(panels[0, 0]), loc="outside lower center", ncols=4)
     figure.suptitle(
         f"{bias.sizes['seed']} synthetic surfaces each: mean, with the standard deviation between "
