@@ -5,11 +5,11 @@ from places import SCANS
 
 from fractalcontact.roughness.dimension import (
     LITTLE_BIASED,
-    dimension_table,
     hurst_exponents,
     slope_statistics,
     surface_dimension,
 )
+from fractalcontact.roughness.recommended import dimension_table
 from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 

@@ -19,12 +19,9 @@ from ..core.ranges import within
 from .curves import Curve, jackknife_standard_error
 from .estimator import Estimator
 from .estimators.roughness_length import roughness_length_curves
-from .fit_range import FIRST_CELLS as FIRST_CELLS
-from .fit_range import LAST_PART as LAST_PART
 from .fit_range import FitRange, choose_fit_range
 from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
 from .recommended import best_dimension as best_dimension
-from .recommended import dimension_table as dimension_table
 from .recommended import recommended_variables
 from .registry import ESTIMATORS
 from .roll_off import RollOff
