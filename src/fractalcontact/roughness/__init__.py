@@ -7,6 +7,7 @@ __getattr__, __dir__, __all__ = exports(
     {
         "AXES": ".quality_words",
         "ESTIMATORS": ".registry",
+        "FEWEST_CELLS": ".fit_range",
         "FIRST_CELLS": ".fit_range",
         "FitRange": ".fit_range",
         "LAST_PART": ".fit_range",

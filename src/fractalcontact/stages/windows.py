@@ -8,8 +8,10 @@ import xarray as xr
 from ..mechanics.loading import JointLoading
 from ..mechanics.states import with_pressure
 from ..roughness.dimension import best_dimension
+from ..roughness.fit_range import FEWEST_CELLS
 from ..size_effect.eq6 import size_test
 from ..size_effect.laws import joint_by_size
+from ..surface.specimen import cell_side
 
 
 def window_stages(
@@ -38,9 +40,9 @@ def window_stages(
     direction = settings["contact_directions"][0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at(np.sort(joint.cells))
-    lags = None
-    if settings["surface_range"] is not None or np.isfinite(surface_dimension["roll_off"]):
-        lags = [float(surface_dimension[f"range_{end}"]) for end in ("min", "max")]
+    lags = settings["surface_range"]
+    if lags is None and np.isfinite(surface_dimension["roll_off"]):
+        lags = FEWEST_CELLS * cell_side(specimens), float(surface_dimension["range_max"])
     laws = joint_by_size(loading, best_dimension(surface_dimension), lags)
     stages = {"windows": laws, "size_test": size_test(loading, laws)}
     return {name: with_pressure(stage, joint.area) for name, stage in stages.items()}
