@@ -94,6 +94,16 @@ def test_intervals_hold_below_a_roll_off(rolled):
     assert rolled["overall_error"].sel(estimator=RECOMMENDED) < 0.08
 
 
+def test_a_surface_without_a_fit_is_counted_as_that():
+    # A roll-off of 16 cells leaves the variogram too few lags, and the wider windows enough.
+    few = estimator_bias({"hurst": [0.8], "sizes": [64], "roll_offs": [0.25], "seeds": [1, 2]})
+    few = few.squeeze(["hurst", "size", "roll_off"])
+    found = np.isfinite(few["found"])
+    np.testing.assert_allclose(few["fitted"], found.mean("seed"))
+    assert (few["coverage"].notnull() == found.any("seed")).all()
+    assert few["fitted"].sel(estimator=RECOMMENDED) > 0
+
+
 def test_every_variable_says_what_it_is(bias):
     for name, values in bias.data_vars.items():
         assert {"units", "long_name"} <= set(values.attrs), name

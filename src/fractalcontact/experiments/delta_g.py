@@ -14,6 +14,7 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
+from ..roughness.curves import ratio
 from ..roughness.dimension import measured_exponents
 from ..roughness.fit_range import FIRST_CELLS, LAST_PART
 from ..roughness.recommended import RECOMMENDED
@@ -45,8 +46,8 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
         the same without the seed: ``bias`` (mean of H found less H) with ``_low`` and ``_high``
         (95 %, Student's t over the seeds), ``slope_bias`` of the slopes before known bias is taken
         off, ``scatter`` (standard deviation between surfaces), ``rms_error``, ``half_width`` (mean
-        of the intervals' halves) and ``coverage`` (fraction of the intervals that hold H, of all
-        seeds). Over (hurst, size, roll_off): ``roll_off_seen`` and ``roll_off_coverage``, fractions
+        of the intervals' halves), ``coverage`` (fraction of the intervals that hold H) and
+        ``fitted`` (fraction of surfaces with one: a short roll-off leaves too few lags). Over (hurst, size, roll_off): ``roll_off_seen`` and ``roll_off_coverage``, fractions
         of surfaces. Over estimator, for H >= 0.5: ``worst_bias``, ``overall_error`` (rms),
         ``mean_coverage`` and ``least_coverage``. Attributes ``first_cells`` and ``last_part``:
         default range; ``recommended``: estimator.
@@ -99,6 +100,8 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
     roll_off = coords["roll_off"][1][:, np.newaxis]
     holds = (seen[1] <= roll_off) & (roll_off <= seen[2])
     over, words = dims[:-1], "fraction of intervals that hold"
+    n = np.isfinite(value).sum(axis=-1)
+    n = np.where(n > 1, n, np.nan)
     table = {
         **{
             f"found{end}": (dims, "1", f"Hurst exponent by the estimator{of}")
@@ -110,6 +113,7 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
         "rms_error": (over, "1", "root mean square error of H"),
         "half_width": (over, "1", "half of the 95 % interval, mean"),
         "coverage": (over, "1", f"{words} H"),
+        "fitted": (over, "1", "fraction of surfaces with enough lags for a fit"),
         "roll_off_seen": (over[1:], "1", "fraction of surfaces on which a roll-off is seen"),
         "roll_off_coverage": (over[1:], "1", f"{words} the roll-off"),
     }
@@ -117,14 +121,21 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
         **dict(zip((f"found{end}" for end in INTERVAL), (value, low, high), strict=True)),
         **dict(zip((f"bias{end}" for end in INTERVAL), bias[:3], strict=True)),
         "slope_bias": mean_interval(slope - truth, axis=-1).value,
-        "scatter": np.std(value, axis=-1, ddof=1),
-        "rms_error": np.sqrt(np.mean((value - truth) ** 2, axis=-1)),
-        "half_width": (high - low).mean(axis=-1) / 2,
-        "coverage": covered.mean(axis=-1),
+        "scatter": np.sqrt(_mean((value - _mean(value)[..., np.newaxis]) ** 2) * n / (n - 1)),
+        "rms_error": np.sqrt(_mean((value - truth) ** 2)),
+        "half_width": _mean(high - low) / 2,
+        "coverage": _mean(np.where(np.isfinite(value), covered, np.nan)),
+        "fitted": np.isfinite(value).mean(axis=-1),
         "roll_off_seen": np.isfinite(seen[0]).mean(axis=-1),
         "roll_off_coverage": holds.mean(axis=-1),
     }
     return labelled_dataset(table, values, coords=coords)
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    """Means over the seeds that gave a value; NaN where none did."""
+    known = np.isfinite(values)
+    return ratio(np.where(known, values, 0.0).sum(axis=-1), known.sum(axis=-1))
 
 
 def _with_verdicts(result: xr.Dataset) -> xr.Dataset:

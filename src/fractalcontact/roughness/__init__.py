@@ -20,6 +20,7 @@ __getattr__, __dir__, __all__ = exports(
         "measured_exponents": ".dimension",
         "noise_words": ".quality_words",
         "range_words": ".quality_words",
+        "ratio": ".curves",
         "scan_quality": ".quality",
         "slope_statistics": ".dimension",
         "surface_dimension": ".dimension",
