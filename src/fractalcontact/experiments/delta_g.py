@@ -47,10 +47,11 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
         (95 %, Student's t over the seeds), ``slope_bias`` of the slopes before known bias is taken
         off, ``scatter`` (standard deviation between surfaces), ``rms_error``, ``half_width`` (mean
         of the intervals' halves), ``coverage`` (fraction of the intervals that hold H) and
-        ``fitted`` (fraction of surfaces with one: a short roll-off leaves too few lags). Over (hurst, size, roll_off): ``roll_off_seen`` and ``roll_off_coverage``, fractions
-        of surfaces. Over estimator, for H >= 0.5: ``worst_bias``, ``overall_error`` (rms),
-        ``mean_coverage`` and ``least_coverage``. Attributes ``first_cells`` and ``last_part``:
-        default range; ``recommended``: estimator.
+        ``fitted`` (fraction of surfaces with one: a short roll-off leaves too few lags). Over
+        (hurst, size, roll_off): ``roll_off_seen`` and ``roll_off_coverage``, fractions of surfaces.
+        Over estimator, for H >= 0.5: ``worst_bias``, ``overall_error`` (rms), ``mean_coverage`` and
+        ``least_coverage``. Attributes ``first_cells`` and ``last_part``: default range;
+        ``recommended``: estimator.
     """
     exponents, sizes, seeds = (np.unique(recipe[key]) for key in ("hurst", "sizes", "seeds"))
     stated = [np.inf if part is None else float(part) for part in recipe.get("roll_offs", [None])]
