@@ -67,7 +67,7 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
             (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off
         )
         found, fit_range = measured_exponents(surface, SPACING)
-        seen[:, i, j, m, k] = np.array(fit_range.roll_off) / (nodes * SPACING)
+        seen[:, i, j, m, k] = np.array(fit_range.roll_off[:3]) / (nodes * SPACING)
         for n, estimate in enumerate(found.values()):
             estimates[:, n, i, j, m, k] = *estimate.hurst["both"], estimate.slope_hurst
     coords = {

@@ -103,7 +103,7 @@ def surface_dimension(
     The interval is the wider of the regression's and the jackknife's over parts of the surface (4 x
     4 blocks; 8 strips for the spectrum), the latter widened by the estimator's `spread`, because
     the parts of one surface share its long waves; and `BIAS_LEFT` beyond either end. It spans the
-    interval of the roll-off, or those that cannot be excluded. What is not known, too, is whether
+    roll-offs and their shapes that cannot be excluded. What is not known, too, is whether
     the nodes are points of a finer surface, or the surface lacks waves shorter than two nodes, as
     synthetic surfaces do: then all but cubes and islands give H too high, by up to 0.06 at 0.3,
     0.025 at 0.5 and 0.005 at 0.8, and twice that from lags of two cells. The interval spans both.
@@ -138,7 +138,8 @@ def surface_dimension(
         "length_kind": [estimator.length for estimator in chosen],
         "measure_kind": [estimator.measure for estimator in chosen],
         "measure_units": [estimator.units for estimator in chosen],
-        **{f"roll_off{end}": v for end, v in zip(INTERVAL, chosen_range.roll_off, strict=True)},
+        **{f"roll_off{end}": v for end, v in zip(INTERVAL, chosen_range.roll_off[:3], strict=True)},
+        "roll_off_shape": chosen_range.roll_off.shape,
         "range_min": chosen_range.shortest,
         "range_max": chosen_range.longest,
         "range_reason": chosen_range.reason,
@@ -173,6 +174,7 @@ _DIMENSIONS = {
         f"roll_off{end}": ((), "mm", f"wavelength above which the spectrum is flat{words}")
         for end, words in INTERVAL.items()
     },
+    "roll_off_shape": ((), "1", "form of the spectrum about it: sharp, or smooth as von Karman's"),
     "range_min": ((), "mm", "shortest lag of the fits"),
     "range_max": ((), "mm", "longest lag of the fits"),
     "range_reason": ((), "1", "why this range"),
@@ -220,10 +222,6 @@ def hurst_exponents(
     """Hurst exponent by estimator, as plain numbers.
 
     Parameters and errors as :func:`surface_dimension`.
-
-    Returns
-    -------
-    dict of str to Estimate
     """
     found, _ = measured_exponents(heights, spacing, fit_range=fit_range, estimators=estimators)
     return found
@@ -300,13 +298,15 @@ def _corrected(
     ends = np.array([slope, slope - half, slope + half])
     of_each = {
         (nodes, of): extended(
-            ends, estimator.expected_hurst(fit._replace(roll_off=of), nodes), HURST_GRID
+            ends,
+            estimator.expected_hurst(fit._replace(roll_off=of[1], shape=of[0]), nodes),
+            HURST_GRID,
         )
         for nodes in (BAND_LIMITED, POINTS)
-        for of in dict.fromkeys(roll_off)
+        for of in roll_off.cases()
     }
     every = np.clip(np.concatenate(list(of_each.values())), *FARTHEST)
-    value = float(of_each[estimator.nodes, roll_off.value][0])
+    value = float(of_each[estimator.nodes, roll_off.cases()[0]][0])
     return value, float(min(every.min(), value)), float(max(every.max(), value))
 
 

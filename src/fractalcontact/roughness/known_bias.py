@@ -25,7 +25,7 @@ import numpy as np
 from scipy import special
 
 from .curves import ratio
-from .roll_off import HURST_GRID, levelled_slope_fraction, second_difference_fraction
+from .roll_off import HURST_GRID, SHARP, levelled_slope_fraction, second_difference_fraction
 from .spectrum_model import ALIASED, BAND_LIMITED
 
 #: The other thing nodes can stand for, beside `BAND_LIMITED`: see above.
@@ -40,6 +40,8 @@ SYNTHETIC_HURST = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])
 #: Lags (cells) in the middle of the default range, 4 to 32 on 256 x 256, and of 2 2/3 to 8, over
 #: which 16 of the surfaces of 256 x 256 were measured, too.
 DEFAULT_RANGE, SHORT_RANGE = 11.0, 5.0
+#: Least rise of a mean exponent with the true one.
+LEAST_RISE = 0.3
 
 
 class Fit(NamedTuple):
@@ -53,6 +55,8 @@ class Fit(NamedTuple):
     """"both", "x" or "y"."""
     roll_off: float = np.inf
     """Wavelength above which the spectrum is flat, cells; infinite without one."""
+    shape: str = SHARP
+    """Of `roll_off.SHAPES`."""
 
 
 def slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -145,7 +149,9 @@ def levelled_fraction(fit: Fit, fraction: np.ndarray) -> np.ndarray:
     fraction : (exponents,) ndarray
         That of a length as long as the surface, without a roll-off.
     """
-    at_side = fraction[:, np.newaxis] * levelled_slope_fraction(np.array([fit.side / fit.roll_off]))
+    at_side = fraction[:, np.newaxis] * levelled_slope_fraction(
+        np.array([fit.side / fit.roll_off]), fit.shape
+    )
     return at_side * (fit.length / fit.side) ** (2 - 2 * HURST_GRID[:, np.newaxis])
 
 
@@ -204,6 +210,9 @@ def tabulated_mean(
     long, short = np.log(DEFAULT_RANGE), np.log(SHORT_RANGE)
     part = np.clip((long - np.mean(np.log(fit.length / factor))) / (long - short), 0, 1)
     mean = (1 - part) * np.array(of_default) + part * np.array(of_short)
-    left = second_difference_fraction(fit.length / fit.roll_off)
+    left = second_difference_fraction(fit.length / fit.roll_off, fit.shape)
     of_roll_off = hurst_of_mean_square(fit, left) - HURST_GRID
-    return extended(HURST_GRID, SYNTHETIC_HURST, mean) + second_differences * of_roll_off
+    result = extended(HURST_GRID, SYNTHETIC_HURST, mean) + second_differences * of_roll_off
+    # Below a short roll-off the slope says next to nothing of H: no sharper than this.
+    line = LEAST_RISE * HURST_GRID
+    return np.maximum.accumulate(result - line) + line

@@ -5,6 +5,7 @@ import numpy as np
 from ..curves import Curve, of_both_axes
 from ..estimator import Estimator
 from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square
+from ..roll_off import SMOOTH
 from ..spectra import profile_spectra
 from ..spectrum_model import rolled_off, sampled
 
@@ -24,8 +25,15 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
     slope = 1 + 2 * HURST_GRID[:, np.newaxis]
     kept = sampled(sampling, slope, 2 / fit.length)
     if np.isfinite(fit.roll_off):
-        kept = kept * rolled_off(slope, 2 / fit.roll_off, 2 / fit.length)
+        kept = kept * _rolled_off(fit, slope)
     return hurst_of_mean_square(fit, kept)
+
+
+def _rolled_off(fit: Fit, slope: np.ndarray) -> np.ndarray:
+    """Fraction left of the spectrum of profiles; a smooth one is (q_x^2 + q_r^2)^(-1/2 - H)."""
+    if fit.shape == SMOOTH:
+        return (1 + (fit.length / fit.roll_off) ** 2) ** (-slope / 2)
+    return rolled_off(slope, 2 / fit.roll_off, 2 / fit.length)
 
 
 ESTIMATOR = Estimator(

@@ -119,7 +119,8 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
     """
     whole = fit.axis == "both"
     unit = square_about_plane() if whole else square_about_line()
-    left = (about_plane_fraction if whole else about_line_fraction)(fit.length / fit.roll_off)
+    fraction = about_plane_fraction if whole else about_line_fraction
+    left = fraction(fit.length / fit.roll_off, fit.shape)
     missing = short_wave_fraction(fit, sampling, 1 / (2 * unit))
     return hurst_of_mean_square(fit, left - missing)
 

@@ -32,7 +32,7 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
 
     Of noise second differences are three times the differences, of the surface 4 - 4^H times.
     """
-    left = second_difference_fraction(fit.length / fit.roll_off)
+    left = second_difference_fraction(fit.length / fit.roll_off, fit.shape)
     return hurst_of_mean_square(fit, left - short_wave_fraction(fit, sampling, NOISE))
 
 

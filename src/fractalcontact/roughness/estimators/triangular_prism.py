@@ -61,7 +61,7 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
     rise = 1 + 2 ** (HURST_GRID - 1)
     levelled = levelled_fraction(fit, 2 * levelled_slope() / rise)
     missing = short_wave_fraction(fit, sampling, 1.5 / rise)
-    left = rise_fraction(fit.length / fit.roll_off)
+    left = rise_fraction(fit.length / fit.roll_off, fit.shape)
     return hurst_of_mean_square(fit, left - levelled - missing)
 
 
