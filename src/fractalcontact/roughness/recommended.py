@@ -14,9 +14,8 @@ from .fit_range import LAST_OF_ROLL_OFF
 #: The estimator whose value is the answer.
 RECOMMENDED = "roughness_length"
 #: Why: 50 surfaces of each kind in `config/estimators.yaml`, H from 0.5 to 0.9. There its rms error
-#: is 0.034 at 256 nodes per side (second differences 0.035, variogram 0.038, spectrum 0.050), and
-#: half its interval 0.11 (0.12, 0.21, 0.13); at 512 nodes 0.024 (0.026, 0.030, 0.026) and 0.07
-#: (0.08, 0.15, 0.08).
+#: is 0.038 at 256 nodes per side (second differences 0.040, variogram 0.042, spectrum 0.052), and
+#: half its interval 0.12 (0.13, 0.22, 0.14).
 REASON = (
     "least rms error and narrowest 95 % interval of all estimators on synthetic surfaces of known "
     "dimension, with a roll-off and without, and the interval holds the known value on more than "

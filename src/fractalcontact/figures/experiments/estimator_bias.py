@@ -126,8 +126,7 @@ def _caption(bias):
     start, first = (bias.attrs[key] for key in ("from_hurst", "first_cells"))
     opening = (
         f"{supplementary()} Estimators of Delta_g = 3 - H on {bias.sizes['seed']} synthetic "
-        f"surfaces of each kind, lags from {first:g} cells to an eighth of the side or a quarter "
-        "of the roll-off seen."
+        f"surfaces of each kind; lags of {first:g} cells to side/8 or roll-off/4."
     )
     known = bias.sel(estimator=bias["worst_bias"].notnull())
     if not known.sizes["estimator"]:
