@@ -251,11 +251,7 @@ def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
     scatter = max(1.0, least / max(len(lag) - 3, 1))
     limit = least + EXCLUDED * scatter
     if not (chi2[0, 0, -1] - least > EVIDENCE * scatter and (chi2[:, 0, -1] >= limit).all()):
-        shortest = tuple(
-            (of, spacing * float(min(tried[np.argmax(row[0] < limit)], tried[-2])))
-            for of, row in zip(SHAPES, chi2, strict=True)
-        )
-        return RollOff(np.inf, min(length for _, length in shortest), np.inf, SHARP, shortest)
+        return _unseen(chi2[:, 0] < limit, spacing * tried)
     step = 2 ** (1 / STEPS_PER_OCTAVE)
     parts = np.log(np.minimum(tried[best[1:]], tried[-2]))
     half = t_quantile(len(parts) - 1) * SPREAD * float(jackknife_standard_error(parts))
@@ -273,6 +269,15 @@ def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
         float(value), float(low), float(high), SHAPES[shape], others[:: len(others) - 1 or 1]
     )
     return found.scaled(spacing)
+
+
+def _unseen(allowed: np.ndarray, tried: np.ndarray) -> RollOff:
+    """No roll-off, and of each shape the shortest that is allowed (shapes, roll-offs tried)."""
+    shortest = tuple(
+        (of, float(min(tried[np.argmax(row)], tried[-2])))
+        for of, row in zip(SHAPES, allowed, strict=True)
+    )
+    return RollOff(np.inf, min(length for _, length in shortest), np.inf, SHARP, shortest)
 
 
 def _lowest_between(chi2: np.ndarray) -> float:
