@@ -232,7 +232,7 @@ def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
     Second differences are blind to any plane, so that levelling takes nothing from them, and reach
     waves of half the side. Least squares of their logarithms, weighted by their jackknife errors,
     over all exponents and roll-offs and for both things that nodes can stand for. One is seen where
-    it lowers chi-square by `EVIDENCE` and the jackknife bounds it. Calibrated on synthetic surfaces
+    it lowers chi-square by `EVIDENCE` and none is excluded. Calibrated on synthetic surfaces
     without a roll-off: :mod:`experiments.delta_g`.
     """
     lag, measure = curve.length / spacing, curve.measure()
