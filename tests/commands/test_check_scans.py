@@ -77,6 +77,22 @@ def test_a_noisy_scan_is_warned_of(folder, check):
     assert "0 ok, 1 with warnings" in out
 
 
+def test_a_scan_that_has_no_dimension_is_warned_of(folder, check):
+    y, x = np.mgrid[-1:1:128j, -1:1:128j]
+    hill = np.exp(-(x**2) - y**2)
+    write_scan(folder / "hill.npy", hill, 0.2, sidecar={})
+    rolled = self_affine((256, 256), 0.2, 0.8, rms=0.1, seed=1, roll_off=6.4)
+    write_scan(folder / "rolled.npy", rolled, 0.2, sidecar={})
+    code, out = check()
+    text = " ".join(out.split())
+    assert code == 0
+    assert "WARNING: no surface dimension: Delta_g" in text
+    assert "does not lie between 2 and 3" in text
+    assert text.count("no surface dimension") == 1
+    assert "by roughness length, lags" in text
+    assert "up to a quarter of the roll-off at" in text
+
+
 def test_a_pair_and_a_contact_map(folder, check):
     for face, seed in (("lower", 1), ("upper", 2)):
         z = surface() + 0.01 * surface(seed=seed) + 0.3 * (face == "upper")

@@ -290,16 +290,34 @@ def test_axes_are_separated_only_where_their_intervals_are(atlas):
     assert "No estimator separates the axes" in drawn(none, "flat", "fig02_relief").caption
 
 
-def test_a_dimension_out_of_bounds_is_said(atlas):
+def test_the_recommended_and_the_known_dimension_are_drawn(atlas):
     group = "surface_dimension/flat"
-    within = {"dimension": 2.2, "dimension_low": 2.1, "dimension_high": 2.3}
-    for changes, words in (
-        ({}, "all between 2 and 3, with their 95 % intervals"),
-        ({"dimension_low": 1.9}, "but not all their 95 % intervals"),
-        ({"dimension_low": 1.8, "dimension": 1.9}, "not all between 2 and 3"),
-    ):
-        changed = with_changes(atlas, group, **(within | changes))
-        assert words in drawn(changed, "flat", "fig02_relief").caption
+    changes = {"recommended_value": 2.2, "recommended_low": 2.1, "recommended_high": 2.3}
+    for known, words in ((2.25, "inside the interval"), (2.4, "OUTSIDE the interval")):
+        changed = with_changes(atlas, group, known_dimension=known, **changes)
+        drawing = drawn(changed, "flat", "fig02_relief")
+        assert "is 2.20 [2.10, 2.30] by roughness length, window sides" in drawing.caption
+        assert f"known {known:g}, {words}" in drawing.caption
+        assert len(drawing.caption.split()) < 70
+        legend = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
+        assert any("recommended" in text and "2.20 [2.10, 2.30]" in text for text in legend)
+        assert any("known" in text and f"{known:g}" in text for text in legend)
+    measured = drawn(with_changes(atlas, group, **changes), "flat", "fig02_relief")
+    assert "known" not in measured.caption
+    assert measured.data["recommended"].sum() == 1
+
+
+def test_a_dimension_out_of_bounds_is_not_recommended(atlas):
+    group = "surface_dimension/flat"
+    ends = dict.fromkeys(("recommended_value", "recommended_low", "recommended_high"), np.nan)
+    changed = atlas.copy(deep=True)
+    dataset = with_changes(atlas, group, **ends)[group].to_dataset()
+    dataset["no_dimension"] = ((), "Delta_g 1.80 [1.70, 1.90] does not lie between 2 and 3")
+    changed[group] = xr.DataTree(dataset)
+    drawing = drawn(changed, "flat", "fig02_relief")
+    assert "No dimension is recommended: Delta_g 1.80 [1.70, 1.90]" in drawing.caption
+    legend = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
+    assert not any("recommended" in text for text in legend)
 
 
 def test_one_solved_offset_is_enough(atlas):

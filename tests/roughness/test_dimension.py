@@ -5,12 +5,11 @@ from places import SCANS
 
 from fractalcontact.roughness.dimension import (
     LITTLE_BIASED,
-    best_dimension,
-    dimension_table,
     hurst_exponents,
     slope_statistics,
     surface_dimension,
 )
+from fractalcontact.roughness.recommended import dimension_table
 from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 
@@ -185,14 +184,6 @@ def test_table_holds_range_and_mean(surface):
     nothing = dimension_table(surface_dimension(np.zeros((64, 64)), 0.1))
     assert nothing["n"] == 0
     assert np.isnan(nothing["mean"])
-
-
-def test_best_dimension_is_that_of_little_bias(surface):
-    result = surface_dimension(surface, 0.1)
-    mean, low, high = best_dimension(result)
-    chosen = result.sel(estimator=list(LITTLE_BIASED))
-    assert mean == pytest.approx(chosen.dimension.mean().item())
-    assert (low, high) == (chosen.dimension_low.min(), chosen.dimension_high.max())
 
 
 # -- real scans ------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 import copy
 import math
 
+import numpy as np
 import pytest
 import yaml
 from places import ROOT
@@ -117,6 +118,11 @@ def test_a_sidecar_with_an_unknown_key_is_refused_by_file_and_key(tmp_path):
     sidecar.write_text("units: mm\n")
     with pytest.raises(InputError, match=r"mine\.yaml: unknown key 'units'; did you mean 'unit'"):
         read_sidecar(sidecar, SCHEMA)
+
+
+def test_the_known_dimension_is_that_of_the_recipe(study):
+    assert resolve_settings(study, "concrete_twin", {}, "paper.yaml")["known_dimension"] == 2.24
+    assert np.isnan(resolve_settings(study, "a scan", {}, "paper.yaml")["known_dimension"])
 
 
 def test_the_window_is_cut_to_the_coarsest_prefractal(study):

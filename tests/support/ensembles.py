@@ -60,6 +60,7 @@ ENSEMBLES: dict[str, tuple] = {
     "surfaces of other makers": (4, 10),
     # roughness
     "surfaces of known H": (6, 12),
+    "surfaces with a roll-off": (2, 6),
     "slopes of surfaces": (6, 16),
     "intervals of surfaces": (6, 20),
     "noisy surfaces": (1, 3),

@@ -17,14 +17,17 @@ import numpy as np
 from ..core.errors import InputError
 from ..core.labels import printable
 from ..domain.measured_map import read_contact_map
+from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import length_words
+from ..roughness.recommended import beyond_roll_off, dimension_words
 from ..study.checks import check_study, read_sidecar, with_coordinates
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
 from ..study.preparation import prepare_specimen
 from ..study.scan_files import list_scans
 from ..study.sidecar import is_contact_map
+from ..surface.grid import spacing_of
 from ..surface.specimen import STEEP_TILT, window_sides
 
 #: Columns of the table: heading and width.
@@ -131,7 +134,13 @@ def _check(scan, study, schema, source):
         return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
     settings = resolve_settings(study, scan.name, own, source)
     specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
-    return _specimen_row(scan, specimen, scan_quality(specimen, settings["resolutions"]))
+    dimension = surface_dimension(
+        specimen["lower"].values, spacing_of(specimen), fit_range=settings["surface_range"]
+    )
+    row = _specimen_row(scan, specimen, scan_quality(specimen, settings["resolutions"]))
+    doubtful = dimension["no_dimension"].item() or beyond_roll_off(dimension)
+    (row.warnings if doubtful else row.lines).append(dimension_words(dimension))
+    return row
 
 
 def _specimen_row(scan, specimen, quality):

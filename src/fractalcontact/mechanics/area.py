@@ -177,7 +177,8 @@ def area_laws(
     e_star : float
         E*, MPa.
     dimension : float
-        Delta_g of the surface, for Majumdar and Bhushan's law; NaN leaves that out.
+        Delta_g of the surface, for Majumdar and Bhushan's law; NaN leaves that out, and
+        ``no_majumdar_bhushan`` says why.
 
     Returns
     -------
@@ -355,6 +356,7 @@ _EXPONENTS = {
         "1",
         "exponent 2/(3-D) of area against force by Majumdar and Bhushan",
     ),
+    "no_majumdar_bhushan": ((), "1", "why there is no area by Majumdar and Bhushan"),
     "archard_exponent": (
         "archard_level",
         "1",
@@ -395,6 +397,7 @@ def _add_theories(
     exponents = {
         "profile_dimension": profile,
         "majumdar_bhushan_exponent": 2 / (3 - profile) if 1 < profile < 1.5 else np.nan,
+        "no_majumdar_bhushan": theory.no_majumdar_bhushan(profile),
         "archard_exponent": theory.archard_exponent(levels),
         "archard_level": levels,
     }

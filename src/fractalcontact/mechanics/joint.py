@@ -16,16 +16,12 @@ from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
-from ..roughness.dimension import surface_dimension
 from ..surface.specimen import faces, largest_offset, nominal_area, window_slices
+from .composite_dimension import composite_dimensions
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
 #: slide, a surface against a rigid plane.
 DIRECTION_STEPS = {"E": (0, 1), "N": (1, 0), "W": (0, -1), "S": (-1, 0), "none": (0, 0)}
-
-#: How Delta_g of the composite topographies is measured: of the estimators with little bias the
-#: one that a tilt of the composite, which is part of the joint, does not touch.
-COMPOSITE_ESTIMATOR = "second_differences"
 
 
 def composite_topography(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
@@ -269,8 +265,8 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
         at every cell up to the largest offset; ``correlation_length`` and ``uncorrelated_offset``
         (direction), ``correlation_limit``; ``offset_cells`` (direction, offset) of the contact
         solves; for the first direction whose contact is solved ``composite`` (offset, window_y,
-        window_x) and its dimension Delta_g ``composite_dimension`` (offset), with its interval and
-        the lengths fitted.
+        window_x) and its dimension Delta_g ``composite_dimension`` (offset), with its interval, the
+        lengths fitted and why there is none.
 
     Raises
     ------
@@ -298,7 +294,7 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
         "composite": np.array(composites),
     }
     return slide.assign(
-        _composite_dimensions(specimen, composites, settings["surface_range"])
+        composite_dimensions(specimen, composites, cells * spacing, settings["surface_range"])
         | labelled(table, values)
     ).assign_coords(
         contact_direction=solved,
@@ -331,28 +327,6 @@ def _describe_slide(
             "rigid_offset": ("rigid_offset", slid, cf_attrs("mm", "shear offset v")),
         },
     )
-
-
-def _composite_dimensions(
-    specimen: xr.Dataset,
-    composites: Sequence[np.ndarray],
-    fit_range: tuple[float, float] | None,
-) -> dict[str, tuple]:
-    """Variables Delta_g (offset) of composite topographies, with intervals and lengths fitted."""
-    spacing = tuple(specimen.attrs[f"spacing_{axis}"] for axis in "yx")
-    dimensions = xr.concat(
-        [
-            surface_dimension(
-                composite, spacing, fit_range=fit_range, estimators=[COMPOSITE_ESTIMATOR]
-            ).squeeze("estimator")
-            for composite in composites
-        ],
-        "offset",
-    )
-    return {
-        f"composite_{name}": ("offset", dimensions[name].values, dimensions[name].attrs)
-        for name in ("dimension", "dimension_low", "dimension_high", "fit_min", "fit_max")
-    }
 
 
 def _automatic_offsets(specimen, directions):

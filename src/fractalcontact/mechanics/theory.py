@@ -157,6 +157,19 @@ def greenwood_williamson_area(
     return force * np.sqrt(np.pi * radius / height_deviation) / modulus
 
 
+def no_majumdar_bhushan(dimension: float) -> str:
+    """Why Majumdar and Bhushan's law does not apply to profiles of a dimension; "" where it does.
+
+    Parameters
+    ----------
+    dimension : float
+        D = Delta_g - 1; NaN where the surface has none to use.
+    """
+    if not np.isfinite(dimension):
+        return "no Delta_g to use: see no_dimension of the stage surface_dimension"
+    return "" if 1 < dimension < 1.5 else f"needs D between 1 and 1.5, not {dimension:.2f}"
+
+
 def roughness_scale(mean_square: Numbers, lag: Numbers, dimension: Numbers) -> Numbers:
     """Scale G of a fractal profile from its structure function S at one lag, mm.
 

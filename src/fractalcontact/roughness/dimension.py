@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled, labelled_dataset
 from ..core.fitting import fit_line
 from ..core.intervals import INTERVAL, t_quantile
 from ..core.mean_plane import without_mean_plane
@@ -19,13 +19,13 @@ from ..core.ranges import within
 from .curves import Curve, jackknife_standard_error
 from .estimator import Estimator
 from .estimators.roughness_length import roughness_length_curves
+from .fit_range import FitRange, choose_fit_range
 from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
+from .recommended import best_dimension as best_dimension
+from .recommended import recommended_variables
 from .registry import ESTIMATORS
+from .roll_off import RollOff
 from .spectrum_model import BAND_LIMITED
-
-#: Default fit range in cells and in parts of the smaller side. Below 4 cells interpolation and
-#: aliasing show; above an eighth of the side too few independent pairs or windows are left.
-FIRST_CELLS, LAST_PART = 4, 1 / 8
 
 #: What levelling leaves of a plane, as a part of its largest height.
 FLATNESS = 1e-12
@@ -40,6 +40,9 @@ LITTLE_BIASED = tuple(name for name, of in ESTIMATORS.items() if of.little_biase
 #: surfaces it is at most twice this (roughness-length at H = 0.5), mostly below it.
 BIAS_LEFT = 0.015
 
+#: Ends of intervals of H: beyond the last exponents of the tables a curve may say next to nothing.
+FARTHEST = (-0.5, 1.5)
+
 #: Axes a measure is taken along, and the ending of the variables that go with them.
 AXES = {"both": "", "x": "_x", "y": "_y"}
 
@@ -48,8 +51,9 @@ def surface_dimension(
     heights: np.ndarray,
     spacing: float | tuple[float, float],
     *,
-    fit_range: tuple[float, float] | None = None,
+    fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
+    known_dimension: float = np.nan,
 ) -> xr.Dataset:
     """Hurst exponent and dimension Delta_g of a surface by several estimators.
 
@@ -59,13 +63,16 @@ def surface_dimension(
         In mm, NaN where missing. The mean plane is removed first.
     spacing : float or (dy, dx)
         In mm. Where the two differ, the finer axis is interpolated at the coarser spacing first.
-    fit_range : (float, float), optional
+    fit_range : (float, float) or FitRange, optional
         Shortest and longest lag of the fits, mm; windows, prisms and wavelengths go from and to as
         much longer as they must be to see that lag (variable `fit_min`, `fit_max`). By default from
-        4 cells to an eighth of the smaller side. On a surface with a roll-off length state a range
-        that ends well below it (a quarter): above it there is no H.
+        4 cells to an eighth of the smaller side, or to a quarter of a roll-off that is seen: see
+        :func:`roughness.fit_range.choose_fit_range`. A roll-off is looked for whatever the range,
+        unless a FitRange says what it is.
     estimators : sequence of str, optional
         Some of `ESTIMATORS`; all by default.
+    known_dimension : float, optional
+        Delta_g of a synthetic surface, kept beside the estimates.
 
     Returns
     -------
@@ -74,7 +81,11 @@ def surface_dimension(
         `hurst_y` with theirs (of profiles along one axis; NaN for those that have no axis),
         `slope_hurst` (H before the correction of known bias), `fit_min`, `fit_max` (mm), `n` points
         fitted. On (`estimator`, `scale`), padded with NaN: `length` (mm), `measure`, and whether it
-        was `used`. NaN with `n` where a line cannot be fitted.
+        was `used`. NaN with `n` where a line cannot be fitted. Of the surface: `roll_off` with its
+        interval (mm; infinite where none is seen, `roll_off_low` then the shortest not excluded),
+        the lags `range_min` and `range_max` and `range_reason`; the `recommended` estimator with
+        its `reason`, `recommended_value` with `_low` and `_high`, or `no_dimension`, why there is
+        none (:func:`roughness.recommended.recommended`); `known_dimension`.
 
     Raises
     ------
@@ -85,18 +96,22 @@ def surface_dimension(
     -----
     Known bias is taken off (:mod:`roughness.known_bias`): levelling takes a part of the long
     waves along with the plane, which lowers variogram and prisms by 0.1 at H = 0.9; cubes and
-    islands are corrected by their mean on synthetic surfaces. Nothing is corrected for a roll-off:
-    state a range well below it.
+    islands are corrected by their mean on synthetic surfaces. Where the surface rolls off, a part
+    of the long waves is missing that variogram and prisms feel far below it (0.15 at H = 0.8 over
+    lags up to a quarter of it): what the seen roll-off takes is taken off too.
 
     The interval is the wider of the regression's and the jackknife's over parts of the surface (4 x
     4 blocks; 8 strips for the spectrum), the latter widened by the estimator's `spread`, because
-    the parts of one surface share its long waves; and `BIAS_LEFT` beyond either end. What is not
-    known is whether the nodes are points of a finer surface, or the surface lacks waves shorter
-    than two nodes, as synthetic surfaces do: then all but cubes and islands give H too high, by up
-    to 0.06 at 0.3, 0.025 at 0.5 and 0.005 at 0.8. The interval spans both.
+    the parts of one surface share its long waves; and `BIAS_LEFT` beyond either end. It spans the
+    roll-offs and their shapes that cannot be excluded. What is not known, too, is whether
+    the nodes are points of a finer surface, or the surface lacks waves shorter than two nodes, as
+    synthetic surfaces do: then all but cubes and islands give H too high, by up to 0.06 at 0.3,
+    0.025 at 0.5 and 0.005 at 0.8, and twice that from lags of two cells. The interval spans both.
     :mod:`experiments.delta_g` measures bias, scatter and how often it holds the truth.
     """
-    estimates = hurst_exponents(heights, spacing, fit_range=fit_range, estimators=estimators)
+    estimates, chosen_range = measured_exponents(
+        heights, spacing, fit_range=fit_range, estimators=estimators
+    )
     every, chosen = list(estimates.values()), [ESTIMATORS[name] for name in estimates]
     length, measure = (padded([getattr(e, key) for e in every]) for key in ("length", "measure"))
     used = np.zeros(length.shape, bool)
@@ -123,9 +138,16 @@ def surface_dimension(
         "length_kind": [estimator.length for estimator in chosen],
         "measure_kind": [estimator.measure for estimator in chosen],
         "measure_units": [estimator.units for estimator in chosen],
+        **{f"roll_off{end}": v for end, v in zip(INTERVAL, chosen_range.roll_off[:3], strict=True)},
+        "roll_off_shape": chosen_range.roll_off.shape,
+        "range_min": chosen_range.shortest,
+        "range_max": chosen_range.longest,
+        "range_reason": chosen_range.reason,
+        "known_dimension": known_dimension,
     }
     coords = {"estimator": list(estimates), "scale": np.arange(length.shape[1])}
-    return labelled_dataset(_DIMENSIONS, values, coords=coords)
+    result = labelled_dataset(_DIMENSIONS, values, coords=coords)
+    return result.assign(labelled(_RECOMMENDED, recommended_variables(result)))
 
 
 _DIMENSIONS = {
@@ -148,6 +170,25 @@ _DIMENSIONS = {
     "length_kind": ("estimator", "1", "what the length is"),
     "measure_kind": ("estimator", "1", "what was measured"),
     "measure_units": ("estimator", "1", "unit of what was measured"),
+    **{
+        f"roll_off{end}": ((), "mm", f"wavelength above which the spectrum is flat{words}")
+        for end, words in INTERVAL.items()
+    },
+    "roll_off_shape": ((), "1", "form of the spectrum about it: sharp, or smooth as von Karman's"),
+    "range_min": ((), "mm", "shortest lag of the fits"),
+    "range_max": ((), "mm", "longest lag of the fits"),
+    "range_reason": ((), "1", "why this range"),
+    "known_dimension": ((), "1", "Delta_g a synthetic surface was made with"),
+}
+
+_RECOMMENDED = {
+    "recommended": ((), "1", "recommended estimator"),
+    "reason": ((), "1", "why this estimator"),
+    "no_dimension": ((), "1", "why there is no recommended value"),
+    **{
+        f"recommended_{end[1:] or 'value'}": ((), "1", f"recommended Delta_g{words}")
+        for end, words in INTERVAL.items()
+    },
 }
 
 
@@ -175,55 +216,40 @@ def hurst_exponents(
     heights: np.ndarray,
     spacing: float | tuple[float, float],
     *,
-    fit_range: tuple[float, float] | None = None,
+    fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
 ) -> dict[str, Estimate]:
     """Hurst exponent by estimator, as plain numbers.
 
     Parameters and errors as :func:`surface_dimension`.
-
-    Returns
-    -------
-    dict of str to Estimate
     """
+    found, _ = measured_exponents(heights, spacing, fit_range=fit_range, estimators=estimators)
+    return found
+
+
+def measured_exponents(
+    heights: np.ndarray,
+    spacing: float | tuple[float, float],
+    *,
+    fit_range: tuple[float, float] | FitRange | None = None,
+    estimators: Sequence[str] | None = None,
+) -> tuple[dict[str, Estimate], FitRange]:
+    """Hurst exponents as :func:`hurst_exponents`, and the range they were fitted over."""
     heights = np.asarray(heights, float)
     if heights.ndim != 2:
         raise ValueError(f"heights must be a (y, x) grid, not of shape {heights.shape}")
     heights, spacing = _on_square_cells(heights, spacing)
-    if fit_range is None:  # on a small grid this is empty, and there is no dimension
-        fit_range = FIRST_CELLS * spacing, LAST_PART * min(heights.shape) * spacing
-    elif not 0 < fit_range[0] < fit_range[1]:
-        raise ValueError(f"fit range {fit_range} mm must rise from above 0")
-
     levelled = without_mean_plane(heights)
     if np.nanmax(np.abs(levelled), initial=0) <= FLATNESS * np.nanmax(np.abs(heights), initial=0):
         levelled[...] = 0  # a plane but for rounding, which has no dimension
+    if isinstance(fit_range, FitRange):
+        chosen = fit_range
+    else:
+        chosen = choose_fit_range(levelled, spacing, fit_range)
     return {
-        name: _estimate(ESTIMATORS[name], levelled, spacing, fit_range)
-        for name in estimators or ESTIMATORS
-    }
-
-
-def best_dimension(dimensions: xr.Dataset) -> tuple[float, float, float]:
-    """Delta_g by the estimators with little bias (`LITTLE_BIASED`).
-
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        From `surface_dimension`.
-
-    Returns
-    -------
-    mean, lowest, highest : float
-        Their mean, and the ends of the widest of their intervals; NaN where none of them found a
-        dimension.
-    """
-    chosen = dimensions.sel(estimator=list(LITTLE_BIASED))
-    return (
-        float(chosen["dimension"].mean()),
-        float(chosen["dimension_low"].min()),
-        float(chosen["dimension_high"].max()),
-    )
+        name: _estimate(ESTIMATORS[name], levelled, spacing, chosen)
+        for name in (ESTIMATORS if estimators is None else estimators)
+    }, chosen
 
 
 def _on_square_cells(heights: np.ndarray, spacing) -> tuple[np.ndarray, float]:
@@ -241,12 +267,12 @@ def _on_square_cells(heights: np.ndarray, spacing) -> tuple[np.ndarray, float]:
 
 
 def _estimate(
-    estimator: Estimator, heights: np.ndarray, spacing: float, fit_range: tuple[float, float]
+    estimator: Estimator, heights: np.ndarray, spacing: float, fit_range: FitRange
 ) -> Estimate:
     """Curve and fits of one estimator."""
     curves = estimator.curves(heights, spacing)
     length, measure = curves["both"].length, curves["both"].measure()
-    shortest, longest = (estimator.factor * end for end in fit_range)
+    shortest, longest = (estimator.factor * end for end in fit_range[:2])
     used = within(length, shortest, longest)
     measure = np.where(measure > 0, measure, np.nan)  # a flat surface has no logarithm, nor an H
     used &= np.isfinite(measure)
@@ -260,21 +286,28 @@ def _estimate(
             slope_hurst = slope
         if np.isfinite(slope):
             fit = Fit(length[used] / spacing, side, axis)
-            hurst[axis] = _corrected(estimator, fit, slope, half)
+            roll_off = fit_range.roll_off.scaled(1 / spacing)
+            hurst[axis] = _corrected(estimator, fit, slope, half, roll_off)
     return Estimate(length, measure, used, hurst, slope_hurst)
 
 
 def _corrected(
-    estimator: Estimator, fit: Fit, slope: float, half: float
+    estimator: Estimator, fit: Fit, slope: float, half: float, roll_off: RollOff
 ) -> tuple[float, float, float]:
-    """H without known bias, and an interval that holds whatever the nodes stand for."""
+    """H without known bias; an interval for whatever the nodes stand for, and every roll-off."""
     ends = np.array([slope, slope - half, slope + half])
-    of_either = {
-        nodes: extended(ends, estimator.expected_hurst(fit, nodes), HURST_GRID)
+    of_each = {
+        (nodes, of): extended(
+            ends,
+            estimator.expected_hurst(fit._replace(roll_off=of[1], shape=of[0]), nodes),
+            HURST_GRID,
+        )
         for nodes in (BAND_LIMITED, POINTS)
+        for of in roll_off.cases()
     }
-    every = np.concatenate(list(of_either.values()))
-    return float(of_either[estimator.nodes][0]), float(every.min()), float(every.max())
+    every = np.clip(np.concatenate(list(of_each.values())), *FARTHEST)
+    value = float(of_each[estimator.nodes, roll_off.cases()[0]][0])
+    return value, float(min(every.min(), value)), float(max(every.max(), value))
 
 
 def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tuple[float, float]:
@@ -290,31 +323,6 @@ def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tup
         return np.nan, np.nan
     of_parts = t_quantile(parts - 1) * estimator.spread * jackknife_standard_error(without)
     return every[0], max(of_regression, of_parts) + BIAS_LEFT
-
-
-def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
-    """Range and mean of Delta_g over the estimators, as the paper states them.
-
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        From `surface_dimension`.
-
-    Returns
-    -------
-    dict
-        ``lowest``, ``highest``, ``mean`` (NaN without a fit) and ``n``, how many gave a dimension.
-    """
-    known = dimensions["dimension"].values
-    known = known[np.isfinite(known)]
-    if not known.size:
-        return dict.fromkeys(("lowest", "highest", "mean"), np.nan) | {"n": 0}
-    return {
-        "lowest": float(known.min()),
-        "highest": float(known.max()),
-        "mean": float(known.mean()),
-        "n": known.size,
-    }
 
 
 def roughness_length(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:

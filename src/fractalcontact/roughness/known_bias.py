@@ -1,6 +1,6 @@
 """Known bias of the slopes of the estimators' curves: their mean on surfaces of known exponent.
 
-The slope of a curve would be that of a power law but for three things that are known beforehand:
+The slope of a curve would be that of a power law but for four things that are known beforehand:
 
 - levelling takes a part of the long waves off along with the plane;
 - a grid does not show waves shorter than two nodes. Where they were taken out - by the spot of an
@@ -8,13 +8,16 @@ The slope of a curve would be that of a power law but for three things that are 
   roughness, which makes the short end of a curve too low (`BAND_LIMITED`). Where single points of a
   finer surface were taken they are there in full, and look like longer waves in a spectrum
   (`POINTS`). Nothing in heights alone decides for sure which of the two they are;
+- a surface that rolls off lacks long waves (:mod:`roughness.roll_off`);
 - a column of few nodes misses peaks, and a small island has no lakes.
 
-All of it belongs to an isotropic surface that is self-affine at all lengths. Levelling and missing
-waves follow from the mean square difference h^(2H) of such a surface alone; the rest was measured
-on synthetic surfaces. What holds of one estimator alone stands in its own file.
+All of it belongs to an isotropic surface that is self-affine at all lengths, or up to its roll-off.
+Levelling and missing waves follow from the mean square difference of such a surface alone, h^(2H)
+below a roll-off; the rest was measured on synthetic surfaces. What holds of one estimator alone
+stands in its own file.
 """
 
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -22,10 +25,8 @@ import numpy as np
 from scipy import special
 
 from .curves import ratio
+from .roll_off import HURST_GRID, SHARP, levelled_slope_fraction, second_difference_fraction
 from .spectrum_model import ALIASED, BAND_LIMITED
-
-#: Exponents at which the mean result of every estimator is known.
-HURST_GRID = np.linspace(0.02, 0.98, 97)
 
 #: The other thing nodes can stand for, beside `BAND_LIMITED`: see above.
 POINTS = ALIASED
@@ -36,6 +37,11 @@ POINTS = ALIASED
 #: Stat. 11 (2002) 587). They differ by up to 0.03 between the two sizes, and will by more for a
 #: very different range.
 SYNTHETIC_HURST = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])
+#: Lags (cells) in the middle of the default range, 4 to 32 on 256 x 256, and of 2 2/3 to 8, over
+#: which 16 of the surfaces of 256 x 256 were measured, too.
+DEFAULT_RANGE, SHORT_RANGE = 11.0, 5.0
+#: Least rise of a mean exponent with the true one.
+LEAST_RISE = 0.3
 
 
 class Fit(NamedTuple):
@@ -47,6 +53,10 @@ class Fit(NamedTuple):
     """Of a square as large as the surface, cells."""
     axis: str
     """"both", "x" or "y"."""
+    roll_off: float = np.inf
+    """Wavelength above which the spectrum is flat, cells; infinite without one."""
+    shape: str = SHARP
+    """Of `roll_off.SHAPES`."""
 
 
 def slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -131,19 +141,22 @@ def unresolved() -> np.ndarray:
 
 
 def levelled_fraction(fit: Fit, fraction: np.ndarray) -> np.ndarray:
-    """Fraction of the mean square that levelling took, (exponents, k): it grows as length^2.
+    """Fraction of the power law that levelling took, (exponents, k): it grows as length^2.
 
     Parameters
     ----------
     fit : Fit
     fraction : (exponents,) ndarray
-        That of a length as long as the surface.
+        That of a length as long as the surface, without a roll-off.
     """
-    return fraction[:, np.newaxis] * (fit.length / fit.side) ** (2 - 2 * HURST_GRID[:, np.newaxis])
+    at_side = fraction[:, np.newaxis] * levelled_slope_fraction(
+        np.array([fit.side / fit.roll_off]), fit.shape
+    )
+    return at_side * (fit.length / fit.side) ** (2 - 2 * HURST_GRID[:, np.newaxis])
 
 
 def short_wave_fraction(fit: Fit, sampling: str, fraction: float | np.ndarray) -> np.ndarray:
-    """Fraction of the mean square that missing short waves have, (exponents, k).
+    """Fraction of the power law that missing short waves have, (exponents, k).
 
     Parameters
     ----------
@@ -170,3 +183,36 @@ def hurst_of_mean_square(fit: Fit, kept: np.ndarray) -> np.ndarray:
     (exponents,) ndarray
     """
     return HURST_GRID + slopes(np.log(fit.length), np.log(np.maximum(kept, 1e-12))) / 2
+
+
+def tabulated_mean(
+    fit: Fit,
+    of_default: Sequence[float],
+    of_short: Sequence[float],
+    *,
+    factor: float,
+    second_differences: float,
+) -> np.ndarray:
+    """Mean exponents by the slope of a measure known from synthetic surfaces, (exponents,).
+
+    Parameters
+    ----------
+    fit : Fit
+    of_default, of_short : (7,) sequences of float
+        Mean results at `SYNTHETIC_HURST` over the default range, and over `SHORT_RANGE`; linear in
+        between in the logarithm of the mean length, since short columns and small islands are what
+        the bias comes from.
+    factor : float
+        Of the estimator's lengths over lags.
+    second_differences : float
+        How many times what a roll-off takes from second differences over lags as long it takes.
+    """
+    long, short = np.log(DEFAULT_RANGE), np.log(SHORT_RANGE)
+    part = np.clip((long - np.mean(np.log(fit.length / factor))) / (long - short), 0, 1)
+    mean = (1 - part) * np.array(of_default) + part * np.array(of_short)
+    left = second_difference_fraction(fit.length / fit.roll_off, fit.shape)
+    of_roll_off = hurst_of_mean_square(fit, left) - HURST_GRID
+    result = extended(HURST_GRID, SYNTHETIC_HURST, mean) + second_differences * of_roll_off
+    # Below a short roll-off the slope says next to nothing of H: no sharper than this.
+    line = LEAST_RISE * HURST_GRID
+    return np.maximum.accumulate(result - line) + line

@@ -57,7 +57,7 @@ def log_model(form: Form, parameters: np.ndarray, x: np.ndarray) -> np.ndarray:
     surface = own["a"] - own["slope"] * log_x
     surface += np.log(sampled(form.sampling, own["slope"], x))
     if form.rolls_off:
-        surface += np.log(_rolled_off(own["slope"], np.exp(own["roll_off"]), x))
+        surface += np.log(rolled_off(own["slope"], np.exp(own["roll_off"]), x))
     if form.filtering:
         surface += _filtered(form.filtering, log_x - own["filter"])
     return np.logaddexp(surface, own["level"]) if form.noisy else surface
@@ -91,7 +91,7 @@ def sampled(sampling: str, slope: float | np.ndarray, x: np.ndarray) -> Any:
     return 1.0
 
 
-def _rolled_off(slope: float, start: float, x: np.ndarray) -> np.ndarray:
+def rolled_off(slope: float | np.ndarray, start: float, x: np.ndarray) -> np.ndarray:
     """Profiles of an isotropic surface whose own spectrum is flat below `start`, as a factor."""
     whole = special.beta(0.5, slope / 2) / 2
     inside = np.clip(1 - (x / start) ** 2, 0, None)

@@ -29,7 +29,8 @@ def joint_by_size(
     states: xr.Dataset,
     specimen: xr.Dataset,
     dimension: Sequence[float],
-    settings: Mapping[str, Any],
+    lags: Sequence[float] | None,
+    material: Mapping[str, float],
 ) -> xr.Dataset:
     """Size laws of a joint: closure, roughness and strength of its sub-windows against b.
 
@@ -39,8 +40,11 @@ def joint_by_size(
         As for :func:`size_laws`.
     specimen : xr.Dataset
         From :func:`surface.specimen.make_specimen`.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    lags : (float, float) or None
+        Range stated for Delta_g, or below a roll-off, mm: eq. 2 is fitted over windows that look at
+        the same waves.
+    material : mapping
+        As for :func:`size_laws`.
 
     Returns
     -------
@@ -50,10 +54,9 @@ def joint_by_size(
     roughness, direction = np.nan, states["direction"].item()
     if direction != "none":
         roughness = float(profile_roughness(specimen, direction)["jrc_used"])
-    lags = settings["surface_range"]
     # A window of side b looks at waves of b, a lag at waves of twice its length.
     sides = None if lags is None else [2 * lag for lag in lags]
-    return size_laws(states, settings["material"], roughness, dimension, sides)
+    return size_laws(states, material, roughness, dimension, sides)
 
 
 def size_laws(
@@ -78,8 +81,7 @@ def size_laws(
         Delta_g of the face and its 95 % interval: eq. 2 expects H = 3 - Delta_g.
     fit_range : (float, float), optional
         Smallest and largest b of the fits of sigma_z, mm. By default from `FIRST_FITTED_CELLS`
-        cells to `LAST_FITTED_FRACTION` of the window. Where the study states a range of lags for
-        Delta_g, twice that.
+        cells to `LAST_FITTED_FRACTION` of the window.
 
     Returns
     -------

@@ -32,6 +32,7 @@ def specimen_stages(specimen: xr.Dataset, settings: Mapping) -> dict[str, xr.Dat
             specimen.lower.values,
             spacing_of(specimen),
             fit_range=settings["surface_range"],
+            known_dimension=settings["known_dimension"],
         ),
         "quality": scan_quality(specimen, settings["resolutions"]),
     }

@@ -52,9 +52,10 @@ def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source
     loads = stated.loads("loads")
     flat = stated.get("opposite", "match") == "flat"
     directions = stated.get("directions", ["E", "N", "W", "S"])
-    label = config.get("embedded", {}).get(name, {}).get("label", name)
+    recipe = config.get("embedded", {}).get(name, {})
     settings = {
-        "label": stated.get("label", label),
+        "label": stated.get("label", recipe.get("label", name)),
+        "known_dimension": float(recipe.get("dimension", math.nan)),
         "material": _material(config, stated["material"], stated.where("material"), source),
         "opposite": stated.get("opposite", "match"),
         "outliers": stated.get("outliers", "keep"),

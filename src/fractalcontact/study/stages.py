@@ -223,6 +223,7 @@ SETTINGS_READ = {
         "offsets",
         "resolutions",
         "surface_range",
+        "known_dimension",
     ),
     CONTACT: (*_SOLVED, "contact_directions", "resolutions", "dilatancy_loads", "map_load"),
     _STATE_STAGES: (

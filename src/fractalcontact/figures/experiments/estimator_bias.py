@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of, entries, group, letter
-from ..kit.words import number, supplementary
+from ..kit.words import supplementary
 
 TITLE = "Bias, scatter and coverage of the estimators of the surface dimension"
 SUBJECT = "study"
@@ -22,25 +22,35 @@ PROMISED = 0.9
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """Bias with scatter, and coverage, by H, size and estimator."""
+    """Bias with scatter, and coverage, by H, size, roll-off and estimator."""
     bias = group(atlas, "estimator_bias", "surfaces")
-    sizes = bias["size"].values
-    figure = Figure(figsize=(WIDTH, 5.6))
+    sizes, roll_offs = bias["size"].values, bias["roll_off"].values
+    figure = Figure(figsize=(WIDTH, 0.8 + 4.8 * len(sizes)))
     panels = figure.subplots(
-        2, len(sizes), sharex=True, sharey="row", squeeze=False, height_ratios=[1.6, 1]
+        2 * len(sizes),
+        len(roll_offs),
+        sharex=True,
+        sharey="row",
+        squeeze=False,
+        height_ratios=[1.6, 1] * len(sizes),
     )
-    for column, size in enumerate(sizes):
-        chosen = bias.sel(size=size)
-        upper, lower = panels[:, column]
-        _draw_bias(upper, chosen)
-        _draw_coverage(lower, chosen)
-        places = np.arange(bias.sizes["hurst"])
-        lower.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
-        lower.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
-        letter(upper, "abcdefgh"[column], rf"bias, {size} $\times$ {size} nodes")
-        letter(lower, "abcdefgh"[len(sizes) + column], "intervals that hold $H$")
-    panels[0, 0].set_ylabel("estimated less true $H$ (1)")
-    panels[1, 0].set_ylabel("fraction of surfaces (1)")
+    letters = iter("abcdefghijklmnopqrstuvwxyz")
+    for row, size in enumerate(sizes):
+        of_size = list(enumerate(roll_offs))
+        for column, roll_off in of_size:
+            panel = panels[2 * row, column]
+            _draw_bias(panel, bias.sel(size=size, roll_off=roll_off))
+            letter(panel, next(letters), f"bias, {_surface_words(size, roll_off)}")
+        for column, roll_off in of_size:
+            panel = panels[2 * row + 1, column]
+            _draw_coverage(panel, bias.sel(size=size, roll_off=roll_off))
+            letter(panel, next(letters), "intervals that hold $H$")
+        panels[2 * row, 0].set_ylabel("estimated less true $H$ (1)")
+        panels[2 * row + 1, 0].set_ylabel("fraction of surfaces (1)")
+    places = np.arange(bias.sizes["hurst"])
+    for panel in panels[-1]:
+        panel.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
+        panel.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
     figure.legend(handles=entries(panels[0, 0]), loc="outside lower center", ncols=4)
     figure.suptitle(
         f"{bias.sizes['seed']} synthetic surfaces each: mean, with the standard deviation between "
@@ -48,6 +58,13 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         fontsize=9,
     )
     return Drawing(figure, _table(bias), _caption(bias))
+
+
+def _surface_words(size, roll_off):
+    """Surfaces of one panel: nodes and roll-off."""
+    if not np.isfinite(roll_off):
+        return rf"{size}$^2$ nodes, no roll-off"
+    return rf"{size}$^2$, roll-off at {roll_off:.3g} $b$"
 
 
 def _beside(bias, n):
@@ -98,6 +115,7 @@ def _table(bias):
         "bias_high",
         "slope_bias",
         "scatter",
+        "rms_error",
         "half_width",
         "coverage",
     ]
@@ -105,30 +123,34 @@ def _table(bias):
 
 
 def _caption(bias):
-    start, first, part = (bias.attrs[key] for key in ("from_hurst", "first_cells", "last_part"))
+    start, first = (bias.attrs[key] for key in ("from_hurst", "first_cells"))
     opening = (
         f"{supplementary()} Estimators of Delta_g = 3 - H on {bias.sizes['seed']} synthetic "
-        f"surfaces of each H and size, fitted over lags from {first:g} cells to {number(part, 3)} "
-        "of the side."
+        f"surfaces of each kind; lags of {first:g} cells to side/8 or roll-off/4."
     )
     known = bias.sel(estimator=bias["worst_bias"].notnull())
     if not known.sizes["estimator"]:
         return f"{opening} No H of {start:g} or more is among them."
-    worst = known["worst_bias"]
-    good = _names(worst["estimator"][worst <= TOLERATED].values)
-    verdict = f"{len(good)} of {worst.size} keep their bias within {TOLERATED:g}"
-    verdict += f" ({', '.join(good)})" if good else ""
-    least = float(known["coverage"].where(bias["hurst"] >= start).min())
+    errors = known["overall_error"].to_series()
+    least = known["least_coverage"].to_series()
+    name = bias.attrs["recommended"]
     return (
-        f"{opening} For H of {start:g} or more {verdict}; 95 % intervals hold H in "
-        f"{100 * float(known['mean_coverage'].mean()):.0f} % of all surfaces, in "
-        f"{100 * least:.0f} % of any H, size and estimator.{_rough_words(bias, start)}"
+        f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of "
+        f"{errors[name]:.3f}, {_place(errors, name)}; its 95 % intervals hold H in "
+        f"{100 * least[name]:.0f} % of every kind, those of all in "
+        f"{100 * least.min():.0f} %.{_rough_words(bias, start)}"
     )
 
 
-def _names(estimators):
-    """Estimators in words."""
-    return [str(name).replace("_", " ") for name in estimators]
+def _place(errors, name):
+    """Which of all rms errors one is."""
+    rank = int((errors < errors[name]).sum())
+    return "the least" if rank == 0 else f"{_name(errors.idxmin())} {errors.min():.3f}"
+
+
+def _name(estimator):
+    """An estimator in words."""
+    return str(estimator).replace("_", " ")
 
 
 def _rough_words(bias, start):
@@ -136,7 +158,7 @@ def _rough_words(bias, start):
     rough = bias["coverage"].where(bias["hurst"] < start)
     if not bool(rough.notnull().any()):
         return ""
-    lowest = rough.min(["hurst", "size"])
+    lowest = rough.min(["hurst", "size", "roll_off"])
     failing = int((lowest < PROMISED).sum())
     if not failing:
         return f" On rougher surfaces they reach {100 * PROMISED:.0f} % too."

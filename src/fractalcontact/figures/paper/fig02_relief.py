@@ -15,7 +15,6 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 from xarray import DataTree
 
-from ...roughness.dimension import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.words import interval, length_unit, opening, percent
@@ -54,9 +53,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letters = "ab"[: len(faces)]
     for panel, which, face in zip(axes, letters, faces, strict=False):
         letter(panel, which, f"{face} face")
-    mean = _draw_dimensions(axes[-1], dimension)
+    estimates = _draw_dimensions(axes[-1], dimension)
     letter(axes[-1], "abc"[len(faces)], r"$\Delta_g$ of the lower face")
-    handles = [outline, *([missing_patch()] if any(missing) else []), *mean]
+    handles = [outline, *([missing_patch()] if any(missing) else []), *estimates]
     figure.legend(handles=handles, loc="outside lower left", ncols=3)
     headline(figure, label, below=_size_words(specimen, sides))
     return Drawing(figure, _table(dimension), _caption(label, specimen, faces, dimension))
@@ -143,16 +142,33 @@ def _draw_dimensions(axes, dimension):
         )
         axes.set_xticks([])
         return []
-    errors = np.stack([values - low, high - values])[:, fitted]
-    axes.errorbar(values[fitted], rows[fitted], xerr=errors, fmt="o", color=COLOURS[1], capsize=2)
-    estimates = dimension_table(dimension)
-    mean = axes.axvline(estimates["mean"], color=COLOURS[2], ls="--", lw=0.8)
-    mean.set_label(
-        rf"mean $\Delta_g$ {estimates['mean']:.2f}, "
-        f"range {estimates['lowest']:.2f} to {estimates['highest']:.2f}"
-    )
+    errors = np.stack([values - low, high - values])
+    chosen = dimension["estimator"].values == dimension["recommended"].item()
+    handles = []
+    for marked, style in (
+        (~chosen, {"color": "0.45", "mfc": "white"}),
+        (chosen, {"color": COLOURS[1]}),
+    ):
+        of = fitted & marked
+        if of.any():
+            drawn = axes.errorbar(
+                values[of], rows[of], xerr=errors[:, of], fmt="o", capsize=2, **style
+            )
+            if marked is chosen and not dimension["no_dimension"].item():
+                drawn.set_label(rf"recommended $\Delta_g$ {_recommended_words(dimension)}")
+                handles.append(drawn)
+    known = float(dimension["known_dimension"])
+    if np.isfinite(known):
+        line = axes.axvline(known, color=COLOURS[2], ls="--", lw=0.8)
+        line.set_label(rf"known $\Delta_g$ {known:.3g}")
+        handles.append(line)
     axes.grid(axis="x", color="0.9", lw=0.5)
-    return [mean]
+    return handles
+
+
+def _recommended_words(dimension):
+    """The recommended value with its interval."""
+    return interval(*(float(dimension[f"recommended_{end}"]) for end in ("value", "low", "high")))
 
 
 def _table(dimension):
@@ -172,6 +188,8 @@ def _table(dimension):
             "fit_min_mm": dimension["fit_min"].values,
             "fit_max_mm": dimension["fit_max"].values,
             "points": dimension["n"].values,
+            "recommended": dimension["estimator"].values == dimension["recommended"].item(),
+            "known_dimension": dimension["known_dimension"].item(),
         }
     )
 
@@ -196,31 +214,41 @@ def _caption(label, specimen, faces, dimension):
 
 
 def _words(dimension):
-    """Range and mean of Delta_g, and whether the estimators agree."""
-    known = np.isfinite(dimension["dimension"].values)
-    if not known.any():
+    """The recommended Delta_g, beside the known one and those of the other estimators."""
+    values = dimension["dimension"].values
+    known = values[np.isfinite(values)]
+    if not known.size:
         return "No dimension could be fitted: the scan has too few scales."
-    low, high, first, last = (
-        dimension[key].values[known]
-        for key in ("dimension_low", "dimension_high", "fit_min", "fit_max")
+    reason = dimension["no_dimension"].item()
+    if reason:
+        return f"No dimension is recommended: {reason}."
+    estimator = str(dimension["recommended"].item())
+    first, last = (
+        float(dimension[f"fit_{end}"].sel(estimator=estimator)) for end in ("min", "max")
     )
-    agree = "which overlap" if low.max() <= high.min() else "which have no value in common"
-    estimates = dimension_table(dimension)
+    kind = str(dimension["length_kind"].sel(estimator=estimator).item())
     return (
-        f"{estimates['n']} estimators, fitted over {first.min():.3g} to {last.max():.3g} mm, give "
-        f"the lower face Delta_g {estimates['lowest']:.2f} to {estimates['highest']:.2f}, mean "
-        f"{estimates['mean']:.2f}, {_self_affine_words(estimates, low, high)} their 95 % "
-        f"intervals, {agree}. {_axes_words(dimension)}"
+        f"Delta_g of the lower face is {_recommended_words(dimension)} by "
+        f"{estimator.replace('_', ' ')}, {kind}s {first:.3g} to {last:.3g} mm"
+        f"{_roll_off_words(dimension)}{_known_words(dimension)}; {known.size} estimators give "
+        f"{known.min():.2f} to {known.max():.2f}. {_axes_words(dimension)}"
     )
 
 
-def _self_affine_words(estimates, low, high):
-    """Whether the estimates and their intervals lie where a self-affine surface's must."""
-    if not (estimates["lowest"] > 2 and estimates["highest"] < 3):
-        return "not all between 2 and 3, with"
-    if (low > 2).all() and (high < 3).all():
-        return "all between 2 and 3, with"
-    return "all between 2 and 3, but not all"
+def _roll_off_words(dimension):
+    """The roll-off, where one is seen."""
+    roll_off = float(dimension["roll_off"])
+    return f" (roll-off {roll_off:.3g} mm)" if np.isfinite(roll_off) else ""
+
+
+def _known_words(dimension):
+    """The known value of a synthetic surface, and whether the interval holds it."""
+    known, low, high = (
+        float(dimension[key]) for key in ("known_dimension", "recommended_low", "recommended_high")
+    )
+    if not np.isfinite(known):
+        return ""
+    return f"; known {known:.3g}, {'inside' if low <= known <= high else 'OUTSIDE'} the interval"
 
 
 def _axes_words(dimension):

@@ -5,13 +5,21 @@ import numpy as np
 from ...core.kernel_cache import njit
 from ..curves import BLOCKS, WINDOW_COVER, Curve, in_blocks, lengths_in_cells
 from ..estimator import Estimator
-from ..known_bias import HURST_GRID, POINTS, SYNTHETIC_HURST, Fit, extended
+from ..known_bias import POINTS, Fit, tabulated_mean
 from ..spectrum_model import BAND_LIMITED
+
+#: Sides over lags of the fit range.
+FACTOR = 1.0
 
 #: Mean H by the slope on the synthetic surfaces of `known_bias.SYNTHETIC_HURST`.
 _MEAN_HURST = {
     BAND_LIMITED: (0.407, 0.500, 0.611, 0.730, 0.786, 0.836, 0.858),
     POINTS: (0.311, 0.452, 0.587, 0.720, 0.781, 0.835, 0.859),
+}
+#: The same over the short range.
+_MEAN_HURST_SHORT = {
+    BAND_LIMITED: (0.501, 0.580, 0.674, 0.779, 0.830, 0.876, 0.896),
+    POINTS: (0.395, 0.521, 0.642, 0.765, 0.824, 0.876, 0.899),
 }
 
 
@@ -46,11 +54,12 @@ def _add_ranges(heights, side, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope gives on average, whatever the range.
+    """H that the slope gives on average.
 
     A column of few nodes misses peaks between them; levelling takes from the widest columns.
     """
-    return extended(HURST_GRID, SYNTHETIC_HURST, np.array(_MEAN_HURST[sampling]))
+    means = _MEAN_HURST[sampling], _MEAN_HURST_SHORT[sampling]
+    return tabulated_mean(fit, *means, factor=FACTOR, second_differences=1.5)
 
 
 ESTIMATOR = Estimator(
@@ -61,7 +70,7 @@ ESTIMATOR = Estimator(
     length="cube side",
     measure="mean height range over the column",
     units="mm",
-    factor=1,
+    factor=FACTOR,
     spread=1.65,
     expected_hurst=expected_hurst,
     nodes=BAND_LIMITED,  # the surfaces that it was tried on first

@@ -5,8 +5,9 @@ import numpy as np
 from ..curves import Curve, of_both_axes
 from ..estimator import Estimator
 from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square
+from ..roll_off import SMOOTH
 from ..spectra import profile_spectra
-from ..spectrum_model import sampled
+from ..spectrum_model import rolled_off, sampled
 
 
 def power_spectrum_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
@@ -18,10 +19,21 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
     """H that the slope gives on average.
 
     Profiles lack waves that are short across them, or have short waves along them folded back.
-    Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long.
+    Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long. Where the surface
+    rolls off, they lack waves that are long across them too.
     """
-    kept = sampled(sampling, 1 + 2 * HURST_GRID[:, np.newaxis], 2 / fit.length)
+    slope = 1 + 2 * HURST_GRID[:, np.newaxis]
+    kept = sampled(sampling, slope, 2 / fit.length)
+    if np.isfinite(fit.roll_off):
+        kept = kept * _rolled_off(fit, slope)
     return hurst_of_mean_square(fit, kept)
+
+
+def _rolled_off(fit: Fit, slope: np.ndarray) -> np.ndarray:
+    """Fraction left of the spectrum of profiles; a smooth one is (q_x^2 + q_r^2)^(-1/2 - H)."""
+    if fit.shape == SMOOTH:
+        return (1 + (fit.length / fit.roll_off) ** 2) ** (-slope / 2)
+    return rolled_off(slope, 2 / fit.roll_off, 2 / fit.length)
 
 
 ESTIMATOR = Estimator(

@@ -12,6 +12,7 @@ from ..known_bias import (
     square_about_line,
     square_about_plane,
 )
+from ..roll_off import about_line_fraction, about_plane_fraction
 
 
 def roughness_length_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
@@ -116,9 +117,12 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
 
     All of the missing waves' mean square is about a window's plane, of the surface's a part.
     """
-    unit = square_about_plane() if fit.axis == "both" else square_about_line()
+    whole = fit.axis == "both"
+    unit = square_about_plane() if whole else square_about_line()
+    fraction = about_plane_fraction if whole else about_line_fraction
+    left = fraction(fit.length / fit.roll_off, fit.shape)
     missing = short_wave_fraction(fit, sampling, 1 / (2 * unit))
-    return hurst_of_mean_square(fit, 1 - missing)
+    return hurst_of_mean_square(fit, left - missing)
 
 
 ESTIMATOR = Estimator(

@@ -5,6 +5,11 @@ import numpy as np
 from ..curves import Curve, add_squares, along_axes, lengths_in_cells
 from ..estimator import Estimator
 from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square, short_wave_fraction
+from ..roll_off import second_difference_fraction
+
+#: Mean square second difference of independent errors over that of their differences, both in
+#: units of the surface's own.
+NOISE = 3 / (4 - 4**HURST_GRID)
 
 
 def second_difference_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
@@ -27,8 +32,8 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
 
     Of noise second differences are three times the differences, of the surface 4 - 4^H times.
     """
-    missing = short_wave_fraction(fit, sampling, 3 / (4 - 4**HURST_GRID))
-    return hurst_of_mean_square(fit, 1 - missing)
+    left = second_difference_fraction(fit.length / fit.roll_off, fit.shape)
+    return hurst_of_mean_square(fit, left - short_wave_fraction(fit, sampling, NOISE))
 
 
 ESTIMATOR = Estimator(

@@ -13,6 +13,7 @@ from ..known_bias import (
     levelled_slope,
     short_wave_fraction,
 )
+from ..roll_off import rise_fraction
 
 #: Prisms of side b start every b / PRISM_STEPS cells: closer ones add nothing new.
 PRISM_STEPS = 4
@@ -60,7 +61,8 @@ def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
     rise = 1 + 2 ** (HURST_GRID - 1)
     levelled = levelled_fraction(fit, 2 * levelled_slope() / rise)
     missing = short_wave_fraction(fit, sampling, 1.5 / rise)
-    return hurst_of_mean_square(fit, 1 - levelled - missing)
+    left = rise_fraction(fit.length / fit.roll_off, fit.shape)
+    return hurst_of_mean_square(fit, left - levelled - missing)
 
 
 ESTIMATOR = Estimator(

@@ -11,6 +11,7 @@ from ..known_bias import (
     levelled_slope,
     short_wave_fraction,
 )
+from ..roll_off import difference_fraction
 
 
 def variogram_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
@@ -24,9 +25,10 @@ def _add_differences(heights, lag, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope gives on average: levelling and missing short waves take from it."""
+    """H that the slope gives on average: levelling, roll-off, missing short waves take from it."""
+    left = difference_fraction(fit.length / fit.roll_off, fit.shape)
     levelled = levelled_fraction(fit, levelled_slope())
-    return hurst_of_mean_square(fit, 1 - levelled - short_wave_fraction(fit, sampling, 1))
+    return hurst_of_mean_square(fit, left - levelled - short_wave_fraction(fit, sampling, 1))
 
 
 ESTIMATOR = Estimator(

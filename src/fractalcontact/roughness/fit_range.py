@@ -1,0 +1,109 @@
+"""Range of lags over which the dimension of a surface is fitted: between grid and roll-off."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .estimators.second_differences import NOISE, second_difference_curves
+from .known_bias import unresolved
+from .roll_off import RollOff, find_roll_off
+
+#: Default fit range in cells and in parts of the smaller side. Below 4 cells interpolation and
+#: aliasing show; above an eighth of the side too few independent pairs or windows are left.
+FIRST_CELLS, LAST_PART = 4, 1 / 8
+
+#: Part of a roll-off at which the range ends: a lag sees waves of twice its length, so that the
+#: longest fitted are half of it. What is missing up to there is taken off as known bias.
+LAST_OF_ROLL_OFF = 1 / 4
+
+#: A range cut by a roll-off may begin so many cells earlier to span this ratio.
+FEWEST_CELLS, LEAST_RATIO = 2, 3.0
+
+#: Shortest offset (cells) below which four lags are left: 2 to 5 cells.
+LEAST_OFFSET = 10
+
+
+class FitRange(NamedTuple):
+    """Lags a dimension is fitted over, and why these."""
+
+    shortest: float
+    longest: float
+    """mm; not above the shortest where no lag is left."""
+    roll_off: RollOff
+    """mm."""
+    reason: str
+
+
+def choose_fit_range(
+    heights: np.ndarray, spacing: float, stated: tuple[float, float] | None = None
+) -> FitRange:
+    """Range of lags of a levelled surface.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        mm, NaN where missing.
+    spacing : float
+        mm.
+    stated : (float, float), optional
+        Range the study states, mm. It is used as it is; a roll-off inside it is said.
+
+    Returns
+    -------
+    FitRange
+        By default from `FIRST_CELLS` cells to `LAST_PART` of the smaller side, or to
+        `LAST_OF_ROLL_OFF` of a roll-off, and then from `FEWEST_CELLS` cells if need be.
+
+    Raises
+    ------
+    ValueError
+        If the stated range does not rise from above 0.
+    """
+    if stated is not None and not 0 < stated[0] < stated[1]:
+        raise ValueError(f"fit range {stated} mm must rise from above 0")
+    curve = second_difference_curves(heights, spacing)["both"]
+    roll_off = find_roll_off(curve, spacing, NOISE * unresolved())
+    end = LAST_OF_ROLL_OFF * roll_off.value
+    if stated is not None:
+        reason = "stated by the study"
+        if end < stated[1]:
+            reason += f"; reaches beyond a quarter of the roll-off at {_words(roll_off)}"
+        return FitRange(*stated, roll_off, reason)
+    first, last = FIRST_CELLS * spacing, LAST_PART * min(heights.shape) * spacing
+    if not end < last:
+        return FitRange(first, last, roll_off, "4 cells to an eighth of the smaller side")
+    first = min(first, max(end / LEAST_RATIO, FEWEST_CELLS * spacing))
+    reason = f"up to a quarter of the roll-off at {_words(roll_off)}"
+    return FitRange(first, end, roll_off, reason)
+
+
+def below_offset(face: FitRange, offset: float, spacing: float) -> tuple[FitRange, str]:
+    """Range of lags of the difference of a surface and itself, slid by an offset.
+
+    Parameters
+    ----------
+    face : FitRange
+        Of the surface.
+    offset, spacing : float
+        mm.
+
+    Returns
+    -------
+    FitRange
+        Up to half of the offset at most, so that second differences span no more than it: at longer
+        lags the difference of two like surfaces is flat whatever they are.
+    str
+        Why there is no such range; "" where there is.
+    """
+    end = min(face.longest, offset / 2)
+    first = min(face.shortest, max(end / LEAST_RATIO, FEWEST_CELLS * spacing))
+    reason = "lags up to half of v" if end < face.longest else face.reason
+    fit_range = FitRange(first, end, face.roll_off, reason)
+    if offset < LEAST_OFFSET * spacing * (1 - 1e-6):
+        return fit_range, f"undetermined: v below {LEAST_OFFSET} cells"
+    return fit_range, ""
+
+
+def _words(roll_off: RollOff) -> str:
+    value, low, high = roll_off[:3]
+    return f"{value:.3g} mm [{low:.3g}, {high:.3g}] ({roll_off.shape})"
