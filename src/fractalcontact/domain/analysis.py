@@ -188,7 +188,7 @@ def scaling_over_resolutions(
         The renormalisation of :func:`domain.renormalisation.renormalisation` over (direction,
         offset, load), and both estimates of Delta_sigma with their difference; the box counts are
         those at the scan's own resolution. ``delta_sigma_raw``, with its interval and ``_n``, is
-        that of the raw area; ``area`` is the raw and ``area_corrected`` the other.
+        that of the raw area; ``area``, ``area_corrected`` and ``nodes`` are those of the states.
 
     Notes
     -----
@@ -218,5 +218,6 @@ def scaling_over_resolutions(
     )
     result = result.merge(both, compat="override", join="exact")
     result["spacing"] = s
-    result["area"], result["area_corrected"] = curves["area"], curves["area_corrected"]
+    for name in ("area", "area_corrected", "nodes"):
+        result[name] = curves[name]
     return result.drop_vars([n for n in result.coords if n not in result.dims])

@@ -12,7 +12,7 @@ from ...domain.renormalisation import RESOLUTION
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
-from .words import interval, opening, place, short
+from .words import UNDETERMINED, interval, opening, place, short
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,8 @@ class Estimate:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
         if self.reason[i]:
             return self.reason[i].split(":")[0]
-        return rf"$\Delta_\sigma$ = {self.text(i)}"
+        text = self.text(i)
+        return rf"$\Delta_\sigma$ {text}" if text == UNDETERMINED else rf"$\Delta_\sigma$ = {text}"
 
     @property
     def style(self) -> dict:
