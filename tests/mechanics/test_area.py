@@ -378,7 +378,7 @@ def test_corrected_areas_of_few_nodes_are_in_no_law(statistics):
     assert not found["corrected_fitted"].values.squeeze()[0]
     assert found["corrected_exponent"].item() == pytest.approx(1)
     assert found["exponent"].item() != pytest.approx(1, abs=1e-3)
-    assert found["corrected_no_law"].item() == ""
+    assert found["no_corrected_law"].item() == ""
 
 
 def test_too_few_loads_say_so(statistics):

@@ -27,6 +27,12 @@ STATISTICS = ("rms_height", "rms_slope", "m0", "m2", "m4")
 AREA_SLOPE = "area slope kappa = (A_r/A_0) E* h'_rms / sigma_0"
 CORRECTED_AREA_SLOPE = "area slope kappa, corrected area"
 
+#: Raw and corrected area: prefix of names, name, nodes that it needs, words.
+_AREAS = (
+    ("", "area", RESOLVED_NODES, AREA_SLOPE),
+    ("corrected_", "area_corrected", CORRECTED_NODES, CORRECTED_AREA_SLOPE),
+)
+
 #: Why there is no law of the area.
 FULL_CONTACT = "the faces touch everywhere at every load"
 
@@ -186,22 +192,23 @@ def area_laws(
     -----
     Flush faces have no slope: kappa and all theories are NaN, and full contact is no law. The
     interval of a mean kappa is over loads on one surface; other surfaces scatter more (see
-    :mod:`experiments.area_slope`).
+    :mod:`experiments.area_slope`). Fits and means take states of `RESOLVED_NODES` nodes or more,
+    those of the corrected area of `CORRECTED_NODES`.
     """
     finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
     finest, statistics = xr.align(finest, statistics, join="exact")
     spacing = statistics.attrs["spacing_y"], statistics.attrs["spacing_x"]
     # Fraction of the window that a node covers.
     node = np.prod(spacing) * finest["nominal_pressure"] / finest["normal_force"]
-    touching = finest["area_share"] > (RESOLVED_NODES - 0.5) * node
     result = statistics.copy()
-    result["fitted"] = touching & (finest["area_share"] < 1 - 0.5 * node)
-    result["fitted"].attrs = cf_attrs("1", "load used in the fits of raw area against force")
-    enough = finest["area_share"] > (CORRECTED_NODES - 0.5) * node
-    result["corrected_fitted"] = result["fitted"] & enough
-    result["corrected_fitted"].attrs = cf_attrs("1", "load used in the fits of corrected area")
+    for prefix, name, fewest, _ in _AREAS:
+        words = name.replace("_", ", ")
+        share = finest["area_share"]
+        fitted = (share > (fewest - 0.5) * node) & (share < 1 - 0.5 * node)
+        attrs = cf_attrs("1", f"{fewest} nodes touch, not all: load used in fits of the {words}")
+        result[f"{prefix}fitted"] = fitted.assign_attrs(attrs)
     _add_laws(result, finest)
-    _add_kappa(result, finest, e_star, touching)
+    _add_kappa(result, finest, e_star, node)
     add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
     return result.transpose("direction", "offset", "normal_force", ...)
 
@@ -237,7 +244,7 @@ def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
     """Power laws of raw and corrected area, departure from linearity, reasons for none."""
     dims = ("direction", "offset")
     force = np.log(curves["normal_force"].values)
-    for prefix, name in (("", "area"), ("corrected_", "area_corrected")):
+    for prefix, name, *_ in _AREAS:
         fitted = result[f"{prefix}fitted"].transpose(*dims, "normal_force").values
         area = np.log(curves[name].transpose(*dims, "normal_force").where(fitted).values)
         lines = np.empty(area.shape[:2], object)
@@ -249,15 +256,10 @@ def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
             kind = ", corrected area" if prefix else ""
             result[prefix + key] = (dims, values, cf_attrs(units, words + kind))
     _add_departure(result, curves)
-    for prefix, fewest, words in (
-        ("", RESOLVED_NODES, ""),
-        ("corrected_", CORRECTED_NODES, "corrected "),
-    ):
-        result[f"{prefix}no_law"] = (
-            dims,
-            _reasons_for_no_law(result, curves, prefix, fewest),
-            cf_attrs("1", f"why there is no law of the {words}area"),
-        )
+    for prefix, name, fewest, _ in _AREAS:
+        words = f"why there is no law of the {name.replace('_', ', ')}"
+        reasons = _reasons_for_no_law(result, curves, prefix, fewest)
+        result[f"no_{prefix}law"] = dims, reasons, cf_attrs("1", words)
 
 
 def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
@@ -294,29 +296,24 @@ def _too_few(n: int, fewest: int) -> str:
     return f"{n} of {FEWEST_POINTS} loads with {fewest} nodes in contact, but not all"
 
 
-def _add_kappa(
-    result: xr.Dataset, curves: xr.Dataset, e_star: float, touching: xr.DataArray
-) -> None:
-    """kappa of A/A0 = kappa p / (E* h'_rms), raw and corrected, and its mean at light load."""
+def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.DataArray) -> None:
+    """kappa of A/A0 = kappa sigma_0 / (E* h'_rms), raw and corrected, and its mean at light load.
+
+    ``node`` is the fraction of the window that one node covers.
+    """
     slope = result["rms_slope"].where(result["rms_slope"] > FLUSH)
     reduced = curves["nominal_pressure"] / (e_star * slope)
     result["reduced_pressure"] = reduced.assign_attrs(cf_attrs("1", "sigma_0 / (E* h'_rms)"))
-    light = touching & (reduced <= LIGHT_LOAD)
-    result["light"] = light.assign_attrs(
-        cf_attrs(
-            "1", f"{RESOLVED_NODES} nodes or more touch and sigma_0 / (E* h'_rms) <= {LIGHT_LOAD:g}"
-        )
-    )
     nominal = curves["normal_force"] / curves["nominal_pressure"]
-    for prefix, name, words in (
-        ("", "area", AREA_SLOPE),
-        ("corrected_", "area_corrected", CORRECTED_AREA_SLOPE),
-    ):
+    for prefix, name, fewest, words in _AREAS:
         attrs = cf_attrs("1", words)
         kappa = curves[name] / nominal / reduced
         error = curves[f"{name}_error"] / nominal / reduced
         result[f"{prefix}kappa"] = kappa.assign_attrs(attrs)
         result[f"{prefix}kappa_error"] = error.assign_attrs(error_attrs(attrs))
+        light = (curves["area_share"] > (fewest - 0.5) * node) & (reduced <= LIGHT_LOAD)
+        condition = f"{fewest} nodes in contact at sigma_0 / (E* h'_rms) <= {LIGHT_LOAD:g}"
+        result[f"{prefix}light"] = light.assign_attrs(cf_attrs("1", condition))
         means = xr.apply_ufunc(
             lambda values: mean_interval(values, axis=-1)[:3],
             kappa.where(light),
@@ -326,13 +323,11 @@ def _add_kappa(
         for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
             text = f"mean of {words}, at light load{of_end}"
             result[f"{prefix}mean_kappa{ending}"] = mean.assign_attrs(cf_attrs("1", text))
-    result["mean_kappa_n"] = light.sum("normal_force").assign_attrs(
-        cf_attrs("1", "loads in the mean")
-    )
-    reason = xr.where(
-        np.isnan(slope),
-        "the faces are flush and have no slope",
-        f"no load with {RESOLVED_NODES} nodes in contact at sigma_0 / (E* h'_rms) <= {LIGHT_LOAD}",
-    )
-    reason = xr.where(result["mean_kappa_n"] > 0, "", reason)
-    result["no_mean_kappa"] = reason.assign_attrs(cf_attrs("1", "why there is no mean of kappa"))
+        n = light.sum("normal_force")
+        result[f"{prefix}mean_kappa_n"] = n.assign_attrs(cf_attrs("1", "loads in the mean"))
+        reason = xr.where(
+            np.isnan(slope), "the faces are flush and have no slope", f"no load with {condition}"
+        )
+        result[f"no_{prefix}mean_kappa"] = xr.where(n > 0, "", reason).assign_attrs(
+            cf_attrs("1", f"why there is no mean of {words.split(' = ')[0]}")
+        )

@@ -132,7 +132,8 @@ def _draw_pressures(axes, table, limit):
 
 
 def _caption(loading, i, table, slope, limit):
-    by_area, by_box = (estimate.text(i) for estimate in loading.estimates)
+    # "no fit", "no dimension": the reasons stand in Figs. 9 and 10.
+    by_area, by_box = (e.reason[i].split(":")[0] or e.text(i) for e in loading.estimates)
     compared = disagreement(loading.scaling.isel(normal_force=i))
     words = "" if UNDETERMINED in (by_area, by_box) else f" {compared}"
     return (
