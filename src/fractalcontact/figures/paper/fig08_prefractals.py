@@ -21,7 +21,6 @@ from ..kit.drawing import (
 from ..kit.maps import draw_domain
 from ..kit.words import (
     REAL_PRESSURE,
-    UNDETERMINED,
     force_label,
     percent,
     pressure_label,
@@ -134,12 +133,10 @@ def _draw_pressures(axes, table, limit):
 def _caption(loading, i, table, slope, limit):
     # "no fit", "no dimension": the reasons stand in Figs. 9 and 10.
     by_area, by_box = (e.reason[i].split(":")[0] or e.text(i) for e in loading.estimates)
-    compared = disagreement(loading.scaling.isel(normal_force=i))
-    words = "" if UNDETERMINED in (by_area, by_box) else f" {compared}"
     return (
         f"{loading.opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}. "
         f"{_verdict(table)} {_model_words(table, slope, limit)} Delta_sigma: {by_area} by A_r(s), "
-        f"{by_box} by box counting.{words}"
+        f"{by_box} by box counting. {disagreement(loading.scaling.isel(normal_force=i))}"
     )
 
 
