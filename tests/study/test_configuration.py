@@ -251,3 +251,16 @@ def test_numbers_and_dates_that_are_none_are_refused_on_reading(tmp_path, value)
     path.write_text(f"study: mine\nseed: {value}\n")
     with pytest.raises(InputError, match=r"mine\.yaml: a date or number that is none"):
         read_study(path)
+
+
+def test_the_seating_load_is_one_of_the_loads_or_left_to_the_states():
+    study = {
+        "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
+        "defaults": {"material": "rock", "loads": ["1 MPa", "10 kN"], "resolutions": [1]},
+    }
+    assert resolve_settings(study, None, {}, "x")["seating_load"] is None
+    stated = study | {"defaults": study["defaults"] | {"seating_load": "10 kN"}}
+    assert resolve_settings(stated, None, {}, "x")["seating_load"] == (10e3, "force")
+    stated["defaults"]["seating_load"] = "2 MPa"
+    with pytest.raises(InputError, match="seating_load: '2 MPa' is not among the loads"):
+        resolve_settings(stated, None, {}, "x")

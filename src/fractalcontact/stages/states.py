@@ -56,7 +56,9 @@ def state_stages(
         window_sides(specimens),
         e_star,
         force_range(settings["hyperbola_range"], specimens),
-        openings=prefractal_openings(specimens, joints, settings["resolutions"]),
+        openings=prefractal_openings(
+            specimens, joints, [int(k) for k in states["resolution"].values]
+        ),
         seating_force=_seating_force(settings, specimens),
     )
     dilatancy = elastic_dilatancy(curves, joints)
