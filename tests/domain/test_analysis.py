@@ -57,9 +57,60 @@ def test_missing_dimension_is_not_compared(fields):
     nodes = xr.concat(
         [fields[f"in_contact_{k}"].sum([f"y_{k}", f"x_{k}"]) for k in (1, 2)], "resolution"
     ).assign_coords(resolution=[1, 2])
-    curves = xr.Dataset({"area": nodes * (nodes["resolution"] * SPACING) ** 2})
+    curves = curves_of(nodes)
     result = scaling_over_resolutions(curves, domains, SPACING)
     assert np.isnan(result.delta_sigma).all()  # two resolutions tell no error
-    assert result.n.values.ravel().tolist() == [0, 0, 0, 2, 2]
+    enough = (nodes >= 30).sum("resolution").values.ravel()
+    np.testing.assert_array_equal(result.n.values.ravel(), enough)
+    assert 0 < enough.max() < 3
     assert np.isnan(result.difference).all()
     assert not result.disagree.any()
+
+
+def curves_of(nodes, corrected=0.8):
+    """Nodes of contact domains as the closure stage has them, corrected areas a fraction of raw."""
+    area = nodes * (nodes["resolution"] * SPACING) ** 2
+    return xr.Dataset({"nodes": nodes, "area": area, "area_corrected": corrected * area})
+
+
+def scaled(fields, nodes, corrected=0.8, **how):
+    """Renormalisation of contact domains with these nodes at resolutions 1, 2, 4, 8."""
+    nodes = xr.DataArray(
+        np.reshape(nodes, (1, 1, -1, 1)),
+        dims=("direction", "offset", "resolution", "normal_force"),
+        coords={"resolution": [1, 2, 4, 8], "normal_force": [10.0]},
+    ).assign_coords(direction=fields["direction"], offset=fields["offset"])
+    domains = analyse_domains(fields, SPACING).isel(normal_force=[0])
+    domains = domains.assign_coords(normal_force=[10.0])
+    return scaling_over_resolutions(curves_of(nodes, corrected), domains, SPACING, **how).squeeze()
+
+
+def test_dimension_is_that_of_the_corrected_area_and_the_raw_one_stands_beside_it(fields):
+    factors = np.array([1, 2, 4, 8])
+    nodes = np.array([6400, 1600, 400, 100])
+    # An excess that grows with the spacing makes the raw area rise: its dimension is too low.
+    corrected = xr.DataArray(factors**-0.1, dims="resolution")
+    result = scaled(fields, nodes * factors**0.4, corrected)
+    assert result["delta_sigma"].item() == pytest.approx(2 - 0.3)
+    assert result["delta_sigma_raw"].item() == pytest.approx(2 - 0.4)
+    assert result["delta_sigma_raw_low"] < result["delta_sigma_raw"]
+    assert result["delta_sigma_raw"] < result["delta_sigma_raw_high"]
+    np.testing.assert_allclose(result["sigma_n"] * result["area_corrected"], 10.0)
+
+
+def test_resolutions_of_few_nodes_are_in_no_fit(fields):
+    result = scaled(fields, [900, 300, 100, 29])
+    assert (result["n"], result["delta_sigma_raw_n"]) == (3, 4)
+    assert result["delta_sigma"].item() == pytest.approx(np.log(3) / np.log(2))
+    assert np.isfinite(result["sigma_n"]).values.tolist() == [True, True, True, False]
+    result = scaled(fields, [270, 90, 30, 9])
+    assert (result["n"], result["delta_sigma_raw_n"]) == (3, 3)
+    result = scaled(fields, [90, 30, 10, 3])
+    assert (result["n"], result["delta_sigma_raw_n"]) == (2, 3)
+    assert np.isnan(result["delta_sigma"])
+    assert np.isfinite(result["delta_sigma_raw"])
+
+
+def test_range_of_the_study_is_that_of_both_fits(fields):
+    result = scaled(fields, [6400, 1600, 400, 100], fit_range=(SPACING, 4 * SPACING))
+    assert (result["n"], result["delta_sigma_raw_n"]) == (3, 3)

@@ -106,8 +106,9 @@ def test_only_loads_with_enough_nodes_have_a_kappa(with_area):
     drawing = drawn(with_area, "sliding")
     kappa = [line for line in drawing.figure.axes[1].lines if line.get_marker() == "o"]
     assert len(kappa) == 2  # corrected and raw
-    fitted = drawing.data[drawing.data["fitted"]]
-    for line, column in zip(kappa, ("corrected_kappa", "kappa"), strict=True):
+    columns = (("corrected_kappa", "corrected_fitted"), ("kappa", "fitted"))
+    for line, (column, kept) in zip(kappa, columns, strict=True):
+        fitted = drawing.data[drawing.data[kept]]
         np.testing.assert_array_equal(line.get_xdata(), fitted["reduced_pressure"])
         np.testing.assert_array_equal(line.get_ydata(), fitted[column])
 
@@ -150,7 +151,8 @@ def test_kappa_is_judged_by_the_theories(with_area, value, words):
 def test_exponent_is_judged_by_its_interval(with_area, low, high, words):
     def set_exponent(laws):
         for name, value in (("_low", low), ("", (low + high) / 2), ("_high", high)):
-            laws[f"exponent{name}"] = laws["exponent"] * 0 + value
+            laws[f"corrected_exponent{name}"] = laws["rms_slope"] * 0 + value
+        laws["no_corrected_law"] = xr.full_like(laws["no_corrected_law"], "")
         return laws
 
     assert words in drawn(changed(with_area, "area/sliding", set_exponent), "sliding").caption
@@ -163,11 +165,11 @@ def test_flush_faces_are_passed_over_and_if_there_are_no_others_said_to_be(with_
         for name in numbers:
             if "offset" in laws[name].dims:
                 laws[name][{"offset": slice(0, count)}] = np.nan
-        laws["fitted"][{"offset": slice(0, count)}] = False
-        laws["no_law"] = laws["no_law"].astype(object)
-        laws["no_mean_kappa"] = laws["no_mean_kappa"].astype(object)
-        laws["no_law"][{"offset": slice(0, count)}] = FULL_CONTACT
-        laws["no_mean_kappa"][{"offset": slice(0, count)}] = "the faces are flush"
+        for prefix in ("", "corrected_"):
+            laws[f"{prefix}fitted"][{"offset": slice(0, count)}] = False
+            for name, reason in (("law", FULL_CONTACT), ("mean_kappa", "the faces are flush")):
+                laws[f"no_{prefix}{name}"] = laws[f"no_{prefix}{name}"].astype(object)
+                laws[f"no_{prefix}{name}"][{"offset": slice(0, count)}] = reason
         return laws
 
     count = 3  # all up to the offset of the maps

@@ -150,9 +150,15 @@ def test_composite_drawn_is_that_of_the_joint_at_the_largest_offset(atlas, speci
     assert again[slid.touch] == again.max()
 
 
+def closures_drawn(atlas, specimen):
+    """The points of panels (a) and (b)."""
+    table = drawn(atlas, specimen, "fig04_05_closure").data
+    return table[table["panel"] == "a, b"]
+
+
 @pytest.mark.parametrize("specimen", ["sliding", "flat", "pair"])
 def test_closure_points_are_those_of_the_atlas(atlas, specimen):
-    table = drawn(atlas, specimen, "fig04_05_closure").data
+    table = closures_drawn(atlas, specimen)
     curves = atlas[f"closure/{specimen}"].to_dataset().isel(direction=0, resolution=0)
     for offset, points in table.groupby("offset_mm"):
         stored = curves.sel(offset=offset, method="nearest")
@@ -160,6 +166,9 @@ def test_closure_points_are_those_of_the_atlas(atlas, specimen):
             ("force_N", "normal_force"),
             ("interface_closure_mm", "interface_closure"),
             ("area_mm2", "area"),
+            ("area_corrected_share", "area_corrected_share"),
+            ("seated_closure_mm", "seated_closure"),
+            ("separation_mm", "separation"),
         ):
             np.testing.assert_array_equal(points[column], stored[name])
         np.testing.assert_array_equal(points["w_m_mm"].unique(), stored["hyperbola_w_m"])
@@ -167,21 +176,57 @@ def test_closure_points_are_those_of_the_atlas(atlas, specimen):
 
 
 def test_area_exponent_is_that_of_the_points_marked_as_fitted(atlas):
-    table = drawn(atlas, "sliding", "fig04_05_closure").data
+    table = closures_drawn(atlas, "sliding")
     for _, points in table.groupby("offset_mm"):
         fitted = points[points["area_fitted"]]
-        assert (fitted["area_mm2"] > 9.5 * 0.1**2).all()
-        line = fit_line(np.log(fitted["force_N"]), np.log(fitted["area_mm2"]))
+        assert (fitted["nodes"] >= 30).all()
+        line = fit_line(np.log(fitted["force_N"]), np.log(fitted["area_corrected_mm2"]))
         np.testing.assert_array_equal(points["area_exponent"].unique(), line.slope)
 
 
-def test_drawn_hyperbola_goes_through_law_of_bandis(atlas):
+def test_both_laws_are_drawn_over_the_loads_fitted_the_better_one_in_full(atlas):
     figure = drawn(atlas, "flat", "fig04_05_closure").figure
     curve = atlas["closure/flat"].to_dataset().isel(direction=0, resolution=0, offset=0)
     k_ni, w_m = float(curve["hyperbola_k_ni"]), float(curve["hyperbola_w_m"])
-    w, force = figure.axes[0].lines[1].get_data()
-    sigma = force * 1000 / 4.8**2  # kN on the window, MPa
-    np.testing.assert_allclose(sigma, k_ni * w / (1 - w / w_m), rtol=1e-9)
+    a, b = (float(curve[f"semi_logarithmic_{name}"]) for name in "ab")
+    laws = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 100]
+    for line, law in zip(
+        laws, (lambda w: k_ni * w / (1 - w / w_m), lambda w: np.exp((w - a) / b)), strict=True
+    ):
+        w, force = line.get_data()
+        sigma = force * 1000 / 4.8**2  # kN on the window, MPa
+        np.testing.assert_allclose(sigma, law(w), rtol=1e-9)
+        ends = [float(curve[f"closure_fit_{end}"]) for end in ("min", "max")]
+        np.testing.assert_allclose(force[[0, -1]] * 1000, ends)
+    styles = [line.get_linestyle() for line in laws]
+    hyperbola, other = (float(curve[f"{law}_misfit"]) for law in ("hyperbola", "semi_logarithmic"))
+    assert styles == (["-", "--"] if hyperbola < other else ["--", "-"])
+
+
+def test_stiffness_over_the_spacing_is_that_of_the_atlas(atlas):
+    table = drawn(atlas, "sliding", "fig04_05_closure").data
+    table = table[table["panel"] == "c"]
+    curves = atlas["closure/sliding"].to_dataset().isel(direction=0)
+    curves = curves.sel(offset=0.4, method="nearest")
+    assert table["offset_mm"].unique() == pytest.approx([0.4])
+    tangent = table[table["quantity"] == "tangent"]
+    assert tangent["force_N"].nunique() == 3  # the loads of the dilatancy
+    for spacing, points in tangent.groupby("spacing_mm"):
+        curve = curves.sel(resolution=round(spacing / 0.1), normal_force=points["force_N"].values)
+        np.testing.assert_array_equal(points["stiffness_MPa_per_mm"], curve["interface_stiffness"])
+        np.testing.assert_array_equal(points["resolved"], curve["nodes"] >= 10)
+    initial = table[table["quantity"] != "tangent"]
+    np.testing.assert_array_equal(initial["stiffness_MPa_per_mm"], curves["hyperbola_k_ni"])
+
+
+def test_few_nodes_are_hollow(atlas):
+    figure = drawn(atlas, "sliding", "fig04_05_closure").figure
+    table = closures_drawn(atlas, "sliding")
+    points = [line for line in figure.axes[0].lines if line.get_marker() not in ("None", None)]
+    hollow = [line for line in points if line.get_markerfacecolor() == "none"]
+    assert sum(len(line.get_xdata()) for line in hollow) == (table["nodes"] < 10).sum() > 0
+    whole = sum(len(line.get_xdata()) for line in points)
+    assert whole == len(table)
 
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
@@ -268,8 +313,8 @@ def test_a_missing_fit_is_said_with_its_reason(atlas):
     drawing = drawn(atlas, "pair", "fig04_05_closure")
     words = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
     assert len(words) == 6  # of closure, then of contact area
-    assert all("no fit: 3 points with w_int > 0, 4 needed" in text for text in words[:3])
-    assert "No hyperbola could be fitted" in drawing.caption
+    assert all(re.search(r"no fit: \d points with w_int > 0, 4 needed", x) for x in words[:3])
+    assert "No law could be fitted" in drawing.caption
 
 
 def test_a_surface_without_a_dimension_is_still_drawn(atlas):
@@ -361,7 +406,8 @@ def test_area_over_offset_is_judged_by_its_slope(atlas, power, words):
     dataset = changed["closure/sliding"].to_dataset()
     noise = 1 + 0.01 * np.cos(np.arange(dataset.sizes["offset"]))
     law = 0.01 * dataset["offset"] ** power * noise
-    dataset["area_share"] = dataset["area_share"] * 0 + law
+    dataset["area_corrected_share"] = dataset["area_corrected_share"] * 0 + law
+    dataset["area_corrected_resolved"] = dataset["area_corrected_resolved"] | True
     changed["closure/sliding"] = xr.DataTree(dataset)
     assert words in drawn(changed, "sliding", "fig06_07_dilatancy").caption
 
@@ -373,6 +419,8 @@ def test_area_over_offset_is_judged_by_its_slope(atlas, power, words):
 def test_linearity_is_judged_by_the_exponents(atlas, power, words):
     changed = atlas.copy(deep=True)
     laws = changed["area/flat"].to_dataset()
-    laws["exponent"] = laws["exponent"] * 0 + power
+    laws["corrected_exponent"] = laws["corrected_exponent"].fillna(0) * 0 + power
+    for end, half in (("_low", -0.1), ("_high", 0.1)):
+        laws[f"corrected_exponent{end}"] = laws["corrected_exponent"] + half
     changed["area/flat"] = xr.DataTree(laws)
     assert words in drawn(changed, "flat", "fig04_05_closure").caption

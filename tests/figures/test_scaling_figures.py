@@ -1,5 +1,6 @@
 """Figures of contact domains and their scaling: 8, 9, 10, 12 and 13."""
 
+import json
 import re
 from itertools import pairwise
 
@@ -11,6 +12,7 @@ from cases import representative
 from matplotlib.figure import Figure
 
 from fractalcontact.core.fitting import fit_line
+from fractalcontact.domain.analysis import scaling_over_resolutions
 from fractalcontact.domain.box_dimension import ESTIMATORS
 from fractalcontact.domain.renormalisation import renormalisation
 from fractalcontact.figures import draw as figures
@@ -30,6 +32,18 @@ NAMES = (
 )
 SPECIMENS = ("sliding", "flat", "pair")
 UNITS = ("(mm)", "(mm$^2$)", "(MPa)", "(N)", "(1)")
+
+
+@pytest.fixture(scope="module")
+def atlas(atlas):
+    """The atlas as if each node were 40: so many that their areas can be corrected."""
+    changed = atlas.copy()
+    for name in SPECIMENS:
+        curves, domains = (common.group(atlas, stage, name) for stage in ("closure", "domains"))
+        for quantity in ("nodes", "area", "area_corrected"):
+            curves[quantity] = 40 * curves[quantity]
+        changed[f"scaling/{name}"] = xr.DataTree(scaling_over_resolutions(curves, domains, 0.1))
+    return changed
 
 
 def draw(atlas, figure, specimen):
@@ -52,7 +66,9 @@ def finest(atlas, stage, specimen):
 def test_eq_6_of_a_full_square_is_the_pressure_applied_whatever_the_size():
     s = xr.DataArray([1.0, 2.0, 4.0], dims="resolution", coords={"resolution": [1, 2, 4]})
     area = xr.full_like(s, 64.0)  # every node of 8 x 8 mm touches at every resolution
-    scaling = renormalisation(s, area, xr.DataArray(640.0)).assign(spacing=s, area=area)
+    scaling = renormalisation(s, area, xr.DataArray(640.0)).assign(
+        spacing=s, area=area, area_corrected=area
+    )
     scaling = scaling.assign_coords(normal_force=640.0)
     for key in ("area", "box"):
         assert fractal_pressure(scaling, key, 2.0) == pytest.approx(10.0)  # MPa, 640 N on 64 mm2
@@ -63,7 +79,9 @@ def test_eq_6_of_a_square_carpet_meets_the_specimen():
     delta, b, force = 1.5, 16.0, 100.0
     s = xr.DataArray([1.0, 4.0, 16.0], dims="resolution", coords={"resolution": [1, 4, 16]})
     area = (b / s) ** delta * s**2
-    scaling = renormalisation(s, area, xr.DataArray(force)).assign(spacing=s, area=area)
+    scaling = renormalisation(s, area, xr.DataArray(force)).assign(
+        spacing=s, area=area, area_corrected=area
+    )
     scaling = scaling.assign_coords(normal_force=force)
     for key in ("area", "box"):
         sigma_star = fractal_pressure(scaling, key, delta)
@@ -114,10 +132,53 @@ def test_prefractals_balance_the_force(atlas):
     settings = common.settings_of(atlas, "sliding")
     force = 75 * 4.8**2  # N: the study names no load for the maps, so its largest
     assert table["resolution"].tolist() == settings["resolutions"]
-    np.testing.assert_allclose(table["sigma_r_MPa"] * table["area_mm2"], force)
+    np.testing.assert_allclose(table["sigma_n_MPa"] * table["area_corrected_mm2"], force)
+    np.testing.assert_allclose(table["sigma_n_raw_MPa"] * table["area_mm2"], force)
     loading = Loading.of(atlas, "sliding")
-    nodes = [loading.domain(k, loading.map_load).sum() for k in table["resolution"]]
+    nodes = [40 * loading.domain(k, loading.map_load).sum() for k in table["resolution"]]
+    np.testing.assert_array_equal(table["nodes"], nodes)
     np.testing.assert_allclose(table["area_mm2"], nodes * table["spacing_mm"] ** 2)
+    assert (table["area_corrected_mm2"] < table["area_mm2"]).all()
+
+
+def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
+    few = atlas.copy()
+    scaling = few["scaling/sliding"].to_dataset()
+    scaling["nodes"] = scaling["nodes"] * 0 + 29
+    few["scaling/sliding"] = xr.DataTree(scaling)
+    drawing = draw(few, "fig08_prefractals", "sliding")
+    assert drawing.data["sigma_n_MPa"].isna().all()
+    titles = [axes.get_title(loc="left") for axes in drawing.figure.axes if axes.images]
+    assert all("(raw)" in title for title in titles)
+    assert "Too few resolutions have an area to compare" in drawing.caption
+
+
+@pytest.mark.parametrize(
+    ("material", "words"),
+    representative(
+        [
+            ({"hardness": 1e3}, "beyond the hardness (1 GPa)"),
+            ({"hardness": 1e9}, "within the hardness (1000000 GPa)"),
+            ({"hardness": np.inf, "joint_wall_strength": 80.0}, "beyond the joint wall strength"),
+        ]
+    ),
+)
+def test_pressures_are_compared_with_what_the_material_bears(atlas, material, words):
+    other = atlas.copy()
+    configuration = json.loads(atlas.attrs["configuration"])
+    configuration["settings"]["sliding"]["material"] |= material
+    other.attrs["configuration"] = json.dumps(configuration)
+    # As many nodes as the domain has: 5 GPa.
+    scaling = other["scaling/sliding"].to_dataset()
+    scaling["area_corrected"] = scaling["area_corrected"] / 40
+    other["scaling/sliding"] = xr.DataTree(scaling)
+    drawing = draw(other, "fig08_prefractals", "sliding")
+    assert words in drawing.caption
+    assert "rms slope" in drawing.caption
+    (axes,) = (axes for axes in drawing.figure.axes if not axes.images)
+    limit = material.get("joint_wall_strength", material["hardness"])
+    heights = [line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == "--"]
+    assert heights == [limit]
 
 
 @pytest.mark.parametrize("specimen", representative(SPECIMENS, 1))
@@ -151,7 +212,7 @@ def test_area_law_and_sigma_star_are_those_of_the_atlas(atlas, specimen):
         np.testing.assert_allclose(star, stored["sigma_star"].values[i])
     table = draw(atlas, "fig10_scaling", specimen).data
     rows = table[(table["panel"] == "a") & (table["load_N"] == loading.forces[-1])]
-    law = fit_line(np.log(rows["spacing_mm"]), np.log(rows["area_mm2"]))
+    law = fit_line(np.log(rows["spacing_mm"]), np.log(rows["area_corrected_mm2"]))
     np.testing.assert_allclose(
         np.log(rows["fitted_area_mm2"]), law.intercept + law.slope * np.log(rows["spacing_mm"])
     )

@@ -90,6 +90,26 @@ def test_hertz_is_nearer_when_corrected():
     assert np.sqrt(np.mean(np.square(better))) < np.sqrt(np.mean(np.square(raw))) / 1.5
 
 
+def test_corrected_area_of_a_disc_converges_faster_than_the_raw_one():
+    # Hertz's discs, 3 and 24 cells in radius, at places that chance gives: mean relative errors.
+    rng = np.random.default_rng(1)
+
+    def errors(cells):
+        nodes, found = int(2.6 * cells) + 4, []
+        space = HalfSpace((nodes, nodes), (1.0, 1.0), 1.0)
+        for centre in rng.uniform(-0.5, 0.5, (12, 2)):
+            radius = cells * rng.uniform(0.97, 1.03)
+            state = solve_contact(_sphere(nodes, centre), space, force=4 / 3 * radius**3 / 400)
+            areas = np.array([state.area, float(corrected_area(state.in_contact, 1.0))])
+            found.append(areas / (np.pi * radius**2) - 1)
+        return np.abs(np.mean(found, axis=0))
+
+    (coarse_raw, coarse), (fine_raw, fine) = errors(3), errors(24)
+    assert coarse_raw / fine_raw < 8 < coarse / fine  # eight times finer: order one is between
+    assert coarse < coarse_raw
+    assert fine < fine_raw / 3
+
+
 def test_ring_is_nearer_when_corrected():
     # Two edges: a torus pressed flat. No closed form, so four times finer cells and less excess.
     def solved(part):
@@ -344,6 +364,21 @@ def test_few_nodes_and_full_contact_are_not_fitted(statistics):
     assert found["exponent"].item() == pytest.approx(1)
     assert found["n"].item() == 9
     assert not found["light"].values.squeeze()[0]
+
+
+def test_corrected_areas_of_few_nodes_are_in_no_law(statistics):
+    # A node is 1e-6 of the window: 20 nodes at the lightest load are fitted raw, not corrected.
+    def share(reduced):
+        made = 0.5 * reduced
+        made[0] = 20e-6
+        return made
+
+    found = area_laws(_made_curves(share, statistics), statistics, 1.0, 2.2)
+    assert (found["n"].item(), found["corrected_n"].item()) == (12, 11)
+    assert not found["corrected_fitted"].values.squeeze()[0]
+    assert found["corrected_exponent"].item() == pytest.approx(1)
+    assert found["exponent"].item() != pytest.approx(1, abs=1e-3)
+    assert found["no_corrected_law"].item() == ""
 
 
 def test_too_few_loads_say_so(statistics):

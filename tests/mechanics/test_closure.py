@@ -1,21 +1,20 @@
-"""Bulk settlement, hyperbola and dilatancy."""
+"""Bulk settlement, closure curves and dilatancy."""
 
 import numpy as np
 import pytest
 import xarray as xr
-from ensembles import ensemble
 
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.mechanics.closure import (
     bulk_settlement,
     closure_curves,
     elastic_dilatancy,
-    fit_hyperbola,
 )
-from fractalcontact.mechanics.joint import describe_joint
+from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.load_curve import closure_at_force
 from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.states import combine
+from fractalcontact.mechanics.separation import prefractal_openings
+from fractalcontact.mechanics.states import OF_STATES, OFFSETS, combine
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen, window_sides
@@ -25,40 +24,6 @@ from fractalcontact.surface.synthesis import self_affine
 def test_bulk_settlement_of_a_square():
     exact = (4 * np.log(1 + np.sqrt(2)) - 4 / 3 * (np.sqrt(2) - 1)) / np.pi
     assert bulk_settlement(100.0, 1e4, 20, 20) == pytest.approx(exact * 100 / (1e4 * 20), rel=1e-12)
-
-
-def test_a_hyperbola_is_found_again_exactly():
-    w = np.linspace(0.01, 0.35, 8)
-    sigma = 30 * w / (1 - w / 0.4)
-    fit = fit_hyperbola(sigma, w)
-    assert (fit.k_ni, fit.w_m) == pytest.approx((30, 0.4), rel=1e-6)
-    assert fit.misfit < 1e-6
-    assert fit.reason == ""
-
-
-def test_the_intervals_hold_the_truth_in_95_of_100_draws():
-    rng = np.random.default_rng(1)
-    w = np.linspace(0.02, 0.35, 12)
-    sigma = 30 * w / (1 - w / 0.4)
-    draws = ensemble("fitted hyperbolas")
-    fits = [fit_hyperbola(sigma, w + rng.normal(0, 0.004, w.size)) for _ in range(draws)]
-    of_k = sum(fit.k_ni_low <= 30 <= fit.k_ni_high for fit in fits)
-    of_wm = sum(fit.w_m_low <= 0.4 <= fit.w_m_high for fit in fits)
-    # At most three standard deviations of the count below: 930 of 1000.
-    fewest = 0.95 * draws - 3 * np.sqrt(0.95 * 0.05 * draws)
-    assert min(of_k, of_wm) >= fewest, (of_k, of_wm)
-
-
-def test_a_straight_line_has_no_asymptote():
-    sigma = np.linspace(1, 10, 8)
-    fit = fit_hyperbola(sigma, sigma / 50 * (1 + 1e-3 * np.sin(sigma)))
-    assert np.isnan(fit.w_m) or fit.w_m_high > 2 * sigma.max() / 50
-
-
-def test_too_few_points_give_a_reason():
-    fit = fit_hyperbola([1, 2, 3], [0.1, 0.15, -1])
-    assert np.isnan(fit.k_ni)
-    assert "needed" in fit.reason
 
 
 def test_interface_compliance_is_what_the_bulk_leaves():
@@ -98,6 +63,91 @@ def test_flush_faces_do_not_close_nor_open():
     opened = elastic_dilatancy(curves, joint)["elastic_dilatancy"]
     assert (opened.isel(offset=0) == 0).all()
     assert (curves.isel(offset=1)["area_share"] < 1).all()
+
+
+def test_elastic_dilatancy_is_separation_and_bulk_settlement():
+    # Eq. 4 in its other form: what the highest node decides cancels.
+    _, joint, curves = slid_joint([0, 3, 6], loads=["0.1 MPa", "1 MPa", "10 MPa", "100 MPa"])
+    dilatancy = elastic_dilatancy(curves, joint)
+    other = dilatancy["separation"] + curves["bulk_settlement"]
+    difference = other - dilatancy["elastic_dilatancy"]
+    np.testing.assert_allclose(difference.isel(offset=slice(1, None)), 0, atol=1e-15)
+    # Flush faces have nothing to close: a punch settles less than its pressure spread evenly.
+    assert (difference.isel(offset=0) > 0).all()
+    assert (dilatancy["separation_error"] == curves["closure_error"].squeeze()).all()
+
+
+def test_separation_of_prefractals_is_counted_from_one_datum():
+    specimen, joint, curves = slid_joint([0, 3, 6], ["1 MPa", "10 MPa"], resolutions=[1, 2, 4])
+    openings = prefractal_openings(specimen, joint, [1, 2, 4])
+    for j, cells in enumerate((0, 3, 6)):
+        composite = composite_topography(specimen, "E", cells)
+        for k in (1, 2, 4):
+            highest = composite[::k, ::k].max()
+            assert openings.sel(resolution=k).values[0, j] == pytest.approx(highest, abs=1e-12)
+    again = closure_curves(states_of(curves), (4.8, 4.8), 2e4, openings=openings)
+    expected = openings.values[..., np.newaxis] - again["closure"]
+    np.testing.assert_allclose(again["separation"], expected)
+    # Without openings only the scan's own resolution has a separation.
+    assert np.isfinite(curves["separation"].sel(resolution=1)).all()
+    assert np.isnan(curves["separation"].sel(resolution=[2, 4])).all()
+    np.testing.assert_array_equal(
+        curves["separation"].sel(resolution=1), again["separation"].sel(resolution=1)
+    )
+
+
+def test_a_spike_moves_first_contact_but_not_separation_nor_seated_closure():
+    heights = self_affine((64, 64), 0.1, 0.8, seed=2, rms=0.1)
+    spiked = heights.copy()
+    spiked[20, 30] = heights.max() + 0.05
+    plain, other = (
+        curves_of(surface, [500, 1e3, 2e3, 5e3, 1e4]).squeeze() for surface in (heights, spiked)
+    )
+    moved = abs(other["interface_closure"] - plain["interface_closure"]).isel(normal_force=-1)
+    assert moved > 0.045
+    heavy = slice(3, None)
+    for name in ("seated_closure", "separation"):
+        change = abs(other[name] - plain[name]).isel(normal_force=heavy)
+        assert (change < 0.15 * moved).all(), name
+    assert (plain["separation"] < heights.max() - heights.mean()).all()
+    assert plain["separation"][0] > 0
+
+
+def test_seated_closure_begins_at_ten_nodes_or_where_the_study_says():
+    heights = self_affine((64, 64), 0.1, 0.8, seed=2, rms=0.1)
+    curves = curves_of(heights, [1, 30, 300, 1e3, 3e3])
+    curve = curves.squeeze()
+    assert curve["nodes"].values[0] < 10 <= curve["nodes"].values[2]
+    np.testing.assert_array_equal(curve["resolved"], curve["nodes"] >= 10)
+    first = int(np.argmax(curve["resolved"].values))
+    assert curve["seating_pressure"] == curve["nominal_pressure"][first]
+    assert np.isnan(curve["seated_closure"][:first]).all()
+    w = curve["interface_closure"].values
+    np.testing.assert_allclose(curve["seated_closure"][first:], w[first:] - w[first])
+    assert curve["seated_closure_error"][first] == 0
+    errors = curve["closure_error"].values
+    np.testing.assert_allclose(
+        curve["seated_closure_error"][first + 1 :], errors[first + 1 :] + errors[first]
+    )
+    stated = closure_curves(states_of(curves), (6.4, 6.4), 2e4, seating_force=1e3).squeeze()
+    assert stated["seating_pressure"].item() == pytest.approx(1e3 / 6.4**2)
+    np.testing.assert_allclose(stated["seated_closure"][3:], w[3:] - w[3])
+    assert np.isnan(stated["seated_closure"][:3]).all()
+
+
+def test_a_curve_without_resolved_states_is_not_seated():
+    curve = curves_of(self_affine((64, 64), 0.1, 0.8, seed=2, rms=0.1), [0.01, 0.02]).squeeze()
+    assert not curve["resolved"].any()
+    assert np.isnan(curve["seating_pressure"])
+    assert np.isnan(curve["seated_closure"]).all()
+
+
+def test_areas_are_fractions_of_the_window_and_flagged_where_few_nodes_touch():
+    curve = curves_of(self_affine((64, 64), 0.1, 0.8, seed=2, rms=0.1), [3, 300, 3e3]).squeeze()
+    np.testing.assert_allclose(curve["area_corrected_share"] * 6.4**2, curve["area_corrected"])
+    assert (curve["area_corrected_share"] < curve["area_share"]).all()
+    np.testing.assert_array_equal(curve["area_corrected_resolved"], curve["nodes"] >= 30)
+    assert 0 < curve["area_corrected_resolved"].sum() < 3
 
 
 def test_dilatancy_by_force_and_by_interpolation_agree_within_the_error_stated():
@@ -153,17 +203,25 @@ def curves_of(heights, forces):
     study = SETTINGS["defaults"] | {"opposite": "flat", "loads": [f"{f} N" for f in forces]}
     settings = resolve_settings(SETTINGS | {"defaults": study}, None, {}, "test")
     states = contact_states(JointLoading(specimen, "none", [0], settings, SOLVER), [1])
-    return closure_curves(combine([states]), window_sides(specimen), 2e4)
+    openings = prefractal_openings(specimen, describe_joint(specimen, settings), [1])
+    sides = window_sides(specimen)
+    return closure_curves(combine([states]), sides, 2e4, openings=openings)
 
 
-def slid_joint(cells, loads):
+def states_of(curves):
+    """The states that curves were computed from."""
+    return curves[[*OF_STATES, *OFFSETS]]
+
+
+def slid_joint(cells, loads, resolutions=(1,)):
     """A matching joint slid by some cells: specimen, joint and closure curves."""
     heights = self_affine((96, 96), 0.1, 0.8, seed=5, rms=0.15, roll_off=1.5)
     specimen = make_specimen(scan_of(heights), window=4.8, name="made")
     offsets = [f"{n * 0.1:g} mm" for n in cells]
     study = SETTINGS["defaults"] | {"offsets": offsets, "loads": loads}
+    study |= {"resolutions": list(resolutions)}
     settings = resolve_settings(SETTINGS | {"defaults": study}, None, {}, "test")
-    states = contact_states(JointLoading(specimen, "E", cells, settings, SOLVER), [1])
+    states = contact_states(JointLoading(specimen, "E", cells, settings, SOLVER), resolutions)
     curves = closure_curves(combine([states]), window_sides(specimen), 2e4)
     return specimen, describe_joint(specimen, settings), curves
 

@@ -68,9 +68,7 @@ def found_of(specimen, direction, cells, chosen, solver=SOLVER):
     """The test, with the strength of the parts as the stage before it has it."""
     no_dimension = (np.nan,) * 3
     loading = JointLoading(specimen, direction, cells, chosen, solver)
-    laws = joint_by_size(
-        window_states(loading), specimen, no_dimension, None, chosen["material"]
-    )
+    laws = joint_by_size(window_states(loading), specimen, no_dimension, None, chosen["material"])
     return size_test(loading, laws)
 
 

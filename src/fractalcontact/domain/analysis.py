@@ -9,6 +9,7 @@ from ..core.arrays import padded
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.ranges import within
+from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from .box_counts import window_sizes
 from .box_dimension import ESTIMATORS, dimension_of_domain, is_determined
 from .clusters import CLUSTER_FIELDS, cluster_statistics
@@ -249,7 +250,8 @@ def scaling_over_resolutions(
     Parameters
     ----------
     curves : xr.Dataset
-        With ``area`` over (direction, offset, resolution, normal_force).
+        With ``area``, ``area_corrected`` and ``nodes`` over (direction, offset, resolution,
+        normal_force).
     domains : xr.Dataset
         From :func:`analyse_domains`.
     spacing : float
@@ -262,13 +264,26 @@ def scaling_over_resolutions(
     xr.Dataset
         The renormalisation of :func:`domain.renormalisation.renormalisation` over (direction,
         offset, load), and both estimates of Delta_sigma with their difference; the box counts are
-        those at the scan's own resolution.
+        those at the scan's own resolution. ``delta_sigma_raw``, with its interval and ``_n``, is
+        that of the raw area; ``area``, ``area_corrected`` and ``nodes`` are those of the states.
+
+    Notes
+    -----
+    Areas are those corrected for the cells on their edge, at resolutions where `CORRECTED_NODES`
+    touch: the raw area exceeds the true one by a fraction that grows with the spacing, which lowers
+    Delta_sigma. Mixing both would put a step into the line where one takes over from the other. The
+    raw areas that are fitted are those of `RESOLVED_NODES` or more.
     """
     s = (curves["resolution"] * spacing).assign_attrs(cf_attrs("mm", "spacing s"))
-    area = curves["area"]
-    if fit_range is not None:
-        area = area.where(within(s, *fit_range))
-    result = renormalisation(s, area, curves["normal_force"])
+    inside = True if fit_range is None else within(s, *fit_range)
+    nodes, force = curves["nodes"].where(inside), curves["normal_force"]
+    result = renormalisation(s, curves["area_corrected"], force, nodes, CORRECTED_NODES)
+    raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES)
+    for ending in ("", "_low", "_high"):
+        result[f"delta_sigma_raw{ending}"] = raw[f"delta_sigma{ending}"]
+        words = f"{raw[f'delta_sigma{ending}'].attrs['long_name']}, by the raw area"
+        result[f"delta_sigma_raw{ending}"].attrs["long_name"] = words
+    result["delta_sigma_raw_n"] = raw["n"]
     finest = domains.sel(resolution=domains["resolution"].min())
     both = compare_dimensions(
         result["delta_sigma"],
@@ -280,5 +295,6 @@ def scaling_over_resolutions(
     )
     result = result.merge(both, compat="override", join="exact")
     result["spacing"] = s
-    result["area"] = curves["area"]
+    for name in ("area", "area_corrected", "nodes"):
+        result[name] = curves[name]
     return result.drop_vars([n for n in result.coords if n not in result.dims])

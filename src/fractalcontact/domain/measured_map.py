@@ -180,9 +180,9 @@ def _analysed(
     table = table.squeeze(["direction", "offset", "resolution"], drop=True)
     dimensions = table["delta_sigma"].values
     of_main = table[[*DOMAIN_FIELDS, "reason"]].isel(normal_force=main, drop=True)
-    nulls = null_models(
-        touching[[main]], spacing, mask=measured, whole_cells=whole_cells
-    ).squeeze("normal_force")
+    nulls = null_models(touching[[main]], spacing, mask=measured, whole_cells=whole_cells).squeeze(
+        "normal_force"
+    )
     nominal, shares = measured.sum() * np.prod(sides), touching.sum(axis=(1, 2)) / measured.sum()
     several = len(touching) > 1
     variables = {

@@ -37,7 +37,11 @@ class Trend(NamedTuple):
         """Whether it goes otherwise than that of as many random cells."""
         if not np.isfinite(self.departure.slope_low):
             return UNDETERMINED
-        return BEYOND_RANDOM if self.departure.slope_low * self.departure.slope_high > 0 else LIKE_RANDOM
+        return (
+            BEYOND_RANDOM
+            if self.departure.slope_low * self.departure.slope_high > 0
+            else LIKE_RANDOM
+        )
 
 
 def pressure_trend(pressure: ArrayLike, value: ArrayLike, random: ArrayLike) -> Trend:

@@ -17,7 +17,13 @@ RESOLUTION = "resolution"
 FEWEST_NODES = 4
 
 
-def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) -> xr.Dataset:
+def renormalisation(
+    s: xr.DataArray,
+    area: xr.DataArray,
+    force: xr.DataArray,
+    nodes: xr.DataArray | None = None,
+    fewest: int = FEWEST_NODES,
+) -> xr.Dataset:
     """Dimension and fractal measure of the contact domain from its area over resolutions.
 
     The real area of the pre-fractals follows A_n ~ s_n^(2 - Delta_sigma), so that
@@ -28,10 +34,14 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
     s : DataArray (resolution,)
         Spacings, mm.
     area : DataArray (resolution, ...)
-        Real contact area A_n, mm2. Areas of fewer than `FEWEST_NODES` nodes of s_n^2, and missing
-        ones, are left out.
+        Real contact area A_n, mm2. Areas of fewer than ``fewest`` nodes, and missing ones, are left
+        out.
     force : DataArray (...)
         Force F, N, on any of the other dimensions of `area`.
+    nodes : DataArray (resolution, ...), optional
+        N_n, where areas are corrected ones; by default A_n / s_n^2.
+    fewest : int
+        Nodes that a domain needs to count.
 
     Returns
     -------
@@ -44,7 +54,7 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
 
     Notes
     -----
-    N_n = A_n / s_n^2 is a whole number. One node more or less of one, two or three would change the
+    N_n is a whole number. One node more or less of one, two or three would change the
     slope over a doubling of s by 1, 0.6 or 0.4: such domains are too small to have a dimension (a
     single node at every resolution would give exactly 0). From `FEWEST_NODES` = 4 on it is 0.3.
 
@@ -61,12 +71,14 @@ def renormalisation(s: xr.DataArray, area: xr.DataArray, force: xr.DataArray) ->
         raise ValueError(f"spacings must be positive, not {s.values}")
     if (area < 0).any():
         raise ValueError(f"a contact area cannot be negative: {float(area.min())} mm2")
-    touching = area.where(area >= (FEWEST_NODES - 1e-6) * s**2)
+    nodes = area / s**2 if nodes is None else nodes
+    touching = area.where(nodes >= fewest - 1e-6)
     slope, low, high, n, r2 = xr.apply_ufunc(
         _area_exponent,
         np.log(s),
         np.log(touching),
-        input_core_dims=[[RESOLUTION], [RESOLUTION]],
+        nodes,
+        input_core_dims=[[RESOLUTION]] * 3,
         output_core_dims=[[]] * 5,
         vectorize=True,
     )
@@ -112,21 +124,21 @@ def _described(values, words) -> xr.Dataset:
     return result
 
 
-def _area_exponent(log_s: np.ndarray, log_area: np.ndarray) -> tuple[float, ...]:
+def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> tuple[float, ...]:
     """Slope of log A over log s with its interval, resolutions fitted and r2."""
     line = fit_line(log_s, log_area)
     if np.isnan(line.slope):
         return np.nan, np.nan, np.nan, float(line.n), np.nan
-    half = max(line.slope_high - line.slope, _counting_error(log_s, log_area))
+    half = max(line.slope_high - line.slope, _counting_error(log_s, log_area, nodes))
     return line.slope, line.slope - half, line.slope + half, float(line.n), line.r2
 
 
-def _counting_error(log_s: np.ndarray, log_area: np.ndarray) -> float:
+def _counting_error(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> float:
     """Half of the interval of the slope if each N varies as sqrt(N), hence log N as 1/sqrt(N)."""
     counted = np.isfinite(log_area)
-    nodes = np.exp(log_area - 2 * log_s)[counted]
     dx = log_s[counted] - log_s[counted].mean()
-    return special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(np.sum(dx**2 / nodes)) / np.sum(dx**2)
+    weighted = np.sum(dx**2 / nodes[counted])
+    return special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(weighted) / np.sum(dx**2)
 
 
 def hausdorff_measure(s: Any, area: Any, delta_sigma: Any) -> Any:

@@ -1,17 +1,15 @@
 """Real contact area: its correction for the grid, its power law, and the theories beside it."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.datasets import labelled
 from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.intervals import INTERVAL, mean_interval
 from ..core.labels import cf_attrs
+from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..roughness.dimension import slope_statistics
-from . import theory
+from .area_theories import FLUSH, add_theories
 from .joint import composite_topography, direction_spacing, offsets_of
 from .states import error_attrs
 
@@ -19,21 +17,21 @@ from .states import error_attrs
 #: staircase perimeter. Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161.
 EDGE_EXCESS = (np.pi - 1 + np.log(2)) / 24
 
-#: Contact of fewer nodes is not resolved, and not fitted: one node more or less is 10 % of it.
-RESOLVED_NODES = 10
-
 #: Light load, on which the theories' straight lines are compared: largest p / (E* h'_rms).
 LIGHT_LOAD = 0.02
-
-#: Faces whose composite topography is less steep than this are flush: the rest is rounding.
-FLUSH = 1e-9
 
 #: What is kept of a composite topography, by its name in :func:`slope_statistics`.
 STATISTICS = ("rms_height", "rms_slope", "m0", "m2", "m4")
 
 #: kappa of the raw and of the corrected area.
-AREA_SLOPE = "area slope kappa = (A_r/A_0) E* h'_rms / p"
+AREA_SLOPE = "area slope kappa = (A_r/A_0) E* h'_rms / sigma_0"
 CORRECTED_AREA_SLOPE = "area slope kappa, corrected area"
+
+#: Raw and corrected area: prefix of names, name, nodes that it needs, words.
+_AREAS = (
+    ("", "area", RESOLVED_NODES, AREA_SLOPE),
+    ("corrected_", "area_corrected", CORRECTED_NODES, CORRECTED_AREA_SLOPE),
+)
 
 #: Why there is no law of the area.
 FULL_CONTACT = "the faces touch everywhere at every load"
@@ -195,20 +193,24 @@ def area_laws(
     -----
     Flush faces have no slope: kappa and all theories are NaN, and full contact is no law. The
     interval of a mean kappa is over loads on one surface; other surfaces scatter more (see
-    :mod:`experiments.area_slope`).
+    :mod:`experiments.area_slope`). Fits and means take states of `RESOLVED_NODES` nodes or more,
+    those of the corrected area of `CORRECTED_NODES`.
     """
     finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
     finest, statistics = xr.align(finest, statistics, join="exact")
     spacing = statistics.attrs["spacing_y"], statistics.attrs["spacing_x"]
     # Fraction of the window that a node covers.
     node = np.prod(spacing) * finest["nominal_pressure"] / finest["normal_force"]
-    touching = finest["area_share"] > (RESOLVED_NODES - 0.5) * node
     result = statistics.copy()
-    result["fitted"] = touching & (finest["area_share"] < 1 - 0.5 * node)
-    result["fitted"].attrs = cf_attrs("1", "load used in the fits of area against force")
+    for prefix, name, fewest, _ in _AREAS:
+        words = name.replace("_", ", ")
+        share = finest["area_share"]
+        fitted = (share > (fewest - 0.5) * node) & (share < 1 - 0.5 * node)
+        attrs = cf_attrs("1", f"{fewest} nodes touch, not all: load used in fits of the {words}")
+        result[f"{prefix}fitted"] = fitted.assign_attrs(attrs)
     _add_laws(result, finest)
-    _add_kappa(result, finest, e_star, touching)
-    _add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
+    _add_kappa(result, finest, e_star, node)
+    add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
     return result.transpose("direction", "offset", "normal_force", ...)
 
 
@@ -243,8 +245,8 @@ def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
     """Power laws of raw and corrected area, departure from linearity, reasons for none."""
     dims = ("direction", "offset")
     force = np.log(curves["normal_force"].values)
-    fitted = result["fitted"].transpose(*dims, "normal_force").values
-    for prefix, name in (("", "area"), ("corrected_", "area_corrected")):
+    for prefix, name, *_ in _AREAS:
+        fitted = result[f"{prefix}fitted"].transpose(*dims, "normal_force").values
         area = np.log(curves[name].transpose(*dims, "normal_force").where(fitted).values)
         lines = np.empty(area.shape[:2], object)
         for index in np.ndindex(lines.shape):
@@ -255,11 +257,10 @@ def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
             kind = ", corrected area" if prefix else ""
             result[prefix + key] = (dims, values, cf_attrs(units, words + kind))
     _add_departure(result, curves)
-    result["no_law"] = (
-        dims,
-        _reasons_for_no_law(result, curves),
-        cf_attrs("1", "why there is no law of the area"),
-    )
+    for prefix, name, fewest, _ in _AREAS:
+        words = f"why there is no law of the {name.replace('_', ', ')}"
+        reasons = _reasons_for_no_law(result, curves, prefix, fewest)
+        result[f"no_{prefix}law"] = dims, reasons, cf_attrs("1", words)
 
 
 def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
@@ -279,42 +280,41 @@ def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
     result["departure_error"] = error.assign_attrs(error_attrs(result["departure"].attrs))
 
 
-def _reasons_for_no_law(result: xr.Dataset, curves: xr.Dataset) -> np.ndarray:
+def _reasons_for_no_law(
+    result: xr.Dataset, curves: xr.Dataset, prefix: str, fewest: int
+) -> np.ndarray:
     """Why a curve has no law of the area, (direction, offset); empty where it has one."""
     full = (curves["area_share"] > 0.5).all("normal_force") & ~result["fitted"].any("normal_force")
-    n = result["n"].values.astype(int)
+    n = result[f"{prefix}n"].values.astype(int)
     reasons = [
-        "" if loads >= FEWEST_POINTS else FULL_CONTACT if whole else _too_few(loads)
+        "" if loads >= FEWEST_POINTS else FULL_CONTACT if whole else _too_few(loads, fewest)
         for loads, whole in zip(n.ravel(), full.values.ravel(), strict=True)
     ]
     return np.array(reasons).reshape(n.shape)
 
 
-def _too_few(n: int) -> str:
-    return f"{n} of {FEWEST_POINTS} loads with {RESOLVED_NODES} nodes in contact, but not all"
+def _too_few(n: int, fewest: int) -> str:
+    return f"{n} of {FEWEST_POINTS} loads with {fewest} nodes in contact, but not all"
 
 
-def _add_kappa(
-    result: xr.Dataset, curves: xr.Dataset, e_star: float, touching: xr.DataArray
-) -> None:
-    """kappa of A/A0 = kappa p / (E* h'_rms), raw and corrected, and its mean at light load."""
+def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.DataArray) -> None:
+    """kappa of A/A0 = kappa sigma_0 / (E* h'_rms), raw and corrected, and its mean at light load.
+
+    ``node`` is the fraction of the window that one node covers.
+    """
     slope = result["rms_slope"].where(result["rms_slope"] > FLUSH)
     reduced = curves["nominal_pressure"] / (e_star * slope)
-    result["reduced_pressure"] = reduced.assign_attrs(cf_attrs("1", "p / (E* h'_rms)"))
-    light = touching & (reduced <= LIGHT_LOAD)
-    result["light"] = light.assign_attrs(
-        cf_attrs("1", f"{RESOLVED_NODES} nodes or more touch and p / (E* h'_rms) <= {LIGHT_LOAD:g}")
-    )
+    result["reduced_pressure"] = reduced.assign_attrs(cf_attrs("1", "sigma_0 / (E* h'_rms)"))
     nominal = curves["normal_force"] / curves["nominal_pressure"]
-    for prefix, name, words in (
-        ("", "area", AREA_SLOPE),
-        ("corrected_", "area_corrected", CORRECTED_AREA_SLOPE),
-    ):
+    for prefix, name, fewest, words in _AREAS:
         attrs = cf_attrs("1", words)
         kappa = curves[name] / nominal / reduced
         error = curves[f"{name}_error"] / nominal / reduced
         result[f"{prefix}kappa"] = kappa.assign_attrs(attrs)
         result[f"{prefix}kappa_error"] = error.assign_attrs(error_attrs(attrs))
+        light = (curves["area_share"] > (fewest - 0.5) * node) & (reduced <= LIGHT_LOAD)
+        condition = f"{fewest} nodes in contact at sigma_0 / (E* h'_rms) <= {LIGHT_LOAD:g}"
+        result[f"{prefix}light"] = light.assign_attrs(cf_attrs("1", condition))
         means = xr.apply_ufunc(
             lambda values: mean_interval(values, axis=-1)[:3],
             kappa.where(light),
@@ -324,82 +324,11 @@ def _add_kappa(
         for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
             text = f"mean of {words}, at light load{of_end}"
             result[f"{prefix}mean_kappa{ending}"] = mean.assign_attrs(cf_attrs("1", text))
-    result["mean_kappa_n"] = light.sum("normal_force").assign_attrs(
-        cf_attrs("1", "loads in the mean")
-    )
-    reason = xr.where(
-        np.isnan(slope),
-        "the faces are flush and have no slope",
-        f"no load with p / (E* h'_rms) <= {LIGHT_LOAD:g} and {RESOLVED_NODES} nodes in contact",
-    )
-    reason = xr.where(result["mean_kappa_n"] > 0, "", reason)
-    result["no_mean_kappa"] = reason.assign_attrs(cf_attrs("1", "why there is no mean of kappa"))
-
-
-#: What the theories make of every composite topography: unit, long name.
-_OF_THEORIES = {
-    "summit_density": ("mm-2", "summits per area"),
-    "summit_radius": ("mm", "mean radius R of the summits"),
-    "summit_deviation": ("mm", "standard deviation sigma_s of summit heights"),
-    "fractal_scale": ("mm", "Majumdar and Bhushan's G, from S at one cell's lag"),
-    "persson_share": ("1", "A_r/A_0 by Persson"),
-    "bush_gibson_thomas_share": ("1", "A_r/A_0 by Bush, Gibson and Thomas"),
-    "greenwood_williamson_share": ("1", "A_r/A_0 by Greenwood-Williamson"),
-    "majumdar_bhushan_share": ("1", "A_r/A_0 by Majumdar and Bhushan"),
-}
-
-#: What they say whatever the topography.
-_EXPONENTS = {
-    "profile_dimension": ((), "1", "D = Delta_g - 1 of the profiles"),
-    "majumdar_bhushan_exponent": (
-        (),
-        "1",
-        "exponent 2/(3-D) of area against force by Majumdar and Bhushan",
-    ),
-    "no_majumdar_bhushan": ((), "1", "why there is no area by Majumdar and Bhushan"),
-    "archard_exponent": (
-        "archard_level",
-        "1",
-        "exponent 1 - 3^-n of area against force by Archard",
-    ),
-    "archard_level": ("archard_level", "1", "generations n of spheres upon spheres"),
-}
-
-
-def _add_theories(
-    result: xr.Dataset, curves: xr.Dataset, e_star: float, dimension: float, spacing: float
-) -> None:
-    """Asperities and fractal parameters of the surface, and the areas the theories make of them."""
-    rough = result.where(result["rms_slope"] > FLUSH)
-    force, pressure = curves["normal_force"], curves["nominal_pressure"]
-    nominal, slope = force / pressure, rough["rms_slope"]
-    summits = theory.asperities(rough["m0"], rough["m2"], rough["m4"])
-    deviation = result["m0"].copy(data=summits.height_deviation)
-    profile = float(dimension) - 1
-    scale = theory.roughness_scale(rough["m2"] * spacing**2, spacing, profile)
-    greenwood = theory.greenwood_williamson_area(force, e_star, summits.radius, deviation)
-    majumdar = theory.majumdar_bhushan_area(force, e_star, profile, scale)
-    values: dict[str, Any] = {
-        "summit_density": summits.density,
-        "summit_radius": summits.radius,
-        "summit_deviation": deviation,
-        "fractal_scale": scale,
-        "persson_share": theory.persson_area(pressure, e_star, slope),
-        "bush_gibson_thomas_share": theory.linear_area(
-            pressure, e_star, slope, theory.BUSH_GIBSON_THOMAS_KAPPA
-        ),
-        "greenwood_williamson_share": greenwood / nominal,
-        "majumdar_bhushan_share": majumdar / nominal,
-    }
-    for name, words in _OF_THEORIES.items():
-        result[name] = values[name].assign_attrs(cf_attrs(*words))
-    levels = np.arange(1, 4)
-    exponents = {
-        "profile_dimension": profile,
-        "majumdar_bhushan_exponent": 2 / (3 - profile) if 1 < profile < 1.5 else np.nan,
-        "no_majumdar_bhushan": theory.no_majumdar_bhushan(profile),
-        "archard_exponent": theory.archard_exponent(levels),
-        "archard_level": levels,
-    }
-    result.update(labelled(_EXPONENTS, exponents))
-    result.attrs |= {"e_star": float(e_star)} | theory.KAPPA_ATTRS
+        n = light.sum("normal_force")
+        result[f"{prefix}mean_kappa_n"] = n.assign_attrs(cf_attrs("1", "loads in the mean"))
+        reason = xr.where(
+            np.isnan(slope), "the faces are flush and have no slope", f"no load with {condition}"
+        )
+        result[f"no_{prefix}mean_kappa"] = xr.where(n > 0, "", reason).assign_attrs(
+            cf_attrs("1", f"why there is no mean of {words.split(' = ')[0]}")
+        )

@@ -1,23 +1,21 @@
 """Closure and dilatancy of the joint from its contact states (paper, sect. 5)."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL, t_quantile
+from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
-from ..core.ranges import within
+from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..elastic.halfspace import rectangle_mean_displacement
-from .area import RESOLVED_NODES
+from .closure_laws import add_closure_laws
 from .load_curve import left_out_misses
+from .separation import add_seated_closure, add_separation
 from .states import OF_STATES, OFFSETS, error_attrs
 from .theory import Numbers
-
-#: Points a hyperbola of two parameters needs before its interval means anything.
-FEWEST_HYPERBOLA_POINTS = 4
 
 
 def bulk_settlement(force: ArrayLike, e_star: float, side_y: float, side_x: float) -> np.ndarray:
@@ -63,94 +61,16 @@ def interface_closure(closure: Numbers, settlement: Numbers, flush: Any = False)
     return np.where(flush, 0.0, closing)
 
 
-class Hyperbola(NamedTuple):
-    """sigma = k_ni w / (1 - w/w_m) (Bandis et al. 1983), with 95 % intervals.
-
-    ``misfit`` is the rms of the residual closure as a fraction of the largest closure fitted;
-    ``reason`` says why there is no fit, else it is empty.
-    """
-
-    k_ni: float
-    k_ni_low: float
-    k_ni_high: float
-    w_m: float
-    w_m_low: float
-    w_m_high: float
-    misfit: float
-    n: int
-    reason: str
-
-
-def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
-    """Fit the closure hyperbola, least squares in the closure.
-
-    Parameters
-    ----------
-    pressure : (n,) array_like
-        Nominal pressure sigma, MPa.
-    closure : (n,) array_like
-        Interface closure w_int, mm.
-
-    Returns
-    -------
-    Hyperbola
-        k_ni in MPa/mm, w_m in mm. NaN, with a reason, where the curve cannot be a hyperbola.
-
-    Notes
-    -----
-    Solved for w the law reads w = sigma w_m / (k_ni w_m + sigma). Both parameters are positive, so
-    the fit and its Student-t interval are made in their logarithms.
-    """
-    from scipy import optimize
-
-    sigma, w = np.asarray(pressure, float), np.asarray(closure, float)
-    usable = np.isfinite(sigma) & np.isfinite(w) & (sigma > 0) & (w > 0)
-    sigma, w = sigma[usable], w[usable]
-    if sigma.size < FEWEST_HYPERBOLA_POINTS:
-        return _no_hyperbola(
-            sigma.size, f"{sigma.size} points with w_int > 0, {FEWEST_HYPERBOLA_POINTS} needed"
-        )
-
-    def law(sigma, log_k, log_wm):
-        k, w_m = np.exp([log_k, log_wm])
-        return sigma * w_m / (k * w_m + sigma)
-
-    guess = np.log([2 * sigma[0] / w[0], 1.2 * w.max()])
-    try:
-        best, covariance = optimize.curve_fit(law, sigma, w, p0=guess, maxfev=5000)
-    except RuntimeError:
-        return _no_hyperbola(sigma.size, "the least-squares fit did not converge")
-    misfit = float(np.sqrt(np.mean((law(sigma, *best) - w) ** 2)) / w.max())
-    half = t_quantile(sigma.size - 2) * np.sqrt(np.diag(covariance))
-    if not np.isfinite(half).all() or half.max() > np.log(100):
-        return _no_hyperbola(sigma.size, "the points do not bend enough to show an asymptote")
-    low, high = np.exp(best - half), np.exp(best + half)
-    k_ni, w_m = np.exp(best)
-    return Hyperbola(
-        k_ni=float(k_ni),
-        k_ni_low=float(low[0]),
-        k_ni_high=float(high[0]),
-        w_m=float(w_m),
-        w_m_low=float(low[1]),
-        w_m_high=float(high[1]),
-        misfit=misfit,
-        n=sigma.size,
-        reason="",
-    )
-
-
-def _no_hyperbola(n: int, reason: str) -> Hyperbola:
-    nan = np.nan
-    return Hyperbola(nan, nan, nan, nan, nan, nan, nan, n, reason)
-
-
 def closure_curves(
     states: xr.Dataset,
     window: tuple[float, float],
     e_star: float,
     fit_range: tuple[float, float] | None = None,
+    *,
+    openings: xr.DataArray | None = None,
+    seating_force: float | None = None,
 ) -> xr.Dataset:
-    """Closure of the interface at the scan's own resolution, and its hyperbola.
+    """Closure curves of the interface, and the laws that they follow.
 
     Parameters
     ----------
@@ -161,23 +81,31 @@ def closure_curves(
     e_star : float
         E*, MPa.
     fit_range : (float, float), optional
-        Smallest and largest force of the fit, N; all by default.
+        Smallest and largest force of the fits, N; all by default.
+    openings : xr.DataArray, optional
+        From :func:`mechanics.separation.prefractal_openings`.
+    seating_force : float, optional
+        As of :func:`mechanics.separation.add_seated_closure`.
 
     Returns
     -------
     xr.Dataset
         ``bulk_settlement`` and ``nominal_pressure`` (normal_force); ``interface_closure``,
-        ``interface_stiffness``, ``conductance``, ``area_share``, each with an ``_error``,
-        ``closure_spacing_error`` and the numbers of the states over (direction, offset, resolution,
-        load); the fits over (direction, offset, resolution); what
-        :data:`mechanics.states.OFFSETS` names over (direction, offset).
+        ``separation``, ``seated_closure``, ``interface_stiffness``, ``conductance``,
+        ``area_share``, ``area_corrected_share``, each with an ``_error``, ``resolved``,
+        ``area_corrected_resolved``, ``closure_spacing_error`` and the numbers of the states over
+        (direction, offset, resolution, load); ``seating_pressure``, ``prefractal_opening`` and the
+        fits of :func:`mechanics.closure_laws.add_closure_laws` over (direction, offset,
+        resolution); what :data:`mechanics.states.OFFSETS` names over (direction, offset).
     """
     area = window[0] * window[1]
     result = states[[*OF_STATES, *OFFSETS]].copy()
     _add_interface(result, bulk_settlement(states["normal_force"].values, e_star, *window), area)
     _add_conductance(result, e_star)
     _add_errors(result, area, e_star)
-    _add_hyperbolas(result, fit_range)
+    add_separation(result, openings)
+    add_seated_closure(result, seating_force)
+    add_closure_laws(result, fit_range)
     return result
 
 
@@ -186,39 +114,39 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     order = curves["closure"].dims
     force = curves["normal_force"].values
     curves["bulk_settlement"] = ("normal_force", settlement, cf_attrs("mm", "bulk settlement w_b"))
-    curves["nominal_pressure"] = ("normal_force", force / area, cf_attrs("MPa", "F / A_0"))
+    curves["nominal_pressure"] = (
+        "normal_force",
+        force / area,
+        cf_attrs("MPa", "nominal pressure sigma_0 = F / A_0"),
+    )
     flush = curves["composite_spread"] == 0
     closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
     curves["interface_closure"] = closing.transpose(*order)
     curves["interface_closure"].attrs = cf_attrs("mm", "interface closure w_int = w - w_b")
-    curves["area_share"] = curves["area"] / area
-    curves["area_share"].attrs = cf_attrs("1", "real contact area A_r / A_0")
+    for name, words in (
+        ("area", "real contact area A_r / A_0"),
+        ("area_corrected", "real contact area A_r / A_0, corrected for the perimeter"),
+    ):
+        curves[f"{name}_share"] = curves[name] / area
+        curves[f"{name}_share"].attrs = cf_attrs("1", words)
+    for name, fewest, words in (
+        ("resolved", RESOLVED_NODES, "{} nodes or more touch, else no fit takes the state"),
+        (
+            "area_corrected_resolved",
+            CORRECTED_NODES,
+            "{} nodes touch, enough for the correction",
+        ),
+    ):
+        curves[name] = curves["nodes"] >= fewest
+        curves[name].attrs = cf_attrs("1", words.format(fewest))
     stiffness = interface_stiffness(
         curves["stiffness"] / area, curves["nominal_pressure"] / curves["bulk_settlement"]
     ).where(~flush)
     curves["interface_stiffness"] = stiffness.transpose(*order)
     curves["interface_stiffness"].attrs = cf_attrs(
-        "MPa/mm", "stiffness of the interface d sigma / d w_int; none where faces are flush"
+        "MPa/mm",
+        "tangent stiffness d sigma_0 / d w_int of the interface; none if flush",
     )
-
-
-def _add_hyperbolas(curves: xr.Dataset, fit_range: tuple[float, float] | None) -> None:
-    """The hyperbola of every closure curve, into ``curves``."""
-    force = curves["normal_force"].values
-    fitted = within(force, *(fit_range or (force.min(), force.max())))
-    dims = ("direction", "offset", "resolution")
-    fits = np.empty([curves.sizes[dim] for dim in dims], object)
-    closures = curves["interface_closure"].transpose(*dims, "normal_force").values
-    for index in np.ndindex(fits.shape):
-        fits[index] = fit_hyperbola(
-            curves["nominal_pressure"].values[fitted], closures[index][fitted]
-        )
-    for name, units, words in HYPERBOLA_FIELDS:
-        kind = str if name == "reason" else float
-        values = np.array([getattr(fit, name) for fit in fits.flat], kind).reshape(fits.shape)
-        curves[f"hyperbola_{name}"] = (dims, values, cf_attrs(units, words))
-    curves.attrs["hyperbola_force_low"] = float(force[fitted].min(initial=np.inf))
-    curves.attrs["hyperbola_force_high"] = float(force[fitted].max(initial=-np.inf))
 
 
 def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
@@ -228,6 +156,7 @@ def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
     errors = {
         "interface_closure": curves["closure_error"],
         "area_share": curves["area_error"] / area,
+        "area_corrected_share": curves["area_corrected_error"] / area,
         "interface_stiffness": stiffness,
         "conductance": stiffness / e_star,
     }
@@ -258,13 +187,13 @@ def interface_stiffness(total: xr.DataArray, bulk: xr.DataArray) -> xr.DataArray
     Parameters
     ----------
     total, bulk : xr.DataArray
-        d sigma / dw and sigma / w_b, MPa/mm.
+        d sigma_0 / dw and sigma_0 / w_b, MPa/mm.
 
     Returns
     -------
     xr.DataArray
-        d sigma / d w_int, MPa/mm; NaN where the whole is not more compliant than the bulk (contact
-        so full that it answers like a punch).
+        d sigma_0 / d w_int, MPa/mm; NaN where the whole is not more compliant than the bulk
+        (contact so full that it answers like a punch).
     """
     compliance = 1 / total - 1 / bulk
     return 1 / compliance.where(compliance > 0)
@@ -274,7 +203,8 @@ def _add_conductance(curves: xr.Dataset, e_star: float) -> None:
     """Conductance of the interface and its power of the pressure, into ``curves``.
 
     Barber (Proc. R. Soc. A 459 (2003) 53): 1/R = 2/(E* (rho_1 + rho_2)) dF/dw. Two blocks of one
-    conductivity k = 1/rho, thermal or electrical, give h_c = k/E* d sigma/d w_int per nominal area.
+    conductivity k = 1/rho, thermal or electrical, give h_c = k/E* d sigma_0/d w_int per nominal
+    area.
     Loads at which fewer than `RESOLVED_NODES` touch are not fitted: they act on single cells.
     """
     curves["conductance"] = curves["interface_stiffness"] / e_star
@@ -284,7 +214,7 @@ def _add_conductance(curves: xr.Dataset, e_star: float) -> None:
     dims = ("direction", "offset", "resolution")
     log_pressure = np.log(curves["nominal_pressure"].values)
     with np.errstate(divide="ignore"):
-        resolved = curves["conductance"].where(curves["nodes"] >= RESOLVED_NODES)
+        resolved = curves["conductance"].where(curves["resolved"])
         log_conductance = np.log(resolved.transpose(*dims, "normal_force").values)
     shape = log_conductance.shape[:-1]
     fits = [fit_line(log_pressure, row) for row in log_conductance.reshape(-1, len(log_pressure))]
@@ -296,20 +226,6 @@ def _add_conductance(curves: xr.Dataset, e_star: float) -> None:
         values = np.exp([getattr(fit, field) for fit in fits]).reshape(shape)
         words = f"{name}est pressure of that fit"
         curves[f"conductance_pressure_{name}"] = (dims, values, cf_attrs("MPa", words))
-
-
-#: What is kept of each hyperbola: field, unit, long name.
-HYPERBOLA_FIELDS = (
-    ("k_ni", "MPa/mm", "initial normal stiffness k_ni"),
-    ("k_ni_low", "MPa/mm", "initial normal stiffness, lower end of the 95 % interval"),
-    ("k_ni_high", "MPa/mm", "initial normal stiffness, upper end of the 95 % interval"),
-    ("w_m", "mm", "largest closure w_m, the asymptote"),
-    ("w_m_low", "mm", "largest closure, lower end of the 95 % interval"),
-    ("w_m_high", "mm", "largest closure, upper end of the 95 % interval"),
-    ("misfit", "1", "rms misfit as a fraction of the largest closure fitted"),
-    ("n", "1", "points fitted"),
-    ("reason", "1", "why there is no fit"),
-)
 
 
 def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
@@ -325,25 +241,35 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        Rigid dilatancy over (direction, rigid_offset); ``elastic_dilatancy`` and ``left_out_error``
-        over (contact_direction, offset, normal_force), the latter what interpolating the closure
-        curve at this force gives wrong when its own state is left out; ``offset_made`` over
-        (contact_direction, offset).
+        Rigid dilatancy over (direction, rigid_offset); ``elastic_dilatancy``, ``separation`` and
+        ``left_out_error`` over (contact_direction, offset, normal_force), the latter what
+        interpolating the closure curve at this force gives wrong when its own state is left out;
+        ``offset_made`` over (contact_direction, offset).
+
+    Notes
+    -----
+    delta_r and w_int both hang on the highest node, which cancels in their difference: with the
+    separation of the mean planes u = delta_r - w and the bulk settlement w_b it is
+    delta = u + w_b, but for flush faces, whose w_int is 0, and for a surface against a plane,
+    whose u is counted from its mean plane.
     """
     result = joint[["rigid_dilatancy", "composite_rms"]].copy()
     finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
     finest = finest.rename(direction="contact_direction")
     # The opening at the cells whose contact was solved: that of `joint` is at the first direction's
     # offsets, from which those of the others differ where cells are not square.
-    elastic = finest["rigid_opening"] - finest["interface_closure"]
+    slides = finest["contact_direction"] != "none"
+    opening = finest["prefractal_opening"].where(slides).fillna(finest["rigid_opening"])
+    elastic = opening - finest["interface_closure"]
     result["elastic_dilatancy"] = elastic.transpose("contact_direction", "offset", "normal_force")
     result["elastic_dilatancy"].attrs = cf_attrs("mm", "elastic dilatancy delta = delta_r - w_int")
+    for name in ("separation", "separation_error"):
+        result[name] = finest[name].transpose(*result["elastic_dilatancy"].dims)
     misses = left_out_misses(finest["normal_force"].values, finest["closure"], finest["stiffness"])
     result["left_out_error"] = abs(misses).transpose(*result["elastic_dilatancy"].dims)
     result["left_out_error"].attrs = cf_attrs(
         "mm", "error of delta when interpolated from the states at the loads beside this one"
     )
-    # Openings of rigid faces are read off the heights: they have no solver error.
     error = finest["closure_error"].transpose(*result["elastic_dilatancy"].dims)
     result["elastic_dilatancy_error"] = error
     result["elastic_dilatancy_error"].attrs = error_attrs(cf_attrs("mm", "elastic dilatancy"))

@@ -31,7 +31,10 @@ def numbers_of(state: ContactState) -> dict[str, Any]:
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
         "perimeter": contact_perimeter(state.in_contact, spacing),
-        "area_corrected": corrected_area(state.in_contact, spacing),
+        # No less than what carries the force at the largest pressure, if there is one.
+        "area_corrected": max(
+            float(corrected_area(state.in_contact, spacing)), state.force / state.hardness
+        ),
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
     return of_domain | of_state | state_errors(state)

@@ -1,7 +1,6 @@
 """How sigma_z, closure, compliance and strength go with the side b of a joint (eq. 2, sect. 5)."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr

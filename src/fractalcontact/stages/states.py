@@ -11,7 +11,15 @@ from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
 from ..mechanics.contact_fields import contact_fields
 from ..mechanics.plan import solve_plan
-from ..mechanics.states import combine, domains_of, force_range, map_states, with_pressure
+from ..mechanics.separation import prefractal_openings
+from ..mechanics.states import (
+    combine,
+    domains_of,
+    force_range,
+    forces_of,
+    map_states,
+    with_pressure,
+)
 from ..mechanics.strength import joint_strength
 from ..roughness.dimension import best_dimension
 from ..surface.specimen import cell_side, nominal_area, window_sides
@@ -55,6 +63,10 @@ def state_stages(
         window_sides(specimens),
         e_star,
         force_range(settings["hyperbola_range"], specimens),
+        openings=prefractal_openings(
+            specimens, joints, [int(k) for k in states["resolution"].values]
+        ),
+        seating_force=_seating_force(settings, specimens),
     )
     dilatancy = elastic_dilatancy(curves, joints)
     laws = area_laws(
@@ -88,3 +100,9 @@ def state_stages(
         stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)
     area = nominal_area(specimens)
     return {name: with_pressure(stage, area) for name, stage in stages.items()}
+
+
+def _seating_force(settings: Mapping, specimen: xr.Dataset) -> float | None:
+    """Force from which closure is seated, N; None where the study leaves it to the states."""
+    seating = settings["seating_load"]
+    return None if seating is None else float(forces_of([seating], nominal_area(specimen))[0])

@@ -71,11 +71,14 @@ def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source
         "map_load": stated.chosen_loads("map_load", loads)[-1],
         "map_offset": None,
         "hyperbola_range": None,
+        "seating_load": None,
     }
     for key in ("surface_range", "box_range", "scaling_range"):
         settings[key] = stated.lengths(key)
     if stated.get("hyperbola_range", "auto") != "auto":
         settings["hyperbola_range"] = stated.loads("hyperbola_range")
+    if "seating_load" in stated:
+        settings["seating_load"] = stated.chosen_loads("seating_load", loads)[0]
     if "window_centre" in stated:
         settings["window_centre"] = stated.lengths("window_centre")
     if "map_offset" in stated and not flat:

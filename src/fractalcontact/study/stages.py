@@ -232,6 +232,7 @@ SETTINGS_READ = {
         "contact_directions",
         "dilatancy_loads",
         "map_load",
+        "seating_load",
         "surface_range",
         "hyperbola_range",
         "box_range",

@@ -241,7 +241,7 @@ def _prepare(panels, slides):
         spread.set_yscale("log", nonpositive="mask")
     opened.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
     spread.set_ylabel(r"spread of the composite $\sigma_z$ (mm)")
-    ratio.set_ylabel(r"$\delta_r/\sigma_z$ (–)")
+    ratio.set_ylabel(r"$\delta_r/\sigma_z$ (1)")
     for axes, which, title in zip(panels, "abc", ("dilatancy", "spread", "ratio"), strict=True):
         letter(axes, which, title)
 

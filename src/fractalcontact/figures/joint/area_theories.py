@@ -22,7 +22,7 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
-from ..kit.words import estimate, number, opening, place, short
+from ..kit.words import NOMINAL_PRESSURE, estimate, number, opening, place, short
 
 TITLE = "Real contact area compared with the classical theories of section 2"
 SUBJECT = "specimen"
@@ -74,8 +74,9 @@ def _drawn_offset(settings, laws):
 def _draw_area(axes, curve, law):
     pressure = curve["nominal_pressure"].values
     points = {"ls": "none", "marker": "o", "color": COLOURS[0], "zorder": 3}
-    corrected = _share_corrected(curve)
-    axes.plot(pressure, 100 * corrected, label="computed, corrected", **points)
+    enough = curve["area_corrected_resolved"].values
+    corrected = 100 * curve["area_corrected_share"].values
+    axes.plot(pressure[enough], corrected[enough], label="computed, corrected", **points)
     axes.plot(pressure, 100 * curve["area_share"], mfc="none", label="computed, raw", **points)
     for variable, words, colour, line in THEORIES:
         share = law[variable].values
@@ -88,12 +89,8 @@ def _draw_area(axes, curve, law):
     _draw_slopes(axes, law["archard_exponent"].values, law["archard_level"].values)
     for axis in (axes.xaxis, axes.yaxis):
         label_short_span(axis)
-    axes.set_xlabel("nominal pressure $p$ (MPa)")
+    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel("real contact area $A_r/A_0$ (%)")
-
-
-def _share_corrected(curve):
-    return (curve["area_corrected"] / curve["area"] * curve["area_share"]).values
 
 
 def _draw_slopes(axes, exponents, levels):
@@ -152,13 +149,13 @@ def _draw_kappa(axes, laws, law):
     if not law["fitted"].any():
         axes.text(0.5, 0.5, _no_points(law), transform=axes.transAxes, ha="center", fontsize=7)
     axes.set_ylim(bottom=0)
-    axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
-    axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/p$ (1)")
+    axes.set_xlabel(r"reduced pressure $\sigma_0/(E^* h'_\mathrm{rms})$ (1)")
+    axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/\sigma_0$ (1)")
 
 
 def _touching(law, name):
     """Reduced pressure and one kappa at the loads whose contact has enough nodes."""
-    fitted = law["fitted"].values
+    fitted = law["corrected_fitted" if name.startswith("corrected") else "fitted"].values
     return law["reduced_pressure"].values[fitted], law[name].values[fitted]
 
 
@@ -168,12 +165,12 @@ def _no_points(law):
 
 def _kappa_words(law):
     """Entries of the legend that state the mean kappas."""
-    if str(law["no_mean_kappa"].values):
-        return [heading("no mean at light load")]
-    return [
+    words = [
         heading(f"mean at light load, {words}: {_mean(law, prefix)}")
         for prefix, words in (("corrected_", "corrected"), ("", "raw"))
+        if not str(law[f"no_{prefix}mean_kappa"].values)
     ]
+    return words or [heading("no mean at light load")]
 
 
 def _mean(law, prefix):
@@ -189,11 +186,12 @@ def _table(curve, law):
         "nominal_pressure_MPa": curve["nominal_pressure"].values,
         "reduced_pressure": law["reduced_pressure"].values,
         "area_share": curve["area_share"].values,
-        "corrected_share": _share_corrected(curve),
+        "corrected_share": curve["area_corrected_share"].values,
         "kappa": law["kappa"].values,
         "corrected_kappa": law["corrected_kappa"].values,
         "fitted": law["fitted"].values,
-        "light": law["light"].values,
+        "corrected_fitted": law["corrected_fitted"].values,
+        "light": law["corrected_light"].values,
     }
     return pd.DataFrame(columns | {name: law[name].values for name, *_ in THEORIES})
 
@@ -207,11 +205,11 @@ def _caption(label, where, law):
 
 def _law_words(law):
     """The exponent of the area, beside the paper's linear law and Archard's levels."""
-    reason = str(law["no_law"].values)
+    reason = str(law["no_corrected_law"].values)
     if reason:
         return f"No power law could be fitted ({reason})."
-    low, high = float(law["exponent_low"]), float(law["exponent_high"])
-    fit = estimate(float(law["exponent"]), low, high)
+    low, high = (float(law[f"corrected_exponent_{end}"]) for end in ("low", "high"))
+    fit = estimate(float(law["corrected_exponent"]), low, high)
     levels = [
         f"{level}"
         for level, exponent in zip(
@@ -221,14 +219,13 @@ def _law_words(law):
     ]
     linear = "includes" if low <= 1 <= high else "leaves out"
     archard = f"Archard's level {', '.join(levels)}" if levels else "none of Archard's levels"
-    return (
-        f"A_r ~ F^m, m = {fit} over {int(law['n'])} loads, {linear} the paper's 1, fits {archard}."
-    )
+    loads = f"{law['corrected_n']:.0f} loads"
+    return f"A_r ~ F^m, m = {fit} over {loads}, {linear} the paper's 1, fits {archard}."
 
 
 def _between_words(law):
     """Where the mean kappa lies between the theories."""
-    reason = str(law["no_mean_kappa"].values)
+    reason = str(law["no_corrected_mean_kappa"].values)
     if reason:
         return f"There is no kappa at light load: {reason}."
     value = float(law["corrected_mean_kappa"])

@@ -22,7 +22,7 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
-from ..kit.words import TOWARDS, force_label, opening, place, short
+from ..kit.words import TOWARDS, force_label, opening, place, pressure_label, short
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
 SUBJECT = "joint"
@@ -45,6 +45,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     direction = str(curves["direction"].values)
     shown = dilatancy_loads(curves["normal_force"].values, settings, specimen)
     closures = _closure_table(curves, shown)
+    seat = _common_seat(curves)
 
     figure = Figure(figsize=(WIDTH, 7.4))
     correlation, closed, compliance = figure.subplots(
@@ -57,16 +58,30 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     offset_axis(compliance, curves["offset"].values)
     for upper in (correlation, closed):
         upper.set_xlabel("")
-    legends_below(figure, entries(correlation), entries(closed))
+    legends_below(figure, entries(correlation), entries(compliance))
     headline(figure, settings["label"])
     judged = group(atlas, "statements", name)
-    caption = _caption(settings["label"], direction, joint, judged)
+    caption = _caption(settings["label"], direction, joint, judged, seat)
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
 
+def _common_seat(curves):
+    """Place among the loads of the pressure from which closure is seated at every offset, or None.
+
+    Closures are comparable from one pressure on: that at which enough nodes touch at all offsets.
+    """
+    seats = curves["seating_pressure"].values
+    if not np.isfinite(seats).any():
+        return None
+    return int(np.argmin(abs(curves["nominal_pressure"].values - np.nanmax(seats))))
+
+
 def _closure_table(curves, shown):
     """Closure and compliance of the interface, load by load."""
+    seat = _common_seat(curves)
+    at_seat = np.nan if seat is None else curves["interface_closure"].isel(normal_force=seat)
+    pressure = np.nan if seat is None else float(curves["nominal_pressure"][seat])
     rows = [
         pd.DataFrame(
             {
@@ -74,7 +89,11 @@ def _closure_table(curves, shown):
                 "direction": str(curves["direction"].values),
                 "force_N": float(curves["normal_force"][j]),
                 "offset_mm": curves["offset"].values,
+                "nodes": curves["nodes"][:, j].values,
+                "resolved": curves["resolved"][:, j].values,
                 "interface_closure_mm": curves["interface_closure"][:, j].values,
+                "seating_pressure_MPa": pressure,
+                "seated_closure_mm": (curves["interface_closure"][:, j] - at_seat).values,
                 "interface_compliance_mm_per_MPa": 1 / curves["interface_stiffness"][:, j].values,
             }
         )
@@ -132,26 +151,38 @@ def _draw_correlation(axes, joint):
             -limit, limit, color="0.88", zorder=0, lw=0, label="what chance alone explains, 95 %"
         )
     axes.set_ylim(top=1.05)
-    axes.set_ylabel("correlation of the faces (–)")
+    axes.set_ylabel("correlation of the faces (1)")
     letter(axes, "a", "correlation of the faces (dotted: uncorrelated offset)")
 
 
 def _draw_closures(closed, compliance, table):
+    """Closure from the seating pressure and from first touch, and compliance, load by load."""
+    pressure = table["seating_pressure_MPa"].iloc[0]
     for n, (force, points) in enumerate(table.groupby("force_N")):
-        style = {
-            "color": colour_of(n + 1),
-            "marker": MARKERS[n % len(MARKERS)],
-            "ls": LINES[n % 4],
-            "label": f"$F$ = {force_label(force)}",
-        }
-        closed.plot(points["offset_mm"], points["interface_closure_mm"], **style)
-        compliance.plot(points["offset_mm"], points["interface_compliance_mm_per_MPa"], **style)
+        style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
+        line = {"ls": LINES[n % 4], "label": f"$F$ = {force_label(force)}"}
+        v, few = points["offset_mm"], ~points["resolved"]
+        if (points["seated_closure_mm"] > 0).any():
+            closed.plot(v, points["seated_closure_mm"], **style, ls=LINES[n % 4])
+        closed.plot(v, points["interface_closure_mm"], **style, mfc="none", ms=3, lw=0.5)
+        compliance.plot(v, points["interface_compliance_mm_per_MPa"], **style, **line)
+        hollow = points[few]
+        compliance.plot(
+            hollow["offset_mm"],
+            hollow["interface_compliance_mm_per_MPa"],
+            **style,
+            mfc="white",
+            ls="none",
+        )
     closed.set_ylim(bottom=min(0, table["interface_closure_mm"].min()))
     closed.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
     compliance.set_yscale("log")
-    compliance.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma$ (mm/MPa)")
+    compliance.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)")
     direction = place(table["direction"].iloc[0])
-    letter(closed, "b", f"closure of the interface, {direction}")
+    seated = f"from {pressure_label(pressure)} on (hollow: from first touch)"
+    if not np.isfinite(pressure):
+        seated = "from first touch"
+    letter(closed, "b", f"closure {seated}, {direction}")
     letter(compliance, "c", f"compliance of the interface, {direction}")
 
 
@@ -175,17 +206,17 @@ def _ends_of_correlation(joint, direction):
     return float(along["correlation_length"]), float(along["uncorrelated_offset"])
 
 
-def _caption(label, direction, joint, judged):
+def _caption(label, direction, joint, judged, seat):
     ends = _ends_of_correlation(joint, direction)
     verdicts = [judged["verdict"].sel(statement=name).item() for name in STAGES]
     verdicts = ["undetermined" if verdict == UNKNOWN else verdict for verdict in verdicts]
+    kinds = "," if seat is None else ", seated and from first touch,"
     return (
-        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the faces, "
-        f"(b) closure and (c) compliance of the interface. "
-        f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))} The paper: "
-        f"more compliant with v at first ({verdicts[0]}), then overlapping curves ({verdicts[1]}), "
-        f"then more compliant again ({verdicts[2]}) at "
-        f"{force_label(judged.attrs['force'])}."
+        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the faces: "
+        f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))}; "
+        f"(b) closure{kinds} (c) compliance of the interface. The paper: more compliant with v at "
+        f"first ({verdicts[0]}), then overlapping curves ({verdicts[1]}), then more compliant "
+        f"again ({verdicts[2]}) at {force_label(judged.attrs['force'])}."
     )
 
 
@@ -193,7 +224,7 @@ def _correlation_words(ends, decidable):
     """Where the correlation of the faces has fallen to 1/e, and where it is lost."""
     length, uncorrelated = ends
     if not np.isfinite(length):
-        return "The correlation does not fall to 1/e."
+        return "it does not fall to 1/e"
     lost = (
         f"lost from {short(uncorrelated)} mm"
         if np.isfinite(uncorrelated)
@@ -201,4 +232,4 @@ def _correlation_words(ends, decidable):
         if decidable
         else "the window too small to see it lost"
     )
-    return f"The correlation is 1/e at v = {short(length)} mm, {lost}."
+    return f"1/e at v = {short(length)} mm, {lost}"

@@ -5,6 +5,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.ranges import within
+from ...core.resolved import RESOLVED_NODES
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -19,7 +21,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.words import estimate, place, short, supplementary
+from ..kit.words import NOMINAL_PRESSURE, estimate, place, short, supplementary
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"
 SUBJECT = "specimen"
@@ -49,16 +51,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes.set_xscale("log")
     axes.set_yscale("log")
     _draw_theory(axes, table)
-    axes.set_xlabel("nominal pressure $p$ (MPa)")
+    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel("conductance per conductivity $h_c/k$ (mm$^{-1}$)")
     functions = (lambda y: y * e_star, lambda y: y / e_star)
     axes.secondary_yaxis("right", functions=functions).set_ylabel(
-        r"interface stiffness $\mathrm{d}\sigma/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
+        r"interface stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
     )
     n = table["offset_mm"].nunique()
     remarks = entries(axes)[n:]
     if not table["fitted"].all():
-        remarks.append(heading("hollow: not fitted"))
+        remarks.append(heading(f"hollow: not fitted (fewer than {RESOLVED_NODES} nodes)"))
     legends_below(figure, entries(axes)[:n], remarks)
     headline(figure, settings["label"], place(direction))
     return Drawing(figure, table, _caption(settings["label"], direction, table))
@@ -72,7 +74,7 @@ def _table(curves):
         pressure = curve["nominal_pressure"].values
         low, high = (float(curve[f"conductance_pressure_{end}"]) for end in ("low", "high"))
         conductance = curve["conductance"].values
-        inside = (pressure >= low * (1 - 1e-9)) & (pressure <= high * (1 + 1e-9))
+        inside = within(pressure, low, high) & curve["resolved"].values
         rows.append(
             pd.DataFrame(
                 {
@@ -122,11 +124,12 @@ def _draw_curve(axes, n, state, points):
 
 
 def _draw_theory(axes, table):
-    """The slopes of the theories, through the middle of the points and behind them."""
+    """The slopes of the theories, through the middle of the points fitted and behind them."""
     known = table[np.isfinite(table["conductance_per_mm"])]
     if known.empty:
         return
-    p, h = (np.log(known[key]) for key in ("nominal_pressure_MPa", "conductance_per_mm"))
+    middle = known[known["fitted"]] if known["fitted"].any() else known
+    p, h = (np.log(middle[key]) for key in ("nominal_pressure_MPa", "conductance_per_mm"))
     ends = np.array([p.min(), p.mean(), p.max()])
     for slope, name in zip(
         THEORY, (f"slopes {THEORY[0]:g} and {THEORY[1]:g} of theory", None), strict=True

@@ -45,8 +45,6 @@ class Estimate:
         """Delta_sigma under the i-th load in words."""
         if self.reason[i]:
             return self.reason[i]
-        if not self.determined[i]:
-            return "undetermined"
         return interval(self.value[i], self.low[i], self.high[i])
 
     @property
@@ -58,9 +56,8 @@ class Estimate:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
         if self.reason[i]:
             return self.reason[i].split(":")[0]
-        if not self.determined[i]:
-            return r"$\Delta_\sigma$ undetermined"
-        return rf"$\Delta_\sigma$ = {self.text(i)}"
+        text = self.text(i)
+        return rf"$\Delta_\sigma$ {text}" if text == UNDETERMINED else rf"$\Delta_\sigma$ = {text}"
 
     @property
     def style(self) -> dict:

@@ -22,6 +22,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure, FigureBase, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
+from numpy.typing import ArrayLike
 from xarray import DataTree
 
 from ...core.atomic import atomic_write
@@ -29,6 +30,7 @@ from ...core.labels import printable
 from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
 from .ticks import keep_labels, plain_ticks
+from .words import force_unit
 
 #: Okabe and Ito's colours, distinguished by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
@@ -173,6 +175,25 @@ def nearest_load(loads: np.ndarray, wanted: tuple, specimen: xr.Dataset) -> int:
 def dilatancy_loads(loads: np.ndarray, settings: dict, specimen: xr.Dataset) -> list[int]:
     """Indices of the forces in N that a study's dilatancy is asked for, ascending."""
     return sorted({nearest_load(loads, wanted, specimen) for wanted in settings["dilatancy_loads"]})
+
+
+def force_axis(axis: Axis, forces: ArrayLike) -> float:
+    """Label an axis of normal forces, in the unit that suits the loads of the study.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+    forces : (n,) array_like
+        All loads of the study, N, so that every figure of a specimen has the same unit.
+
+    Returns
+    -------
+    float
+        How many N the unit is: forces are drawn divided by it.
+    """
+    unit, size = force_unit(float(np.max(forces)))
+    axis.set_label_text(f"normal force $F$ ({unit})")
+    return size
 
 
 def offset_axis(axes: Axes, offsets: np.ndarray) -> None:

@@ -3,12 +3,25 @@
 import textwrap
 
 import numpy as np
+import xarray as xr
 
+from ...core.determined import determined
 from ...core.fitting import LineFit
+from ...domain.box_dimension import WIDEST
 
 PAPER = "Borri-Brunetto et al. (1999)"
 
+#: Names and symbols of the two pressures wherever a figure has them (docs/conventions.md).
+NOMINAL_PRESSURE = r"nominal pressure $\sigma_0$"
+REAL_PRESSURE = r"real mean pressure $\sigma_n$"
+
 TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
+
+#: Stands for a number whose interval leaves nearly everything open.
+UNDETERMINED = "undetermined"
+
+#: Intervals up to this wide are narrow whatever the value: exponents and slopes, and angles.
+_SPANS = {"": 1.0, "mm/mm": 1.0, "degrees": 30.0}
 
 #: Units of force and how many N they are, the largest first.
 _FORCE_UNITS = (("GN", 1e9), ("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
@@ -49,15 +62,29 @@ def percent(share: float, sign: str = "") -> str:
     return f"{short(100 * share, 3 if 0.99 < abs(share) < 1 else 2, sign)} %"
 
 
+def area_label(state: xr.Dataset) -> str:
+    """A_r/A_0 of one state in per cent: corrected where enough nodes touch, else said to be raw."""
+    if bool(state["area_corrected_resolved"]):
+        return percent(float(state["area_corrected_share"]))
+    return f"{percent(float(state['area_share']))} (raw)"
+
+
 def interval(value: float, low: float, high: float) -> str:
-    """A dimension, or a slope, with its 95 % interval: two decimals."""
+    """A dimension, or its like, with its 95 % interval: two decimals, or "undetermined"."""
+    if not determined(value, low, high, span=1.0, widest=WIDEST, exact=(0.0, 2.0)):
+        return UNDETERMINED
     return f"{number(value)} [{number(low)}, {number(high)}]"
 
 
 def estimate(value: float, low: float, high: float, unit: str = "") -> str:
-    """A quantity of any size with its 95 % interval: three digits; "no fit" if it is NaN."""
+    """A quantity of any size with its 95 % interval: three digits.
+
+    "no fit" if it is NaN, "undetermined" where the interval leaves nearly everything open.
+    """
     if not np.isfinite(value):
         return "no fit"
+    if not determined(value, low, high, span=_SPANS.get(unit, 0.0)):
+        return UNDETERMINED
     return f"{value:.3g} [{low:.3g}, {high:.3g}] {unit}".rstrip()
 
 
@@ -83,6 +110,12 @@ def force_label(force: float) -> str:
     """A force in N in the unit that suits it: three digits, no exponent."""
     name, size = force_unit(force)
     return f"{short(force / size)} {name}"
+
+
+def pressure_label(pressure: float) -> str:
+    """A pressure in MPa, or in GPa from one on: three digits."""
+    giga = float(f"{pressure:.3g}") >= 1000
+    return f"{short(pressure / 1000)} GPa" if giga else f"{short(pressure)} MPa"
 
 
 def wrapped(text: str) -> str:

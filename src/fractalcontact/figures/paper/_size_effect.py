@@ -29,7 +29,7 @@ def fractal_pressure(scaling: xr.Dataset, key: str, delta: float) -> float:
         In N mm^-delta.
     """
     # sigma_n was kept at the resolutions that were fitted, and no others.
-    fitted = scaling["area"].where(np.isfinite(scaling["sigma_n"]))
+    fitted = scaling["area_corrected"].where(np.isfinite(scaling["sigma_n"]))
     area = fitted if key == "area" else scaling["area"].sel(resolution=[scaling.resolution.min()])
     measure = hausdorff_measure(scaling["spacing"], area, delta)
     return float(scaling["normal_force"] / np.exp(np.log(measure).mean(RESOLUTION)))

@@ -1,38 +1,45 @@
-"""Closure curves with their hyperbolas, and real contact area against force (Figs. 4 and 5)."""
+"""Closure curves with their laws, real contact area and stiffness (Figs. 4 and 5)."""
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
-from ...core.fitting import fit_line
-from ...surface.specimen import nominal_area
+from ...mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
+from ...mechanics.states import chosen_offset
+from ...surface.specimen import cell_side, nominal_area
 from ..kit.drawing import (
     LINES,
     MARKERS,
     WIDTH,
     Drawing,
     colour_of,
+    dilatancy_loads,
     entries,
     finest_curves,
+    force_axis,
     group,
     headline,
+    label_short_span,
     legends_below,
     letter,
+    nearest_load,
     settings_of,
     spread,
 )
 from ..kit.words import (
+    NOMINAL_PRESSURE,
     estimate,
     force_label,
-    force_unit,
     opening,
     percent,
     place,
     short,
 )
 
-TITLE = "Figs. 4 and 5: closure curves with their hyperbolas, and real contact area against force"
+TITLE = "Figs. 4 and 5: closure curves with their laws, real contact area, and stiffness"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "area")
 ORDER = 50
@@ -45,73 +52,111 @@ NEARLY = 0.1
 #: An asymptote beyond this many times the largest closure is stated, not drawn.
 FARTHEST_ASYMPTOTE = 1.5
 
+#: Marker of raw areas, and of states of too few nodes: open, and smaller than the others.
+_OPEN = {"mfc": "none", "ms": 3, "mew": 0.6}
+
 
 def draw(atlas: DataTree, name: str) -> Drawing:
-    """Closure and contact area at about five offsets, at the finest resolution."""
-    label = settings_of(atlas, name)["label"]
+    """Closure and contact area at about five offsets, and stiffness over the spacing at one."""
+    settings = settings_of(atlas, name)
     specimen = group(atlas, "specimens", name)
     curves = finest_curves(atlas, name)
     direction = str(curves["direction"].values)
     laws = group(atlas, "area", name).sel(direction=direction)
     drawn = spread(curves.sizes["offset"], CURVES)
+    stiffness = _stiffness_table(
+        group(atlas, "closure", name).sel(direction=direction), settings, specimen
+    )
 
-    figure = Figure(figsize=(WIDTH, 4.2))
-    left, right = figure.subplots(1, 2)
-    _draw_closure(left, curves, drawn, direction, nominal_area(specimen))
-    _draw_area(right, curves, drawn, direction, laws, nominal_area(specimen))
-    legends_below(figure, entries(left), entries(right))
-    letter(left, "a", "closure")
-    letter(right, "b", "real contact area (hollow: not fitted)")
-    headline(figure, label, place(direction))
-    caption = _caption(label, direction, curves, laws, drawn)
-    return Drawing(figure, _table(curves, drawn, laws), caption)
+    figure = Figure(figsize=(WIDTH, 6.8))
+    panels = figure.subplot_mosaic("ab;cc", height_ratios=[1.6, 1])
+    area = nominal_area(specimen)
+    _draw_closure(panels["a"], curves, drawn, direction, area)
+    _draw_area(panels["b"], curves, drawn, direction, laws, area)
+    _draw_stiffness(panels["c"], stiffness)
+    legends_below(figure, entries(panels["a"]), entries(panels["b"]))
+    letter(panels["a"], "a", "closure (hollow: fewer than 10 nodes)")
+    letter(panels["b"], "b", "real contact area (filled: corrected, hollow: raw)")
+    letter(panels["c"], "c", f"stiffness over the spacing, {_state(direction, stiffness)}")
+    headline(figure, settings["label"], place(direction))
+    caption = _caption(settings["label"], direction, curves, laws, stiffness)
+    table = [_table(curves, drawn, laws), stiffness.assign(panel="c")]
+    return Drawing(figure, pd.concat(table, ignore_index=True), caption)
+
+
+# -- closure ---------------------------------------------------------------------------------------
 
 
 def _hyperbola(curve, pressure):
-    """w_int in mm of the fitted hyperbola sigma = k_ni w / (1 - w / w_m)."""
+    """w_int in mm of the fitted hyperbola sigma_0 = k_ni w / (1 - w / w_m)."""
     k_ni, w_m = float(curve["hyperbola_k_ni"]), float(curve["hyperbola_w_m"])
     return pressure * w_m / (k_ni * w_m + pressure)
 
 
+def _semi_logarithmic(curve, pressure):
+    """w_int in mm of the fitted law w = a + b ln(sigma_0 / 1 MPa)."""
+    a, b = (float(curve[f"semi_logarithmic_{name}"]) for name in "ab")
+    return a + b * np.log(pressure)
+
+
 def _draw_closure(axes, curves, drawn, direction, area):
-    unit, size = force_unit(curves["normal_force"].max())
-    high = float(curves["nominal_pressure"][-1])
-    pressure = np.linspace(0, high, 200)
-    largest = float(curves["interface_closure"].isel(offset=drawn).max())
-    limit = largest
+    size = force_axis(axes.yaxis, curves["normal_force"])
+    largest = limit = float(curves["interface_closure"].isel(offset=drawn).max())
     for n, i in enumerate(drawn):
         curve = curves.isel(offset=i)
-        w_m = float(curve["hyperbola_w_m"])
-        fit = (
-            f"$w_m$ = {_asymptote(curve)}"
-            if np.isfinite(w_m)
-            else f"no fit: {curve['hyperbola_reason'].item()}"
-        )
         style = {"color": colour_of(n)}
-        axes.plot(
-            curve["interface_closure"],
-            curve["normal_force"] / size,
-            MARKERS[n],
-            label=f"{_state(direction, float(curve['offset']))}: {fit}",
-            **style,
-        )
-        if not np.isfinite(w_m):
-            continue
-        axes.plot(_hyperbola(curve, pressure), pressure * area / size, lw=0.7, **style)
-        if w_m <= FARTHEST_ASYMPTOTE * largest:
+        force, resolved = curve["normal_force"].values / size, curve["resolved"].values
+        w = curve["interface_closure"].values
+        label = f"{_offset(direction, float(curve['offset']))}: {_law_words(curve)}"
+        axes.plot(w[resolved], force[resolved], MARKERS[n], label=label, **style)
+        axes.plot(w[~resolved], force[~resolved], MARKERS[n], **style, **_OPEN)
+        _draw_laws(axes, curve, area, size, style)
+        w_m = float(curve["hyperbola_w_m"])
+        asymptotic = curve["closure_law"].item() in (HYPERBOLA, UNDECIDED)
+        if asymptotic and w_m <= FARTHEST_ASYMPTOTE * largest:
             axes.axvline(w_m, ls=":", lw=0.8, **style)
             limit = max(limit, w_m)
     axes.set_xlim(0, 1.05 * limit)
-    axes.set_ylim(0, 1.05 * high * area / size)
+    axes.set_ylim(0, 1.05 * float(curves["normal_force"][-1]) / size)
     axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
-    axes.set_ylabel(f"normal force $F$ ({unit})")
-    second = _second_axis(axes, size / area)
-    second.set_ylabel("nominal pressure $F/A_0$ (MPa)")
+    _second_axis(axes, size / area).set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
 
 
-def _state(direction, offset):
+def _draw_laws(axes, curve, area, size, style):
+    """Both laws over the loads that they were fitted to, the better one in full."""
+    ends = [float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max")]
+    for law, of in ((HYPERBOLA, _hyperbola), (SEMI_LOGARITHMIC, _semi_logarithmic)):
+        prefix = law.replace("-", "_")
+        misfits = [float(curve[f"{of}_misfit"]) for of in ("hyperbola", "semi_logarithmic")]
+        if not np.isfinite(misfits[0 if law == HYPERBOLA else 1]):
+            continue
+        pressure = np.geomspace(*ends, 100)
+        better = float(curve[f"{prefix}_misfit"]) == np.nanmin(misfits)
+        line = {"lw": 0.9} if better else {"lw": 0.7, "ls": (0, (4, 3))}
+        axes.plot(of(curve, pressure), pressure * area / size, **line, **style)
+
+
+def _law_words(curve):
+    """The law named, and the misfits of both."""
+    misfits = [
+        f"{words} {percent(float(curve[f'{prefix}_misfit']))}"
+        for words, prefix in (("semi-log", "semi_logarithmic"), ("hyperbola", "hyperbola"))
+        if np.isfinite(float(curve[f"{prefix}_misfit"]))
+    ]
+    return f"misfit {', '.join(misfits)}" if misfits else f"no fit: {_no_law(curve)}"
+
+
+def _no_law(curve):
+    return str(curve["closure_law_reason"].values)
+
+
+def _offset(direction, offset):
     """One of the states of a legend."""
     return "against a plane" if direction == "none" else f"$v$ = {short(offset)} mm"
+
+
+def _state(direction, stiffness):
+    return _offset(direction, stiffness["offset_mm"].iloc[0])
 
 
 def _second_axis(axes, factor):
@@ -119,120 +164,218 @@ def _second_axis(axes, factor):
     return axes.secondary_yaxis("right", functions=(lambda y: y * factor, lambda y: y / factor))
 
 
-def _asymptote(curve):
-    ends = (float(curve[f"hyperbola_w_m{end}"]) for end in ("", "_low", "_high"))
-    return estimate(*ends, "mm")
+# -- area ------------------------------------------------------------------------------------------
 
 
 def _draw_area(axes, curves, drawn, direction, laws, area):
-    unit, size = force_unit(curves["normal_force"].max())
+    size = force_axis(axes.xaxis, curves["normal_force"])
     force = curves["normal_force"].values
     for n, i in enumerate(drawn):
-        law = laws.isel(offset=i)
-        fitted = law["fitted"].values
-        share = 100 * curves["area_share"].values[i]
-        offset = float(curves["offset"][i])
-        known = np.isfinite(float(law["exponent"]))
-        exponent = f"exponent {_exponent(law)}" if known else f"no fit: {int(law['n'])} loads"
+        law, curve = laws.isel(offset=i), curves.isel(offset=i)
+        enough = curve["area_corrected_resolved"].values
+        known = np.isfinite(float(law["corrected_exponent"]))
+        words = f"exponent {_exponent(law)}" if known else f"no fit: {law['corrected_n']:.0f} loads"
         style = {"color": colour_of(n), "ls": "none", "marker": MARKERS[n]}
         axes.plot(
-            force[fitted] / size,
-            share[fitted],
-            label=f"{_state(direction, offset)}: {exponent}",
+            force[enough] / size,
+            100 * curve["area_corrected_share"].values[enough],
+            label=f"{_offset(direction, float(curve['offset']))}: {words}",
             **style,
         )
-        axes.plot(force[~fitted] / size, share[~fitted], mfc="none", **style)
+        axes.plot(force / size, 100 * curve["area_share"].values, **style, **_OPEN)
         if known:
-            ends = np.array([float(law["force_low"]), float(law["force_high"])])
-            line = 100 * float(law["unit_area"]) * ends ** float(law["exponent"]) / area
+            ends = np.array([float(law[f"corrected_force_{end}"]) for end in ("low", "high")])
+            unit = float(law["corrected_unit_area"])
+            line = 100 * unit * ends ** float(law["corrected_exponent"]) / area
             axes.plot(ends / size, line, color=colour_of(n), lw=0.7, ls=LINES[n % 4])
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlabel(f"normal force $F$ ({unit})")
     axes.set_ylabel("real contact area $A_r/A_0$ (%)")
-    second = _second_axis(axes, area / 100)
-    second.set_ylabel("$A_r$ (mm$^2$)")
+    _second_axis(axes, area / 100).set_ylabel("$A_r$ (mm$^2$)")
 
 
 def _exponent(law):
-    return estimate(*(float(law[f"exponent{end}"]) for end in ("", "_low", "_high")))
+    return estimate(*(float(law[f"corrected_exponent{end}"]) for end in ("", "_low", "_high")))
+
+
+# -- stiffness -------------------------------------------------------------------------------------
+
+
+def _stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) -> pd.DataFrame:
+    """Tangent stiffness at the loads asked for, and k_ni, at every resolution of one offset."""
+    curves = curves.sel(offset=chosen_offset(settings["map_offset"], curves["offset"].values))
+    forces = curves["normal_force"].values
+    mapped = nearest_load(forces, settings["map_load"], specimen)
+    loads = sorted({*dilatancy_loads(forces, settings, specimen), mapped})
+    rows = []
+    for k in np.sort(curves["resolution"].values):
+        curve = curves.sel(resolution=k)
+        row = {"spacing_mm": k * cell_side(specimen), "offset_mm": float(curve["offset"])}
+        ends = {end: float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")}
+        quantity = {"quantity": "k_ni, extrapolated to zero load", "resolved": True}
+        columns = {f"stiffness{end}_MPa_per_mm": value for end, value in ends.items()}
+        rows.append(row | quantity | columns)
+        rows += [
+            row
+            | {
+                "quantity": "tangent",
+                "force_N": forces[j],
+                "nominal_pressure_MPa": float(curve["nominal_pressure"][j]),
+                "stiffness_MPa_per_mm": float(curve["interface_stiffness"][j]),
+                "resolved": bool(curve["resolved"][j]),
+                "map_load": j == mapped,
+            }
+            for j in loads
+        ]
+    return pd.DataFrame(rows)
+
+
+def _draw_stiffness(axes, table):
+    known = table.dropna(subset="stiffness_MPa_per_mm")
+    tangent = known[known["quantity"] == "tangent"]
+    for n, (force, points) in enumerate(tangent.groupby("force_N")):
+        style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
+        axes.plot(
+            points["spacing_mm"],
+            points["stiffness_MPa_per_mm"],
+            ls="-",
+            label=f"tangent, $F$ = {force_label(force)}",
+            **style,
+        )
+        few = points[~points["resolved"]]
+        axes.plot(few["spacing_mm"], few["stiffness_MPa_per_mm"], ls="none", mfc="white", **style)
+    initial = known[known["quantity"] != "tangent"]
+    if len(initial):
+        value = initial["stiffness_MPa_per_mm"].values
+        ends = [initial[f"stiffness_{end}_MPa_per_mm"].values for end in ("low", "high")]
+        axes.errorbar(
+            initial["spacing_mm"],
+            value,
+            yerr=np.maximum([value - ends[0], ends[1] - value], 0),
+            color=colour_of(0),
+            marker="D",
+            mfc="white",
+            ls="--",
+            lw=0.8,
+            capsize=2,
+            label="$k_{ni}$, extrapolated to $F$ = 0",
+        )
+    axes.set_xscale("log")
+    if len(known):
+        axes.set_yscale("log")
+        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
+    else:
+        axes.text(0.5, 0.5, "faces flush, or contact full", transform=axes.transAxes, ha="center")
+    axes.set_xlabel("spacing $s$ (mm)")
+    axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
+    label_short_span(axes.yaxis)
+    spacings = table["spacing_mm"].unique()
+    axes.set_xticks(spacings, [short(s) for s in spacings])
+    axes.xaxis.set_minor_locator(NullLocator())
+
+
+# -- table and caption -----------------------------------------------------------------------------
 
 
 def _table(curves, drawn, laws):
-    """Points drawn, with the numbers fitted to their curve."""
+    """Points drawn in (a) and (b), with the numbers fitted to their curve."""
+    points = {
+        "force_N": "normal_force",
+        "nominal_pressure_MPa": "nominal_pressure",
+        "nodes": "nodes",
+        "resolved": "resolved",
+        "interface_closure_mm": "interface_closure",
+        "seated_closure_mm": "seated_closure",
+        "separation_mm": "separation",
+        "interface_stiffness_MPa_per_mm": "interface_stiffness",
+        "area_mm2": "area",
+        "area_share": "area_share",
+        "area_corrected_mm2": "area_corrected",
+        "area_corrected_share": "area_corrected_share",
+        "area_corrected_resolved": "area_corrected_resolved",
+    }
+    fitted = {
+        "seating_pressure_MPa": "seating_pressure",
+        "k_ni_MPa_per_mm": "hyperbola_k_ni",
+        "k_ni_change": "hyperbola_k_ni_change",
+        "w_m_mm": "hyperbola_w_m",
+        "w_m_low_mm": "hyperbola_w_m_low",
+        "w_m_high_mm": "hyperbola_w_m_high",
+        "hyperbola_misfit": "hyperbola_misfit",
+        "semi_logarithmic_a_mm": "semi_logarithmic_a",
+        "semi_logarithmic_b_mm": "semi_logarithmic_b",
+        "semi_logarithmic_misfit": "semi_logarithmic_misfit",
+        "closure_law": "closure_law",
+    }
     rows = []
     for i in drawn:
         curve, law = curves.isel(offset=i), laws.isel(offset=i)
-        rows.append(
-            pd.DataFrame(
-                {
-                    "offset_mm": float(curve["offset"]),
-                    "force_N": curve["normal_force"].values,
-                    "nominal_pressure_MPa": curve["nominal_pressure"].values,
-                    "interface_closure_mm": curve["interface_closure"].values,
-                    "area_mm2": curve["area"].values,
-                    "area_share": curve["area_share"].values,
-                    "w_m_mm": float(curve["hyperbola_w_m"]),
-                    "w_m_low_mm": float(curve["hyperbola_w_m_low"]),
-                    "w_m_high_mm": float(curve["hyperbola_w_m_high"]),
-                    "area_corrected_mm2": curve["area_corrected"].values,
-                    "area_fitted": law["fitted"].values,
-                    "area_exponent": float(law["exponent"]),
-                    "area_exponent_low": float(law["exponent_low"]),
-                    "area_exponent_high": float(law["exponent_high"]),
-                }
-            )
-        )
+        columns = {"panel": "a, b", "offset_mm": float(curve["offset"])}
+        columns |= {column: curve[name].values for column, name in points.items()}
+        columns |= {column: curve[name].item() for column, name in fitted.items()}
+        columns["area_fitted"] = law["corrected_fitted"].values
+        for end in ("", "_low", "_high"):
+            columns[f"area_exponent{end}"] = float(law[f"corrected_exponent{end}"])
+        rows.append(pd.DataFrame(columns))
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, curves, laws, drawn):
-    first, last = (force_label(curves.attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
-    words = [_hyperbola_words(curves.isel(offset=drawn)), _linearity_words(laws.isel(offset=drawn))]
-    if direction != "none":
-        words.append(_compliance_words(curves))
+def _caption(label, direction, curves, laws, stiffness):
     return (
-        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Closure, hyperbolas fitted from "
-        f"{first} to {last}; (b) contact area, power laws. {'. '.join(words)}."
+        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Closure, (b) area, "
+        f"(c) stiffness over spacing. {_laws_words(curves)} {_stiffness_words(stiffness)} "
+        f"{_linearity_words(laws)}."
     )
 
 
-def _hyperbola_words(curves):
-    """How well the hyperbolas of the paper fit."""
-    fitted = np.isfinite(curves["hyperbola_w_m"].values)
+def _laws_words(curves):
+    """Which law fits better, beside the paper's hyperbola."""
+    misfits = [curves[f"{name}_misfit"].values for name in ("hyperbola", "semi_logarithmic")]
+    fitted = np.isfinite(misfits[1])
     if not fitted.any():
-        return f"No hyperbola could be fitted ({curves['hyperbola_reason'].values[0]})"
-    largest = curves["interface_closure"].max("normal_force")
-    beyond = int((largest > curves["hyperbola_w_m"]).values[fitted].sum())
-    misfit = percent(curves["hyperbola_misfit"].max())
-    return f"{beyond} of {fitted.sum()} curves pass their asymptote (rms misfit within {misfit})"
+        return f"No law could be fitted ({_no_law(curves.isel(offset=-1))})."
+    hyperbola, semi_logarithmic = (values[fitted] for values in misfits)
+    better = int((~(hyperbola <= semi_logarithmic)).sum())
+    return (
+        f"The semi-logarithmic law fits {better} of {fitted.sum()} curves better than the "
+        "hyperbola."
+    )
+
+
+def _stiffness_words(table):
+    """Tangent stiffness at the load of the maps, and what twice the spacing makes of it."""
+    tangent = table[table["map_load"].eq(True)]
+    at = force_label(tangent["force_N"].iloc[0])
+    value, change = _with_change(tangent)
+    if not np.isfinite(value):
+        return f"No tangent stiffness at {at}."
+    words = f"Tangent stiffness at {at}: {short(value)} MPa/mm"
+    words += f" ({change} at 2 s)" if change else ""
+    value, change = _with_change(table[table["quantity"] != "tangent"])
+    return f"{words}; k_ni, extrapolated, {short(value)} ({change})." if change else f"{words}."
+
+
+def _with_change(rows):
+    """A stiffness at the finest spacing, and the change that twice that makes of it, in words."""
+    values = rows.sort_values("spacing_mm")["stiffness_MPa_per_mm"].values
+    spacings = rows["spacing_mm"].sort_values().values
+    doubled = len(values) > 1 and spacings[1] < 2.1 * spacings[0]
+    if not doubled or not np.isfinite(values[:2]).all():
+        return values[0], ""
+    return values[0], percent(values[1] / values[0] - 1, "+")
 
 
 def _linearity_words(laws):
     """Whether the area is nearly proportional to the force, as the paper has it."""
-    known = laws.isel(offset=np.isfinite(laws["exponent"].values))
+    known = laws.isel(offset=np.isfinite(laws["corrected_exponent"].values))
     if not known.sizes["offset"]:
         return "Too few domains are large enough for a power law"
-    slopes = known["exponent"].values
-    verdict = "near" if (abs(slopes - 1) <= NEARLY).all() else "not all near"
+    slopes = known["corrected_exponent"].values
+    near = int((abs(slopes - 1) <= NEARLY).sum())
     if len(slopes) == 1:
-        verdict = verdict.replace("all ", "")
+        verdict = "near" if near else "not near"
         return f"A_r ~ F^m, m = {_exponent(known.isel(offset=0))}, {verdict} the paper's 1"
-    return f"A_r ~ F^m, m = {min(slopes):.3g} to {max(slopes):.3g}, {verdict} the paper's 1"
-
-
-def _compliance_words(curves):
-    """Whether the joint closes more, under the largest load, the farther it has slid."""
-    slid = curves.isel(normal_force=-1, offset=curves["offset"].values > 0)
-    line = fit_line(np.log(slid["offset"].values), slid["interface_closure"].values)
-    load = force_label(float(curves["normal_force"][-1]))
-    if not np.isfinite(line.slope):
-        return f"Too few offsets for a trend of the closure at {load}"
-    trend = (
-        "rises with v, as in the paper"
-        if line.slope_low > 0
-        else "falls with v, unlike in the paper"
-        if line.slope_high < 0
-        else "has no trend with v (paper: rises)"
+    return (
+        f"A_r ~ F^m, m = {min(slopes):.3g} to {max(slopes):.3g}, {near} of {len(slopes)} near the "
+        "paper's 1"
     )
-    return f"Closure at {load} {trend}"

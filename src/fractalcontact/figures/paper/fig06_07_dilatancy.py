@@ -25,7 +25,7 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.maps import HALO, draw_domain
-from ..kit.words import TOWARDS, force_label, opening, percent, place, short, slope_text
+from ..kit.words import TOWARDS, area_label, force_label, opening, place, short, slope_text
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
@@ -33,6 +33,8 @@ NEEDS = ("specimens", "dilatancy", "closure", "contact")
 ORDER = 100
 
 DOMAINS, COLUMNS = 6, 3
+#: What the table has of the contact area.
+_OF_AREA = ("nodes", "area_share", "area_corrected_share", "area_corrected_resolved")
 #: (b) shows the offsets up to this part of the largest, and at least so many, apart from the rest.
 INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
 #: A change over the second half below this share of the mean there is called nearly flat.
@@ -49,7 +51,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     dilatancy = group(atlas, "dilatancy", name)
     curves = finest_curves(atlas, name)
     direction, finest = str(curves["direction"].values), int(curves["resolution"])
-    share, loads = curves["area_share"], curves["normal_force"].values
+    loads = curves["normal_force"].values
     mapped = nearest_load(loads, settings["map_load"], specimen)
     asked = [nearest_load(loads, load, specimen) for load in settings["dilatancy_loads"]]
     shown = sorted({*asked, mapped})
@@ -64,17 +66,20 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         1, 1 + len(ranges), width_ratios=[2.3, 1.5, 1][: 1 + len(ranges)]
     )
     _draw_rigid(rigid, dilatancy, plateaus)
-    _draw_elastic(elastic, ranges, dilatancy, direction, shown, mapped, points)
+    opened = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)
+    opened = opened.assign_coords(resolved=curves["resolved"])
+    _draw_elastic(elastic, ranges, dilatancy, opened, shown, mapped, points)
     legends_below(top, entries(rigid), entries(elastic[0]))
     domains = group(atlas, "contact", name)[f"in_contact_{finest}"].sel(direction=direction)
     panels = bottom.subplots(rows, COLUMNS, squeeze=False)
-    _draw_domains(panels, domains[:, mapped], share[:, mapped], points, window_sides(specimen))
+    at_map = curves.isel(normal_force=mapped)
+    _draw_domains(panels, domains[:, mapped], at_map, points, window_sides(specimen))
     bottom.suptitle(
         f"(c) contact domains at $F$ = {force_label(loads[mapped])}", x=0.01, ha="left", fontsize=8
     )
     headline(figure, settings["label"])
-    table = _table(dilatancy, direction, shown, share)
-    caption = _caption(settings["label"], direction, loads[mapped], share[:, mapped], plateaus)
+    table = _table(dilatancy, direction, shown, curves)
+    caption = _caption(settings["label"], direction, at_map, plateaus)
     return Drawing(figure, table, caption)
 
 
@@ -110,14 +115,17 @@ def _ranges(offsets):
     return [(0, limit)] + ([(limit, offsets[-1])] if limit < offsets[-1] else [])
 
 
-def _draw_elastic(panels, ranges, dilatancy, direction, shown, mapped, points):
+def _draw_elastic(panels, ranges, dilatancy, opened, shown, mapped, points):
     """Elastic dilatancy, a panel a range of offsets."""
     for panel in panels[1:]:
         panel.sharey(panels[0])
         panel.tick_params(labelleft=False)
+    direction = str(opened["contact_direction"].values)
+    rigid = dilatancy["rigid_dilatancy"].sel(direction=direction)
     for panel, (first, last) in zip(panels, ranges, strict=True):
-        _elastic_curves(panel, dilatancy, direction, shown)
-        _mark_points(panel, dilatancy, direction, mapped, points, (first, last))
+        panel.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=1, label="rigid, $F$ = 0")
+        _elastic_curves(panel, opened, shown)
+        _mark_points(panel, opened[:, mapped], points, (first, last))
         panel.margins(y=0.12)
         margin = 0.06 * (last - first) or None
         panel.set_xlim(first, margin and last + margin)
@@ -127,23 +135,19 @@ def _draw_elastic(panels, ranges, dilatancy, direction, shown, mapped, points):
     letter(panels[0], "b", f"elastic dilatancy, {place(direction)}")
 
 
-def _elastic_curves(axes, dilatancy, direction, shown):
-    rigid = dilatancy["rigid_dilatancy"].sel(direction=direction)
-    axes.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=1, label="rigid, $F$ = 0")
-    elastic = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)
+def _elastic_curves(axes, opened, shown):
+    """Curves of the loads shown; states of too few nodes are hollow."""
     for n, j in enumerate(shown):
-        axes.plot(
-            elastic["offset"],
-            elastic[:, j],
-            marker=MARKERS[n % len(MARKERS)],
-            color=colour_of(n + 1),
-            label=f"$F$ = {force_label(float(elastic['normal_force'][j]))}",
-        )
+        curve = opened[:, j]
+        style = {"marker": MARKERS[n % len(MARKERS)], "color": colour_of(n + 1)}
+        label = f"$F$ = {force_label(float(curve['normal_force']))}"
+        axes.plot(curve["offset"], curve, label=label, **style)
+        few = curve[~curve["resolved"].values]
+        axes.plot(few["offset"], few, ls="none", mfc="white", **style)
 
 
-def _mark_points(axes, dilatancy, direction, mapped, points, shown_range):
+def _mark_points(axes, curve, points, shown_range):
     """Letters of the domains at their points of the curve, where these axes show them."""
-    curve = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)[:, mapped]
     for k, i in enumerate(points):
         v = float(curve["offset"][i])
         if v <= shown_range[1] and (v > shown_range[0] or shown_range[0] == 0):
@@ -157,7 +161,7 @@ def _mark_points(axes, dilatancy, direction, mapped, points, shown_range):
             )
 
 
-def _draw_domains(panels, domains, share, points, sides):
+def _draw_domains(panels, domains, states, points, sides):
     """Contact domains of one load at some offsets, row by row."""
     for k, panel in enumerate(panels.ravel()):
         if k >= len(points):
@@ -166,8 +170,8 @@ def _draw_domains(panels, domains, share, points, sides):
         i = points[k]
         draw_domain(panel, domains[i].values, sides)
         panel.set_title(
-            f"{_domain_letter(k)}: $v$ = {short(share['offset'][i])} mm, "
-            f"$A_r/A_0$ = {percent(share[i])}"
+            f"{_domain_letter(k)}: $v$ = {short(states['offset'][i])} mm, "
+            f"$A_r/A_0$ = {area_label(states.isel(offset=i))}"
         )
 
 
@@ -175,7 +179,7 @@ def _domain_letter(k):
     return "ABCDEF"[k]
 
 
-def _table(dilatancy, direction, shown, share):
+def _table(dilatancy, direction, shown, curves):
     """Points of (a), then of (b); contact area goes with the latter."""
     v = dilatancy["rigid_offset"].values
     rows = [
@@ -192,26 +196,26 @@ def _table(dilatancy, direction, shown, share):
     ]
     for j in shown:
         elastic = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)[:, j]
-        rows.append(
-            pd.DataFrame(
-                {
-                    "curve": "elastic",
-                    "direction": direction,
-                    "force_N": float(elastic["normal_force"]),
-                    "offset_mm": elastic["offset"].values,
-                    "dilatancy_mm": elastic.values,
-                    "area_share": share[:, j].values,
-                }
-            )
-        )
+        states = curves.isel(normal_force=j)
+        columns = {
+            "curve": "elastic",
+            "direction": direction,
+            "force_N": float(elastic["normal_force"]),
+            "offset_mm": elastic["offset"].values,
+            "dilatancy_mm": elastic.values,
+        }
+        columns |= {f"{name}_mm": states[name].values for name in ("separation", "bulk_settlement")}
+        columns |= {name: states[name].values for name in _OF_AREA}
+        rows.append(pd.DataFrame(columns))
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, force, share, plateaus):
+def _caption(label, direction, states, plateaus):
+    force = float(states["normal_force"])
     return (
         f"{opening('Figs. 6 and 7', label)} (a) Rigid and (b) elastic dilatancy, the latter "
         f"{place(direction)}; (c) contact domains at F = {force_label(force)}. "
-        f"{_plateau_words(plateaus)} {_area_words(share)}"
+        f"{_plateau_words(plateaus)} {_area_words(states)}"
     )
 
 
@@ -229,11 +233,11 @@ def _plateau_words(plateaus):
     return f"{words}; paper: four (rock), two (concrete)."
 
 
-def _area_words(share):
+def _area_words(states):
     """Whether the contact area falls as the joint slides, as the paper has it."""
-    v = share["offset"].values
-    slid = v > 0
-    line = fit_line(np.log(v[slid]), np.log(share.values[slid]))
+    fitted = (states["offset"].values > 0) & states["area_corrected_resolved"].values
+    v, share = (states[name].values[fitted] for name in ("offset", "area_corrected_share"))
+    line = fit_line(np.log(v), np.log(share))
     if not np.isfinite(line.slope):
         return "Too few offsets for a trend of the contact area."
     verdict = (

@@ -9,7 +9,7 @@ from xarray import DataTree
 from ...domain.renormalisation import RESOLUTION
 from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, entries, headline, legends_below, letter
-from ..kit.words import force_label, number, short
+from ..kit.words import UNDETERMINED, force_label, number, short
 from ._size_effect import draw_axes, size_effect
 
 TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
@@ -40,7 +40,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _area_table(loading):
     """One row a load and resolution; every load of the study, drawn or not."""
     scaling = loading.scaling.sortby(RESOLUTION)
-    frame = scaling[["area", "sigma_n"]].to_dataframe().reset_index()
+    frame = scaling[["area", "area_corrected", "nodes", "sigma_n"]].to_dataframe().reset_index()
     spacing = scaling["spacing"].to_series()
     measure = scaling["hausdorff_measure"].to_series()
     delta = scaling["delta_sigma"].to_series()
@@ -51,7 +51,9 @@ def _area_table(loading):
             "panel": "a",
             "load_N": frame["normal_force"],
             "spacing_mm": s,
+            "nodes": frame["nodes"],
             "area_mm2": frame["area"],
+            "area_corrected_mm2": frame["area_corrected"],
             "used": np.isfinite(frame["sigma_n"]) & np.isfinite(exponent),
             "fitted_area_mm2": frame["normal_force"].map(measure) * s**exponent,
         }
@@ -67,9 +69,10 @@ def _draw_areas(axes, loading, map_load, table):
         # Low loads may share their few nodes: the later marker lets the earlier one show.
         style["markersize"] = 7.5 - n
         label = f"{force_label(force)}: {by_area.entry(i)}"
-        used, left_out = rows[rows["used"]], rows[~rows["used"]]
-        full = axes.plot(used["spacing_mm"], used["area_mm2"], **style)
-        hollow = axes.plot(left_out["spacing_mm"], left_out["area_mm2"], **style, mfc="white")
+        used = rows[rows["used"]]
+        raw = {"mfc": "none", "mew": 0.6, "markersize": 4}
+        hollow = axes.plot(rows["spacing_mm"], rows["area_mm2"], **(style | raw))
+        full = axes.plot(used["spacing_mm"], used["area_corrected_mm2"], **style)
         (hollow if used.empty else full)[0].set_label(label)
         axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=COLOURS[n])
     spacings = loading.scaling["spacing"].sortby(RESOLUTION).values
@@ -78,7 +81,7 @@ def _draw_areas(axes, loading, map_load, table):
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
-    letter(axes, "a", "contact area and resolution (hollow: not fitted)")
+    letter(axes, "a", "contact area (filled: corrected, hollow: raw)")
 
 
 def _draw_pressures(axes, loading, i, table):
@@ -89,7 +92,7 @@ def _draw_pressures(axes, loading, i, table):
         axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style, label=label)
     own = table.iloc[0]
     point = own["specimen_b_mm"], own["specimen_sigma_0_MPa"]
-    axes.plot(*point, "*k", ms=9, label="specimen: $F/b^2$")
+    axes.plot(*point, "*k", ms=9, label=r"specimen: $\sigma_0 = F/A_0$")
     draw_axes(axes)
     # The bands come last and do not widen the axes: some intervals span many decades.
     axes.set_ylim(axes.get_ylim())
@@ -113,12 +116,12 @@ def _caption(loading, i, pressure):
 def _verdict(loading, i):
     """Whether the area falls with refinement as a power law, in words."""
     by_area = loading.estimates[0]
-    if by_area.reason[i]:
+    if by_area.reason[i] or by_area.text(i) == UNDETERMINED:
         return "The paper's power law is undetermined: Delta_sigma"
-    r2 = number(loading.scaling["r2"].values[i], 3)
     if by_area.high[i] < 2:
+        r2 = number(loading.scaling["r2"].values[i], 3)
         return f"As in the paper A_r is a power law (r2 = {r2}): Delta_sigma"
-    return f"The paper's fall of A_r is not established (r2 = {r2}): Delta_sigma"
+    return "The paper's fall of A_r is not established: Delta_sigma"
 
 
 def _own_size(pressure, side):

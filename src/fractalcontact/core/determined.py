@@ -1,0 +1,54 @@
+"""Whether an estimate is known well enough that its number means anything."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+#: An interval whose ends are farther apart than this factor says not even the order of magnitude.
+DECADE = 10.0
+
+#: An interval narrower than this, as a fraction of its value, has left out its errors.
+NO_WIDTH = 1e-6
+
+
+def determined(
+    value: float,
+    low: float,
+    high: float,
+    *,
+    span: float = 0.0,
+    widest: float = np.inf,
+    exact: Sequence[float] = (),
+) -> bool:
+    """Whether an interval determines its quantity, so that the number may be printed.
+
+    Parameters
+    ----------
+    value, low, high : float
+        The estimate and its 95 % interval; NaN or infinite where there is none.
+    span : float
+        An interval up to this wide is narrow whatever the value, as 1 is for exponents; 0 where the
+        quantity has no scale of its own.
+    widest : float
+        One wider than this says nothing whatever the value, as half of the physical range.
+    exact : sequence of float
+        Values that need no interval: a full window has the dimension 2.
+
+    Returns
+    -------
+    bool
+        False where an end is missing; where the ends are farther apart than ``span``, and than a
+        factor of `DECADE` or, differing in sign, than ``span`` or else `DECADE` values; and where
+        they are not apart at all, as those of a line through counts that happen to lie on one.
+    """
+    if not np.isfinite([value, low, high]).all():
+        return False
+    width = high - low
+    size = max(abs(low), abs(high))
+    if width <= NO_WIDTH * max(size, span):
+        return any(abs(value - known) <= NO_WIDTH for known in exact)
+    if width > widest or width <= span:
+        return width <= widest
+    if low * high > 0:
+        return size <= DECADE * min(abs(low), abs(high))
+    return span == 0 and width <= DECADE * abs(value)

@@ -1,0 +1,302 @@
+"""Laws of closure curves: the hyperbola, the semi-logarithmic law, and which of them fits better.
+
+Both have two parameters and are fitted by least squares in the closure to the same states, so that
+their misfits can be compared.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from ..core.datasets import labelled
+from ..core.fitting import fit_line
+from ..core.intervals import t_quantile
+from ..core.labels import cf_attrs
+from ..core.ranges import within
+
+#: States a law of two parameters needs before its interval means anything.
+FEWEST_CLOSURE_POINTS = 4
+
+#: Rms misfit up to which a curve is said to follow a law, as a fraction of its largest closure.
+GOOD_FIT = 0.02
+
+#: Misfits this near to each other, as a fraction of the larger one, separate no laws.
+EQUAL_MISFIT = 0.1
+
+#: What :func:`better_law` may call a curve, besides nothing.
+HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED, NEITHER = LAWS = (
+    "hyperbola",
+    "semi-logarithmic",
+    "undecided",
+    "neither",
+)
+
+
+class Hyperbola(NamedTuple):
+    """sigma_0 = k_ni w / (1 - w/w_m) (Bandis et al. 1983), with 95 % intervals.
+
+    ``misfit`` is the rms of the residual closure as a fraction of the largest closure fitted;
+    ``reason`` says why there is no fit, else it is empty.
+    """
+
+    k_ni: float
+    k_ni_low: float
+    k_ni_high: float
+    w_m: float
+    w_m_low: float
+    w_m_high: float
+    misfit: float
+    n: int
+    reason: str
+
+
+class SemiLogarithmic(NamedTuple):
+    """w = a + b ln(sigma_0 / 1 MPa), with 95 % intervals; ``misfit``, ``reason`` as a hyperbola's.
+
+    Bandis et al. (1983) found it for mismatched joints; where the separation u of two rough faces
+    follows sigma_0 ~ exp(-u/u_0) (Persson, Phys. Rev. Lett. 99 (2007) 125502), b is u_0. Its
+    tangent stiffness is sigma_0 / b.
+    """
+
+    a: float
+    a_low: float
+    a_high: float
+    b: float
+    b_low: float
+    b_high: float
+    misfit: float
+    n: int
+    reason: str
+
+
+def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
+    """Fit the closure hyperbola, least squares in the closure.
+
+    Parameters
+    ----------
+    pressure : (n,) array_like
+        Nominal pressure sigma_0, MPa.
+    closure : (n,) array_like
+        Interface closure w_int, mm.
+
+    Returns
+    -------
+    Hyperbola
+        k_ni in MPa/mm, w_m in mm. NaN, with a reason, where the curve cannot be a hyperbola.
+
+    Notes
+    -----
+    Solved for w the law reads w = sigma w_m / (k_ni w_m + sigma). Both parameters are positive, so
+    the fit and its Student-t interval are made in their logarithms. k_ni is the slope at zero load,
+    where no state is fitted: it is an extrapolation.
+    """
+    from scipy import optimize
+
+    sigma, w = _usable(pressure, closure)
+    if sigma.size < FEWEST_CLOSURE_POINTS:
+        return _none(Hyperbola, sigma.size, _too_few(sigma.size))
+
+    def law(sigma, log_k, log_wm):
+        k, w_m = np.exp([log_k, log_wm])
+        return sigma * w_m / (k * w_m + sigma)
+
+    guess = np.log([2 * sigma[0] / w[0], 1.2 * w.max()])
+    try:
+        best, covariance = optimize.curve_fit(law, sigma, w, p0=guess, maxfev=5000)
+    except RuntimeError:
+        return _none(Hyperbola, sigma.size, "the least-squares fit did not converge")
+    misfit = float(np.sqrt(np.mean((law(sigma, *best) - w) ** 2)) / w.max())
+    half = t_quantile(sigma.size - 2) * np.sqrt(np.diag(covariance))
+    if not np.isfinite(half).all() or half.max() > np.log(100):
+        reason = "the points do not bend enough to show an asymptote"
+        return _none(Hyperbola, sigma.size, reason)
+    low, high = np.exp(best - half), np.exp(best + half)
+    k_ni, w_m = np.exp(best)
+    return Hyperbola(
+        k_ni=float(k_ni),
+        k_ni_low=float(low[0]),
+        k_ni_high=float(high[0]),
+        w_m=float(w_m),
+        w_m_low=float(low[1]),
+        w_m_high=float(high[1]),
+        misfit=misfit,
+        n=sigma.size,
+        reason="",
+    )
+
+
+def fit_semi_logarithmic(pressure: ArrayLike, closure: ArrayLike) -> SemiLogarithmic:
+    """Fit the semi-logarithmic law of closure, least squares in the closure.
+
+    Parameters
+    ----------
+    pressure, closure
+        As for :func:`fit_hyperbola`.
+
+    Returns
+    -------
+    SemiLogarithmic
+        a (the closure at 1 MPa) and b in mm; NaN, with a reason, where there are too few points.
+    """
+    sigma, w = _usable(pressure, closure)
+    if sigma.size < FEWEST_CLOSURE_POINTS:
+        return _none(SemiLogarithmic, sigma.size, _too_few(sigma.size))
+    line = fit_line(np.log(sigma), w)
+    residual = w - (line.intercept + line.slope * np.log(sigma))
+    return SemiLogarithmic(
+        a=line.intercept,
+        a_low=line.intercept_low,
+        a_high=line.intercept_high,
+        b=line.slope,
+        b_low=line.slope_low,
+        b_high=line.slope_high,
+        misfit=float(np.sqrt(np.mean(residual**2)) / w.max()),
+        n=line.n,
+        reason="",
+    )
+
+
+class Law(NamedTuple):
+    """What a closure curve follows: one of :data:`LAWS`, or nothing; and why no law is named."""
+
+    name: str
+    reason: str
+
+
+def better_law(hyperbola: Hyperbola, semi_logarithmic: SemiLogarithmic) -> Law:
+    """The law that fits a closure curve better, by its rms misfit.
+
+    Parameters
+    ----------
+    hyperbola, semi_logarithmic
+        Fits to the same states.
+
+    Returns
+    -------
+    Law
+        "neither" where the better one misses by more than `GOOD_FIT`, "undecided" where the misfits
+        differ by less than `EQUAL_MISFIT` of the larger, empty where there are too few states.
+    """
+    if semi_logarithmic.reason:
+        return Law("", semi_logarithmic.reason)
+    misfits = {HYPERBOLA: hyperbola.misfit, SEMI_LOGARITHMIC: semi_logarithmic.misfit}
+    misfits = {name: misfit for name, misfit in misfits.items() if np.isfinite(misfit)}
+    best = min(misfits, key=misfits.__getitem__)
+    if misfits[best] > GOOD_FIT:
+        return Law(NEITHER, f"the better one misses by {misfits[best]:.1%} rms of the largest w")
+    apart = max(misfits.values()) - misfits[best]
+    if len(misfits) == 2 and apart <= EQUAL_MISFIT * max(misfits.values()):
+        return Law(UNDECIDED, f"both miss by {misfits[best]:.1%} rms of the largest w")
+    return Law(best, "")
+
+
+def _usable(pressure: ArrayLike, closure: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Points that either law can be fitted to."""
+    sigma, w = np.asarray(pressure, float), np.asarray(closure, float)
+    usable = np.isfinite(sigma) & np.isfinite(w) & (sigma > 0) & (w > 0)
+    return sigma[usable], w[usable]
+
+
+def _too_few(n: int) -> str:
+    return f"{n} points with w_int > 0, {FEWEST_CLOSURE_POINTS} needed"
+
+
+def _none(kind: Any, n: int, reason: str) -> Any:
+    """A fit that is none."""
+    return kind(*[np.nan] * (len(kind._fields) - 2), n, reason)
+
+
+#: What is kept of each hyperbola: field, unit, long name.
+HYPERBOLA_FIELDS = (
+    ("k_ni", "MPa/mm", "initial normal stiffness k_ni, extrapolated to zero load"),
+    ("k_ni_low", "MPa/mm", "initial normal stiffness, lower end of the 95 % interval"),
+    ("k_ni_high", "MPa/mm", "initial normal stiffness, upper end of the 95 % interval"),
+    ("w_m", "mm", "largest closure w_m, the asymptote"),
+    ("w_m_low", "mm", "largest closure, lower end of the 95 % interval"),
+    ("w_m_high", "mm", "largest closure, upper end of the 95 % interval"),
+    ("misfit", "1", "rms misfit as a fraction of the largest closure fitted"),
+    ("n", "1", "points fitted"),
+    ("reason", "1", "why there is no fit"),
+)
+
+#: What is kept of each semi-logarithmic law.
+SEMI_LOGARITHMIC_FIELDS = (
+    ("a", "mm", "semi-logarithmic law w_int = a + b ln(sigma_0 / 1 MPa), a"),
+    ("a_low", "mm", "a of the semi-logarithmic law, lower end of the 95 % interval"),
+    ("a_high", "mm", "a of the semi-logarithmic law, upper end of the 95 % interval"),
+    ("b", "mm", "semi-logarithmic law w_int = a + b ln(sigma_0 / 1 MPa), b"),
+    ("b_low", "mm", "b of the semi-logarithmic law, lower end of the 95 % interval"),
+    ("b_high", "mm", "b of the semi-logarithmic law, upper end of the 95 % interval"),
+    ("misfit", "1", "rms misfit as a fraction of the largest closure fitted"),
+    ("n", "1", "points fitted"),
+    ("reason", "1", "why there is no fit"),
+)
+
+#: Prefix of their names in the atlas, and fields, of both laws.
+_KEPT = (("hyperbola", HYPERBOLA_FIELDS), ("semi_logarithmic", SEMI_LOGARITHMIC_FIELDS))
+
+_DIMS = ("direction", "offset", "resolution")
+
+#: What is kept of the laws of every curve besides their parameters: unit, long name.
+_OF_CURVES = {
+    "hyperbola_k_ni_change": (
+        "1",
+        "k_ni at twice the spacing over that at this one, less one; none where it was not solved",
+    ),
+    "closure_law": ("1", "the law that fits better: hyperbola, semi-logarithmic, or none of them"),
+    "closure_law_reason": ("1", "why no law is named"),
+    "closure_fit_min": ("N", "smallest force fitted"),
+    "closure_fit_max": ("N", "largest force fitted"),
+}
+
+
+def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) -> None:
+    """Add both laws of every closure curve, and which fits better, to a closure stage.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        With ``interface_closure`` and ``resolved`` over (direction, offset, resolution, load); the
+        fits are added to it. States that are not resolved are not fitted.
+    fit_range : (float, float) or None
+        Smallest and largest force of the fits, N; all by default.
+    """
+    force, pressure = curves["normal_force"].values, curves["nominal_pressure"].values
+    inside = within(force, *(fit_range or (force.min(), force.max())))
+    order = (*_DIMS, "normal_force")
+    closure = curves["interface_closure"].transpose(*order).values
+    fitted = curves["resolved"].transpose(*order).values & inside & (closure > 0)
+    fits = np.empty(closure.shape[:-1], object)
+    for place in np.ndindex(fits.shape):
+        points = pressure[fitted[place]], closure[place][fitted[place]]
+        hyperbola, semi_logarithmic = fit_hyperbola(*points), fit_semi_logarithmic(*points)
+        fits[place] = hyperbola, semi_logarithmic, better_law(hyperbola, semi_logarithmic)
+    for n, (prefix, fields) in enumerate(_KEPT):
+        for name, units, words in fields:
+            kind = str if name == "reason" else float
+            values = np.array([getattr(fit[n], name) for fit in fits.flat], kind)
+            curves[f"{prefix}_{name}"] = (_DIMS, values.reshape(fits.shape), cf_attrs(units, words))
+    forces = np.where(fitted, force, np.nan)
+    of_curves = {
+        "hyperbola_k_ni_change": _changes(curves["hyperbola_k_ni"]),
+        "closure_law": np.array([fit[2].name for fit in fits.flat]).reshape(fits.shape),
+        "closure_law_reason": np.array([fit[2].reason for fit in fits.flat]).reshape(fits.shape),
+        "closure_fit_min": _extreme(np.fmin, forces),
+        "closure_fit_max": _extreme(np.fmax, forces),
+    }
+    table = {name: (_DIMS, *words) for name, words in _OF_CURVES.items()}
+    curves.update(labelled(table, of_curves))
+
+
+def _extreme(which: np.ufunc, forces: np.ndarray) -> np.ndarray:
+    """Smallest or largest force of each curve; NaN where none was fitted."""
+    return which.reduce(forces, axis=-1)
+
+
+def _changes(values: xr.DataArray) -> np.ndarray:
+    """What twice the spacing makes of a value, relative to it; NaN where it was not solved."""
+    resolutions = values["resolution"].values
+    twice = values.reindex(resolution=2 * resolutions).assign_coords(resolution=resolutions)
+    return (twice / values - 1).transpose(*_DIMS).values

@@ -1,0 +1,131 @@
+"""Separation of the faces and closure from a seating load: what no single asperity decides.
+
+Closure from first touch is an extreme: the highest node of the composite topography alone decides
+where it begins, and that node changes with the spacing and the window. The separation of the mean
+planes, delta_r - w, and the closure between two loads that many nodes carry do not depend on it.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled
+from ..core.labels import cf_attrs
+from .joint import composite_topography, prefractal
+from .states import error_attrs
+
+
+def prefractal_openings(
+    specimen: xr.Dataset, joint: xr.Dataset, resolutions: Sequence[int]
+) -> xr.DataArray:
+    """Rigid dilatancy of the pre-fractals: the opening at which each touches first.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+        From :func:`surface.specimen.make_specimen`.
+    joint : xr.Dataset
+        From :func:`mechanics.joint.describe_joint`.
+    resolutions : sequence of int
+        Multiples k of the scan's spacing.
+
+    Returns
+    -------
+    xr.DataArray
+        max h_k(v) less a datum, mm, over (direction, offset, resolution). The datum is max h(0) at
+        the scan's own resolution, the joint before it slides; against a plane, which mates with
+        nothing, it is the mean of h.
+    """
+    cells = joint["offset_cells"].transpose("contact_direction", ...)
+    directions = cells["contact_direction"].values
+    opened = np.empty((*cells.shape, len(resolutions)))
+    for i, direction in enumerate(directions):
+        mated = composite_topography(specimen, direction, 0)
+        datum = mated.mean() if direction == "none" else mated.max()
+        for j, n in enumerate(cells.values[i]):
+            composite = composite_topography(specimen, direction, n)
+            opened[i, j] = [prefractal(composite, k).max() - datum for k in resolutions]
+    return xr.DataArray(
+        opened,
+        dims=("direction", "offset", "resolution"),
+        coords={"direction": directions, "resolution": list(resolutions)},
+    )
+
+
+#: Separation and seated closure: unit and long name.
+_WORDS = {
+    "separation": ("mm", "separation of the mean planes delta_r - w; 0 where faces are mated"),
+    "seated_closure": ("mm", "interface closure from the seating pressure on"),
+}
+
+
+def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
+    """Add the separation of the mean planes to a closure stage.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        With ``closure`` and ``closure_error`` over (direction, offset, resolution, load) and
+        ``rigid_opening`` over (direction, offset); what is found is added to it.
+    openings : xr.DataArray or None
+        From :func:`prefractal_openings`. Without it only the scan's own resolution has one.
+    """
+    if openings is None:
+        openings = curves["rigid_opening"].where(curves["resolution"] == 1)
+    else:
+        # By place: where cells are not square, offsets of the directions differ by part of a cell.
+        openings = openings.sel(
+            direction=curves["direction"].values, resolution=curves["resolution"].values
+        ).drop_vars(["direction", "resolution"])
+    dims = ("direction", "offset", "resolution")
+    words = cf_attrs("mm", "opening at first touch of the pre-fractal; of a plane, from its mean")
+    curves["prefractal_opening"] = (dims, openings.transpose(*dims).values, words)
+    separation = curves["prefractal_opening"] - curves["closure"]
+    curves["separation"] = separation.transpose(*curves["closure"].dims)
+    curves["separation"].attrs = cf_attrs(*_WORDS["separation"])
+    # The opening of rigid faces is read off the heights: it has no solver error.
+    curves["separation_error"] = curves["closure_error"].assign_attrs(
+        error_attrs(curves["separation"].attrs)
+    )
+
+
+def add_seated_closure(curves: xr.Dataset, seating_force: float | None) -> None:
+    """Add the closure from a seating load to a closure stage.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        With ``interface_closure``, ``closure_error`` and ``resolved`` over (direction, offset,
+        resolution, load); what is found is added to it.
+    seating_force : float or None
+        Of the study, N, one of the loads; None takes at each offset and resolution the smallest
+        load whose state is resolved.
+
+    Notes
+    -----
+    Below the seating load there is none, nor where no state there was solved.
+    """
+    dims = ("direction", "offset", "resolution")
+    force = curves["normal_force"]
+    closing, solved = curves["interface_closure"], np.isfinite(curves["interface_closure"])
+    if seating_force is None:
+        seats = force.where(curves["resolved"] & solved).min("normal_force")
+    else:
+        seat = float(force.sel(normal_force=seating_force, method="nearest"))
+        seats = force.where(solved & (force == seat)).min("normal_force")
+    at_seat = force == seats
+    seated = closing - closing.where(at_seat).sum("normal_force")
+    error = curves["closure_error"] + curves["closure_error"].where(at_seat).sum("normal_force")
+    error = error.where(~at_seat, 0.0)
+    order = closing.dims
+    attrs = cf_attrs(*_WORDS["seated_closure"])
+    beyond = (force >= seats) & solved
+    curves["seated_closure"] = seated.where(beyond).transpose(*order).assign_attrs(attrs)
+    curves["seated_closure_error"] = (
+        error.where(beyond).transpose(*order).assign_attrs(error_attrs(attrs))
+    )
+    area = float((force / curves["nominal_pressure"])[0])
+    pressure = {"seating_pressure": (seats / area).transpose(*dims).values}
+    table = {"seating_pressure": (dims, "MPa", "nominal pressure from which closure is seated")}
+    curves.update(labelled(table, pressure))

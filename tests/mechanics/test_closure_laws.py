@@ -1,0 +1,182 @@
+"""Laws of closure curves, and which of them is named."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from ensembles import ensemble
+
+from fractalcontact.mechanics.closure_laws import (
+    HYPERBOLA,
+    NEITHER,
+    SEMI_LOGARITHMIC,
+    UNDECIDED,
+    add_closure_laws,
+    better_law,
+    fit_hyperbola,
+    fit_semi_logarithmic,
+)
+
+PRESSURE = np.geomspace(0.5, 100, 8)
+
+
+def law_of(pressure, closure):
+    return better_law(fit_hyperbola(pressure, closure), fit_semi_logarithmic(pressure, closure))
+
+
+def hyperbola(pressure, k_ni=30.0, w_m=0.4):
+    return pressure * w_m / (k_ni * w_m + pressure)
+
+
+def test_a_hyperbola_is_found_again_exactly():
+    w = np.linspace(0.01, 0.35, 8)
+    sigma = 30 * w / (1 - w / 0.4)
+    fit = fit_hyperbola(sigma, w)
+    assert (fit.k_ni, fit.w_m) == pytest.approx((30, 0.4), rel=1e-6)
+    assert fit.misfit < 1e-6
+    assert fit.reason == ""
+
+
+def test_a_semi_logarithmic_curve_is_found_again_exactly():
+    fit = fit_semi_logarithmic(PRESSURE, 0.2 + 0.05 * np.log(PRESSURE))
+    assert (fit.a, fit.b) == pytest.approx((0.2, 0.05), rel=1e-9)
+    assert (fit.b_low, fit.b_high) == pytest.approx((0.05, 0.05), rel=1e-6)
+    assert fit.misfit < 1e-9
+    assert (fit.n, fit.reason) == (8, "")
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_the_laws_do_not_depend_on_the_unit_of_length(unit):
+    w = hyperbola(PRESSURE) * (1 + 0.02 * np.cos(PRESSURE))
+    one, other = fit_hyperbola(PRESSURE, w), fit_hyperbola(PRESSURE, unit * w)
+    assert other.k_ni * unit == pytest.approx(one.k_ni, rel=1e-4)
+    one, other = (fit_semi_logarithmic(PRESSURE, x) for x in (w, unit * w))
+    assert other.b == pytest.approx(unit * one.b)
+    assert other.misfit == pytest.approx(one.misfit)
+
+
+def test_the_intervals_hold_the_truth_in_95_of_100_draws():
+    rng = np.random.default_rng(1)
+    w = np.linspace(0.02, 0.35, 12)
+    sigma = 30 * w / (1 - w / 0.4)
+    draws = ensemble("fitted hyperbolas")
+    fits = [fit_hyperbola(sigma, w + rng.normal(0, 0.004, w.size)) for _ in range(draws)]
+    held = [
+        sum(fit.k_ni_low <= 30 <= fit.k_ni_high for fit in fits),
+        sum(fit.w_m_low <= 0.4 <= fit.w_m_high for fit in fits),
+    ]
+    w = 0.2 + 0.05 * np.log(sigma)
+    logs = [fit_semi_logarithmic(sigma, w + rng.normal(0, 0.004, w.size)) for _ in range(draws)]
+    held += [
+        sum(fit.a_low <= 0.2 <= fit.a_high for fit in logs),
+        sum(fit.b_low <= 0.05 <= fit.b_high for fit in logs),
+    ]
+    # At most three standard deviations of the count below: 930 of 1000.
+    assert min(held) >= 0.95 * draws - 3 * np.sqrt(0.95 * 0.05 * draws), held
+
+
+def test_a_straight_line_has_no_asymptote():
+    sigma = np.linspace(1, 10, 8)
+    fit = fit_hyperbola(sigma, sigma / 50 * (1 + 1e-3 * np.sin(sigma)))
+    assert np.isnan(fit.w_m) or fit.w_m_high > 2 * sigma.max() / 50
+
+
+def test_too_few_points_give_a_reason():
+    for fit in (fit_hyperbola, fit_semi_logarithmic):
+        found = fit([1, 2, 3], [0.1, 0.15, -1])
+        assert np.isnan(found[:6]).all()
+        assert "2 points with w_int > 0, 4 needed" in found.reason
+    assert law_of([1, 2, 3], [0.1, 0.15, -1]).name == ""
+
+
+# -- which law is named ----------------------------------------------------------------------------
+
+
+def test_the_law_that_made_a_curve_is_named():
+    assert law_of(PRESSURE, hyperbola(PRESSURE)) == (HYPERBOLA, "")
+    assert law_of(PRESSURE, 0.3 + 0.05 * np.log(PRESSURE)) == (SEMI_LOGARITHMIC, "")
+
+
+def test_scatter_hides_the_law_but_names_no_wrong_one():
+    rng = np.random.default_rng(3)
+    for made, other in ((hyperbola(PRESSURE), SEMI_LOGARITHMIC),):
+        named = [law_of(PRESSURE, made * rng.normal(1, 0.01, 8)).name for _ in range(50)]
+        assert named.count(other) == 0
+    w = 0.3 + 0.05 * np.log(PRESSURE)
+    named = [law_of(PRESSURE, w * rng.normal(1, 0.01, 8)).name for _ in range(50)]
+    assert HYPERBOLA not in named
+    assert named.count(SEMI_LOGARITHMIC) > 45
+
+
+def test_a_curve_of_neither_law_says_how_far_off_the_better_is():
+    law = law_of(PRESSURE, PRESSURE**0.7)
+    assert law.name == NEITHER
+    assert "% rms" in law.reason
+
+
+def test_like_misfits_decide_nothing():
+    fits = fit_hyperbola(PRESSURE, hyperbola(PRESSURE)), fit_semi_logarithmic(PRESSURE, PRESSURE)
+    for misfits, name in (
+        ((0.01, 0.0101), UNDECIDED),
+        ((0.01, 0.0112), HYPERBOLA),
+        ((0.015, 0.01), SEMI_LOGARITHMIC),
+        ((np.nan, 0.01), SEMI_LOGARITHMIC),
+        ((0.021, 0.03), NEITHER),
+    ):
+        pair = (fit._replace(misfit=misfit) for fit, misfit in zip(fits, misfits, strict=True))
+        assert better_law(*pair).name == name, misfits
+
+
+# -- into the stage --------------------------------------------------------------------------------
+
+
+def made_curves(nodes, closures, resolutions=(1,)):
+    """A closure stage before its laws, over (direction, offset, resolution, load)."""
+    dims = ("direction", "offset", "resolution", "normal_force")
+    shape = (1, 1, len(resolutions), len(PRESSURE))
+    return xr.Dataset(
+        {
+            "interface_closure": (dims, np.reshape(closures, shape)),
+            "resolved": (dims, np.broadcast_to(np.asarray(nodes) >= 10, shape)),
+            "nominal_pressure": ("normal_force", PRESSURE),
+        },
+        coords={
+            "direction": ["E"],
+            "offset": [0.1],
+            "resolution": list(resolutions),
+            "normal_force": 100 * PRESSURE,
+        },
+    )
+
+
+def test_states_of_few_nodes_are_not_fitted():
+    # One node carries the light loads: its curve is its own, not that of the joint.
+    nodes = np.array([1, 1, 9, 10, 30, 90, 200, 500])
+    w = 0.3 + 0.05 * np.log(PRESSURE)
+    w[:3] = 0.01
+    curves = made_curves(nodes, w)
+    add_closure_laws(curves, None)
+    found = curves.squeeze()
+    assert found["semi_logarithmic_b"].item() == pytest.approx(0.05)
+    assert found["semi_logarithmic_n"] == found["hyperbola_n"] == 5
+    assert found["closure_law"].item() == SEMI_LOGARITHMIC
+    assert found["closure_fit_min"].item() == pytest.approx(100 * PRESSURE[3])
+    assert found["closure_fit_max"].item() == pytest.approx(100 * PRESSURE[-1])
+    curves = made_curves(np.where(nodes > 30, nodes, 3), w)
+    add_closure_laws(curves, None)
+    assert curves["closure_law"].item() == ""
+    assert "3 points" in curves["closure_law_reason"].item()
+
+
+def test_the_range_of_the_study_is_that_of_both_laws():
+    curves = made_curves(np.full(8, 50), 0.3 + 0.05 * np.log(PRESSURE))
+    add_closure_laws(curves, (100 * PRESSURE[1], 100 * PRESSURE[5]))
+    assert curves["hyperbola_n"].item() == curves["semi_logarithmic_n"].item() == 5
+
+
+def test_change_of_k_ni_is_that_from_twice_the_spacing():
+    closures = [hyperbola(PRESSURE, k) for k in (10.0, 25.0, 40.0)]
+    curves = made_curves(np.full(8, 50), closures, resolutions=(1, 2, 8))
+    add_closure_laws(curves, None)
+    change = curves["hyperbola_k_ni_change"].squeeze()
+    assert change[0].item() == pytest.approx(1.5, rel=1e-5)
+    assert np.isnan(change[1:]).all()
