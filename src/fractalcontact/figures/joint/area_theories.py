@@ -22,11 +22,12 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
+from ..kit.verdicts import claim, sentences
 from ..kit.words import estimate, number, opening, place, short
 
 TITLE = "Real contact area compared with the classical theories of section 2"
 SUBJECT = "specimen"
-NEEDS = ("closure", "area")
+NEEDS = ("closure", "area", "statements")
 ORDER = 60
 
 #: Theories of panel (a): variable, name, colour, line; the full line first, lest it hide others.
@@ -61,7 +62,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(right, "b", r"area slope $\kappa$")
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
     headline(figure, settings["label"], where)
-    return Drawing(figure, _table(curve, law), _caption(settings["label"], where, law))
+    linear = claim(atlas, name, "A_r ~ F", "area_is_linear")
+    caption = sentences(_caption(settings["label"], where, law), linear)
+    return Drawing(figure, _table(curve, law), caption)
 
 
 def _drawn_offset(settings, laws):
@@ -206,7 +209,7 @@ def _caption(label, where, law):
 
 
 def _law_words(law):
-    """The exponent of the area, beside the paper's linear law and Archard's levels."""
+    """The exponent of the area beside Archard's levels."""
     reason = str(law["no_law"].values)
     if reason:
         return f"No power law could be fitted ({reason})."
@@ -219,11 +222,8 @@ def _law_words(law):
         )
         if low <= exponent <= high
     ]
-    linear = "includes" if low <= 1 <= high else "leaves out"
     archard = f"Archard's level {', '.join(levels)}" if levels else "none of Archard's levels"
-    return (
-        f"A_r ~ F^m, m = {fit} over {int(law['n'])} loads, {linear} the paper's 1, fits {archard}."
-    )
+    return f"A_r ~ F^m, m = {fit} over {int(law['n'])} loads, fits {archard}."
 
 
 def _between_words(law):

@@ -5,7 +5,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...statements.judge import UNKNOWN
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -22,6 +21,7 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
+from ..kit.verdicts import verdict_words
 from ..kit.words import TOWARDS, force_label, opening, place, short
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
@@ -59,8 +59,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         upper.set_xlabel("")
     legends_below(figure, entries(correlation), entries(closed))
     headline(figure, settings["label"])
-    judged = group(atlas, "statements", name)
-    caption = _caption(settings["label"], direction, joint, judged)
+    verdicts = [
+        verdict_words(atlas, name, said, numbers=False) or "not asked here" for said in STAGES
+    ]
+    force = group(atlas, "statements", name).attrs["force"]
+    caption = _caption(settings["label"], direction, joint, verdicts, force)
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
@@ -175,17 +178,15 @@ def _ends_of_correlation(joint, direction):
     return float(along["correlation_length"]), float(along["uncorrelated_offset"])
 
 
-def _caption(label, direction, joint, judged):
+def _caption(label, direction, joint, verdicts, force):
     ends = _ends_of_correlation(joint, direction)
-    verdicts = [judged["verdict"].sel(statement=name).item() for name in STAGES]
-    verdicts = ["undetermined" if verdict == UNKNOWN else verdict for verdict in verdicts]
     return (
         f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the faces, "
         f"(b) closure and (c) compliance of the interface. "
         f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))} The paper: "
         f"more compliant with v at first ({verdicts[0]}), then overlapping curves ({verdicts[1]}), "
         f"then more compliant again ({verdicts[2]}) at "
-        f"{force_label(judged.attrs['force'])}."
+        f"{force_label(force)}."
     )
 
 

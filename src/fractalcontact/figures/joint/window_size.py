@@ -20,11 +20,12 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
+from ..kit.verdicts import claim, sentences
 from ..kit.words import estimate, opening, place, short
 
 TITLE = "Roughness (eq. 2) and closure (section 5) against the size of the window"
 SUBJECT = "specimen"
-NEEDS = ("windows",)
+NEEDS = ("windows", "statements")
 ORDER = 90
 
 #: Offsets whose composite topography is shown in (a).
@@ -53,7 +54,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         [_roughness_table(laws, shown), _closure_table(laws)],
         ignore_index=True,
     )
-    return Drawing(figure, table, _caption(settings, laws, mapped))
+    larger = claim(atlas, name, "larger closure of larger samples", "larger_samples_close_more")
+    return Drawing(figure, table, sentences(_caption(settings, laws, mapped), larger))
 
 
 def _draw_roughness(axes, laws, shown):
@@ -187,7 +189,7 @@ def _hurst_words(laws):
 
 
 def _closure_words(laws, mapped):
-    """Whether larger windows close more, as the paper has it."""
+    """How often the closure from first contact, an extreme, grows with the window."""
     exponent = laws["closure_exponent"]
     known = np.isfinite(exponent)
     if not known.any():
@@ -197,9 +199,7 @@ def _closure_words(laws, mapped):
     total = int(known.sum())
     words = f"w_int grows with b beyond its interval in {larger} of {total} cases"
     words += f", falls in {smaller}" if smaller else ""
-    verdict = "holds" if larger == total else "holds in part" if larger else "does not hold"
-    here = _range(exponent.values[mapped])
-    return f"{words}, exponents in (b) {here}: the paper's claim {verdict}."
+    return f"{words}, exponents in (b) {_range(exponent.values[mapped])}."
 
 
 def _range(values):

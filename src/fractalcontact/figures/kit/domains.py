@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 from xarray import DataTree
 
 from ...core.fitting import FEWEST_POINTS
@@ -12,6 +11,7 @@ from ...domain.renormalisation import RESOLUTION
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
+from .verdicts import verdict_words
 from .words import interval, opening, place, short
 
 
@@ -201,33 +201,22 @@ class Loading:
         return np.unique(chosen)
 
 
-def trend(
-    forces: ArrayLike, value: np.ndarray, low: np.ndarray, high: np.ndarray, *, rising: bool
-) -> str:
-    """Words on whether a value rises, or falls, with the load as the paper claims.
+def rise_words(atlas: DataTree, name: str, loading: Loading) -> str:
+    """Verdicts on the rise of Delta_sigma with the load, by both estimates.
 
     Parameters
     ----------
-    forces, value, low, high : (n,) array_like
-        F in N; the value and its interval, NaN where there is none.
-    rising : bool
-        The paper's claim.
-
-    Returns
-    -------
-    str
-        Holds, or does not, if the value moves by more than the intervals at both ends.
+    atlas : DataTree
+        With the stage ``statements``.
+    name : str
+        The specimen.
+    loading : Loading
     """
-    known = np.flatnonzero(np.isfinite(value))
-    if len(known) < 2:
-        return "undetermined (fewer than two loads)"
-    first, last = known[0], known[-1]
-    ends = " to ".join(interval(value[i], low[i], high[i]) for i in (first, last))
-    up, down = low[last] > high[first], high[last] < low[first]
-    verdict = "not established"
-    if up or down:
-        verdict = "holds" if up == rising else "does not hold"
-    return f"{ends} ({verdict})"
+    rows = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
+    return ", ".join(
+        f"by {estimate.label} {verdict_words(atlas, name, rows[estimate.key])}"
+        for estimate in loading.estimates
+    )
 
 
 def disagreement(scaling: xr.Dataset) -> str:

@@ -5,7 +5,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.fitting import fit_line
 from ...surface.specimen import nominal_area
 from ..kit.drawing import (
     LINES,
@@ -22,6 +21,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
+from ..kit.verdicts import claim, sentences
 from ..kit.words import (
     estimate,
     force_label,
@@ -34,7 +34,7 @@ from ..kit.words import (
 
 TITLE = "Figs. 4 and 5: closure curves with their hyperbolas, and real contact area against force"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "closure", "area")
+NEEDS = ("specimens", "closure", "area", "statements")
 ORDER = 50
 
 CURVES = 5
@@ -63,7 +63,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(left, "a", "closure")
     letter(right, "b", "real contact area (hollow: not fitted)")
     headline(figure, label, place(direction))
-    caption = _caption(label, direction, curves, laws, drawn)
+    caption = sentences(
+        _caption(label, direction, curves, drawn),
+        claim(atlas, name, "hyperbola", "closure_is_hyperbolic"),
+        claim(atlas, name, "A_r ~ F", "area_is_linear"),
+        claim(atlas, name, "rise of compliance at first", "compliance_rises_at_first"),
+    )
     return Drawing(figure, _table(curves, drawn, laws), caption)
 
 
@@ -186,14 +191,12 @@ def _table(curves, drawn, laws):
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, curves, laws, drawn):
+def _caption(label, direction, curves, drawn):
     first, last = (force_label(curves.attrs[f"hyperbola_force_{end}"]) for end in ("low", "high"))
-    words = [_hyperbola_words(curves.isel(offset=drawn)), _linearity_words(laws.isel(offset=drawn))]
-    if direction != "none":
-        words.append(_compliance_words(curves))
     return (
         f"{opening('Figs. 4 and 5', label, place(direction))} (a) Closure, hyperbolas fitted from "
-        f"{first} to {last}; (b) contact area, power laws. {'. '.join(words)}."
+        f"{first} to {last}; (b) contact area, power laws. "
+        f"{_hyperbola_words(curves.isel(offset=drawn))}."
     )
 
 
@@ -206,33 +209,3 @@ def _hyperbola_words(curves):
     beyond = int((largest > curves["hyperbola_w_m"]).values[fitted].sum())
     misfit = percent(curves["hyperbola_misfit"].max())
     return f"{beyond} of {fitted.sum()} curves pass their asymptote (rms misfit within {misfit})"
-
-
-def _linearity_words(laws):
-    """Whether the area is nearly proportional to the force, as the paper has it."""
-    known = laws.isel(offset=np.isfinite(laws["exponent"].values))
-    if not known.sizes["offset"]:
-        return "Too few domains are large enough for a power law"
-    slopes = known["exponent"].values
-    verdict = "near" if (abs(slopes - 1) <= NEARLY).all() else "not all near"
-    if len(slopes) == 1:
-        verdict = verdict.replace("all ", "")
-        return f"A_r ~ F^m, m = {_exponent(known.isel(offset=0))}, {verdict} the paper's 1"
-    return f"A_r ~ F^m, m = {min(slopes):.3g} to {max(slopes):.3g}, {verdict} the paper's 1"
-
-
-def _compliance_words(curves):
-    """Whether the joint closes more, under the largest load, the farther it has slid."""
-    slid = curves.isel(normal_force=-1, offset=curves["offset"].values > 0)
-    line = fit_line(np.log(slid["offset"].values), slid["interface_closure"].values)
-    load = force_label(float(curves["normal_force"][-1]))
-    if not np.isfinite(line.slope):
-        return f"Too few offsets for a trend of the closure at {load}"
-    trend = (
-        "rises with v, as in the paper"
-        if line.slope_low > 0
-        else "falls with v, unlike in the paper"
-        if line.slope_high < 0
-        else "has no trend with v (paper: rises)"
-    )
-    return f"Closure at {load} {trend}"

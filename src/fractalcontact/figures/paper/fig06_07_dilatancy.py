@@ -25,13 +25,19 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.maps import HALO, draw_domain
+from ..kit.verdicts import claim, sentences
 from ..kit.words import TOWARDS, force_label, opening, percent, place, short, slope_text
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
-NEEDS = ("specimens", "dilatancy", "closure", "contact")
+NEEDS = ("specimens", "dilatancy", "closure", "contact", "statements")
 ORDER = 100
 
+#: What the paper says of rock and of concrete, and the statements that judge it.
+_PLATEAUS = (
+    ("plateau in every direction", "dilatancy_flattens"),
+    ("plateau in two of four", "dilatancy_flattens_in_two"),
+)
 DOMAINS, COLUMNS = 6, 3
 #: (b) shows the offsets up to this part of the largest, and at least so many, apart from the rest.
 INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
@@ -74,7 +80,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     )
     headline(figure, settings["label"])
     table = _table(dilatancy, direction, shown, share)
-    caption = _caption(settings["label"], direction, loads[mapped], share[:, mapped], plateaus)
+    caption = sentences(
+        _caption(settings["label"], direction, loads[mapped], plateaus),
+        *(claim(atlas, name, *said, numbers=False) for said in _PLATEAUS),
+        claim(atlas, name, "fall of A_r with v", "area_falls"),
+    )
     return Drawing(figure, table, caption)
 
 
@@ -207,11 +217,11 @@ def _table(dilatancy, direction, shown, share):
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, force, share, plateaus):
+def _caption(label, direction, force, plateaus):
     return (
         f"{opening('Figs. 6 and 7', label)} (a) Rigid and (b) elastic dilatancy, the latter "
         f"{place(direction)}; (c) contact domains at F = {force_label(force)}. "
-        f"{_plateau_words(plateaus)} {_area_words(share)}"
+        f"{_plateau_words(plateaus)}"
     )
 
 
@@ -226,21 +236,4 @@ def _plateau_words(plateaus):
     words = f"{flat} of {len(changes)} directions have a plateau over the second half of v"
     words += f" (rising: {', '.join(rising)})" if rising else ""
     words += f" (falling: {', '.join(falling)})" if falling else ""
-    return f"{words}; paper: four (rock), two (concrete)."
-
-
-def _area_words(share):
-    """Whether the contact area falls as the joint slides, as the paper has it."""
-    v = share["offset"].values
-    slid = v > 0
-    line = fit_line(np.log(v[slid]), np.log(share.values[slid]))
-    if not np.isfinite(line.slope):
-        return "Too few offsets for a trend of the contact area."
-    verdict = (
-        "falls, as in the paper"
-        if line.slope_high < 0
-        else "rises, unlike in the paper"
-        if line.slope_low > 0
-        else "no trend (paper: falls)"
-    )
-    return f"A_r ~ v^e, e = {slope_text(line)}: {verdict}."
+    return f"{words}."

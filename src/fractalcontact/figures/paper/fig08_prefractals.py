@@ -9,11 +9,12 @@ from ...domain.renormalisation import RESOLUTION
 from ..kit.domains import Loading, disagreement
 from ..kit.drawing import WIDTH, Drawing, headline, letter
 from ..kit.maps import draw_domain
+from ..kit.verdicts import claim
 from ..kit.words import force_label, percent, short
 
 TITLE = "Fig. 8: contact domains of the pre-fractals under one load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling")
+NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
 ORDER = 130
 
 #: Maps side by side.
@@ -44,7 +45,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for axes in panels[len(table) :]:
         axes.remove()
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
-    return Drawing(figure, table, _caption(loading, i, table))
+    falls = claim(atlas, name, "fall of A_r as a power", "area_is_lacunar", numbers=False)
+    return Drawing(figure, table, _caption(loading, i, table, falls))
 
 
 def _table(loading, i):
@@ -65,21 +67,11 @@ def _table(loading, i):
     )
 
 
-def _caption(loading, i, table):
+def _caption(loading, i, table, falls):
     by_area, by_box = loading.estimates
     return (
         f"{loading.opening('Fig. 8')} Contact domains (black) at {len(table)} resolutions, "
-        f"F = {force_label(loading.forces[i])}. {_verdict(table)} Delta_sigma is {by_area.text(i)} "
+        f"F = {force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.text(i)} "
         f"by A_r(s), {by_box.text(i)} by box counting ({loading.fit_ranges(i)}). "
         f"{disagreement(loading.scaling.isel(normal_force=i))}"
     )
-
-
-def _verdict(table):
-    """Whether A_r falls, and sigma_r rises, as the resolution is refined."""
-    steps = np.diff(table["area_mm2"].values)
-    if not steps.size:
-        return "With one resolution there is nothing to compare."
-    if (steps > 0).all():
-        return "As in the paper, A_r falls with every refinement and sigma_r rises."
-    return f"Unlike in the paper, A_r falls at {(steps > 0).sum()} of {steps.size} refinements."

@@ -6,14 +6,14 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ..kit.domains import Loading, disagreement, trend
+from ..kit.domains import Loading, disagreement, rise_words
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, headline, letter
 from ..kit.maps import draw_domain
 from ..kit.words import force_label, percent, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "contact_maps")
+NEEDS = ("specimens", "contact", "domains", "scaling", "contact_maps", "statements")
 ORDER = 190
 
 #: Contact domains drawn.
@@ -46,7 +46,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
     headline(figure, *loading.title)
     table = pd.concat([_table(loading, finest), *_measured_rows(measured, nominal)])
-    caption = f"{_caption(loading)}{_measured_words(measured)}"
+    rises = rise_words(atlas, name, loading)
+    caption = f"{_caption(loading, rises)}{_measured_words(measured)}"
     return Drawing(figure, table.reset_index(drop=True), caption)
 
 
@@ -152,13 +153,9 @@ def _draw_dimensions(axes, loading):
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
 
 
-def _caption(loading):
-    verdicts = ", ".join(
-        f"{trend(loading.forces, e.value, e.low, e.high, rising=True)} by {e.label}"
-        for e in loading.estimates
-    )
+def _caption(loading, rises):
     return (
         f"{loading.opening('Fig. 12')} Contact domains and Delta_sigma under rising load "
-        f"({loading.fit_ranges()}). The paper's rise with F: {verdicts}. "
+        f"({loading.fit_ranges()}). The paper's rise with F: {rises}. "
         f"{disagreement(loading.scaling)}"
     )
