@@ -51,8 +51,9 @@ def compliance_rises_again(joint: Joint) -> Finding:
     ends = joint.offset[before].max(), joint.offset[after].min()
     return Finding(
         HOLDS if change > NEARLY else FAILS,
-        f"compliance {100 * change:+.0f} % from v <= {ends[0]:.3g} to >= {ends[1]:.3g} mm",
-        f"sigma_z of the composite topography {100 * of_spread:+.0f} %",
+        f"compliance {100 * change:+.0f} %",
+        f"from v <= {ends[0]:.3g} to >= {ends[1]:.3g} mm; sigma_z of the composite topography "
+        f"{100 * of_spread:+.0f} %",
     )
 
 
@@ -101,9 +102,9 @@ def larger_samples_close_more(joint: Joint) -> Finding:
     closure = float(windows["closure_exponent"])
     return Finding(
         by_sign(low, high, rising=True),
-        f"compliance ~ b^e, e = {value:.2f} [{low:.2f}, {high:.2f}] at "
-        f"{float(windows['nominal_pressure']):.3g} MPa",
-        f"closure from first contact, b^{closure:.2f}, grows as any largest value does",
+        f"e = {value:.2f} [{low:.2f}, {high:.2f}]",
+        f"compliance ~ b^e at {float(windows['nominal_pressure']):.3g} MPa; closure from first "
+        f"contact, b^{closure:.2f}, grows as any largest value does",
     )
 
 
@@ -122,8 +123,9 @@ def area_is_linear(joint: Joint) -> Finding:
     ends = " to ".join(dict.fromkeys(f"{m:.2f}" for m in (value.min(), value.max())))
     return Finding(
         verdict,
-        f"A_r ~ F^m, m = {ends}, {near} of {value.size} within {NEARLY:g} of 1, {apart} beyond it "
-        "by their intervals",
+        f"m = {ends}",
+        f"A_r ~ F^m, {near} of {value.size} within {NEARLY:g} of 1, {apart} beyond it by their "
+        "intervals",
     )
 
 
@@ -149,9 +151,8 @@ def refinement_changes_little(joint: Joint) -> Finding:
     verdict = HOLDS if change.max() <= NEARLY else PARTLY if change.min() <= NEARLY else FAILS
     return Finding(
         verdict,
-        f"closure changes by {100 * change.min():.0f} to {100 * change.max():.0f} % from 2 s to s "
-        f"in {change.size} states",
-        "closure counts from the highest point, which moves with s",
+        f"closure changes by {100 * change.min():.0f} to {100 * change.max():.0f} % from 2 s to s",
+        f"{change.size} states; it counts from the highest point, which moves",
     )
 
 

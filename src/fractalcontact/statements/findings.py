@@ -175,8 +175,8 @@ def trend(
     v = v[chosen]
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=rising),
-        f"{symbol} ~ v^e, e = {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}], "
-        f"v = {v[0]:.3g} to {v[-1]:.3g} mm",
+        f"e = {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}]",
+        f"{symbol} ~ v^e, v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 
 
@@ -196,7 +196,8 @@ def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
     verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS
     return Finding(
         verdict,
-        f"{symbol} varies by {100 * spread:.0f} % of its mean, v = {v[0]:.3g} to {v[-1]:.3g} mm",
+        f"{symbol} varies by {100 * spread:.0f} % of its mean",
+        f"v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 
 

@@ -47,8 +47,8 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     better = int((laws[decided] == HYPERBOLA).sum())
     return Finding(
         share(better, int(decided.sum())),
-        f"better than w = a + b ln sigma_0 at {better} of {decided.sum()} offsets, median misfit "
-        f"{misfits}",
+        f"the better law at {better} of {decided.sum()} offsets",
+        f"than w = a + b ln sigma_0; median misfit {misfits}",
     )
 
 
@@ -64,8 +64,9 @@ def domains_are_fractal(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
     return Finding(
         {BEYOND: HOLDS, LIKE_RANDOM: FAILS, LIKE_CUT: PARTLY}.get(verdict, UNDETERMINED),
-        f"{verdict}: Delta_sigma = {value:.2f}, random nodes {random:.2f} [{low:.2f}, {high:.2f}], "
-        f"cut {cut:.2f}",
+        verdict,
+        f"Delta_sigma = {value:.2f}, random nodes {random:.2f} [{low:.2f}, {high:.2f}], cut "
+        f"{cut:.2f}",
     )
 
 

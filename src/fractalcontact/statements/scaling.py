@@ -88,9 +88,9 @@ def dimension_rises_by_area(joint: Joint) -> Finding:
 
 def dimension_rises_by_boxes(joint: Joint) -> Finding:
     """Delta_sigma from box counts against the logarithm of F."""
-    return _over_load(joint, "box")._replace(
-        note="random nodes, as many, rise as well: more nodes fill more boxes"
-    )
+    found = _over_load(joint, "box")
+    null = "as many random nodes rise as well, since more of them fill more boxes"
+    return found._replace(note="; ".join(filter(None, (found.note, null))))
 
 
 def dimension_spans_all(joint: Joint) -> Finding:
@@ -127,15 +127,15 @@ def size_effect_follows(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, "no load at which the parts decide")
     agree = (test["verdict"] == DECIDED[0]).values
     words = ", ".join(
-        f"{ESTIMATES[key]} at {agree[i].sum()} of {decided[i].sum()} loads"
+        f"{ESTIMATES[key]} at {agree[i].sum()} of {decided[i].sum()}"
         for i, key in enumerate(ESTIMATES)
     )
     slope = test["slope"].values[decided.any(axis=0)]
     return Finding(
         share(int(agree.sum()), int(decided.sum())),
-        f"it agrees with the slope measured {words}",
-        f"slopes of log sigma_0 over log b {slope.min():.2f} to {slope.max():.2f}, of windows "
-        "within one joint",
+        words,
+        "of loads it agrees with the slope of log sigma_0 over log b measured on windows within "
+        f"one joint, {slope.min():.2f} to {slope.max():.2f}",
     )
 
 
@@ -148,7 +148,8 @@ def larger_domains_are_less_dense(joint: Joint) -> Finding:
     pressure = float(windows["nominal_pressure"])
     return Finding(
         by_sign(low, high, rising=False),
-        f"A_r/A_0 ~ b^e, e = {value:.2f} [{low:.2f}, {high:.2f}] at {pressure:.3g} MPa",
+        f"e = {value:.2f} [{low:.2f}, {high:.2f}]",
+        f"A_r/A_0 ~ b^e at {pressure:.3g} MPa",
     )
 
 
@@ -172,7 +173,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     known = cases & ~held & np.isfinite(value)
     exponents = _exponents(value, low, high, known)
     if 2 * known.sum() <= cases.sum():
-        bound = f"strengths held at their bound enter {(cases & held).sum()} of {cases.sum()} cases"
+        bound = f"strengths at their bound in {(cases & held).sum()} of {cases.sum()} cases"
         return Finding(UNDETERMINED, bound, exponents)
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     if falls == known.sum() or rises == known.sum():
@@ -262,6 +263,6 @@ def _over_load(joint, key):
         )
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=True),
-        f"{line.slope:+.2f} [{line.slope_low:+.2f}, {line.slope_high:+.2f}] a decade of F, "
+        f"{line.slope:+.2f} [{line.slope_low:+.2f}, {line.slope_high:+.2f}] a decade of F",
         f"{line.n} loads",
     )

@@ -62,18 +62,15 @@ class Plateaus(NamedTuple):
         """Which directions have a plateau."""
         return np.abs(self.change) <= NEARLY
 
-    @property
-    def words(self) -> str:
-        """How many are flat, and by how much the directions change."""
-        rising = [
-            d for d, change in zip(self.directions, self.change, strict=True) if change > NEARLY
-        ]
+    def finding(self, verdict: str) -> Finding:
+        """A verdict with how many directions are flat, and by how much they change."""
+        rising = [self.directions[i] for i in np.flatnonzero(self.change > NEARLY)]
         more = f"; rising {', '.join(rising)}" if rising else ""
-        return (
-            f"{self.flat.sum()} of {self.change.size} directions within {100 * NEARLY:g} % over "
-            f"the second half of v, {100 * self.change.min():+.0f} to "
-            f"{100 * self.change.max():+.0f} %"
-            f"{more}"
+        return Finding(
+            verdict,
+            f"{self.flat.sum()} of {self.change.size} directions level{more}",
+            f"{100 * self.change.min():+.0f} to {100 * self.change.max():+.0f} % of the mean over "
+            f"the second half of v, level within {100 * NEARLY:g} %",
         )
 
 
@@ -82,7 +79,7 @@ def dilatancy_flattens(joint: Joint) -> Finding:
     plateaus = Plateaus.of(joint.stages["joints"])
     if not plateaus.change.size:
         return Finding(UNDETERMINED, no_offsets("three rigid"))
-    return Finding(share(int(plateaus.flat.sum()), plateaus.flat.size), plateaus.words)
+    return plateaus.finding(share(int(plateaus.flat.sum()), plateaus.flat.size))
 
 
 def dilatancy_flattens_in_two(joint: Joint) -> Finding:
@@ -93,7 +90,7 @@ def dilatancy_flattens_in_two(joint: Joint) -> Finding:
     flat, rising = int(plateaus.flat.sum()), int((plateaus.change > NEARLY).sum())
     both = flat > 0 and rising > 0
     verdict = HOLDS if both and flat == rising == PLATEAUS else PARTLY if both else FAILS
-    return Finding(verdict, plateaus.words)
+    return plateaus.finding(verdict)
 
 
 def dilatancy_is_anisotropic(joint: Joint) -> Finding:
@@ -121,11 +118,12 @@ def no_correlation_is_left(joint: Joint) -> Finding:
     limit = float(joint.stages["joints"]["correlation_limit"])
     v = joint.stages["joints"]["rigid_offset"].values
     correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offset[-1]))]
-    numbers = f"correlation {correlation:+.2f} at v = {joint.offset[-1]:.3g} mm"
+    numbers, where = f"correlation {correlation:+.2f}", f"at v = {joint.offset[-1]:.3g} mm"
     if not np.isfinite(limit):
-        return Finding(UNDETERMINED, f"{numbers}, the window too small to separate it from chance")
+        too_small = "the window is too small to separate it from chance"
+        return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")
     verdict = HOLDS if correlation <= limit else FAILS
-    return Finding(verdict, f"{numbers}, chance gives up to {limit:.2f}")
+    return Finding(verdict, f"{numbers}, by chance up to {limit:.2f}", where)
 
 
 #: All of them, in the order of the paper.

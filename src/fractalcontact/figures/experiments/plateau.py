@@ -42,6 +42,9 @@ ORDER = 10
 #: What the paper says of rock and of concrete (:mod:`statements.sliding`).
 PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
+#: Specimens that the caption names.
+MOST_NAMED = 3
+
 #: Specimens whose largest offsets differ by more than this are drawn in decades.
 WIDE = 5
 
@@ -308,23 +311,23 @@ def _caption(slides, verdicts):
     synthetic = slides[: len(SURFACES)]
     words = (
         f"After Figs. 6a and 7a of {PAPER}. (a) Rigid dilatancy delta_r, (b) deviation sigma_z of "
-        "the composite topography, (c) their ratio, for synthetic joints and the study's "
-        f"specimens. {_explanation(synthetic)}"
+        f"the composite topography, (c) their ratio. {_explanation(synthetic)}"
     )
     return f"{words} The paper's plateaus: {verdicts}." if verdicts else words
 
 
 def _verdicts(atlas, names):
     """Verdicts on the plateaus that the paper has of a material, specimen by specimen."""
-    said = {
-        name: row
-        for name in names
-        for statement in PLATEAUS
-        if (row := row_of(atlas, "statements", name, statement)) is not None
-    }
-    return ", ".join(
-        f"{name} {row['verdict'].item()}{f' ({CIRCULAR_SHORT})' if row['circular'] else ''}"
-        for name, row in said.items()
+    said: dict[str, list[str]] = {}
+    for name in names:
+        for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
+            if row is not None:
+                mark = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
+                said.setdefault(row["verdict"].item(), []).append(f"{name}{mark}")
+    few = sum(map(len, said.values())) <= MOST_NAMED
+    return "; ".join(
+        f"{verdict} for {', '.join(of) if few else f'{len(of)} specimens'}"
+        for verdict, of in said.items()
     )
 
 

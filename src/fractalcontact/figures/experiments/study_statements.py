@@ -6,6 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.labels import printable
 from ...statements.judge import all_statements
 from ..joint.statements import DATA, SIGNS
 from ..kit.drawing import WIDTH, Drawing, group
@@ -21,8 +22,8 @@ ORDER = 5
 #: Where the columns of words begin and end, as fractions of the width, and their letters.
 COLUMNS = {"figure": (0.01, 8), "claim": (0.07, 62)}
 FIRST, LAST = 0.53, 0.99
-#: Lines that the names of the specimens take, upright, above the rows.
-HEADS = 11
+#: Letters of a specimen's name that are shown, upright, and lines that each takes.
+LONGEST_NAME, LINES_A_LETTER = 40, 0.48
 #: Group of what is judged for the study as a whole.
 WHOLE = "study"
 
@@ -38,16 +39,20 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     whole = _whole(atlas)
     shown = [*rows.values(), *whole[["figure", "claim"]].to_dict("records")]
     texts, lines = wrap_rows(shown, COLUMNS)
-    height = LINE_HEIGHT * (HEADS + sum(lines) + 4)
+    heads = {name: printable(name, LONGEST_NAME) for name in tables}
+    top = 1 + LINES_A_LETTER * max(map(len, heads.values()))
+    height = LINE_HEIGHT * (top + sum(lines) + 2)
     figure = Figure(figsize=(WIDTH, height))
     figure.set_layout_engine("none")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, 1), ylim=(height / LINE_HEIGHT, 0))
     axes.set_axis_off()
-    places = _draw_words(axes, texts, lines)
+    places = _draw_words(axes, texts, lines, top)
     at = {name: FIRST + (i + 0.5) * (LAST - FIRST) / len(tables) for i, name in enumerate(tables)}
     for name, table in tables.items():
-        axes.text(at[name], HEADS - 0.4, name, rotation=90, va="bottom", ha="center", fontsize=7)
+        axes.text(
+            at[name], top - 0.6, heads[name], rotation=90, va="bottom", ha="center", fontsize=7
+        )
         for statement, y in zip(rows, places, strict=False):
             if statement in table.index:
                 row = table.loc[statement]
@@ -72,8 +77,8 @@ def _whole(atlas):
     return pd.DataFrame({key: [] for key in DATA})
 
 
-def _draw_words(axes, texts, lines):
-    places, y = [], float(HEADS)
+def _draw_words(axes, texts, lines, top):
+    places, y = [], top
     for row, rows in zip(texts, lines, strict=True):
         axes.axhline(y - 0.35, color="0.8", lw=0.5)
         for key, (x, _) in COLUMNS.items():

@@ -62,7 +62,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(right, "b", r"area slope $\kappa$")
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
     headline(figure, settings["label"], where)
-    linear = claim(atlas, name, "A_r ~ F", "area_is_linear")
+    linear = claim(atlas, name, "A_r ~ F", "area_is_linear", numbers=False)
     caption = sentences(_caption(settings["label"], where, law), linear)
     return Drawing(figure, _table(curve, law), caption)
 

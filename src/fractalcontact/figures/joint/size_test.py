@@ -254,7 +254,7 @@ def _table(test):
 
 def _caption(settings, test, where, follows):
     return (
-        f"{supplementary(settings['label'], where)} Direct test of eq. 6 on parts: (a) pressure at "
+        f"{supplementary(settings['label'], where)} Eq. 6 tested on parts: (a) pressure at "
         "the sigma* of the whole, (b) slopes over b, (c), (d) predictions of the whole. "
         f"{follows} {_slope_words(test)}"
     )

@@ -54,7 +54,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         [_roughness_table(laws, shown), _closure_table(laws)],
         ignore_index=True,
     )
-    larger = claim(atlas, name, "larger closure of larger samples", "larger_samples_close_more")
+    larger = claim(atlas, name, "more compliant larger samples", "larger_samples_close_more")
     return Drawing(figure, table, sentences(_caption(settings, laws, mapped), larger))
 
 
@@ -189,17 +189,12 @@ def _hurst_words(laws):
 
 
 def _closure_words(laws, mapped):
-    """How often the closure from first contact, an extreme, grows with the window."""
+    """How the closure from first contact, an extreme of the window, grows with it."""
     exponent = laws["closure_exponent"]
     known = np.isfinite(exponent)
     if not known.any():
         return "No exponent: fewer than three sizes have closure."
-    larger = int((laws["closure_exponent_low"] > 0).sum())
-    smaller = int((laws["closure_exponent_high"] < 0).sum())
-    total = int(known.sum())
-    words = f"w_int grows with b beyond its interval in {larger} of {total} cases"
-    words += f", falls in {smaller}" if smaller else ""
-    return f"{words}, exponents in (b) {_range(exponent.values[mapped])}."
+    return f"w_int ~ b^e, e = {_range(exponent.values[mapped])} in (b)."
 
 
 def _range(values):

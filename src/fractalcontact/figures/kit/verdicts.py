@@ -4,7 +4,7 @@ import xarray as xr
 from xarray import DataTree
 
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
-CIRCULAR, CIRCULAR_SHORT = "circular: the specimen was chosen for it", "circular"
+CIRCULAR, CIRCULAR_SHORT = "circular: chosen for it", "circular"
 
 
 def verdict_words(atlas: DataTree, name: str, statement: str, *, numbers: bool = True) -> str:

@@ -187,8 +187,6 @@ def _slope_words(laws, share):
 
 
 def _limit_words(laws, share):
-    """The one warning: strengths held at their bound, or mean slopes that no logarithm has."""
-    if (laws["similar_held"].values[share] > 0).any():
-        return f"Strengths held at {LARGEST_FRICTION_ANGLE:g} degrees enter no fit."
+    """The one warning: mean slopes that no logarithm has."""
     lost = int((laws["similar_slope"].values[share] <= 0).sum())
     return f"{lost} mean slopes that are not positive are left out." if lost else ""

@@ -81,8 +81,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, settings["label"])
     table = _table(dilatancy, direction, shown, share)
     caption = sentences(
-        _caption(settings["label"], direction, loads[mapped], plateaus),
-        *(claim(atlas, name, *said, numbers=False) for said in _PLATEAUS),
+        _caption(settings["label"], direction, loads[mapped]),
+        sentences(*(claim(atlas, name, *said) for said in _PLATEAUS)) or _plateau_words(plateaus),
         claim(atlas, name, "fall of A_r with v", "area_falls"),
     )
     return Drawing(figure, table, caption)
@@ -217,11 +217,10 @@ def _table(dilatancy, direction, shown, share):
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, force, plateaus):
+def _caption(label, direction, force):
     return (
         f"{opening('Figs. 6 and 7', label)} (a) Rigid and (b) elastic dilatancy, the latter "
-        f"{place(direction)}; (c) contact domains at F = {force_label(force)}. "
-        f"{_plateau_words(plateaus)}"
+        f"{place(direction)}; (c) contact domains at F = {force_label(force)}."
     )
 
 

@@ -38,7 +38,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = sentences(
         _caption(loading, i, counts, table),
         claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=False),
-        claim(atlas, name, "lacunar fractal set", "domains_are_fractal", numbers=False),
+        claim(atlas, name, "fractal set", "domains_are_fractal", numbers=False),
     )
     return Drawing(figure, table, caption)
 

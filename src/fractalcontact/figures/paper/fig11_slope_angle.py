@@ -103,11 +103,13 @@ def _draw_ratio(axes, laws, share, drawn):
     b, pressures = laws["side"].values, laws["nominal_pressure"].values
     for j, pressure in enumerate(pressures):
         values = laws["similar_strength"].values[share, :, j]
-        style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)], "ls": "none"}
-        axes.plot(apart(b, j, len(pressures)), values / values[0], **style)
+        colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
+        held = laws["similar_held"].values[share, :, j]
+        beside = apart(b, j, len(pressures))
+        draw_means(axes, beside, values / values[0], held, colour, marker)
         exponent = interval_text(laws, "similar_strength_exponent", (share, j))
         label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
-        axes.plot([], [], **style, label=label)
+        axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     slope = QUOTED_DELTA - 2
     label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}: quoted by later work of the same school"
     axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
@@ -176,4 +178,12 @@ def _caption(settings, laws, share, drawn, falls):
         f"v = {share_words(laws, share)} of their side b, 95 % intervals; no exponent through "
         "strengths held at their bound.",
         falls,
+        _beyond_barton(settings, laws),
     )
+
+
+def _beyond_barton(settings, laws):
+    """Whether Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20."""
+    stated = np.isfinite(settings["material"]["joint_wall_strength"])
+    beyond = stated & np.isnan(laws["barton_roughness"]).all()
+    return "JRC_n is beyond Barton's scale." if beyond else ""

@@ -69,6 +69,6 @@ def _slope(estimate):
 def _caption(loading, rises):
     return (
         f"{loading.opening('Fig. 13')} Eq. 6 extrapolated from the specimen (solid by A_r(s), "
-        f"dashed by box counting), not measured ({loading.fit_ranges()}). The paper's fall of "
-        f"2 - Delta_sigma with F, so a rise of Delta_sigma: {rises}."
+        f"dashed by box counting), not measured ({loading.fit_ranges()}). The paper's rise of "
+        f"Delta_sigma: {rises}."
     )
