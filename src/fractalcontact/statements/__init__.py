@@ -10,7 +10,7 @@ __getattr__, __dir__, __all__ = exports(
         "ILL_POSED": ".judge",
         "PARTLY": ".judge",
         "UNDETERMINED": ".judge",
-        "judge": ".judge",
+        "all_statements": ".judge",
         "judge_study": ".study",
     },
 )

@@ -182,7 +182,9 @@ STATEMENTS = (
         "The higher that dimension, the more compliant the joint",
         compliance_goes_with_dimension,
     ),
-    Statement("4, 5", "Larger samples of a joint close more", larger_samples_close_more),
+    Statement(
+        "4, 5", "Larger samples of a joint close more", larger_samples_close_more, slides=False
+    ),
     Statement(
         "4, 5",
         "The real contact area is nearly proportional to F",

@@ -35,9 +35,7 @@ def area_is_lacunar(joint: Joint) -> Finding:
     state = joint.map_state("scaling")
     value, low, high = (float(state[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
     if not np.isfinite(value):
-        return Finding(
-            UNDETERMINED, f"{int(state['n'])} resolutions with enough nodes, three needed"
-        )
+        return Finding(UNDETERMINED, f"{int(state['n'])} of {FEWEST_POINTS} resolutions needed")
     # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive.
     return Finding(
         by_sign(2 - high, 2 - low, rising=True),
@@ -258,9 +256,7 @@ def _over_load(joint, key):
     states = joint.map_states("scaling")
     line = fit_line(np.log10(states["normal_force"].values), states[f"delta_{key}"].values)
     if not np.isfinite(line.slope):
-        return Finding(
-            UNDETERMINED, f"{line.n} loads with an estimate {ESTIMATES[key]}, three needed"
-        )
+        return Finding(UNDETERMINED, f"{line.n} of {FEWEST_POINTS} loads needed")
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=True),
         f"{line.slope:+.2f} [{line.slope_low:+.2f}, {line.slope_high:+.2f}] a decade of F",

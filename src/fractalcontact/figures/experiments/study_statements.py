@@ -30,6 +30,8 @@ WHOLE = "study"
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """A sign for each verdict, specimen by specimen, and below what needs several specimens."""
+    if not len(names):  # measured contact maps alone
+        return Drawing(Figure(figsize=(WIDTH, 1)), pd.DataFrame(), _caption({}, _whole(atlas)))
     tables = {name: _table(atlas, "statements", name) for name in names}
     rows = {
         statement.check.__name__: {"figure": statement.figure, "claim": statement.claim}

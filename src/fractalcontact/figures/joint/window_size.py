@@ -93,7 +93,7 @@ def _draw_closure(axes, laws, mapped):
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
         _with_intervals(axes, b, laws, "interface_closure", (mapped, j), **style, ls="none")
         exponent = interval_text(laws, "closure_exponent", (mapped, j))
-        label = rf"$\sigma_n$ = {short(pressure)} MPa: $w_{{int}} \sim b^x$, $x$ = {exponent}"
+        label = rf"$\sigma_0$ = {short(pressure)} MPa: $w_{{int}} \sim b^x$, $x$ = {exponent}"
         axes.plot([], [], **style, ls="-", lw=0.8, label=label)
         slope = float(laws["closure_exponent"][mapped, j])
         closure = laws["interface_closure"].values[:, mapped, j]
