@@ -116,3 +116,5 @@ def test_a_claim_is_quoted_with_its_numbers_and_what_makes_it_circular(atlas):
     assert claim(atlas, "flat", "fall", "area_falls") == ""
     with pytest.raises(KeyError):
         claim(atlas, "nobody", "fall", "area_falls")
+    with pytest.raises(KeyError, match="no statement is called 'area_flows'"):
+        claim(atlas, "sliding", "fall", "area_flows")

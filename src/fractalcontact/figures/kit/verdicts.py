@@ -3,6 +3,10 @@
 import xarray as xr
 from xarray import DataTree
 
+from ...statements import nulls
+from ...statements.judge import all_statements
+from ...statements.study import STATEMENTS as OF_STUDY
+
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
 CIRCULAR, CIRCULAR_SHORT = "circular: chosen for it", "circular"
 
@@ -56,8 +60,12 @@ def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset
     Raises
     ------
     KeyError
-        If the specimen has no table at all: a verdict is never left out in silence.
+        If there is no such statement, or the specimen has no table: a verdict is never left out in
+        silence.
     """
+    every = (*all_statements(), *nulls.STATEMENTS, *OF_STUDY)
+    if statement not in {known.check.__name__ for known in every}:
+        raise KeyError(f"no statement is called {statement!r}")
     table = atlas[f"{stage}/{name}"].to_dataset()
     asked = statement in table["statement"].values
     return table.sel(statement=statement) if asked else None
