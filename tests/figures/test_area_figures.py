@@ -142,8 +142,8 @@ def test_kappa_is_judged_by_the_theories(with_area, value, words):
     ("low", "high", "words"),
     representative(
         [
-            (0.95, 1.02, "includes the paper's 1, fits Archard's level 3"),
-            (0.85, 0.98, "leaves out the paper's 1, fits Archard's level 2, 3"),
+            (0.95, 1.02, "fits Archard's level 3"),
+            (0.85, 0.98, "fits Archard's level 2, 3"),
             (0.75, 0.8, "fits none of Archard's"),
         ]
     ),

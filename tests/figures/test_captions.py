@@ -1,11 +1,15 @@
-"""Captions of all figures: their length and words, and what each figure needs of the atlas."""
+"""Captions of all figures: their length and words, verdicts, what each needs of the atlas."""
 
 import re
 
+import numpy as np
 import pytest
+import xarray as xr
+from cases import representative
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.figures.kit.verdicts import CIRCULAR, claim
 from fractalcontact.study.atlas import STAGES
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
 from fractalcontact.study.stages import EXPERIMENT, paths_of
@@ -18,7 +22,25 @@ SPECIMENS = [
     for name, opposite in SUBJECTS.items()
     for figure in figures_of(opposite)
 ]
-STUDY = [(figure, list(SUBJECTS)) for figure in study_figures_of(paths_of(EXPERIMENT))]
+STUDY = [
+    (figure, list(SUBJECTS)) for figure in study_figures_of([*paths_of(EXPERIMENT), "defaults"])
+]
+#: Words of a verdict, which only the table of statements has.
+VERDICT = r"\b(holds|not hold|ill-posed|established|(as|unlike) (in )?the paper)\b"
+#: Figures that are tables of statements: they draw a sign for each verdict that there is.
+TABLES = ("statements", "study_statements")
+
+
+@pytest.fixture(scope="module")
+def marked(atlas):
+    """The atlas with words of its own for every verdict."""
+    changed = atlas.copy()
+    for name in SUBJECTS:
+        judged = atlas[f"statements/{name}"].to_dataset()
+        said = [f"verdict number {i}" for i in range(judged.sizes["statement"])]
+        judged["verdict"] = judged["verdict"].copy(data=np.array(said, object))
+        changed[f"statements/{name}"] = xr.DataTree(judged)
+    return changed
 
 
 def words_of(caption):
@@ -26,9 +48,9 @@ def words_of(caption):
 
 
 @pytest.mark.parametrize(("figure", "subject"), [*SPECIMENS, *STUDY])
-def test_caption_is_short_and_says_whose_figure_it_is(atlas, figure, subject):
+def test_caption_is_short_and_quotes_its_verdicts(atlas, marked, figure, subject):
     """And the figure needs no stage of the atlas but those it states."""
-    needed = atlas.copy()
+    needed = (atlas if figure in TABLES else marked).copy()
     for stage in STAGES.keys() - set(all_figures()[figure].needs):
         if stage in needed.children:
             del needed[stage]
@@ -38,3 +60,65 @@ def test_caption_is_short_and_says_whose_figure_it_is(atlas, figure, subject):
     assert caption.startswith(("After ", "Supplementary figure"))
     assert not re.search(r"\b(nan|told|made|share|met)\b", caption)
     assert "  " not in caption
+    if figure not in TABLES:
+        assert not re.search(VERDICT, caption)
+
+
+#: Figures whose captions judge a claim of the paper, and the statements that decide it.
+QUOTED = {
+    "fig01_strength": {"strength_falls_with_size"},
+    "fig03_composite": {"no_correlation_is_left"},
+    "fig04_05_closure": {
+        "closure_is_hyperbolic",
+        "area_is_linear",
+        "compliance_rises_at_first",
+    },
+    "fig06_07_dilatancy": {"dilatancy_flattens", "area_falls"},
+    "fig08_prefractals": {"area_is_lacunar"},
+    "fig09_box_counting": {"boxes_follow_one_law", "domains_are_fractal"},
+    "fig10_scaling": {"area_is_lacunar"},
+    "fig11_slope_angle": {"strength_falls_with_size"},
+    "fig12_evolution": {"dimension_rises_by_area", "dimension_rises_by_boxes"},
+    "fig13_size_effect": {"dimension_rises_by_area", "dimension_rises_by_boxes"},
+    "area_theories": {"area_is_linear"},
+    "clusters": {"domains_cluster"},
+    "compliance": {"compliance_rises_at_first", "curves_overlap", "compliance_rises_again"},
+    "plateau": {"dilatancy_flattens"},
+    "size_test": {"size_effect_follows"},
+    "window_size": {"larger_samples_close_more"},
+}
+
+
+def test_every_figure_that_reads_statements_says_which():
+    reading = {name for name, figure in all_figures().items() if "statements" in figure.needs}
+    assert reading == QUOTED.keys() | set(TABLES)
+
+
+@pytest.mark.parametrize("figure", representative(sorted(QUOTED), 4))
+def test_captions_and_table_have_one_verdict(marked, figure):
+    judged = marked["statements/sliding"].to_dataset()
+    subject = ["sliding"] if all_figures()[figure].subject == "study" else "sliding"
+    with print_style():
+        caption = drawer_of(figure)(marked, subject).caption
+    said = set(re.findall(r"verdict number \d+", caption))
+    expected = {judged["verdict"].sel(statement=name).item() for name in QUOTED[figure]}
+    assert said == expected
+
+
+def test_a_claim_is_quoted_with_its_numbers_and_what_makes_it_circular(atlas):
+    judged = atlas["statements/sliding"].to_dataset().sel(statement="area_falls")
+    changed = atlas.copy()
+    table = atlas["statements/sliding"].to_dataset()
+    table["circular"] = table["statement"] == "area_falls"
+    changed["statements/sliding"] = xr.DataTree(table)
+    verdict, numbers = judged["verdict"].item(), judged["numbers"].item()
+    said = claim(atlas, "sliding", "fall", "area_falls")
+    assert said == f"The paper's fall: {verdict} ({numbers})."
+    assert claim(atlas, "sliding", "fall", "area_falls", numbers=False).endswith(f": {verdict}.")
+    circular = claim(changed, "sliding", "fall", "area_falls")
+    assert circular == f"The paper's fall: {verdict} ({numbers}; {CIRCULAR})."
+    assert claim(atlas, "flat", "fall", "area_falls") == ""
+    with pytest.raises(KeyError):
+        claim(atlas, "nobody", "fall", "area_falls")
+    with pytest.raises(KeyError, match="no statement is called 'area_flows'"):
+        claim(atlas, "sliding", "fall", "area_flows")

@@ -83,7 +83,6 @@ def test_direct_test_without_a_slope(atlas):
 
     drawing = drawn(size_test, changed(atlas, "size_test/flat", nothing_found), "flat")
     drawing.figure.draw_without_rendering()
-    assert "Of 0 loads eq. 6 agrees" in drawing.caption
     assert "Parts hold too few nodes in contact" in drawing.caption
     assert "nan" not in drawing.caption
 
@@ -158,9 +157,9 @@ def test_slope_angle_labels_table_and_caption(atlas, name):
 
 
 def test_slope_angle_names_what_is_quoted(atlas):
-    caption = drawn(fig11_slope_angle, atlas, "sliding").caption
-    assert "-(2 - 1.66)" in caption
-    assert "later work of the same school" in caption
+    figure = drawn(fig11_slope_angle, atlas, "sliding").figure
+    quoted = [line.get_label() for line in figure.axes[1].lines]
+    assert any("1.66 - 2" in label and "later work of the same school" in label for label in quoted)
 
 
 def test_slope_angle_without_a_friction_angle(atlas):

@@ -148,8 +148,6 @@ def test_a_study_that_states_no_friction_angle_is_drawn_and_says_so(atlas, speci
     assert "nan" not in caption
     if figure == "strength":
         assert "states no basic friction angle" in caption
-    if figure == "fig01_strength":
-        assert "degrees flatten" not in caption
 
 
 def test_no_fit_is_said_and_no_line_drawn(atlas):

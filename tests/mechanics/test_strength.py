@@ -12,6 +12,7 @@ from fractalcontact.mechanics.jrc import JRC_RANGE, profile_roughness
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import (
+    _by_barton,
     angles_with_errors,
     dilatancy_angle,
     from_flush,
@@ -204,6 +205,17 @@ def test_bartons_law_is_that_of_the_theory_with_the_roughness_of_the_face(streng
     np.testing.assert_array_equal(
         one["barton_scaled_strength"], barton_strength(one["nominal_pressure"], 30.0, *scaled)
     )
+
+
+def test_no_law_is_scaled_beyond_bartons_roughness():
+    stated = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0}
+    pressure = np.array([1.0, 10.0])
+    for jrc, side, known in ((15.0, 50.0, True), (15.0, 3.2, False)):
+        law = _by_barton(jrc, stated, side, pressure)
+        beyond = scaled_joint(jrc, 100.0, side)[0] > 20
+        assert beyond != known
+        assert np.isfinite(law["scaled_roughness"]) == known
+        assert np.isfinite(law["barton_scaled_strength"]).all() == known
 
 
 # Properties

@@ -12,6 +12,7 @@ from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
+from fractalcontact.mechanics.theory import scaled_joint
 from fractalcontact.roughness.dimension import roughness_length
 from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
@@ -184,6 +185,56 @@ def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):
     reached = np.outer(OFFSET_FRACTIONS, b) >= 0.1 - 1e-9
     np.testing.assert_array_equal(known.all(axis=2), reached)
     np.testing.assert_allclose(found["similar_slope_exponent"][-1], 0, atol=1e-9)
+
+
+def climbing(states, slopes):
+    """States whose joints climb by given slopes, one a size, without closure."""
+    made = states.copy(deep=True)
+    made["interface_closure"] = 0 * made["interface_closure"]
+    made["interface_closure_error"] = 0 * made["interface_closure_error"]
+    slope = xr.DataArray(slopes, dims="part", coords={"part": made["part"]})
+    opening = (slope * made["offset"]).broadcast_like(made["rigid_opening"])
+    made["rigid_opening"] = opening.transpose("part", "window", "offset").where(
+        states["rigid_opening"].notnull()
+    )
+    return made
+
+
+def test_no_exponent_goes_through_strengths_held_at_their_bound(states):
+    # 30 + 45 degrees are held at 70: the smallest size is left out, the other three are equal.
+    found = size_laws(climbing(states, [0.5, 0.5, 0.5, 1.0]), ROCK, 12.0, DIMENSION)
+    for name in ("strength_exponent", "residual_exponent"):
+        np.testing.assert_allclose(found[name], 0, atol=1e-9)
+        np.testing.assert_array_equal(found[f"{name}_n"], 3)
+    np.testing.assert_array_equal(found["held_share"].sel(part=8), 1)
+    assert (found["similar_strength_exponent_n"] <= 3).all()
+    # Where two sizes are left there is no exponent, though all have a strength.
+    found = size_laws(climbing(states, [0.5, 0.5, 1.0, 1.0]), ROCK, 12.0, DIMENSION)
+    for name in ("strength_exponent", "residual_exponent", "similar_strength_exponent"):
+        assert np.isnan(found[name]).all(), name
+    assert np.isfinite(found["peak_strength"]).all()
+
+
+def test_one_held_sub_window_of_many_takes_its_size_out_of_the_fit(states):
+    made = climbing(states, [0.5] * 4)
+    steep = made["rigid_opening"].copy()
+    steep.loc[{"part": 4, "window": 3}] = made["offset"]
+    made["rigid_opening"] = steep
+    found = size_laws(made, ROCK, 12.0, DIMENSION)
+    np.testing.assert_array_equal(found["strength_exponent_n"], 3)
+    np.testing.assert_allclose(found["strength_exponent"], 0, atol=1e-9)
+
+
+def test_bartons_law_ends_with_his_scale_of_roughness(states):
+    found = size_laws(states, ROCK, 12.0, DIMENSION)
+    scaled = scaled_joint(12.0, 100.0, states["side_along"].values)[0]
+    on_scale = scaled <= 20
+    assert on_scale.any()
+    assert not on_scale.all()
+    np.testing.assert_array_equal(np.isfinite(found["barton_roughness"]), on_scale)
+    np.testing.assert_array_equal(
+        np.isfinite(found["barton_strength"]).all("normal_force"), on_scale
+    )
 
 
 # Against another way

@@ -2,7 +2,7 @@
 
 
 def recipe_of(wildcards):
-    """Recipe of an embedded specimen. Its label is only words: a new one makes no new surface."""
+    """Recipe of an embedded specimen, without what is only words: that makes no new surface."""
     recipe = resolve_embedded(config["embedded"][wildcards.specimen], "embedded")
     return {key: value for key, value in recipe.items() if key != "label"}
 

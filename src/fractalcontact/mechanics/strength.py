@@ -18,7 +18,7 @@ from ..core.intervals import Mean, mean_interval
 from ..core.labels import cf_attrs
 from ..surface.specimen import nominal_area, window_sides
 from .joint import rigid_dilatancy, sliding_axis
-from .jrc import profile_roughness
+from .jrc import JRC_RANGE, profile_roughness
 from .states import SOLVER_ERROR
 from .theory import LABORATORY_LENGTH, LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
 
@@ -258,7 +258,7 @@ _QUANTITIES = {
     "residual_angle_high": ("degree", "residual angle, upper end of the 95 % interval"),
     "residual_n": ("1", "intervals beyond half of the largest offset"),
     "barton_strength": ("MPa", "peak strength by Barton's law"),
-    "scaled_roughness": ("1", "JRC_n for the window's length"),
+    "scaled_roughness": ("1", "JRC_n for the window's length; none above 20"),
     "scaled_wall_strength": ("MPa", "JCS_n for the window's length"),
     "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n"),
 }
@@ -357,6 +357,8 @@ def _by_barton(
     """Barton's law with the JRC and JCS as they are, and scaled to the side of the window."""
     angle, wall = material["basic_friction_angle"], material["joint_wall_strength"]
     scaled_jrc, scaled_wall = scaled_joint(jrc, wall, side)
+    # Beyond Barton's scale there is nothing that his law was measured on.
+    scaled_jrc = scaled_jrc if scaled_jrc <= JRC_RANGE[1] else np.nan
     return {
         "barton_strength": barton_strength(pressure, angle, jrc, wall),
         "scaled_roughness": scaled_jrc,

@@ -8,6 +8,7 @@ import xarray as xr
 from ..core.datasets import labelled
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
+from ..mechanics.jrc import JRC_RANGE
 from ..mechanics.strength import (
     FIELDS,
     angles_with_errors,
@@ -44,7 +45,8 @@ def strength_by_size(
         (part, normal_force), the fraction of sub-windows whose peak was held;
         ``strength_exponent``, ``residual_exponent`` (normal_force) and ``shear_exponent``
         (interval, normal_force); ``barton_strength`` (part, normal_force) with the JRC and JCS of
-        that size by Barton and Bandis' law (which was measured on joints of 50 mm and more).
+        that size by Barton and Bandis' law (which was measured on joints of 50 mm and more); none
+        where that JRC is beyond Barton's scale of 0 to 20.
 
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
         ``similar_strength`` and ``similar_slope`` (d delta/dv, not held), ``similar_held`` (the
@@ -53,7 +55,8 @@ def strength_by_size(
 
     Notes
     -----
-    Where a peak is held, its size says nothing; ``peak_dilatancy_angle`` then does. At one v a
+    A strength whose angle is held is a bound, and its size says nothing: no exponent is fitted to
+    a size of which a sub-window is held. ``peak_dilatancy_angle`` then says something. At one v a
     large sub-window is at an earlier stage of its sliding than a small one; only at one v/b are
     they alike. There a self-affine face has d delta/dv ~ b^(H - 1), which falls with size.
 
@@ -65,8 +68,9 @@ def strength_by_size(
     midpoint, angle, angle_off = angles_with_errors(offset, curve, error)
     friction = material["basic_friction_angle"] + angle
     pressure = states["nominal_pressure"].values
-    strength, held, off = strength_with_error(pressure, friction, angle_off)
-    held = np.where(np.isnan(strength), np.nan, held == 1)
+    strength, bound, off = strength_with_error(pressure, friction, angle_off)
+    held = np.where(np.isnan(strength), np.nan, bound == 1)
+    bound = (bound != 0).astype(float)
 
     words = cf_attrs("mm", "middle of the interval of offsets")
     result = xr.Dataset(coords={"interval": ("interval", midpoint, words)})
@@ -93,8 +97,18 @@ def strength_by_size(
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
+    # Missing sub-windows, NaN, are held nowhere.
+    bounds = {
+        "similar_strength": (_at_fractions(offset, side.values, bound) > 0).any(axis=2),
+        "peak_strength": (peak(midpoint, held)[0] > 0).any(axis=1),
+        "residual_strength": (residual(midpoint, bound, largest).value > 0).any(axis=1),
+        "shear_strength": (bound > 0).any(axis=2),
+    }
     for name, exponent in _EXPONENTS.items():
-        add_law(result, exponent, side, result[name], f"exponent of {name} against b")
+        fitted = result[name]
+        if name in bounds:
+            fitted = fitted.where(fitted.copy(data=~bounds[name]))
+        add_law(result, exponent, side, fitted, f"exponent of {name} against b")
     of_held = {
         "held_share": mean_interval(peak(midpoint, held)[0], axis=1).value,
         "similar_held": mean_interval(_at_fractions(offset, side.values, held), axis=2).value,
@@ -128,7 +142,7 @@ _HELD = {
 }
 
 _BARTON = {
-    "barton_roughness": ("part", "1", "JRC_n by Barton and Bandis' scale law"),
+    "barton_roughness": ("part", "1", "JRC_n by Barton and Bandis' scale law; none above 20"),
     "barton_strength": (
         ("part", "normal_force"),
         "MPa",
@@ -158,12 +172,14 @@ def _by_barton(
     """Barton's law with the JRC and JCS of each size."""
     lengths = states["side_along"].values
     scaled = scaled_joint(roughness, material["joint_wall_strength"], lengths)
+    # His law was measured on his scale: beyond it there is nothing to compare with.
+    on_scale = np.where(np.asarray(scaled[0]) <= JRC_RANGE[1], scaled[0], np.nan)
     strength = barton_strength(
         states["nominal_pressure"].values,
         material["basic_friction_angle"],
-        *(np.asarray(of_size)[:, np.newaxis] for of_size in scaled),
+        *(np.asarray(of_size)[:, np.newaxis] for of_size in (on_scale, scaled[1])),
     )
-    return {"barton_roughness": np.asarray(scaled[0]), "barton_strength": np.asarray(strength)}
+    return {"barton_roughness": on_scale, "barton_strength": np.asarray(strength)}
 
 
 def _at_fractions(offset: np.ndarray, side: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -6,7 +6,11 @@ from pathlib import Path
 import xarray as xr
 
 from ..statements.judge import judge
+from ..statements.study import judge_study
 from ..study.atlas import write_atlas
+
+#: Name of the one group of what is judged for the study as a whole.
+WHOLE = "study"
 
 
 def join_stages(
@@ -33,16 +37,66 @@ def join_stages(
     dict of str to list of str
         As :func:`study.atlas.write_atlas` gives it.
     """
-    judged = {}
     # A label is only words: no job before this one has it, so that a new one solves nothing again.
     for name, dataset in stages.get("specimens", {}).items():
         dataset.attrs["label"] = configuration["settings"][name]["label"]
-    for name, settings in configuration["settings"].items():
-        # Measured contact maps, the study's, stand under names of their own.
-        of_joint = {stage: parts[name] for stage, parts in stages.items() if name in parts}
-        judged[name] = judge(of_joint, settings)
-    everything = {**stages, "statements": judged} if judged else stages
+    # Measured contact maps, the study's, stand under names of their own.
+    of_joints = {
+        name: {stage: parts[name] for stage, parts in stages.items() if name in parts}
+        for name in configuration["settings"]
+    }
+    everything = {**stages, **_judged(of_joints, configuration)}
     study = configuration["study"]["study"]
     return write_atlas(
         everything, path, study=study, configuration=configuration, made_with=made_with
     )
+
+
+def chosen_for(study: Mapping, name: str) -> dict[str, str]:
+    """Statements that an embedded specimen was chosen for, and how, as the study says."""
+    return dict(study.get("embedded", {}).get(name, {}).get("chosen_for", {}))
+
+
+def is_capped_variant(study: Mapping, name: str) -> bool:
+    """Whether an embedded specimen with a hardness stands in the study once more without one."""
+    embedded = study.get("embedded", {})
+    if name not in embedded or not _has_hardness(study, name):
+        return False
+    return any(
+        _surface_of(embedded[other]) == _surface_of(embedded[name])
+        and not _has_hardness(study, other)
+        for other in embedded.keys() - {name}
+    )
+
+
+def _judged(of_joints, configuration):
+    """Statements of every specimen and, where there are several, of the study."""
+    if not of_joints:
+        return {}
+    study, settings = configuration["study"], configuration["settings"]
+    variants = {name for name in of_joints if is_capped_variant(study, name)}
+    judged = {
+        name: judge(
+            stages,
+            settings[name],
+            circular=chosen_for(study, name),
+            capped_variant=name in variants,
+        )
+        for name, stages in of_joints.items()
+    }
+    own = {name: stages for name, stages in of_joints.items() if name not in variants}
+    # The atlas of one specimen, which its figures are drawn from, has no study to judge.
+    several = {"study_statements": {WHOLE: judge_study(own, settings)}} if len(own) > 1 else {}
+    return {"statements": judged, **several}
+
+
+def _surface_of(recipe):
+    """What makes the surface of an embedded specimen: its recipe but for words."""
+    return {key: value for key, value in recipe.items() if key not in ("label", "chosen_for")}
+
+
+def _has_hardness(study, name):
+    """Whether the study caps the pressure of a specimen."""
+    stated = {**study["defaults"], **study.get("specimens", {}).get(name, {})}["material"]
+    definition = stated if isinstance(stated, Mapping) else study["materials"][stated]
+    return "hardness" in definition

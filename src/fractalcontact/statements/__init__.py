@@ -7,7 +7,10 @@ __getattr__, __dir__, __all__ = exports(
     {
         "FAILS": ".judge",
         "HOLDS": ".judge",
+        "ILL_POSED": ".judge",
         "PARTLY": ".judge",
-        "UNKNOWN": ".judge",
+        "UNDETERMINED": ".judge",
+        "all_statements": ".judge",
+        "judge_study": ".study",
     },
 )

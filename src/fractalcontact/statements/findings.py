@@ -1,5 +1,6 @@
 """What judges a statement: the joint's stages, verdicts, and rules that several share."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -8,20 +9,56 @@ import numpy as np
 import xarray as xr
 
 from ..core.fitting import fit_line
+from ..mechanics.area import RESOLVED_NODES
 from ..mechanics.states import chosen_offset, forces_of
 from ..surface.specimen import nominal_area
 
-HOLDS, PARTLY, FAILS, UNKNOWN = "holds", "holds in part", "does not hold", "cannot be told"
+HOLDS, PARTLY, FAILS = "holds", "holds in part", "does not hold"
+#: The data cannot decide; the question has no meaning as it is put.
+UNDETERMINED, ILL_POSED = "undetermined", "ill-posed"
+VERDICTS = (HOLDS, PARTLY, FAILS, UNDETERMINED, ILL_POSED)
 
 #: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
 NEARLY, LOOSELY = 0.1, 0.25
 
 
 class Finding(NamedTuple):
-    """Verdict on one statement and the numbers that say so."""
+    """Verdict on one statement, the numbers that decide it, and what to know of them.
+
+    Captions quote the verdict and the numbers; the note stands in the table alone.
+    """
 
     verdict: str
     numbers: str
+    note: str = ""
+
+
+class Statement(NamedTuple):
+    """A statement of the paper, what judges it, and of which specimens it is asked.
+
+    Attributes
+    ----------
+    figure : str
+        Figures or section of the paper.
+    claim : str
+        In our words.
+    check : callable
+        Its name is that of the statement.
+    material : str
+        "rock" or "concrete" where the paper says it of one of them, else empty.
+    slides : bool
+        Whether only a joint that slides is asked.
+    plastic : bool
+        Whether a hardness can change the answer: these alone are asked of a specimen that stands
+        in its study once more without one.
+    """
+
+    figure: str
+    claim: str
+    check: Callable[..., Finding]
+    material: str = ""
+    slides: bool = True
+    plastic: bool = False
 
 
 @dataclass(frozen=True)
@@ -31,7 +68,8 @@ class Joint:
     Attributes
     ----------
     stages : dict of str to xr.Dataset
-        ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``, ``domains``.
+        ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``, ``domains``,
+        ``scaling``, ``domain_measures``, ``size_test``.
     settings : dict
     """
 
@@ -50,10 +88,20 @@ class Joint:
         return float(forces_of([self.settings["map_load"]], nominal_area(specimen))[0])
 
     def at_load(self, stage: str, name: str) -> np.ndarray:
-        """A variable over offsets, at the load of the maps."""
+        """A variable over offsets, at the load of the maps; NaN below ten nodes in contact."""
+        return np.where(self._resolved, self._over_offsets(stage, name), np.nan)
+
+    def _over_offsets(self, stage, name):
         values = self.stages[stage][name].sel(direction=self.direction)
-        values = values.sel(resolution=values["resolution"].min())
-        return values.sel(normal_force=self.force, method="nearest").values
+        if "resolution" in values.dims:
+            values = values.sel(resolution=values["resolution"].min())
+        if "normal_force" in values.dims:
+            values = values.sel(normal_force=self.force, method="nearest")
+        return values.values
+
+    @cached_property
+    def _resolved(self) -> np.ndarray:
+        return self._over_offsets("closure", "nodes") >= RESOLVED_NODES
 
     def map_states(self, stage: str) -> xr.Dataset:
         """A stage at the offset of the contact maps (and the finest resolution), over loads."""
@@ -83,9 +131,15 @@ class Joint:
         return self.stages["closure"]["offset"].values
 
     @cached_property
-    def closure(self) -> np.ndarray:
-        """w_int over offsets, mm."""
-        return self.at_load("closure", "interface_closure")
+    def compliance(self) -> np.ndarray:
+        """Compliance d w_int / d sigma_0 of the interface over offsets, mm/MPa; NaN where flush."""
+        return 1 / self.at_load("closure", "interface_stiffness")
+
+    @cached_property
+    def area_fraction(self) -> np.ndarray:
+        """A_r/A_0 over offsets, corrected for the perimeter."""
+        area = self.at_load("closure", "area_corrected")
+        return area / nominal_area(self.stages["specimens"])
 
     def of_direction(self, name: str) -> np.ndarray:
         """A variable of the joint in the direction judged."""
@@ -117,27 +171,33 @@ def trend(
     chosen = chosen & (values > 0)
     line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
     if not np.isfinite(line.slope):
-        return Finding(UNKNOWN, no_offsets("three"))
-    sign = 1 if rising else -1
-    sure = min(sign * line.slope_low, sign * line.slope_high) > 0
-    verdict = HOLDS if sure else PARTLY if sign * line.slope > 0 else FAILS
+        return Finding(UNDETERMINED, no_offsets("three"))
     v = v[chosen]
     return Finding(
-        verdict,
-        f"{symbol} ~ v^e, e = {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}] "
-        f"for v = {v[0]:.3g} to {v[-1]:.3g} mm",
+        by_sign(line.slope_low, line.slope_high, rising=rising),
+        f"e = {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}]",
+        f"{symbol} ~ v^e, v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
+
+
+def by_sign(low: float, high: float, *, rising: bool) -> str:
+    """Verdict on a claim of a sign, from the interval of what is to have it."""
+    above, below = (low > 0, high < 0) if rising else (high < 0, low > 0)
+    return HOLDS if above else FAILS if below else UNDETERMINED
 
 
 def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
     """Whether values stay the same: their range over their mean."""
+    known = np.isfinite(values)
+    values, v = values[known], v[known]
     if len(values) < 2:
-        return Finding(UNKNOWN, no_offsets("two"))
+        return Finding(UNDETERMINED, no_offsets("two"))
     spread = np.ptp(values) / np.mean(values)
     verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS
     return Finding(
         verdict,
-        f"{symbol} varies by {100 * spread:.0f} % of its mean for v = {v[0]:.3g} to {v[-1]:.3g} mm",
+        f"{symbol} varies by {100 * spread:.0f} % of its mean",
+        f"v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 
 
@@ -148,4 +208,4 @@ def share(good: int, total: int) -> str:
 
 def no_offsets(needed: str) -> str:
     """Why a claim is undetermined."""
-    return f"too few offsets: {needed} needed here"
+    return f"too few offsets: {needed} needed"

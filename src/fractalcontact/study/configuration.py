@@ -176,7 +176,7 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
         If a length has no unit of length or is not positive, the nodes are too few or too many, or
         the construction has no such surface.
     """
-    numbers = dict(recipe)
+    numbers = {key: value for key, value in recipe.items() if key != "chosen_for"}
     for key in ("size", "spacing", "rms", "roll_off"):
         if recipe.get(key) is not None:
             numbers[key] = quantity(recipe[key], "length", f"{where}.{key}")

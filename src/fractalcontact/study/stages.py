@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 #: How often a stage is made: for every specimen, for those that slide, for every measured contact
-#: map; once, on synthetic surfaces, where the study has the stage's key; and of studies of
-#: accuracy for every test problem, or once.
-SPECIMEN, JOINT, MAP, EXPERIMENT = "specimen", "joint", "map", "experiment"
-PROBLEM, ACCURACY = "problem", "accuracy"
-GRAINS = (SPECIMEN, JOINT, MAP, EXPERIMENT, PROBLEM, ACCURACY)
+#: map; once, of all specimens together; once, on synthetic surfaces, where the study has the
+#: stage's key; and of studies of accuracy for every test problem, or once.
+SPECIMEN, JOINT, MAP, STUDY = "specimen", "joint", "map", "study"
+EXPERIMENT, PROBLEM, ACCURACY = "experiment", "problem", "accuracy"
+GRAINS = (SPECIMEN, JOINT, MAP, STUDY, EXPERIMENT, PROBLEM, ACCURACY)
 
 
 @dataclass(frozen=True)
@@ -166,6 +166,14 @@ _TABLE = (
         "what the paper says, and whether it holds here",
         SPECIMEN,
         "statements.judge:judge",
+        filed=False,
+    ),
+    Stage(
+        "study_statements",
+        "what the paper says of several joints together, and whether it holds here",
+        STUDY,
+        "statements.study:judge_study",
+        member="study",
         filed=False,
     ),
     Stage(

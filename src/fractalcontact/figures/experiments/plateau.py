@@ -30,13 +30,20 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
+from ..kit.verdicts import CIRCULAR_SHORT, row_of
 from ..kit.words import PAPER, estimate, short
 
 TITLE = "Rigid dilatancy of all joints, with and without a roll-off of the spectrum"
 SUBJECT = "study"
-NEEDS = ("specimens", "joints", "roll_off")
+NEEDS = ("specimens", "joints", "roll_off", "statements")
 KEY = "roll_off"
 ORDER = 10
+
+#: What the paper says of rock and of concrete (:mod:`statements.sliding`).
+PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
+
+#: Specimens that the caption names.
+MOST_NAMED = 3
 
 #: Specimens whose largest offsets differ by more than this are drawn in decades.
 WIDE = 5
@@ -169,7 +176,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     _start_at_zero(panels)
     legends_below(figure, entries(panels[0]), _marks())
     table = pd.concat([_table(slide) for slide in slides], ignore_index=True)
-    return Drawing(figure, table, _caption(slides))
+    return Drawing(figure, table, _caption(slides, _verdicts(atlas, sliding)))
 
 
 def _roll_off(atlas, name):
@@ -300,17 +307,28 @@ class Trend(NamedTuple):
         return cls(slope, low, high, slope * np.ptp(v) / np.mean(values[:, half]))
 
 
-def _caption(slides):
+def _caption(slides, verdicts):
     synthetic = slides[: len(SURFACES)]
-    others = slides[len(SURFACES) :]
     words = (
         f"After Figs. 6a and 7a of {PAPER}. (a) Rigid dilatancy delta_r, (b) deviation sigma_z of "
-        "the composite topography, (c) their ratio, for synthetic joints and the study's "
-        f"specimens. {_explanation(synthetic)}"
+        f"the composite topography, (c) their ratio. {_explanation(synthetic)}"
     )
-    levels = [_level(slide) for slide in others]
-    flat = levels.count(_PLATEAU)
-    return f"{words} {flat} of {len(levels)} specimens reach one." if levels else words
+    return f"{words} The paper's plateaus: {verdicts}." if verdicts else words
+
+
+def _verdicts(atlas, names):
+    """Verdicts on the plateaus that the paper has of a material, specimen by specimen."""
+    said: dict[str, list[str]] = {}
+    for name in names:
+        for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
+            if row is not None:
+                mark = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
+                said.setdefault(row["verdict"].item(), []).append(f"{name}{mark}")
+    few = sum(map(len, said.values())) <= MOST_NAMED
+    return "; ".join(
+        f"{verdict} for {', '.join(of) if few else f'{len(of)} specimens'}"
+        for verdict, of in said.items()
+    )
 
 
 def _explanation(synthetic):

@@ -22,11 +22,12 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
+from ..kit.verdicts import claim, sentences
 from ..kit.words import NOMINAL_PRESSURE, estimate, number, opening, place, short
 
 TITLE = "Real contact area compared with the classical theories of section 2"
 SUBJECT = "specimen"
-NEEDS = ("closure", "area")
+NEEDS = ("closure", "area", "statements")
 ORDER = 60
 
 #: Theories of panel (a): variable, name, colour, line; the full line first, lest it hide others.
@@ -61,7 +62,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(right, "b", r"area slope $\kappa$")
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
     headline(figure, settings["label"], where)
-    return Drawing(figure, _table(curve, law), _caption(settings["label"], where, law))
+    linear = claim(atlas, name, "A_r ~ F", "area_is_linear", numbers=False)
+    caption = sentences(_caption(settings["label"], where, law), linear)
+    return Drawing(figure, _table(curve, law), caption)
 
 
 def _drawn_offset(settings, laws):
@@ -198,16 +201,16 @@ def _table(curve, law):
 
 def _caption(label, where, law):
     return (
-        f"{opening('Fig. 5', label, where)} (a) Real contact area, raw (hollow) and corrected, "
-        f"with classical theories; (b) its slope kappa. {_law_words(law)} {_between_words(law)}"
+        f"{opening('Fig. 5', label, where)} (a) Contact area, raw (hollow) and corrected, "
+        f"beside theories; (b) slope kappa. {_law_words(law)} {_between_words(law)}"
     )
 
 
 def _law_words(law):
-    """The exponent of the area, beside the paper's linear law and Archard's levels."""
+    """The exponent of the area beside Archard's levels."""
     reason = str(law["no_corrected_law"].values)
     if reason:
-        return f"No power law could be fitted ({reason})."
+        return f"No power law ({reason})."
     low, high = (float(law[f"corrected_exponent_{end}"]) for end in ("low", "high"))
     fit = estimate(float(law["corrected_exponent"]), low, high)
     levels = [
@@ -217,10 +220,9 @@ def _law_words(law):
         )
         if low <= exponent <= high
     ]
-    linear = "includes" if low <= 1 <= high else "leaves out"
     archard = f"Archard's level {', '.join(levels)}" if levels else "none of Archard's levels"
     loads = f"{law['corrected_n']:.0f} loads"
-    return f"A_r ~ F^m, m = {fit} over {loads}, {linear} the paper's 1, fits {archard}."
+    return f"A_r ~ F^m, m = {fit} over {loads}, fits {archard}."
 
 
 def _between_words(law):

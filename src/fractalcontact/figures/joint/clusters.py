@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.fitting import FEWEST_POINTS, fit_line
+from ...core.fitting import fit_line
 from ...domain.clusters import follows_law
 from ...mechanics.area import RESOLVED_NODES
 from ...surface.specimen import cell_side
@@ -29,11 +29,12 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
+from ..kit.verdicts import claim
 from ..kit.words import estimate, force_label, opening, place, short, slope_text
 
 TITLE = "Figs. 6 and 7: clusters of the contact domains, and their localisation with the offset"
 SUBJECT = "joint"
-NEEDS = ("specimens", "closure", "domains")
+NEEDS = ("specimens", "closure", "domains", "statements")
 ORDER = 120
 
 #: Offsets whose size distribution is drawn: the first, the middle and the last.
@@ -95,7 +96,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     at = f"(d) $F$ = {force_label(loads[mapped])}; lines are fits"
     legends_below(figure, by_load, [heading(at), *entries(distribution)])
     headline(figure, settings["label"], place(direction))
-    caption = _caption(settings["label"], direction, table, sizes)
+    clustered = claim(atlas, name, "growing clustering with v", "domains_cluster")
+    caption = _caption(settings["label"], direction, clustered, sizes)
     data = pd.concat([table.assign(kind="domain"), sizes.assign(kind="sizes")], ignore_index=True)
     return Drawing(figure, data, caption)
 
@@ -203,36 +205,12 @@ def _trend(points, column):
     return fit_line(np.log(used["offset_mm"]), np.log(used[column]))
 
 
-def _caption(label, direction, table, sizes):
+def _caption(label, direction, clustered, sizes):
     return (
         f"{opening('Figs. 6 and 7', label, place(direction))} Contact clusters: (a) number, "
         f"(b) largest, (c) localisation (Morisita's index, random nodes 1), (d) sizes with "
-        f"a^-beta. {_localisation_words(table)} {_size_words(sizes)}"
+        f"a^-beta. {clustered} {_size_words(sizes)}"
     )
-
-
-def _localisation_words(table):
-    """Whether the domains become less homogeneous with v, under every load drawn."""
-    lines = {force: _trend(points, "morisita") for force, points in table.groupby("force_N")}
-    known = {force: line for force, line in lines.items() if np.isfinite(line.slope)}
-    if not known:
-        return (
-            f"Too few offsets with {RESOLVED_NODES} nodes in contact ({FEWEST_POINTS} needed) for "
-            "a trend of the index."
-        )
-    grows = sum(line.slope_low > 0 for line in known.values())
-    falls = sum(line.slope_high < 0 for line in known.values())
-    verdict = (
-        "less homogeneous with v, as the paper says"
-        if grows == len(known)
-        else "more homogeneous with v, unlike in the paper"
-        if falls == len(known)
-        else f"less homogeneous with v under {grows} of {len(known)} loads (paper: in general)"
-        if grows
-        else "no trend (paper: less homogeneous with v)"
-    )
-    force, line = list(known.items())[-1]
-    return f"Index ~ v^e, e = {slope_text(line)} at {force_label(force)}: {verdict}."
 
 
 def _size_words(sizes):

@@ -5,7 +5,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...statements.judge import UNKNOWN
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -22,6 +21,7 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
+from ..kit.verdicts import verdict_words
 from ..kit.words import TOWARDS, force_label, opening, place, pressure_label, short
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
@@ -60,8 +60,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         upper.set_xlabel("")
     legends_below(figure, entries(correlation), entries(compliance))
     headline(figure, settings["label"])
-    judged = group(atlas, "statements", name)
-    caption = _caption(settings["label"], direction, joint, judged, seat)
+    verdicts = [
+        verdict_words(atlas, name, said, numbers=False) or "not asked here" for said in STAGES
+    ]
+    force = group(atlas, "statements", name).attrs["force"]
+    caption = _caption(settings["label"], direction, joint, verdicts, force, seat)
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
@@ -206,17 +209,15 @@ def _ends_of_correlation(joint, direction):
     return float(along["correlation_length"]), float(along["uncorrelated_offset"])
 
 
-def _caption(label, direction, joint, judged, seat):
+def _caption(label, direction, joint, verdicts, force, seat):
     ends = _ends_of_correlation(joint, direction)
-    verdicts = [judged["verdict"].sel(statement=name).item() for name in STAGES]
-    verdicts = ["undetermined" if verdict == UNKNOWN else verdict for verdict in verdicts]
     kinds = "," if seat is None else ", seated and from first touch,"
     return (
         f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the faces: "
         f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))}; "
-        f"(b) closure{kinds} (c) compliance of the interface. The paper: more compliant with v at "
+        f"(b) closure{kinds} (c) compliance. The paper: more compliant with v at "
         f"first ({verdicts[0]}), then overlapping curves ({verdicts[1]}), then more compliant "
-        f"again ({verdicts[2]}) at {force_label(judged.attrs['force'])}."
+        f"again ({verdicts[2]}) at {force_label(force)}."
     )
 
 

@@ -23,11 +23,12 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.sizes import nothing_in, plain_decades, size_axis
+from ..kit.verdicts import claim
 from ..kit.words import estimate, interval, place, short, supplementary
 
 TITLE = "Direct test of eq. 6 on parts of the window"
 SUBJECT = "specimen"
-NEEDS = ("size_test", "windows")
+NEEDS = ("size_test", "windows", "statements")
 ORDER = 170
 
 #: Loads shown in (a).
@@ -74,7 +75,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, shown, said, [heading("(c), (d): whole predicted by"), *predictors])
     where = place(str(test["direction"].values), float(test["offset"]))
     headline(figure, settings["label"], where)
-    return Drawing(figure, _table(test), _caption(settings, test, where))
+    follows = claim(atlas, name, "eq. 6", "size_effect_follows")
+    return Drawing(figure, _table(test), _caption(settings, test, where, follows))
 
 
 def _draw_equal(axes, test):
@@ -253,23 +255,12 @@ def _table(test):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, test, where):
+def _caption(settings, test, where, follows):
     return (
-        f"{supplementary(settings['label'], where)} Direct test of eq. 6 on parts: (a) pressure at "
+        f"{supplementary(settings['label'], where)} Eq. 6 tested on parts: (a) pressure at "
         "the sigma* of the whole, (b) slopes over b, (c), (d) predictions of the whole. "
-        f"{_verdict_words(test)} {_slope_words(test)}"
+        f"{follows} {_slope_words(test)}"
     )
-
-
-def _verdict_words(test):
-    """At how many loads eq. 6 agrees with the slope measured, by each estimate of Delta_sigma."""
-    verdicts = test["verdict"].transpose("estimator", ...).values
-    loads = int(np.isfinite(test["slope"].values).sum())
-    words = ", ".join(
-        f"{int((row == 'agrees').sum())} {_BY[str(name)]}"
-        for name, row in zip(test["estimator"].values, verdicts, strict=True)
-    )
-    return f"Of {loads} loads eq. 6 agrees at {words}."
 
 
 def _slope_words(test):

@@ -4,9 +4,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...statements.judge import FAILS, HOLDS, PARTLY, UNKNOWN
+from ...statements.judge import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, group, label_in_lines, settings_of
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
+from ..kit.verdicts import CIRCULAR_SHORT
 from ..kit.words import force_label, opening, place
 
 TITLE = "Statements of the paper, and whether they hold"
@@ -15,19 +16,34 @@ NEEDS = ("statements",)
 ORDER = 210
 
 #: A sign for each verdict, so that the table can be read without its colours.
-SIGNS = {HOLDS: ("●", COLOURS[3]), PARTLY: ("◐", COLOURS[5])}
-SIGNS |= {FAILS: ("○", COLOURS[2]), UNKNOWN: ("–", "0.4")}
+SIGNS = {HOLDS: ("●", COLOURS[3]), PARTLY: ("◐", COLOURS[5]), FAILS: ("○", COLOURS[2])}
+SIGNS |= {UNDETERMINED: ("?", "0.4"), ILL_POSED: ("×", "0.4")}
 
-#: Where the columns begin, as fractions of the width, and how many letters they hold.
-COLUMNS = {"figure": (0.01, 8), "claim": (0.065, 46), "verdict": (0.44, 24), "numbers": (0.575, 60)}
+#: Columns of the data, and where those drawn begin, as fractions of the width, with their letters.
+DATA = ("figure", "claim", "verdict", "circular", "numbers", "note", "circular_reason")
+COLUMNS = {"figure": (0.01, 8), "claim": (0.075, 44), "verdict": (0.44, 16), "numbers": (0.56, 57)}
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """The statements, one row each."""
     label = settings_of(atlas, name)["label"]
     judged = group(atlas, "statements", name)
-    table = pd.DataFrame({key: judged[key].values.astype(str) for key in COLUMNS})
-    texts, lines = wrap_rows(table.to_dict("records"), COLUMNS)
+    table = pd.DataFrame({key: judged[key].values for key in DATA})
+    figure = draw_table(table, label)
+    return Drawing(figure, table, _caption(label, judged, table))
+
+
+def draw_table(table: pd.DataFrame, label: str) -> Figure:
+    """Figure of a table of statements, one row each under a title.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Columns :data:`DATA`.
+    label : str
+        The title.
+    """
+    texts, lines = wrap_rows([_texts(row) for row in table.to_dict("records")], COLUMNS)
     title = label_in_lines(label, width=WIDTH)
     top = 1.3 * title.count("\n")
     height = LINE_HEIGHT * (top + sum(lines) + 4.4)
@@ -41,7 +57,21 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for y, verdict in zip(places, table["verdict"], strict=True):
         sign, colour = SIGNS[verdict]
         axes.text(0.42, y, sign, va="top", color=colour, fontsize=8, family="DejaVu Sans")
-    return Drawing(figure, table, _caption(label, judged, table))
+    return figure
+
+
+def _texts(row):
+    """The words of a row: its verdict with the mark of a circular one, all its reasons in one."""
+    circular = bool(row["circular"])
+    reasons = [row["numbers"], row["note"]]
+    reasons += [f"chosen for it: {row['circular_reason']}"] if circular else []
+    verdict = f"{row['verdict']}, {CIRCULAR_SHORT}" if circular else row["verdict"]
+    return {
+        "figure": row["figure"],
+        "claim": row["claim"],
+        "verdict": verdict,
+        "numbers": "; ".join(filter(None, reasons)),
+    }
 
 
 def _caption(label, judged, table):
@@ -49,14 +79,15 @@ def _caption(label, judged, table):
     summary = ", ".join(
         f"{counts[key]} {_noun(key, counts[key])}" for key in SIGNS if key in counts
     )
+    circular = int(table["circular"].sum())
+    chosen = f" {circular} circular: the specimen was chosen for them." if circular else ""
     return (
         f"{opening('the statements', label, place(judged.attrs['direction']))} Of {len(table)} "
-        f"statements {summary}. The rules that judge them are ours, for the paper gives none; "
-        f"where a load is needed, F = {force_label(judged.attrs['force'])}."
+        f"statements {summary}.{chosen} The rules that judge them are ours, for the paper gives "
+        f"none; where a load is needed, F = {force_label(judged.attrs['force'])}."
     )
 
 
 def _noun(verdict, count):
-    words = {HOLDS: "hold", PARTLY: "hold in part", FAILS: "do not hold", UNKNOWN: "undetermined"}
-    single = {HOLDS: "holds", PARTLY: "holds in part", FAILS: "does not hold"}
-    return single.get(verdict, words[verdict]) if count == 1 else words[verdict]
+    words = {HOLDS: "hold", PARTLY: "hold in part", FAILS: "do not hold"}
+    return verdict if count == 1 else words.get(verdict, verdict)

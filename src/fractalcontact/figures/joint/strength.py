@@ -93,7 +93,7 @@ def _draw_strength(axes, strength, shown):
 
 
 def _draw_summary(axes, strength):
-    axes.set_xlabel(r"nominal pressure $\sigma_n$ (MPa)")
+    axes.set_xlabel(r"nominal pressure $\sigma_0$ (MPa)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     letter(axes, "c", "peak and residual")
     sigma = strength["nominal_pressure"].values
@@ -140,7 +140,7 @@ def _style(n):
 
 
 def _label(strength, j):
-    return rf"$\sigma_n$ = {short(strength['nominal_pressure'][j])} MPa"
+    return rf"$\sigma_0$ = {short(strength['nominal_pressure'][j])} MPa"
 
 
 def _table(strength, shown):
@@ -179,7 +179,7 @@ def _summary_table(strength):
 def _caption(settings, direction, strength, shown):
     return (
         f"{opening('section 5', settings['label'], place(direction))} (a) Dilatancy angle i, "
-        "(b) strength sigma_n tan(phi_b + i), (c) peak and residual. "
+        "(b) strength sigma_0 tan(phi_b + i), (c) peak and residual. "
         f"{_strength_words(strength, shown)} {_barton_words(strength)}"
     )
 
@@ -214,7 +214,7 @@ def _residual_words(strength):
     ends = [float(strength[f"residual_angle{end}"]) for end in ("", "_low", "_high")]
     count = int(strength["residual_n"])
     if count > 1:
-        return f"{estimate(*ends)} degrees ({count} intervals)"
+        return f"{estimate(*ends, 'degrees')} ({count} intervals)"
     return f"{short(ends[0])} degrees (one interval)" if count else "none"
 
 

@@ -20,11 +20,12 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
+from ..kit.verdicts import claim, sentences
 from ..kit.words import estimate, opening, place, short
 
 TITLE = "Roughness (eq. 2) and closure (section 5) against the size of the window"
 SUBJECT = "specimen"
-NEEDS = ("windows",)
+NEEDS = ("windows", "statements")
 ORDER = 90
 
 #: Offsets whose composite topography is shown in (a).
@@ -53,7 +54,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         [_roughness_table(laws, shown), _closure_table(laws)],
         ignore_index=True,
     )
-    return Drawing(figure, table, _caption(settings, laws, mapped))
+    larger = claim(atlas, name, "more compliant larger samples", "larger_samples_close_more")
+    return Drawing(figure, table, sentences(_caption(settings, laws, mapped), larger))
 
 
 def _draw_roughness(axes, laws, shown):
@@ -91,7 +93,7 @@ def _draw_closure(axes, laws, mapped):
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
         _with_intervals(axes, b, laws, "interface_closure", (mapped, j), **style, ls="none")
         exponent = interval_text(laws, "closure_exponent", (mapped, j))
-        label = rf"$\sigma_n$ = {short(pressure)} MPa: $w_{{int}} \sim b^x$, $x$ = {exponent}"
+        label = rf"$\sigma_0$ = {short(pressure)} MPa: $w_{{int}} \sim b^x$, $x$ = {exponent}"
         axes.plot([], [], **style, ls="-", lw=0.8, label=label)
         slope = float(laws["closure_exponent"][mapped, j])
         closure = laws["interface_closure"].values[:, mapped, j]
@@ -187,19 +189,12 @@ def _hurst_words(laws):
 
 
 def _closure_words(laws, mapped):
-    """Whether larger windows close more, as the paper has it."""
+    """How the closure from first contact, an extreme of the window, grows with it."""
     exponent = laws["closure_exponent"]
     known = np.isfinite(exponent)
     if not known.any():
         return "No exponent: fewer than three sizes have closure."
-    larger = int((laws["closure_exponent_low"] > 0).sum())
-    smaller = int((laws["closure_exponent_high"] < 0).sum())
-    total = int(known.sum())
-    words = f"w_int grows with b beyond its interval in {larger} of {total} cases"
-    words += f", falls in {smaller}" if smaller else ""
-    verdict = "holds" if larger == total else "holds in part" if larger else "does not hold"
-    here = _range(exponent.values[mapped])
-    return f"{words}, exponents in (b) {here}: the paper's claim {verdict}."
+    return f"w_int ~ b^e, e = {_range(exponent.values[mapped])} in (b)."
 
 
 def _range(values):

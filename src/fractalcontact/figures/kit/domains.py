@@ -4,16 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 from xarray import DataTree
 
 from ...core.fitting import FEWEST_POINTS
 from ...domain.box_dimension import is_determined
-from ...domain.departure import BEYOND_BOTH, UNDETERMINED, is_fractal
+from ...domain.departure import BEYOND_BOTH, UNDETERMINED
 from ...domain.renormalisation import RESOLUTION
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
+from .verdicts import verdict_words
 from .words import interval, opening, place, short
 
 
@@ -211,20 +211,6 @@ class Loading:
         return np.unique(chosen)
 
 
-def nulls_words(counts: xr.Dataset) -> str:
-    """Departure of one domain from its null models in words, and whether it may be called fractal.
-
-    Parameters
-    ----------
-    counts : xr.Dataset
-        Of the stage ``domains``, of one domain that is looked at closely.
-    """
-    departure, verdict = (str(counts[f"null_{name}"].item()) for name in ("departure", "verdict"))
-    if is_fractal(verdict):
-        return f"{departure}, fractal"
-    return departure if departure == verdict else f"{departure}, its value undetermined"
-
-
 def departures(counts: xr.Dataset) -> str:
     """Words on the loads at which domains depart from both null models.
 
@@ -240,34 +226,22 @@ def departures(counts: xr.Dataset) -> str:
     return f"Beyond both nulls: {int((decided == BEYOND_BOTH).sum())} of {decided.size}."
 
 
-def trend(
-    forces: ArrayLike, value: np.ndarray, low: np.ndarray, high: np.ndarray, *, rising: bool
-) -> str:
-    """Words on whether a value rises, or falls, with the load as the paper claims.
+def rise_words(atlas: DataTree, name: str, loading: Loading) -> str:
+    """Verdicts on the rise of Delta_sigma with the load, by both estimates.
 
     Parameters
     ----------
-    forces, value, low, high : (n,) array_like
-        F in N; the value and its interval, NaN where there is none.
-    rising : bool
-        The paper's claim.
-
-    Returns
-    -------
-    str
-        Holds, or does not, if the value moves by more than the intervals at both ends; loads at
-        which it is undetermined do not count.
+    atlas : DataTree
+        With the stage ``statements``.
+    name : str
+        The specimen.
+    loading : Loading
     """
-    known = np.flatnonzero([is_determined(*ends) for ends in zip(low, high, strict=True)])
-    if len(known) < 2:
-        return "undetermined (fewer than two loads)"
-    first, last = known[0], known[-1]
-    ends = " to ".join(interval(value[i], low[i], high[i]) for i in (first, last))
-    up, down = low[last] > high[first], high[last] < low[first]
-    verdict = "not established"
-    if up or down:
-        verdict = "holds" if up == rising else "does not hold"
-    return f"{ends} ({verdict})"
+    rows = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
+    return ", ".join(
+        f"by {estimate.label} {verdict_words(atlas, name, rows[estimate.key])}"
+        for estimate in loading.estimates
+    )
 
 
 def disagreement(scaling: xr.Dataset) -> str:

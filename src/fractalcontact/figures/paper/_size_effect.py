@@ -2,37 +2,37 @@
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 
-from ...domain.renormalisation import RESOLUTION, hausdorff_measure, nominal_pressure
+from ...domain.renormalisation import nominal_pressure
 from ..kit.domains import Loading
 
 #: Sides b drawn, as multiples of the specimen's own: two decades.
 _SIDES = np.array([0.1, 1.0, 10.0])
 
 
-def fractal_pressure(scaling: xr.Dataset, key: str, delta: float) -> float:
-    """sigma* = F / H_D under one load if the contact domain has the dimension ``delta``.
+def fractal_pressure(force: float, side: float, delta: float) -> float:
+    """sigma* = F / H_D with the fractal measure H_D = b^delta of the whole joint (eq. 5).
+
+    So sigma_0 A_0 = sigma* H_D holds on the specimen itself, and eq. 6 passes through it. The
+    measure N_n s_n^delta of the pre-fractals, ``hausdorff_measure`` in the atlas, differs from it
+    by a factor without dimension, which eq. 6 does not contain.
 
     Parameters
     ----------
-    scaling : xr.Dataset
-        Under one load.
-    key : {"area", "box"}
-        H_D is the geometric mean over the resolutions fitted, or that of the finest one.
+    force : float
+        F, N.
+    side : float
+        b of the specimen, mm.
     delta : float
+        Dimension of the contact domain.
 
     Returns
     -------
     float
         In N mm^-delta.
     """
-    # sigma_n was kept at the resolutions that were fitted, and no others.
-    fitted = scaling["area_corrected"].where(np.isfinite(scaling["sigma_n"]))
-    area = fitted if key == "area" else scaling["area"].sel(resolution=[scaling.resolution.min()])
-    measure = hausdorff_measure(scaling["spacing"], area, delta)
-    return float(scaling["normal_force"] / np.exp(np.log(measure).mean(RESOLUTION)))
+    return force / side**delta
 
 
 def size_effect(loading: Loading, i: int) -> pd.DataFrame:
@@ -56,16 +56,16 @@ def size_effect(loading: Loading, i: int) -> pd.DataFrame:
 
 
 def _by_one_estimate(loading, estimate, i):
-    scaling = loading.scaling.isel(normal_force=i)
+    force = float(loading.forces[i])
     sides = loading.side * _SIDES
     dimensions = (estimate.value[i], estimate.low[i], estimate.high[i])
-    stars = [fractal_pressure(scaling, estimate.key, delta) for delta in dimensions]
+    stars = [fractal_pressure(force, loading.side, delta) for delta in dimensions]
     value, *ends = (
         nominal_pressure(star, delta, sides) for star, delta in zip(stars, dimensions, strict=True)
     )
     return pd.DataFrame(
         {
-            "load_N": loading.forces[i],
+            "load_N": force,
             "estimator": estimate.label,
             "delta_sigma": dimensions[0],
             "delta_sigma_low": dimensions[1],
@@ -77,7 +77,7 @@ def _by_one_estimate(loading, estimate, i):
             "sigma_0_low_MPa": np.fmin(*ends),
             "sigma_0_high_MPa": np.fmax(*ends),
             "specimen_b_mm": loading.side,
-            "specimen_sigma_0_MPa": loading.forces[i] / loading.side**2,
+            "specimen_sigma_0_MPa": force / loading.side**2,
         }
     )
 

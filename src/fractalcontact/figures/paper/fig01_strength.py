@@ -32,11 +32,12 @@ from ..kit.sizes import (
     share_words,
     size_axis,
 )
+from ..kit.verdicts import claim, sentences
 from ..kit.words import opening, place, short
 
 TITLE = "Fig. 1b: peak shear strength against the size of the joint, computed"
 SUBJECT = "joint"
-NEEDS = ("windows",)
+NEEDS = ("windows", "statements")
 ORDER = 10
 
 #: Sizes a comparison needs.
@@ -58,7 +59,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(strength), entries(slope))
     direction = str(laws["direction"].values)
     headline(figure, settings["label"], place(direction))
-    return Drawing(figure, _table(laws), _caption(settings, laws, share))
+    falls = claim(atlas, name, "fall of strength with size", "strength_falls_with_size")
+    return Drawing(figure, _table(laws), _caption(settings, laws, share, falls))
 
 
 def _draw_strength(axes, laws, share):
@@ -75,7 +77,7 @@ def _draw_strength(axes, laws, share):
         if drawn:
             style = {"color": colour, "marker": marker, "ls": "none"}
             exponent = interval_text(laws, "similar_strength_exponent", (share, j))
-            label = rf"$\sigma_n$ = {short(pressure)} MPa: $\tau \sim b^x$, $x$ = {exponent}"
+            label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau \sim b^x$, $x$ = {exponent}"
             axes.plot([], [], **style, label=label)
     size_axis(axes, b, "joint")
     if drawn:
@@ -106,7 +108,7 @@ def _draw_slope(axes, laws, share):
         axes.plot(beside[positive], mean[positive], **style, ls="none")
         draw_bars(axes, beside, mean, low, high, style["color"])
         exponent = interval_text(laws, "similar_slope_exponent", (share, j))
-        label = rf"$\sigma_n$ = {short(pressure)} MPa: $d\delta/dv \sim b^x$, $x$ = {exponent}"
+        label = rf"$\sigma_0$ = {short(pressure)} MPa: $d\delta/dv \sim b^x$, $x$ = {exponent}"
         axes.plot([], [], **style, ls="none", label=label)
     expected = float(laws["expected_hurst"]) - 1
     slopes = laws["similar_slope"].values[share]
@@ -159,42 +161,32 @@ def _table(laws):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, laws, share):
+def _caption(settings, laws, share, falls):
     where = place(str(laws["direction"].values))
-    return (
+    return sentences(
         f"{opening('Fig. 1b', settings['label'], where)} (a) Computed shear strength and (b) slope "
         f"of dilatancy of sub-windows at v = {share_words(laws, share)} of their side b, 95 % "
-        f"intervals. {_similar_words(laws, share)}{_limit_words(laws, share)}"
+        "intervals.",
+        _slope_words(laws, share),
+        falls,
+        _limit_words(laws, share),
     )
 
 
-def _similar_words(laws, share):
-    """Whether slope and strength fall with size, as the paper has it."""
-    slope = laws["similar_slope_exponent"][share]
-    known = np.isfinite(slope)
+def _slope_words(laws, share):
+    """How often the slope of the dilatancy falls with size beyond its interval."""
+    known = np.isfinite(laws["similar_slope_exponent"][share])
     if not known.any():
         return "Too few sizes can be compared at one v/b."
     falls = int((laws["similar_slope_exponent_high"][share] < 0).sum())
     rises = int((laws["similar_slope_exponent_low"][share] > 0).sum())
-    total = int(known.sum())
-    words = f"The slope falls with b beyond its interval under {falls} of {total} pressures"
-    words += f" (rises under {rises})" if rises else ""
-    decides = falls
-    if np.isfinite(laws["similar_strength_exponent"][share]).any():
-        decides = int((laws["similar_strength_exponent_high"][share] < 0).sum())
-        words += f", the strength under {decides}"
-    if decides == total:
-        return f"{words}, as in the paper."
-    if decides:
-        return f"{words}: the paper's fall holds in part."
-    if falls:
-        return f"{words}: the paper's fall holds for slope alone."
-    return f"{words}: the paper's fall does not hold."
+    words = (
+        f"The slope falls with b beyond its interval under {falls} of {int(known.sum())} pressures"
+    )
+    return f"{words} and rises under {rises}." if rises else f"{words}."
 
 
 def _limit_words(laws, share):
-    """The one warning: strengths held at their bound, or mean slopes that no logarithm has."""
-    if (laws["similar_held"].values[share] > 0).any():
-        return f" Strengths held at {LARGEST_FRICTION_ANGLE:g} degrees flatten (a)."
+    """The one warning: mean slopes that no logarithm has."""
     lost = int((laws["similar_slope"].values[share] <= 0).sum())
-    return f" {lost} mean slopes that are not positive are left out." if lost else ""
+    return f"{lost} mean slopes that are not positive are left out." if lost else ""

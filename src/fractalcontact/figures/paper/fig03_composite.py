@@ -12,11 +12,12 @@ from ...mechanics.joint import DIRECTION_STEPS
 from ...surface.specimen import faces, window_sides, window_slices
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
+from ..kit.verdicts import claim
 from ..kit.words import length_unit, opening, place
 
 TITLE = "Fig. 3: the joint slid to its largest offset, dilatancy and composite topography"
 SUBJECT = "joint"
-NEEDS = ("specimens", "joints")
+NEEDS = ("specimens", "joints", "statements")
 ORDER = 40
 
 _TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
@@ -133,7 +134,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(profile, "b", "profile through the point of first touch")
     letter(composite, "c", "composite topography $h$")
     headline(figure, label, place(slid.direction, slid.offset))
-    return Drawing(figure, profiles, _caption(label, slid))
+    left = claim(atlas, name, "loss of all correlation", "no_correlation_is_left")
+    return Drawing(figure, profiles, _caption(label, slid, left))
 
 
 def _draw_plan(figure, axes, slid):
@@ -225,16 +227,10 @@ def _draw_composite(figure, axes, slid):
     axes.plot(x, y, marker="o", path_effects=HALO, **_TOUCH)
 
 
-def _caption(label, slid):
-    if np.isnan(slid.chance):
-        verdict = "cannot be separated from chance in so small a window"
-    elif slid.correlation <= slid.chance:
-        verdict = "is no more than chance gives, as the paper says"
-    else:
-        verdict = "shows some correlation left, unlike in the paper"
+def _caption(label, slid, correlation_left):
     return (
         f"{opening('Fig. 3', label, place(slid.direction))} (a) Window before and after the "
         f"largest v solved, {slid.offset:.3g} mm; (b) profile through the first touch, lifted by "
         f"delta_r = {slid.dilatancy:.3g} mm; (c) composite topography, standard deviation "
-        f"{slid.composite.std():.3g} mm. The faces' correlation, {slid.correlation:.2f}, {verdict}."
+        f"{slid.composite.std():.3g} mm. {correlation_left}"
     )

@@ -25,13 +25,19 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.maps import HALO, draw_domain
+from ..kit.verdicts import claim, sentences
 from ..kit.words import TOWARDS, area_label, force_label, opening, place, short, slope_text
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
-NEEDS = ("specimens", "dilatancy", "closure", "contact")
+NEEDS = ("specimens", "dilatancy", "closure", "contact", "statements")
 ORDER = 100
 
+#: What the paper says of rock and of concrete, and the statements that judge it.
+_PLATEAUS = (
+    ("plateau in every direction", "dilatancy_flattens"),
+    ("plateau in two of four", "dilatancy_flattens_in_two"),
+)
 DOMAINS, COLUMNS = 6, 3
 #: What the table has of the contact area.
 _OF_AREA = ("nodes", "area_share", "area_corrected_share", "area_corrected_resolved")
@@ -79,7 +85,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     )
     headline(figure, settings["label"])
     table = _table(dilatancy, direction, shown, curves)
-    caption = _caption(settings["label"], direction, at_map, plateaus)
+    caption = sentences(
+        _caption(settings["label"], direction, float(at_map["normal_force"])),
+        sentences(*(claim(atlas, name, *said) for said in _PLATEAUS)) or _plateau_words(plateaus),
+        claim(atlas, name, "fall of A_r with v", "area_falls"),
+    )
     return Drawing(figure, table, caption)
 
 
@@ -210,12 +220,10 @@ def _table(dilatancy, direction, shown, curves):
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, states, plateaus):
-    force = float(states["normal_force"])
+def _caption(label, direction, force):
     return (
         f"{opening('Figs. 6 and 7', label)} (a) Rigid and (b) elastic dilatancy, the latter "
-        f"{place(direction)}; (c) contact domains at F = {force_label(force)}. "
-        f"{_plateau_words(plateaus)} {_area_words(states)}"
+        f"{place(direction)}; (c) contact domains at F = {force_label(force)}."
     )
 
 
@@ -230,21 +238,4 @@ def _plateau_words(plateaus):
     words = f"{flat} of {len(changes)} directions have a plateau over the second half of v"
     words += f" (rising: {', '.join(rising)})" if rising else ""
     words += f" (falling: {', '.join(falling)})" if falling else ""
-    return f"{words}; paper: four (rock), two (concrete)."
-
-
-def _area_words(states):
-    """Whether the contact area falls as the joint slides, as the paper has it."""
-    fitted = (states["offset"].values > 0) & states["area_corrected_resolved"].values
-    v, share = (states[name].values[fitted] for name in ("offset", "area_corrected_share"))
-    line = fit_line(np.log(v), np.log(share))
-    if not np.isfinite(line.slope):
-        return "Too few offsets for a trend of the contact area."
-    verdict = (
-        "falls, as in the paper"
-        if line.slope_high < 0
-        else "rises, unlike in the paper"
-        if line.slope_low > 0
-        else "no trend (paper: falls)"
-    )
-    return f"A_r ~ v^e, e = {slope_text(line)}: {verdict}."
+    return f"{words}."

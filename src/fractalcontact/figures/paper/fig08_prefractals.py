@@ -19,6 +19,7 @@ from ..kit.drawing import (
     letter,
 )
 from ..kit.maps import draw_domain
+from ..kit.verdicts import claim
 from ..kit.words import (
     REAL_PRESSURE,
     force_label,
@@ -29,7 +30,7 @@ from ..kit.words import (
 
 TITLE = "Fig. 8: contact domains of the pre-fractals under one load, and their mean pressure"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "area")
+NEEDS = ("specimens", "contact", "domains", "scaling", "area", "statements")
 ORDER = 130
 
 #: Maps side by side.
@@ -64,7 +65,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_pressures(axes, table, limit)
     letter(axes, letters[len(table)], f"real mean pressure (rms slope {short(slope)})")
     headline(top, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
-    return Drawing(figure, table.assign(rms_slope=slope), _caption(loading, i, table, slope, limit))
+    falls = claim(atlas, name, "fall of A_r as a power", "area_is_lacunar", numbers=False)
+    caption = _caption(loading, i, table, slope, limit, falls)
+    return Drawing(figure, table.assign(rms_slope=slope), caption)
 
 
 def _table(loading, i):
@@ -130,12 +133,12 @@ def _draw_pressures(axes, table, limit):
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
 
 
-def _caption(loading, i, table, slope, limit):
+def _caption(loading, i, table, slope, limit, falls):
     # "no fit", "no dimension": the reasons stand in Figs. 9 and 10.
     by_area, by_box = (e.reason[i].split(":")[0] or e.text(i) for e in loading.estimates)
     return (
         f"{loading.opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}. "
-        f"{_verdict(table)} {_model_words(table, slope, limit)} Delta_sigma: {by_area} by A_r(s), "
+        f"{falls} {_model_words(table, slope, limit)} Delta_sigma: {by_area} by A_r(s), "
         f"{by_box} by box counting. {disagreement(loading.scaling.isel(normal_force=i))}"
     )
 
@@ -151,13 +154,3 @@ def _model_words(table, slope, limit):
         place = "beyond" if pressure > limit[0] else "within"
         words += f", {place} the {limit[1]} ({pressure_label(limit[0])})"
     return words + ("." if slope <= SMALL_SLOPE else f"; rms slope {short(slope)}, not small.")
-
-
-def _verdict(table):
-    """Whether A_r falls, and sigma_n rises, as the resolution is refined."""
-    steps = np.diff(table["area_corrected_mm2"].dropna().values)
-    if not steps.size:
-        return "Too few resolutions have an area to compare."
-    if (steps > 0).all():
-        return "As in the paper, A_r falls with refinement."
-    return f"Unlike in the paper, A_r falls at {(steps > 0).sum()} of {steps.size} refinements."

@@ -8,14 +8,15 @@ from xarray import DataTree
 from ...core.ranges import within
 from ...domain.box_dimension import local_slopes, spans
 from ...domain.count_law import LawTerms, law_count
-from ..kit.domains import Loading, nulls_words
+from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
 from ..kit.maps import draw_domain
+from ..kit.verdicts import claim, sentences
 from ..kit.words import force_label, interval, short
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling")
+NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
 ORDER = 140
 
 #: Columns of the null models and the variables that they hold.
@@ -42,7 +43,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles, _ = middle.get_legend_handles_labels()
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
-    return Drawing(figure, table, _caption(loading, i, counts))
+    caption = sentences(
+        _caption(loading, i, counts),
+        claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=False),
+        claim(atlas, name, "fractal set", "domains_are_fractal"),
+    )
+    return Drawing(figure, table, caption)
 
 
 def _table(counts):
@@ -153,7 +159,7 @@ def _caption(loading, i, counts):
     return (
         f"{start}box counts beside null models. Delta_sigma = {loading.estimates[1].text(i)} "
         f"({counts['estimator'].item()}, r = {short(counts['fit_min'])}–"
-        f"{short(counts['fit_max'])} mm); ordinary slope {ordinary}: {nulls_words(counts)}."
+        f"{short(counts['fit_max'])} mm); ordinary slope {ordinary}."
     )
 
 

@@ -9,12 +9,13 @@ from xarray import DataTree
 from ...domain.renormalisation import RESOLUTION
 from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, entries, headline, legends_below, letter
-from ..kit.words import UNDETERMINED, force_label, number, short
+from ..kit.verdicts import claim
+from ..kit.words import force_label, short
 from ._size_effect import draw_axes, size_effect
 
 TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling")
+NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
 ORDER = 160
 
 #: Loads in panel (a).
@@ -34,7 +35,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(left), entries(right))
     headline(figure, *loading.title)
     table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
-    return Drawing(figure, table, _caption(loading, i, pressure))
+    falls = claim(atlas, name, "power-law fall of A_r", "area_is_lacunar", numbers=False)
+    return Drawing(figure, table, _caption(loading, i, falls))
 
 
 def _area_table(loading):
@@ -103,32 +105,10 @@ def _draw_pressures(axes, loading, i, table):
     letter(axes, "b", f"eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
 
 
-def _caption(loading, i, pressure):
+def _caption(loading, i, falls):
     by_area, by_box = loading.estimates
     return (
-        f"{loading.opening('Fig. 10')} (a) A_r(s); (b) eq. 6 extrapolated, "
-        f"F = {force_label(loading.forces[i])}. {_verdict(loading, i)} {by_area.text(i)} by "
-        f"A_r(s), {by_box.text(i)} by box counting ({loading.fit_ranges(i)}). "
-        f"{_own_size(pressure, loading.side)}"
+        f"{loading.opening('Fig. 10')} (a) A_r(s); (b) eq. 6 extrapolated from the specimen, "
+        f"F = {force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.text(i)} by "
+        f"A_r(s), {by_box.text(i)} by box counting ({loading.fit_ranges(i)})."
     )
-
-
-def _verdict(loading, i):
-    """Whether the area falls with refinement as a power law, in words."""
-    by_area = loading.estimates[0]
-    if by_area.reason[i] or by_area.text(i) == UNDETERMINED:
-        return "The paper's power law is undetermined: Delta_sigma"
-    if by_area.high[i] < 2:
-        r2 = number(loading.scaling["r2"].values[i], 3)
-        return f"As in the paper A_r is a power law (r2 = {r2}): Delta_sigma"
-    return "The paper's fall of A_r is not established: Delta_sigma"
-
-
-def _own_size(pressure, side):
-    """Pressure that eq. 6 gives the specimen it was fitted to, over that applied."""
-    own = pressure[np.isclose(pressure["b_mm"], side)].dropna(subset="sigma_0_MPa")
-    if own.empty:
-        return "Nothing to extrapolate."
-    ratio = own["sigma_0_MPa"] / own["specimen_sigma_0_MPa"]
-    ratios = " and ".join(f"{r:.2g}" for r in ratio)
-    return f"Eq. 6 gives {ratios} times the specimen's pressure."

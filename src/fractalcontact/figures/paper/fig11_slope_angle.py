@@ -31,11 +31,12 @@ from ..kit.sizes import (
     share_words,
     size_axis,
 )
+from ..kit.verdicts import claim, sentences
 from ..kit.words import opening, place, short
 
 TITLE = "Fig. 11: limit slope angle against the size of the joint, computed"
 SUBJECT = "joint"
-NEEDS = ("windows",)
+NEEDS = ("windows", "statements")
 ORDER = 180
 
 #: Delta_sigma that later work of the paper's school takes from Bandis' shear tests.
@@ -58,11 +59,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, settings["label"], place(str(laws["direction"].values)))
     if drawn:
         legends_below(figure, entries(angle), entries(strength))
-    return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn))
+    falls = claim(atlas, name, "fall with size", "strength_falls_with_size")
+    return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn, falls))
 
 
 def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
-    """Limit slope angle atan(tau / sigma_n), degrees: a block on a plane so steep just slides.
+    """Limit slope angle atan(tau / sigma_0), degrees: a block on a plane so steep just slides.
 
     Parameters
     ----------
@@ -83,7 +85,7 @@ def _draw_angle(axes, laws, share, drawn):
         draw_bars(axes, beside, mean, np.maximum(low, 0), high, colour)
         barton = slope_angle(laws["barton_strength"].values[:, j], pressure)
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
-        label = rf"$\sigma_n$ = {short(pressure)} MPa"
+        label = rf"$\sigma_0$ = {short(pressure)} MPa"
         axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     axes.plot([], [], "ko", mfc="white", label="most of them held")
     if np.isfinite(laws["barton_strength"]).any():
@@ -101,11 +103,13 @@ def _draw_ratio(axes, laws, share, drawn):
     b, pressures = laws["side"].values, laws["nominal_pressure"].values
     for j, pressure in enumerate(pressures):
         values = laws["similar_strength"].values[share, :, j]
-        style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)], "ls": "none"}
-        axes.plot(apart(b, j, len(pressures)), values / values[0], **style)
+        colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
+        held = laws["similar_held"].values[share, :, j]
+        beside = apart(b, j, len(pressures))
+        draw_means(axes, beside, values / values[0], held, colour, marker)
         exponent = interval_text(laws, "similar_strength_exponent", (share, j))
-        label = rf"$\sigma_n$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
-        axes.plot([], [], **style, label=label)
+        label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
+        axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     slope = QUOTED_DELTA - 2
     label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}: quoted by later work of the same school"
     axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
@@ -160,36 +164,26 @@ def _table(laws):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, laws, share, drawn):
+def _caption(settings, laws, share, drawn, falls):
     where = place(str(laws["direction"].values))
     first = opening("Fig. 11", settings["label"], where)
     if not drawn:
-        return (
-            f"{first} No angle can be given: it needs a basic friction angle and fitting offsets."
+        return sentences(
+            first,
+            "No angle can be given: it needs a basic friction angle and fitting offsets.",
+            falls,
         )
-    return (
+    return sentences(
         f"{first} (a) Computed limit slope angle and (b) relative strength of sub-windows at "
-        f"v = {share_words(laws, share)} of their side b, 95 % intervals. "
-        f"{_verdict(laws, share)}"
+        f"v = {share_words(laws, share)} of their side b, 95 % intervals; no exponent through "
+        "strengths held at their bound.",
+        falls,
+        _beyond_barton(settings, laws),
     )
 
 
-def _verdict(laws, share):
-    """Whether the strength, and so the angle, falls with size as the paper has it."""
-    value, low, high = (
-        laws[f"similar_strength_exponent{end}"].values[share] for end in ("", "_low", "_high")
-    )
-    # What is held in all sizes is the same in all: no exponent.
-    decided = np.isfinite(low) & (np.abs(value) > 1e-9)
-    if not decided.any():
-        return "No exponent: too few sizes, or all of them held."
-    total, falls = int(decided.sum()), int((high[decided] < 0).sum())
-    rises, quoted = int((low[decided] > 0).sum()), QUOTED_DELTA - 2
-    within = int(((low <= quoted) & (quoted <= high))[decided].sum())
-    verdict = "holds" if falls == total else "holds in part" if falls else "is not established"
-    words = f"Strength falls with b beyond its interval under {falls} of {total} pressures"
-    words += f" and rises under {rises}" if rises else ""
-    return (
-        f"{words}: the paper's fall {verdict}. Dotted: -(2 - {QUOTED_DELTA:g}) of later work of "
-        f"the same school, within {within} intervals."
-    )
+def _beyond_barton(settings, laws):
+    """Whether Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20."""
+    stated = np.isfinite(settings["material"]["joint_wall_strength"])
+    beyond = stated & np.isnan(laws["barton_roughness"]).all()
+    return "JRC_n is beyond Barton's scale." if beyond else ""

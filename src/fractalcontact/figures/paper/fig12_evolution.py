@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ..kit.domains import Loading, departures, disagreement, trend
+from ..kit.domains import Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, letter
 from ..kit.maps import draw_domain
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
@@ -13,7 +13,7 @@ from ..kit.words import force_label, percent, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "contact_maps")
+NEEDS = ("specimens", "contact", "domains", "scaling", "contact_maps", "statements")
 ORDER = 190
 
 #: Contact domains drawn.
@@ -53,9 +53,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _pressure_axis(axes, nominal)
     headline(figure, *loading.title)
     table = pd.concat([_table(loading, finest, nominal), *_measured_rows(measured)])
-    # Of both there is no room.
-    last = _measured_words(measured) or f" {disagreement(loading.scaling)}"
-    caption = f"{_caption(loading)}{last}"
+    rises = rise_words(atlas, name, loading)
+    caption = f"{_caption(loading, rises)}{_measured_words(measured)}"
     return Drawing(figure, table.reset_index(drop=True), caption)
 
 
@@ -188,13 +187,9 @@ def _draw_dimensions(axes, loading):
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
 
 
-def _caption(loading):
-    verdicts = ", ".join(
-        f"{trend(loading.forces, e.value, e.low, e.high, rising=True)} by {e.label}"
-        for e in loading.estimates
-    )
+def _caption(loading, rises):
     return (
         f"{loading.opening('Fig. 12')} Delta_sigma over load "
-        f"({loading.fit_ranges()}). Rise with F: {verdicts}. "
+        f"({loading.fit_ranges()}). The paper's rise with F: {rises}. "
         f"{departures(loading.counts)}"
     )

@@ -7,14 +7,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ..kit.domains import Loading, trend
+from ..kit.domains import Loading, rise_words
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, heading, headline, legends_below
 from ..kit.words import force_label, interval
 from ._size_effect import draw_axes, size_effect
 
 TITLE = "Fig. 13: eq. 6 extrapolated to other sizes, load by load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling")
+NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
 ORDER = 200
 
 #: Loads drawn.
@@ -43,7 +43,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     draw_axes(axes)
     axes.set_title("eq. 6 extrapolated to other sizes; markers: the specimen")
     headline(figure, *loading.title)
-    return Drawing(figure, table, _caption(loading))
+    return Drawing(figure, table, _caption(loading, rise_words(atlas, name, loading)))
 
 
 def _draw_lines(axes, loading, estimate, shown, table):
@@ -66,13 +66,9 @@ def _slope(estimate):
     return estimate.value - 2, estimate.low - 2, estimate.high - 2
 
 
-def _caption(loading):
-    verdicts = ", ".join(
-        f"{trend(loading.forces, 2 - e.value, 2 - e.high, 2 - e.low, rising=False)} by {e.label} "
-        f"({line})"
-        for e, line in zip(loading.estimates, ("solid", "dashed"), strict=True)
-    )
+def _caption(loading, rises):
     return (
-        f"{loading.opening('Fig. 13')} Eq. 6 extrapolated, not measured ({loading.fit_ranges()}). "
-        f"The paper's fall of 2 - Delta_sigma with F: {verdicts}."
+        f"{loading.opening('Fig. 13')} Eq. 6 extrapolated from the specimen (solid by A_r(s), "
+        f"dashed by box counting), not measured ({loading.fit_ranges()}). The paper's rise of "
+        f"Delta_sigma: {rises}."
     )

@@ -1,0 +1,120 @@
+"""Statements of the paper over all specimens of a study: a table of verdicts."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from ...core.labels import printable
+from ...statements.judge import all_statements
+from ..joint.statements import DATA, SIGNS
+from ..kit.drawing import WIDTH, Drawing, group
+from ..kit.tables import LINE_HEIGHT, wrap_rows
+from ..kit.words import PAPER
+
+TITLE = "Statements of the paper over the specimens of the study"
+SUBJECT = "study"
+NEEDS = ("statements", "study_statements")
+KEY = "defaults"
+ORDER = 5
+
+#: Where the columns of words begin and end, as fractions of the width, and their letters.
+COLUMNS = {"figure": (0.01, 8), "claim": (0.07, 62)}
+FIRST, LAST = 0.53, 0.99
+#: Letters of a specimen's name that are shown, upright, and lines that each takes.
+LONGEST_NAME, LINES_A_LETTER = 40, 0.48
+#: Group of what is judged for the study as a whole.
+WHOLE = "study"
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """A sign for each verdict, specimen by specimen, and below what needs several specimens."""
+    if not len(names):  # measured contact maps alone
+        return Drawing(Figure(figsize=(WIDTH, 1)), pd.DataFrame(), _caption({}, _whole(atlas)))
+    tables = {name: _table(atlas, "statements", name) for name in names}
+    rows = {
+        statement.check.__name__: {"figure": statement.figure, "claim": statement.claim}
+        for statement in all_statements()
+        if any(statement.check.__name__ in table.index for table in tables.values())
+    }
+    whole = _whole(atlas)
+    shown = [*rows.values(), *whole[["figure", "claim"]].to_dict("records")]
+    texts, lines = wrap_rows(shown, COLUMNS)
+    heads = {name: printable(name, LONGEST_NAME) for name in tables}
+    top = 1 + LINES_A_LETTER * max(map(len, heads.values()))
+    height = LINE_HEIGHT * (top + sum(lines) + 2)
+    figure = Figure(figsize=(WIDTH, height))
+    figure.set_layout_engine("none")
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(0, 1), ylim=(height / LINE_HEIGHT, 0))
+    axes.set_axis_off()
+    places = _draw_words(axes, texts, lines, top)
+    at = {name: FIRST + (i + 0.5) * (LAST - FIRST) / len(tables) for i, name in enumerate(tables)}
+    for name, table in tables.items():
+        axes.text(
+            at[name], top - 0.6, heads[name], rotation=90, va="bottom", ha="center", fontsize=7
+        )
+        for statement, y in zip(rows, places, strict=False):
+            if statement in table.index:
+                row = table.loc[statement]
+                _draw_sign(axes, at[name], y, row["verdict"], bool(row["circular"]))
+    for y, verdict in zip(places[len(rows) :], whole["verdict"], strict=True):
+        _draw_sign(axes, FIRST, y, verdict, False, words=f" {verdict} (all together)")
+    _draw_key(axes, height / LINE_HEIGHT - 1.5)
+    everything = [table.assign(specimen=name) for name, table in tables.items()]
+    data = pd.concat([*everything, whole.assign(specimen="")]).reset_index(names="statement")
+    return Drawing(figure, data, _caption(tables, whole))
+
+
+def _table(atlas, stage, name):
+    judged = group(atlas, stage, name)
+    return pd.DataFrame({key: judged[key].values for key in DATA}, index=judged["statement"].values)
+
+
+def _whole(atlas):
+    """What is judged for the study as a whole; empty where it has one specimen."""
+    if "study_statements" in atlas.children:
+        return _table(atlas, "study_statements", WHOLE)
+    return pd.DataFrame({key: [] for key in DATA})
+
+
+def _draw_words(axes, texts, lines, top):
+    places, y = [], top
+    for row, rows in zip(texts, lines, strict=True):
+        axes.axhline(y - 0.35, color="0.8", lw=0.5)
+        for key, (x, _) in COLUMNS.items():
+            axes.text(x, y, row[key], va="top", fontsize=7, linespacing=1.15)
+        places.append(y)
+        y += rows
+    return places
+
+
+def _draw_sign(axes, x, y, verdict, circular, words=""):
+    sign, colour = SIGNS[verdict]
+    text = f"{sign}*" if circular else sign
+    style = {"va": "top", "fontsize": 8, "family": "DejaVu Sans"}
+    axes.text(x, y, text, ha="center", color=colour, **style)
+    if words:
+        axes.text(x + 0.01, y, words, va="top", fontsize=7)
+
+
+def _draw_key(axes, y):
+    """What the signs say, below the table."""
+    words = {**{verdict: sign for verdict, (sign, _) in SIGNS.items()}, "circular": "*"}
+    for i, (verdict, sign) in enumerate(words.items()):
+        text = f"{sign}  {verdict}"
+        axes.text(0.01 + 0.165 * i, y, text, va="top", fontsize=7, family="DejaVu Sans")
+
+
+def _caption(tables, whole):
+    verdicts = pd.concat([*tables.values(), whole])
+    counts = verdicts["verdict"].value_counts()
+    summary = ", ".join(f"{verdict} {counts[verdict]}" for verdict in SIGNS if verdict in counts)
+    pressed = "; ".join(
+        f"{row['claim']}: {row['verdict']} ({row['numbers']})" for _, row in whole[-1:].iterrows()
+    )
+    return (
+        f"After the statements of {PAPER}. Verdicts over {len(tables)} specimens: {summary}; "
+        f"{int(verdicts['circular'].astype(bool).sum())} circular (*). Blank: not asked. {pressed}"
+    ).rstrip() + ("." if pressed else "")

@@ -1,0 +1,75 @@
+"""How captions quote the verdicts on the paper's statements, which :mod:`statements` decides."""
+
+import xarray as xr
+from xarray import DataTree
+
+from ...statements.judge import all_statements
+from ...statements.study import STATEMENTS as OF_STUDY
+
+#: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
+CIRCULAR, CIRCULAR_SHORT = "circular: chosen for it", "circular"
+
+
+def verdict_words(atlas: DataTree, name: str, statement: str, *, numbers: bool = True) -> str:
+    """Verdict on a statement with the numbers that decide it, as the table of statements has them.
+
+    Parameters
+    ----------
+    atlas : DataTree
+        With the stage ``statements``.
+    name : str
+        The specimen.
+    statement : str
+        Name of the function that judges it.
+    numbers : bool, optional
+        Whether the numbers follow.
+
+    Returns
+    -------
+    str
+        "holds (A_r ~ F^m, m = 0.95 to 1.02)"; empty where it is not asked of the specimen.
+    """
+    row = row_of(atlas, "statements", name, statement)
+    if row is None:
+        return ""
+    said = [str(row["numbers"].item())] if numbers else []
+    if bool(row["circular"]):
+        said.append(CIRCULAR)
+    words = str(row["verdict"].item())
+    return f"{words} ({'; '.join(said)})" if said else words
+
+
+def claim(atlas: DataTree, name: str, says: str, statement: str, *, numbers: bool = True) -> str:
+    """A sentence on what the paper says and whether it holds; empty where it is not asked.
+
+    Parameters
+    ----------
+    atlas, name, statement, numbers
+        As for :func:`verdict_words`.
+    says : str
+        What the paper says, short: "A_r ~ F".
+    """
+    words = verdict_words(atlas, name, statement, numbers=numbers)
+    return f"The paper's {says}: {words}." if words else ""
+
+
+def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset | None:
+    """One statement of a table of statements; None where it is not asked.
+
+    Raises
+    ------
+    KeyError
+        If there is no such statement, or the specimen has no table: a verdict is never left out in
+        silence.
+    """
+    every = (*all_statements(), *OF_STUDY)
+    if statement not in {known.check.__name__ for known in every}:
+        raise KeyError(f"no statement is called {statement!r}")
+    table = atlas[f"{stage}/{name}"].to_dataset()
+    asked = statement in table["statement"].values
+    return table.sel(statement=statement) if asked else None
+
+
+def sentences(*parts: str) -> str:
+    """Sentences in one line, without those that say nothing."""
+    return " ".join(part for part in parts if part)

@@ -1,0 +1,202 @@
+"""What the paper says of closure and real contact area (sects. 4 and 5, Figs. 4 and 5)."""
+
+import numpy as np
+
+from .findings import (
+    FAILS,
+    HOLDS,
+    ILL_POSED,
+    NEARLY,
+    PARTLY,
+    UNDETERMINED,
+    Finding,
+    Joint,
+    Statement,
+    by_sign,
+    level,
+    no_offsets,
+    trend,
+)
+
+#: Closure from first contact is an extreme of the sample; compliance is a property of the joint.
+_COMPLIANCE = "compliance"
+
+
+def compliance_rises_at_first(joint: Joint) -> Finding:
+    """Compliance of the interface up to the correlation length, as a power of v."""
+    return trend(joint.offset, joint.compliance, joint.initial, _COMPLIANCE, rising=True)
+
+
+def curves_overlap(joint: Joint) -> Finding:
+    """Spread of the compliance of the interface beyond the correlation length."""
+    return level(joint.compliance[joint.between], _COMPLIANCE, joint.offset[joint.between])
+
+
+def compliance_rises_again(joint: Joint) -> Finding:
+    """Compliance where the faces no longer correlate, against that at the offsets just before.
+
+    Those are the ones beyond the correlation length or, if none was solved there, the last within.
+    """
+    before, after = joint.between, joint.unrelated
+    if not before.any() and joint.initial.any():
+        before = joint.offset == joint.offset[joint.initial].max()
+    known = np.isfinite(joint.compliance)
+    before, after = before & known, after & known
+    if not after.any() or not before.any():
+        return Finding(UNDETERMINED, no_offsets("both before and after the faces lose correlation"))
+    spread = joint.stages["closure"]["composite_spread"].sel(direction=joint.direction).values
+    change, of_spread = (
+        values[after].mean() / values[before].mean() - 1 for values in (joint.compliance, spread)
+    )
+    ends = joint.offset[before].max(), joint.offset[after].min()
+    return Finding(
+        HOLDS if change > NEARLY else FAILS,
+        f"compliance {100 * change:+.0f} %",
+        f"from v <= {ends[0]:.3g} to >= {ends[1]:.3g} mm; sigma_z of the composite topography "
+        f"{100 * of_spread:+.0f} %",
+    )
+
+
+def composite_dimension_rises(joint: Joint) -> Finding:
+    """Delta_g of the composite topography against offset: fixed by where it is fitted.
+
+    For lags h the variogram of z(x + v) - z(x) is twice the face's where h is far below v, whose
+    dimension it then has at every v, and flat where h is far above v. A dimension fitted over a
+    fixed range of lags falls as v passes through that range, whatever the joint.
+    """
+    joints = joint.stages["joints"]
+    dimension = joints["composite_dimension"].values
+    known = np.isfinite(dimension) & (joint.offset > 0)
+    if not known.any():
+        return Finding(
+            ILL_POSED, "fixed by the range of lags fitted: flat above v, the face's below"
+        )
+    v, fitted = joint.offset[known], dimension[known]
+    low = float(joints["composite_fit_min"].min())
+    high = float(joints["composite_fit_max"].max())
+    return Finding(
+        ILL_POSED,
+        f"Delta_g {fitted[0]:.2f} at v = {v[0]:.3g} mm, {fitted[-1]:.2f} at {v[-1]:.3g} mm, for "
+        f"lags of {low:.3g} to {high:.3g} mm",
+        "the variogram of a difference is flat above v, and the face's own below it at every v",
+    )
+
+
+def compliance_goes_with_dimension(joint: Joint) -> Finding:
+    """Compliance against a dimension that the range of the fit decides."""
+    return Finding(
+        ILL_POSED,
+        "asks for the dimension of the row above",
+        "a joint slid farther is more compliant since sigma_z grows",
+    )
+
+
+def larger_samples_close_more(joint: Joint) -> Finding:
+    """Exponent of the compliance of the interface against the size of sub-windows."""
+    windows = joint.map_windows()
+    value, low, high = (
+        float(windows[f"compliance_exponent{end}"]) for end in ("", "_low", "_high")
+    )
+    if not np.isfinite(value):
+        return Finding(UNDETERMINED, "fewer than three sizes of window")
+    closure = float(windows["closure_exponent"])
+    return Finding(
+        by_sign(low, high, rising=True),
+        f"e = {value:.2f} [{low:.2f}, {high:.2f}]",
+        f"compliance ~ b^e at {float(windows['nominal_pressure']):.3g} MPa; closure from first "
+        f"contact, b^{closure:.2f}, grows as any largest value does",
+    )
+
+
+def area_is_linear(joint: Joint) -> Finding:
+    """Exponent m of A_r ~ F^m at every offset, A_r corrected for the perimeter."""
+    law = joint.stages["area"].sel(direction=joint.direction)
+    value, low, high = (law[f"corrected_exponent{end}"].values for end in ("", "_low", "_high"))
+    known = np.isfinite(value)
+    if not known.any():
+        return Finding(UNDETERMINED, "no law of the area could be fitted")
+    value, low, high = value[known], low[known], high[known]
+    near = int((np.abs(value - 1) <= NEARLY).sum())
+    apart = int(((high < 1 - NEARLY) | (low > 1 + NEARLY)).sum())
+    verdict = FAILS if apart == value.size else PARTLY if apart else HOLDS
+    verdict = UNDETERMINED if not apart and 2 * near <= value.size else verdict
+    ends = " to ".join(dict.fromkeys(f"{m:.2f}" for m in (value.min(), value.max())))
+    return Finding(
+        verdict,
+        f"m = {ends}",
+        f"A_r ~ F^m, {near} of {value.size} within {NEARLY:g} of 1, {apart} beyond it by their "
+        "intervals",
+    )
+
+
+def area_falls(joint: Joint) -> Finding:
+    """Contact area against offset, as a power of v."""
+    return trend(joint.offset, joint.area_fraction, joint.offset > 0, "A_r", rising=False)
+
+
+def area_settles(joint: Joint) -> Finding:
+    """Spread of the contact area beyond the correlation length."""
+    beyond = joint.between | joint.unrelated
+    return level(joint.area_fraction[beyond], "A_r", joint.offset[beyond])
+
+
+def refinement_changes_little(joint: Joint) -> Finding:
+    """Change of the closure from twice the scan's spacing to the spacing itself."""
+    curves = joint.stages["closure"].sel(direction=joint.direction)
+    curves = curves.sel(resolution=curves["resolution"].min())
+    change = np.abs(curves["closure_spacing_error"] / curves["closure"]).values
+    change = change[np.isfinite(change)]
+    if not change.size:
+        return Finding(UNDETERMINED, "no state solved at two spacings")
+    verdict = HOLDS if change.max() <= NEARLY else PARTLY if change.min() <= NEARLY else FAILS
+    return Finding(
+        verdict,
+        f"closure changes by {100 * change.min():.0f} to {100 * change.max():.0f} % from 2 s to s",
+        f"{change.size} states; it counts from the highest point, which moves",
+    )
+
+
+#: All of them, in the order of the paper.
+STATEMENTS = (
+    Statement(
+        "sect. 4",
+        "Further refinement of the scan would not alter the contact significantly",
+        refinement_changes_little,
+    ),
+    Statement(
+        "4, 5",
+        "In the first stages of sliding the joint becomes more compliant with v",
+        compliance_rises_at_first,
+    ),
+    Statement("4, 5", "Beyond a certain v the closure curves overlap", curves_overlap),
+    Statement(
+        "4, 5",
+        "At very large v, with no correlation left, compliance increases again",
+        compliance_rises_again,
+    ),
+    Statement(
+        "4, 5", "The dimension of the composite topography rises with v", composite_dimension_rises
+    ),
+    Statement(
+        "sect. 7",
+        "The higher that dimension, the more compliant the joint",
+        compliance_goes_with_dimension,
+    ),
+    Statement(
+        "4, 5", "Larger samples of a joint close more", larger_samples_close_more, slides=False
+    ),
+    Statement(
+        "4, 5",
+        "The real contact area is nearly proportional to F",
+        area_is_linear,
+        slides=False,
+        plastic=True,
+    ),
+    Statement("4-7", "At fixed F the real contact area falls as v rises", area_falls),
+    Statement(
+        "5, 7",
+        "Beyond a certain v the real contact area stays the same",
+        area_settles,
+        material="concrete",
+    ),
+)

@@ -1,0 +1,136 @@
+"""What is judged beside a rival: closure laws, null models of the contact domain, its isotropy."""
+
+import numpy as np
+
+from ..domain import departure
+from ..domain.departure import BEYOND_BOTH, LIKE_CUT, LIKE_RANDOM
+from ..mechanics.closure_laws import HYPERBOLA, UNDECIDED
+from .findings import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    NEARLY,
+    PARTLY,
+    UNDETERMINED,
+    Finding,
+    Joint,
+    Statement,
+    share,
+)
+
+#: What a departure from the null models leaves of "lacunar fractal sets".
+_LEFT = {
+    BEYOND_BOTH: HOLDS,
+    LIKE_RANDOM: FAILS,
+    LIKE_CUT: PARTLY,
+    departure.UNDETERMINED: UNDETERMINED,
+}
+
+
+def closure_is_hyperbolic(joint: Joint) -> Finding:
+    """The closure law that fits better, hyperbola or semi-logarithmic, at every offset."""
+    curves = joint.stages["closure"].sel(direction=joint.direction)
+    curves = curves.sel(resolution=curves["resolution"].min())
+    slid = joint.offset > 0
+    laws = curves["closure_law"].values.astype(str)[slid]
+    decided = ~np.isin(laws, ("", UNDECIDED))
+    if not decided.any():
+        return Finding(UNDETERMINED, f"no law fits better at any of {slid.sum()} offsets")
+    misfits = " against ".join(
+        f"{100 * np.nanmedian(curves[f'{law}_misfit'].values[slid][decided]):.2g} %"
+        for law in ("hyperbola", "semi_logarithmic")
+    )
+    better = int((laws[decided] == HYPERBOLA).sum())
+    return Finding(
+        share(better, int(decided.sum())),
+        f"the better law at {better} of {decided.sum()} offsets",
+        f"median rms misfit {misfits} of w_int = a + b ln sigma_0",
+    )
+
+
+def domains_are_fractal(joint: Joint) -> Finding:
+    """Box-counting dimension beside as many random nodes and the bearing-area cut."""
+    state = joint.map_state("domains")
+    verdict = str(state["null_verdict"].item())
+    value, random, low, high, cut = (
+        float(state[f"delta_sigma{end}"])
+        for end in ("", "_random", "_random_low", "_random_high", "_cut")
+    )
+    if not np.isfinite(value):
+        return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
+    return Finding(
+        _LEFT[verdict],
+        verdict,
+        f"Delta_sigma = {value:.2f}, as many random nodes {low:.2f} to {high:.2f} "
+        f"(mean {random:.2f}), the cut {cut:.2f}",
+    )
+
+
+def domains_differ_from_cuts(joint: Joint) -> Finding:
+    """Elastic contact domain against the cut of the composite topography, over the loads.
+
+    Related where their dimensions never differ by more than a quarter; not coincident where the
+    interval of the difference leaves out zero.
+    """
+    states = joint.map_states("domains")
+    value, low, high = (
+        states[f"delta_sigma_cut_difference{end}"].values for end in ("", "_low", "_high")
+    )
+    known = np.isfinite(low) & np.isfinite(high) & np.isfinite(value)
+    if not known.any():
+        return Finding(UNDETERMINED, "no load at which domain and cut have a dimension")
+    value, low, high = value[known], low[known], high[known]
+    apart = int(((low > 0) | (high < 0)).sum())
+    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in (value.min(), value.max())))
+    related = np.abs(value).max() <= LOOSELY
+    verdict = share(apart, value.size) if apart else UNDETERMINED
+    return Finding(
+        verdict if related else FAILS,
+        f"domain less cut {ends}",
+        f"apart beyond the interval at {apart} of {value.size} loads",
+    )
+
+
+def domains_are_isotropic(joint: Joint) -> Finding:
+    """Contact at a lag from a node in contact, along the sliding and across it.
+
+    What scales alike along both axes has the same probability along both.
+    """
+    measures = joint.stages["domain_measures"].sel(normal_force=joint.force, method="nearest")
+    (along, low, high), (across, *other) = (
+        [float(measures[f"contact_at_lag_{way}{end}"]) for end in ("", "_low", "_high")]
+        for way in ("along", "across")
+    )
+    if not np.isfinite([along, across]).all() or along + across == 0:
+        return Finding(UNDETERMINED, "no contact at that lag from another")
+    numbers = (
+        f"contact at a lag {along:.2f} [{low:.2f}, {high:.2f}] along, {across:.2f} "
+        f"[{other[0]:.2f}, {other[1]:.2f}] across sliding"
+    )
+    apart = max(low, other[0]) > min(high, other[1])
+    difference = abs(across - along) / (across + along)
+    if apart:
+        return Finding(FAILS if difference > LOOSELY else PARTLY, numbers)
+    return Finding(HOLDS if difference <= NEARLY else UNDETERMINED, numbers)
+
+
+#: All of them.
+STATEMENTS = (
+    Statement("4, 5", "The closure curves are hyperbolas with an asymptote", closure_is_hyperbolic),
+    Statement(
+        "sect. 6",
+        "Contact domains are lacunar fractal sets",
+        domains_are_fractal,
+        slides=False,
+        plastic=True,
+    ),
+    Statement(
+        "sect. 6",
+        "Contact domains are related, but not coincident, to cuts at one height",
+        domains_differ_from_cuts,
+        slides=False,
+    ),
+    Statement(
+        "sect. 6", "Contact domains scale isotropically", domains_are_isotropic, slides=False
+    ),
+)

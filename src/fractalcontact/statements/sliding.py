@@ -1,0 +1,154 @@
+"""What the paper says of dilatancy and of contact domains as the joint slides (Figs. 6 and 7)."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..core.fitting import fit_line
+from .findings import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    NEARLY,
+    PARTLY,
+    UNDETERMINED,
+    Finding,
+    Joint,
+    Statement,
+    no_offsets,
+    share,
+    trend,
+)
+
+#: Directions in which the paper's concrete has a plateau, of those it slid in.
+PLATEAUS, DIRECTIONS = 2, 4
+
+
+class Plateaus(NamedTuple):
+    """Rigid dilatancy over the second half of v, by direction.
+
+    Attributes
+    ----------
+    directions : list of str
+    mean : (n,) ndarray
+        mm.
+    change : (n,) ndarray
+        Of the fitted line, a fraction of the mean.
+    """
+
+    directions: list[str]
+    mean: np.ndarray
+    change: np.ndarray
+
+    @classmethod
+    def of(cls, joints: xr.Dataset) -> "Plateaus":
+        """Those of the stage ``joints``; directions without a fit are left out."""
+        v = joints["rigid_offset"].values
+        second = v >= v[-1] / 2
+        found = []
+        for name, opened in zip(
+            joints["direction"].values, joints["rigid_dilatancy"].values, strict=True
+        ):
+            line = fit_line(v[second], opened[second])
+            if np.isfinite(line.slope):
+                mean = opened[second].mean()
+                found.append((str(name), mean, line.slope * (line.x_max - line.x_min) / mean))
+        names, means, changes = zip(*found, strict=True) if found else ((), (), ())
+        return cls(list(names), np.array(means), np.array(changes))
+
+    @property
+    def flat(self) -> np.ndarray:
+        """Which directions have a plateau."""
+        return np.abs(self.change) <= NEARLY
+
+    def finding(self, verdict: str) -> Finding:
+        """A verdict with how many directions are flat, and by how much they change."""
+        rising = [self.directions[i] for i in np.flatnonzero(self.change > NEARLY)]
+        more = f"; rising {', '.join(rising)}" if rising else ""
+        return Finding(
+            verdict,
+            f"{self.flat.sum()} of {self.change.size} directions level{more}",
+            f"{100 * self.change.min():+.0f} to {100 * self.change.max():+.0f} % of the mean over "
+            f"the second half of v, level within {100 * NEARLY:g} %",
+        )
+
+
+def dilatancy_flattens(joint: Joint) -> Finding:
+    """Change of the rigid dilatancy over the second half of the offsets, in every direction."""
+    plateaus = Plateaus.of(joint.stages["joints"])
+    if not plateaus.change.size:
+        return Finding(UNDETERMINED, no_offsets("three rigid"))
+    return plateaus.finding(share(int(plateaus.flat.sum()), plateaus.flat.size))
+
+
+def dilatancy_flattens_in_two(joint: Joint) -> Finding:
+    """Whether two of four directions have a plateau and the others rise on."""
+    plateaus = Plateaus.of(joint.stages["joints"])
+    if plateaus.change.size < DIRECTIONS:
+        return Finding(UNDETERMINED, f"{DIRECTIONS} directions needed")
+    flat, rising = int(plateaus.flat.sum()), int((plateaus.change > NEARLY).sum())
+    both = flat > 0 and rising > 0
+    verdict = HOLDS if both and flat == rising == PLATEAUS else PARTLY if both else FAILS
+    return plateaus.finding(verdict)
+
+
+def dilatancy_is_anisotropic(joint: Joint) -> Finding:
+    """Difference of the slopes of the rigid dilatancy among directions, second half of v."""
+    change = Plateaus.of(joint.stages["joints"]).change
+    if change.size < 2:
+        return Finding(UNDETERMINED, "fewer than two directions")
+    spread = np.ptp(change)
+    verdict = HOLDS if spread > LOOSELY else PARTLY if spread > NEARLY else FAILS
+    return Finding(
+        verdict,
+        f"delta_r changes by {100 * change.min():+.0f} to {100 * change.max():+.0f} % of its mean "
+        "over the second half of v, by direction",
+    )
+
+
+def domains_cluster(joint: Joint) -> Finding:
+    """Morisita's index of the contact domains against offset, as a power of v."""
+    index = joint.at_load("domains", "morisita")
+    return trend(joint.offset, index, joint.offset > 0, "Morisita's index", rising=True)
+
+
+def no_correlation_is_left(joint: Joint) -> Finding:
+    """Correlation of the faces at the largest offset solved."""
+    limit = float(joint.stages["joints"]["correlation_limit"])
+    v = joint.stages["joints"]["rigid_offset"].values
+    correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offset[-1]))]
+    numbers, where = f"correlation {correlation:+.2f}", f"at v = {joint.offset[-1]:.3g} mm"
+    if not np.isfinite(limit):
+        too_small = "the window is too small to separate it from chance"
+        return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")
+    verdict = HOLDS if correlation <= limit else FAILS
+    return Finding(verdict, f"{numbers}, by chance up to {limit:.2f}", where)
+
+
+#: All of them, in the order of the paper.
+STATEMENTS = (
+    Statement(
+        "6",
+        "Rigid dilatancy reaches a plateau in every direction (rock)",
+        dilatancy_flattens,
+        material="rock",
+    ),
+    Statement(
+        "7",
+        "Rigid dilatancy reaches a plateau in two of four directions and rises on in the others "
+        "(concrete)",
+        dilatancy_flattens_in_two,
+        material="concrete",
+    ),
+    Statement(
+        "7",
+        "The slope of the rigid dilatancy is markedly anisotropic (concrete)",
+        dilatancy_is_anisotropic,
+        material="concrete",
+    ),
+    Statement(
+        "6, 7", "Contact domains become less homogeneous with v and cluster", domains_cluster
+    ),
+    Statement("6", "At the largest v no correlation of the faces is left", no_correlation_is_left),
+)

@@ -1,0 +1,122 @@
+"""What the paper says of several joints together, judged for a study."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from ..core.fitting import LineFit, fit_line
+from ..roughness.dimension import best_dimension
+from .findings import FAILS, HOLDS, UNDETERMINED, Finding, Joint, Statement, by_sign
+from .judge import material_of, table_of
+
+__all__ = ["STATEMENTS", "judge_study"]
+
+
+def judge_study(
+    stages: Mapping[str, Mapping[str, xr.Dataset]],
+    settings: Mapping[str, Mapping],
+) -> xr.Dataset:
+    """Judge the statements that need several specimens.
+
+    Parameters
+    ----------
+    stages : mapping of str to mapping of str to xr.Dataset
+        Of each specimen, as :class:`findings.Joint` has them, with ``surface_dimension``. Without
+        those that only repeat another under a hardness.
+    settings : mapping of str to mapping
+        By specimen.
+
+    Returns
+    -------
+    xr.Dataset
+        As :func:`judge.table_of` makes it.
+    """
+    joints = {name: Joint(dict(parts), dict(settings[name])) for name, parts in stages.items()}
+    return table_of([(asked, asked.check(joints)) for asked in STATEMENTS], {})
+
+
+def size_effect_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
+    """Exponent 2 - Delta_sigma by A_r(s) at the load of the maps, against Delta_g of the faces.
+
+    Of surfaces against a plane where there are three: their composite topography is the face, and
+    one study loads them alike.
+    """
+    flat = [joint for joint in joints.values() if joint.settings["opposite"] == "flat"]
+    if len(flat) < 3:
+        return Finding(UNDETERMINED, f"{len(flat)} surfaces against a plane, three needed")
+    dimension = np.array([best_dimension(j.stages["surface_dimension"])[0] for j in flat])
+    effect = np.array([2 - float(j.map_state("scaling")["delta_sigma"]) for j in flat])
+    order = np.argsort(dimension)
+    line = fit_line(dimension, effect)
+    if not np.isfinite(line.slope):
+        return Finding(UNDETERMINED, "fewer than three surfaces with Delta_g and Delta_sigma")
+    pairs = ", ".join(f"{effect[i]:.2f} at {dimension[i]:.2f}" for i in order)
+    return Finding(
+        by_sign(line.slope_low, line.slope_high, rising=True),
+        f"2 - Delta_sigma by A_r(s) {pairs}",
+        "at light load it is the growth of the slopes h'_rms of the surface with resolution",
+    )
+
+
+def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
+    """Exponents of A_r against v, concrete beside rock."""
+    lines = _by_material(joints, lambda joint: joint.area_fraction)
+    return _compared(lines, "A_r ~ v^e", steeper=-1)
+
+
+def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
+    """Exponents of Morisita's index against v, concrete beside rock."""
+    lines = _by_material(joints, lambda joint: joint.at_load("domains", "morisita"))
+    return _compared(lines, "Morisita's index ~ v^e", steeper=1)
+
+
+def _by_material(joints, values_of):
+    """Line of log values over log v of the first joint of each material."""
+    lines: dict[str, LineFit] = {}
+    for joint in joints.values():
+        material = material_of(joint.settings)
+        if joint.settings["opposite"] == "flat" or material in lines or not material:
+            continue
+        values = values_of(joint)
+        chosen = (joint.offset > 0) & (values > 0)
+        line = fit_line(np.log(joint.offset[chosen]), np.log(values[chosen]))
+        if np.isfinite(line.slope):
+            lines[material] = line
+    return lines
+
+
+def _compared(lines, law, steeper):
+    """Whether concrete's exponent exceeds rock's, with the sign of the paper's claim."""
+    if lines.keys() != {"rock", "concrete"}:
+        return Finding(UNDETERMINED, "a joint of each material needed")
+    rock, concrete = lines["rock"], lines["concrete"]
+    words = ", ".join(
+        f"{name} {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}]"
+        for name, line in (("concrete", concrete), ("rock", rock))
+    )
+    low = concrete.slope_low - rock.slope_high
+    high = concrete.slope_high - rock.slope_low
+    sure, opposite = (low > 0, high < 0) if steeper > 0 else (high < 0, low > 0)
+    verdict = HOLDS if sure else FAILS if opposite else UNDETERMINED
+    return Finding(verdict, f"{law}, e = {words}")
+
+
+#: All of them, in the order of the paper.
+STATEMENTS = (
+    Statement(
+        "5",
+        "The real contact area falls with v especially in concrete",
+        area_falls_more_in_concrete,
+    ),
+    Statement(
+        "7",
+        "Contact localises more in concrete than in rock",
+        contact_localises_more_in_concrete,
+    ),
+    Statement(
+        "sect. 7",
+        "The size effect is more pronounced for larger Delta_g of the composite topography",
+        size_effect_grows_with_dimension,
+    ),
+)

@@ -1,0 +1,56 @@
+"""What a study says of its specimens: which were chosen for a statement, which repeat another."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from fractalcontact.stages.atlas import chosen_for, is_capped_variant
+from fractalcontact.statements.judge import all_statements
+from fractalcontact.study.configuration import resolve_embedded
+
+ROOT = Path(__file__).parents[2]
+NAMES = {s.check.__name__ for s in all_statements()}
+
+
+@pytest.fixture
+def paper():
+    return yaml.safe_load((ROOT / "config/paper.yaml").read_text())
+
+
+def test_the_schema_knows_the_statements():
+    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+    recipe = schema["$defs"]["embedded"]["properties"]
+    assert set(recipe["chosen_for"]["propertyNames"]["enum"]) == NAMES
+
+
+def test_the_twins_were_chosen_for_their_plateaus(paper):
+    assert "dilatancy_flattens" in chosen_for(paper, "sandstone_twin")
+    assert "dilatancy_flattens_in_two" in chosen_for(paper, "concrete_twin")
+    assert chosen_for(paper, "joint_2.1") == {}
+    assert chosen_for(paper, "a scan") == {}
+    for name in paper["embedded"]:
+        assert chosen_for(paper, name).keys() <= NAMES
+
+
+def test_how_a_specimen_was_chosen_makes_no_other_surface(paper):
+    recipe = paper["embedded"]["sandstone_twin"]
+    without = {key: value for key, value in recipe.items() if key != "chosen_for"}
+    assert resolve_embedded(recipe, "here") == resolve_embedded(without, "here")
+
+
+def test_the_capped_twin_repeats_the_other(paper):
+    variants = [name for name in paper["embedded"] if is_capped_variant(paper, name)]
+    assert variants == ["sandstone_capped"]
+    assert not is_capped_variant(paper, "a scan")
+
+
+def test_another_surface_or_no_other_hardness_repeats_nothing(paper):
+    other = paper["embedded"]["sandstone_capped"]
+    paper["embedded"]["sandstone_capped"] = {**other, "seed": 7}
+    assert not is_capped_variant(paper, "sandstone_capped")
+    paper["embedded"]["sandstone_capped"] = other
+    paper["specimens"]["sandstone_twin"]["material"] = "sandstone_capped"
+    assert not is_capped_variant(paper, "sandstone_capped")
+    paper["specimens"]["sandstone_twin"]["material"] = {"modulus": "1 GPa", "poisson": 0.2}
+    assert is_capped_variant(paper, "sandstone_capped")
