@@ -8,6 +8,7 @@ from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
+from ..mechanics.overlap import load_warning
 from ..mechanics.plan import solve_plan
 from ..mechanics.states import combine, domains_of, force_range, map_states, with_pressure
 from ..mechanics.strength import joint_strength
@@ -49,6 +50,7 @@ def state_stages(
         e_star,
         force_range(settings["hyperbola_range"], specimens),
     )
+    curves.attrs["warning"] = load_warning(curves, specimens, settings)
     dilatancy = elastic_dilatancy(curves, joints)
     laws = area_laws(
         curves,
