@@ -211,7 +211,7 @@ def _gauss_newton_step(lower, gap, motion, limit, mode) -> np.ndarray:
     weighted = weights * terms
     normal = np.einsum("ik,jk->ij", weighted, terms)
     right = -np.einsum("ik,k->i", weighted, gap[usable])
-    solution: np.ndarray = np.linalg.lstsq(normal, right, rcond=1e-12)[0] / scale
+    solution = np.linalg.lstsq(normal, right, rcond=1e-12)[0] / scale
     return np.pad(solution[:-1], (0, len(PARAMETERS) + 1 - len(solution)))
 
 
@@ -252,7 +252,7 @@ def linearised(
     if mode == "translation":
         columns = columns[:2]
     usable = np.isfinite(gap) & np.isfinite(slope_x) & np.isfinite(slope_y)
-    terms = np.array([c[usable] for c in [*columns, np.ones_like(x)]])
+    terms = np.array([np.asarray(c)[usable] for c in (*columns, np.ones_like(x))])
     known = gap[usable]
     weights = _biweights(known - _centre(known, limit), limit)
     return usable, terms, weights
