@@ -1,8 +1,14 @@
 """Panels of the quality sheet about two faces: gap, overlap, load on suspicious cells."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
+from matplotlib.figure import FigureBase
 from matplotlib.lines import Line2D
 
 from ...mechanics.overlap import DECISIVE
@@ -19,7 +25,9 @@ _OFFSETS = 5
 OVERLAP = COLOURS[2]
 
 
-def draw_gap(figure, axes, specimen, sides):
+def draw_gap(
+    figure: FigureBase, axes: Axes, specimen: xr.Dataset, sides: Sequence[float]
+) -> list[Artist]:
     """Map of the gap, its overlapping cells ringed; the entries of a legend."""
     gap = (specimen["upper"] - specimen["lower"]).values
     widest = np.nanquantile(abs(gap), 1 - _CLIPPED) or 1.0
@@ -39,7 +47,7 @@ def draw_gap(figure, axes, specimen, sides):
     return [rings]
 
 
-def draw_gap_heights(axes, specimen):
+def draw_gap_heights(axes: Axes, specimen: xr.Dataset) -> None:
     """Distribution of the gap; what lies left of zero overlaps."""
     counts, edges = _gap_histogram(specimen)
     unit, size = length_unit(np.ptp(edges))
@@ -62,7 +70,7 @@ def _gap_histogram(specimen):
     return np.histogram(known, edges)[0], edges
 
 
-def draw_load_share(axes, curves):
+def draw_load_share(axes: Axes, curves: xr.Dataset) -> None:
     """Fraction of the load on suspicious cells against the nominal pressure, by offset."""
     finest = _finest(curves)
     for i, place in enumerate(_shown(finest)):
@@ -95,12 +103,12 @@ def _shown(finest):
     return sorted({round(i) for i in np.linspace(0, count - 1, min(count, _OFFSETS))})
 
 
-def pair_entries():
+def pair_entries() -> list[Artist]:
     """Entries of the legend for the lower row."""
     return [Line2D([], [], color="0.4", ls="--", lw=0.7, label="half of the load")]
 
 
-def pair_table(specimen, curves):
+def pair_table(specimen: xr.Dataset, curves: xr.Dataset) -> list[pd.DataFrame]:
     """One row a bar of the gap's distribution, and a point of the load's fraction."""
     counts, edges = _gap_histogram(specimen)
     gaps = pd.DataFrame({"panel": "gap", "gap_mm": (edges[1:] + edges[:-1]) / 2, "cells": counts})

@@ -1,6 +1,11 @@
 """Panels of the quality sheet: mask, heights, profiles and spectra of the faces of a scan."""
 
+from collections.abc import Sequence
+
 import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -21,12 +26,14 @@ AXIS_COLOURS = {"x": COLOURS[1], "y": COLOURS[2]}
 # -- maps ------------------------------------------------------------------------------------------
 
 
-def draw_mask(axes, specimen, faces, sides):
+def draw_mask(
+    axes: Axes, specimen: xr.Dataset, faces: Sequence[str], sides: Sequence[float]
+) -> list[Artist]:
     """What of the scan is missing, filled or an outlier; the entries of a legend."""
     missing = np.isnan([specimen[face].values for face in faces]).any(axis=0)
     image = np.full((*missing.shape, 3), to_rgb(PRESENT))
     image[missing] = to_rgb(MISSING)
-    marks = [missing_patch()] if missing.any() else []
+    marks: list[Artist] = [missing_patch()] if missing.any() else []
     if "filled" in specimen and specimen["filled"].any():
         image[specimen["filled"].values] = to_rgb(FILLED)
         marks.append(Patch(facecolor=FILLED, label="filled"))
@@ -62,7 +69,7 @@ def _middle(specimen):
 # -- heights ---------------------------------------------------------------------------------------
 
 
-def draw_histogram(axes, quality, faces):
+def draw_histogram(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
     unit, size = length_unit(float(np.ptp(quality["edge"].values)))
     for face in faces:
         of_face = quality.sel(face=face)
@@ -79,14 +86,15 @@ def draw_histogram(axes, quality, faces):
     )
     axes.set(xlabel=f"height ({unit})", ylabel=f"fraction of cells (1/{unit})", ylim=(0, None))
     words = "\n".join(
-        f"{face}: rms {length_words(q['rms'])}\nskew {q['skewness']:.2f}, kurt. {q['kurtosis']:.1f}"
+        f"{face}: rms {length_words(float(q['rms']))}\n"
+        f"skew {q['skewness']:.2f}, kurt. {q['kurtosis']:.1f}"
         for face, q in ((face, quality.sel(face=face)) for face in faces)
     )
     axes.text(0.02, 0.97, words, transform=axes.transAxes, va="top", fontsize=6)
     axes.set_ylim(top=(1.2 + 0.3 * len(faces)) * axes.get_ylim()[1])  # room for the words
 
 
-def profile(specimen, face, axis):
+def profile(specimen: xr.Dataset, face: str, axis: str) -> tuple[np.ndarray, np.ndarray]:
     """Place (mm) and height (mm) along one axis, through the middle of the window."""
     row, column = _middle(specimen)
     z = specimen[face].values
@@ -94,7 +102,7 @@ def profile(specimen, face, axis):
     return (np.arange(z.size) + 0.5) * specimen.attrs[f"spacing_{axis}"], z
 
 
-def draw_profile(axes, specimen, faces, axis):
+def draw_profile(axes: Axes, specimen: xr.Dataset, faces: Sequence[str], axis: str) -> None:
     place_unit, place = length_unit(max(scan_extent(specimen)))
     profiles = {face: profile(specimen, face, axis) for face in faces}
     heights = np.concatenate([z for _, z in profiles.values()])
@@ -112,7 +120,7 @@ def draw_profile(axes, specimen, faces, axis):
 # -- spectra ---------------------------------------------------------------------------------------
 
 
-def draw_spectrum(axes, quality, face):
+def draw_spectrum(axes: Axes, quality: xr.Dataset, face: str) -> None:
     """Spectra of profiles of one face with their models, floor and end; resolutions on top."""
     found = quality.sel(face=face)
     for axis in AXES:
@@ -163,7 +171,7 @@ def _mark_range(axes, quality):
         )
 
 
-def draw_radial(axes, quality, faces):
+def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
     """Radially averaged spectra, with the floor that the profiles have."""
     for face in faces:
         found = quality.sel(face=face)
@@ -182,7 +190,7 @@ def draw_radial(axes, quality, faces):
     label_short_span(axes.xaxis)
 
 
-def spectrum_entries(quality, faces):
+def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Line2D]:
     """Entries of the legend for what stands in the lower panels."""
     entries = [
         Line2D([], [], color=FACE_COLOURS[face], lw=1, label=f"{face} face") for face in faces
