@@ -1,4 +1,4 @@
-"""How far the numbers of a real joint depend on how its scans are treated, and whether that is said.
+"""How far the numbers of a real joint depend on how its scans are treated, and if that is said.
 
     python benchmarks/pair_variants.py config/paper.yaml granite
     python benchmarks/pair_variants.py my_study.yaml slab --offset 0.6
@@ -190,7 +190,7 @@ def flat(row: Mapping) -> dict:
 
 
 def verdicts(rows: list[dict]) -> Iterator[tuple[str, str, bool]]:
-    """Of each quantity: its spread over the variants that determine it, and whether it is stated."""
+    """Of each quantity: its spread over the variants that determine it, and if it is stated."""
     for name in QUANTITIES:
         kept = [row for row in rows if not row["undetermined"][name]]
         if len(kept) < 2:
