@@ -8,9 +8,10 @@ registration, gridded twice as coarsely, in a smaller window, in another one, wi
 with suspicious cells filled. For each: k_ni of the hyperbola through states of ten nodes and more;
 tangent stiffness, closure from first contact, separation of the mean planes and contact area under
 the map load; the fraction of that load on suspicious cells. Errors are half-widths of 95 %:
-registration, counting of the nodes, and the change from twice the spacing. A number is undetermined
-where suspicious cells carry more than half of the load it follows from. The spread over the
-determined variants is set against the mean of their errors.
+registration, counting of the nodes, scatter of the highest node (closure and k_ni, which begin
+there), and the change from twice the spacing. A number is undetermined where suspicious cells carry
+more than half of the load it follows from, or its error is as large as itself. Variants of one
+window must agree within their errors; another window is another piece of rock.
 """
 
 import argparse
@@ -18,11 +19,13 @@ import csv
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.mechanics.closure import closure_curves, fit_hyperbola
+from fractalcontact.mechanics.first_contact import highest_node_scatter
 from fractalcontact.mechanics.joint import describe_joint, prefractal
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.overlap import DECISIVE, fits_undetermined
@@ -104,32 +107,43 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
     heights = loading.composite(int(cells))
     spans = {k: np.max(h) - np.mean(h) for k, h in ((1, heights), (2, prefractal(heights, 2)))}
     fine = curves.sel(resolution=1)
-    fitted = fine["nodes"].values >= FEWEST_NODES
-    pressure = fine["normal_force"].values / loading.area
-    hyperbola = fit_hyperbola(pressure[fitted], fine["interface_closure"].values[fitted])
+    hyperbolas = {k: fitted_hyperbola(curves.sel(resolution=k), loading.area) for k in (1, 2)}
     values = {
-        "k_ni": hyperbola.k_ni,
+        "k_ni": hyperbolas[1].k_ni,
         "stiffness": float(at["interface_stiffness"]),
         "closure": float(at["interface_closure"]),
         "separation": spans[1] - float(at["closure"]),
         "area_corrected": float(at["area_corrected"]),
     }
-    resolution = {
-        "stiffness": float(coarse["interface_stiffness"]) - values["stiffness"],
-        "closure": float(coarse["interface_closure"]) - values["closure"],
-        "separation": spans[2] - float(coarse["closure"]) - values["separation"],
-        "area_corrected": float(coarse["area_corrected"]) - values["area_corrected"],
+    coarser = {
+        "k_ni": hyperbolas[2].k_ni,
+        "stiffness": float(coarse["interface_stiffness"]),
+        "closure": float(coarse["interface_closure"]),
+        "separation": spans[2] - float(coarse["closure"]),
+        "area_corrected": float(coarse["area_corrected"]),
     }
     counting = 1.96 / np.sqrt(max(float(at["nodes"]), 1.0))
+    highest = highest_node_scatter(heights)
+    own = {
+        "stiffness": counting * values["stiffness"],
+        "area_corrected": counting * values["area_corrected"],
+        "closure": highest,
+        "k_ni": np.hypot(
+            (hyperbolas[1].k_ni_high - hyperbolas[1].k_ni_low) / 2,
+            values["k_ni"] * highest / hyperbolas[1].lowest,
+        ),
+    }
     of_motion = registration_spread(loading, [settings["map_load"]]) or {}
-    errors = {"k_ni": (hyperbola.k_ni_high - hyperbola.k_ni_low) / 2}
-    for name, change in resolution.items():
-        counted = counting * values[name] if name in ("stiffness", "area_corrected") else 0.0
+    errors = {}
+    for name, value in values.items():
         moved = float(of_motion.get(name, [0.0])[0])
-        errors[name] = float(np.sqrt(np.nansum(np.square([change, counted, moved]))))
+        parts = [coarser[name] - value, own.get(name, 0.0), moved]
+        errors[name] = float(np.sqrt(np.nansum(np.square(parts))))
     share = float(at["suspect_load_share"])
-    undetermined = dict.fromkeys(QUANTITIES, share > DECISIVE)
-    undetermined["k_ni"] = bool(fits_undetermined(fine)) or not np.isfinite(values["k_ni"])
+    undetermined = {
+        name: share > DECISIVE or not errors[name] < abs(value) for name, value in values.items()
+    }
+    undetermined["k_ni"] |= bool(fits_undetermined(fine))
     return {
         "values": values,
         "errors": errors,
@@ -138,6 +152,24 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
         "nodes": int(at["nodes"]),
         "offset": float(loading.offsets[0]),
     }
+
+
+class Fit(NamedTuple):
+    """k_ni with its interval, and the closure at the lightest load fitted."""
+
+    k_ni: float
+    k_ni_low: float
+    k_ni_high: float
+    lowest: float
+
+
+def fitted_hyperbola(curve, area: float) -> Fit:
+    """The hyperbola through states of enough nodes."""
+    fitted = curve["nodes"].values >= FEWEST_NODES
+    closures = curve["interface_closure"].values[fitted]
+    pressure = curve["normal_force"].values[fitted] / area
+    found = fit_hyperbola(pressure, closures)
+    return Fit(found.k_ni, found.k_ni_low, found.k_ni_high, closures.min(initial=np.inf))
 
 
 def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dict]:
@@ -152,8 +184,11 @@ def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dic
     read: dict[str, tuple] = {}  # once in each way: that takes longer than the rest
 
     def prepared(of_scan: Mapping, of_study: Mapping):
-        stated = own | of_study | {"resolutions": [1, 2]}
-        settings = resolve_settings(study, name, stated, source)
+        settings = resolve_settings(study, name, own | of_study, source)
+        settings |= {"resolutions": [1, 2]}
+        if settings["opposite"] != "flat":  # this offset, and in the first direction alone
+            first = settings["contact_directions"][:1]
+            settings |= {"offsets": [offset], "directions": first, "contact_directions": first}
         key = str(sorted(of_scan.items()))
         if key not in read:
             faces = read_faces(scan.lower, scan.upper, options | of_scan)
@@ -164,6 +199,8 @@ def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dic
         return specimen.assign(motions), settings
 
     whole, _ = prepared({}, {})
+    # A whole number of cells of the coarse grid, too.
+    offset = 2 * cell_side(whole) * round(offset / (2 * cell_side(whole)))
     points = "points" in whole.attrs["lower_scan"]
     for words, of_scan, of_study in variants(whole, int(whole.attrs["faces"]), points):
         try:
@@ -190,24 +227,21 @@ def flat(row: Mapping) -> dict:
 
 
 def verdicts(rows: list[dict]) -> Iterator[tuple[str, str, bool]]:
-    """Of each quantity: its spread over the variants that determine it, and if it is stated."""
+    """Of each quantity: whether the variants of the one window that determine it agree."""
+    rows = [row for row in rows if "window" not in row["variant"]]
     for name in QUANTITIES:
         kept = [row for row in rows if not row["undetermined"][name]]
+        words = f"determined in {len(kept)} of {len(rows)} variants"
         if len(kept) < 2:
-            yield name, f"undetermined in {len(rows) - len(kept)} of {len(rows)} variants", True
+            yield name, words, True
             continue
         values = np.array([row["values"][name] for row in kept])
         errors = np.array([row["errors"][name] for row in kept])
-        # Each pair of variants may differ by both their errors.
+        # Each of two variants may be off by its own error.
         apart = np.abs(values[:, None] - values) / np.hypot(errors[:, None], errors)
-        outside = int((apart[np.triu_indices(len(values), 1)] > 1).sum())
-        pairs = len(values) * (len(values) - 1) // 2
-        yield (
-            name,
-            f"{len(kept)} of {len(rows)} variants determine it: {values.min():.3g} to "
-            f"{values.max():.3g}; {outside} of {pairs} pairs differ by more than their errors",
-            outside == 0,
-        )
+        largest = float(apart.max())
+        words += f", {values.min():.3g} to {values.max():.3g}, up to {largest:.2g} errors apart"
+        yield name, words, largest <= 1
 
 
 def main() -> int:
@@ -232,8 +266,8 @@ def main() -> int:
         writer.writerows(map(flat, rows))
     for row in rows:
         sys.stdout.write(f"{' | '.join(flat(row).values())}\n")
-    for name, words, _ in verdicts(rows):
-        sys.stdout.write(f"{name}: {words}\n")
+    for name, words, agree in verdicts(rows):
+        sys.stdout.write(f"{name}: {words}{'' if agree else ': NOT WITHIN THEIR ERRORS'}\n")
     return 0
 
 
