@@ -139,6 +139,8 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
         moved = float(of_motion.get(name, [0.0])[0])
         parts = [coarser[name] - value, own.get(name, 0.0), moved]
         errors[name] = float(np.sqrt(np.nansum(np.square(parts))))
+    if not np.isfinite(coarser["k_ni"]):  # nothing is known of how it converges
+        errors["k_ni"] = np.nan
     share = float(at["suspect_load_share"])
     undetermined = {
         name: share > DECISIVE or not errors[name] < abs(value) for name, value in values.items()
