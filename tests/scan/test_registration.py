@@ -432,8 +432,12 @@ def test_the_specimen_keeps_what_was_done():
 @needs_scans
 @pytest.mark.full
 def test_granite_pair_fits_better_after_a_shift_in_x():
-    """A shift of 0.45 mm in x, in steps of half a cell, is where the spread is 4 % lower."""
-    for mode, gain in (("rigid", 0.047), ("translation", 0.038)):
+    """Least squares went 0.32 mm West and turned it by 0.39 degrees, led by where rock is lost.
+
+    What speaks for the biweight is the correlation without long waves, which neither minimises:
+    0.835 by least squares, 0.840 now.
+    """
+    for mode, gain in (("rigid", 0.068), ("translation", 0.051)):
         z_l, z_u = read_faces(*GRANITE, {"unit": "mm", "registration": mode})
         record = record_of(z_u)
         assert record["applied"] is True
@@ -442,9 +446,11 @@ def test_granite_pair_fits_better_after_a_shift_in_x():
         assert record["gap_mean_after_mm"] == pytest.approx(record["gap_mean_before_mm"], abs=1e-9)
         assert record["correlation_before"] == pytest.approx(0.972, abs=0.001)
         assert record["correlation_after"] > record["correlation_before"]
-        lowered = 1 - record["gap_sd_after_mm"] / record["gap_sd_before_mm"]
+        assert record["gap_sd_after_mm"] < 0.97 * record["gap_sd_before_mm"]
+        lowered = 1 - record["gap_spread_after_mm"] / record["gap_spread_before_mm"]
         assert lowered == pytest.approx(gain, abs=0.003)
-        assert -0.46 < record["shift_x_mm"] < -0.3  # the upper face moves West
+        assert record["match"] > 0.838
+        assert record["shift_x_mm"] == pytest.approx(-0.25, abs=0.03)  # the upper face moves West
         assert float((z_u - z_l).std()) == pytest.approx(record["gap_sd_after_mm"], rel=1e-6)
 
 
