@@ -44,6 +44,26 @@ def test_a_good_scan_is_ok(folder, check):
     assert "1 ok, 0 with warnings, 0 refused" in out
 
 
+def test_faces_that_overlap_are_warned_of(folder, check):
+    lower, spiked = surface(), surface()
+    spiked[32, 32] += 1.0
+    for name, face in (("sound", lower), ("spiked", spiked)):
+        options = {"registration": "none"}
+        write_scan(folder / f"{name}.lower.npy", face, 0.2, sidecar={})
+        write_scan(folder / f"{name}.upper.npy", lower + 0.4, 0.2, sidecar={})
+        for side in ("lower", "upper"):
+            (folder / f"{name}.{side}.yaml").unlink()
+        text = "".join(f"{key}: {value}\n" for key, value in options.items())
+        (folder / f"{name}.yaml").write_text(f"unit: mm\nspacing: 0.2\n{text}")
+    code, out = check()
+    out = " ".join(out.split())
+    assert code == 0
+    assert "1 ok, 1 with warnings" in out
+    assert "the faces overlap in no cell of the window (0 in the whole scan)" in out
+    assert "WARNING: the faces overlap as scanned in 1 cell of the window" in out
+    assert "suspicious: 1 lone spikes" in out
+
+
 def test_one_bad_file_keeps_no_other_from_being_read(folder, check):
     for name in ("a", "z"):
         write_scan(folder / f"{name}.npy", surface(), 0.2, sidecar={})

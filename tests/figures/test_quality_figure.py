@@ -15,6 +15,7 @@ from fractalcontact.core.labels import printable
 from fractalcontact.figures.draw import draw_figures
 from fractalcontact.figures.joint.quality import draw
 from fractalcontact.figures.kit.drawing import print_style, save
+from fractalcontact.roughness.quality import scan_quality
 
 SPECIMENS = ("sliding", "flat", "pair")
 STRANGE_NAMES = (f"two\nlines\x1b[31m{180 * 'x'}$b$^_{{\\.csv", f"{200 * 'x'}.csv", "a$b$^_{\\.npy")
@@ -77,7 +78,7 @@ def test_it_is_written_with_units_on_every_axis(atlas, name, tmp_path):
         save(drawing, tmp_path, "quality")
     assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".svg", ".csv", ".txt"}
     panels = [axes for axes in drawing.figure.axes if axes.get_title(loc="left")]
-    assert len(panels) == 7 + 2 * (name == "pair")
+    assert len(panels) == 7 + 5 * (name == "pair")
     for axes in panels:
         assert "(" in axes.get_xlabel()
         assert "(" in axes.get_ylabel()
@@ -99,6 +100,38 @@ def test_a_warning_stands_in_the_sheet_and_in_the_captions_of_contact(atlas_file
     assert "WARNING" in (tmp_path / "fig08_prefractals.txt").read_text()
     clean = draw_figures(atlas_file, "sliding", tmp_path, names[1:])
     assert "WARNING" not in clean["fig08_prefractals"]
+
+
+def test_overlap_and_the_load_on_it_are_drawn_and_said(atlas):
+    changed = atlas.copy(deep=True)
+    closure = changed["closure/pair"].to_dataset()
+    closure["suspect_load_share"][...] = 0.75
+    closure.attrs["warning"] = "suspicious cells of the scans carry up to 75% of the map load"
+    changed["closure/pair"] = xr.DataTree(closure)
+
+    def change(specimen):
+        deep = specimen["upper"].values.copy()
+        deep[40, 40] -= 2.0
+        specimen["upper"] = (("y", "x"), deep)
+        specimen["overlap"][40, 40] = True
+
+    changed = with_specimen(changed, "pair", change)
+    specimen = changed["specimens/pair"].to_dataset()
+    quality = scan_quality(specimen, [1])
+    changed["quality/pair"] = xr.DataTree(quality)
+    depth = float(specimen["lower"][40, 40] - specimen["upper"][40, 40])
+    assert float(quality["overlap_depth"].sel(region="window")) == pytest.approx(depth)
+    assert int(quality["overlap_cells"].sel(region="scan")) == 1
+    drawing = drawn(changed, "pair")
+    words = " ".join(words_of(drawing).split())
+    assert "WARNING: suspicious cells of the scans carry up to 75% of the map load." in words
+    assert "the faces overlap as scanned in 1 cell of the window" in words
+    assert "up to 75% of the map load" in drawing.caption
+    table = drawing.data
+    gap = (specimen["upper"] - specimen["lower"]).values
+    assert table.query("panel == 'gap'")["cells"].sum() == np.isfinite(gap).sum()
+    assert table.query("panel == 'gap' and gap_mm < 0")["cells"].sum() == 1
+    assert (table.query("panel == 'load share'")["suspect_load_share"] == 0.75).all()
 
 
 def test_statistics_without_a_common_frame_are_unknown_and_notes_are_stated(atlas):

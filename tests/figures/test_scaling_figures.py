@@ -293,7 +293,7 @@ def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
     assert re.search(verdict, draw(atlas, "fig08_prefractals", "flat").caption)
     # One resolution gives no A_r(s) to fit.
     assert np.isnan(finest(atlas, "scaling", "pair")["delta_area"]).all()
-    assert "One estimate is missing." in draw(atlas, figure, "pair").caption
+    assert "One estimate is missing." in draw(atlas, "fig08_prefractals", "pair").caption
 
 
 def test_no_fit_is_said_with_its_reason(atlas):

@@ -4,14 +4,14 @@ import json
 
 import numpy as np
 import pytest
-import xarray as xr
 from places import SCANS
+from scanned_pairs import SPACING, joint, labelled, motion
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.scan.pairs import register
 from fractalcontact.scan.read import read_faces
-from fractalcontact.scan.registration import find_motion
+from fractalcontact.scan.registration import biweight_limit, biweight_spread, find_motion
 from fractalcontact.scan.surface_motion import Motion, Surface, grid_nodes
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
@@ -20,35 +20,6 @@ GRANITE = [
     SCANS / "cnl_granite_pair" / f"Extracted_M_CNL_Side{side}.txt" for side in ("A_bottom", "B_top")
 ]
 needs_scans = pytest.mark.skipif(not SCANS.is_dir(), reason="the folder of real scans is absent")
-SPACING = 0.1
-MARGIN = 48  # cells of rock around the lower face, that the upper face may have been moved over
-
-
-def labelled(z, x0=0.0, y0=0.0, spacing=(SPACING, SPACING)):
-    """Heights (y, x) as a scan, spacing (dx, dy)."""
-    dx, dy = spacing
-    y, x = y0 + dy * np.arange(z.shape[0]), x0 + dx * np.arange(z.shape[1])
-    attrs = {"spacing_x": dx, "spacing_y": dy, "notes": ""}
-    return xr.DataArray(z, dims=("y", "x"), coords={"y": y, "x": x}, attrs=attrs)
-
-
-def motion(shift=(0.0, 0.0), degrees=0.0, slope=(0.0, 0.0), centre=(9.6, 9.6)):
-    end = (centre[0] + shift[0], centre[1] + shift[1])
-    return Motion(centre, end, np.radians(degrees), slope)
-
-
-def joint(moved: Motion, hurst=0.7, cells=96, noise=0.0, seed=1, gap=0.5, spacing=(0.1, 0.1)):
-    """A lower face, and the upper face as it lies before ``moved`` brings it to its place."""
-    dx, dy = spacing
-    whole = self_affine((cells + 2 * MARGIN,) * 2, dx, hurst, rms=1.0, seed=seed)
-    rock = Surface(labelled(whole, spacing=spacing))
-    empty = labelled(np.zeros((cells, cells)), MARGIN * dx, MARGIN * dy, spacing)
-    x, y = grid_nodes(empty)
-    rng = np.random.default_rng(seed)
-    lower = empty.copy(data=rock(x, y) + noise * rng.normal(size=x.shape))
-    x, y = moved.forth(x, y)
-    upper = rock(x, y) - moved.rise(x, y) + gap + noise * rng.normal(size=x.shape)
-    return lower, empty.copy(data=upper)
 
 
 def assert_found(found: Motion, true: Motion, cells=0.04, degrees=0.02, slope=5e-4):
@@ -141,6 +112,51 @@ def test_holes_spikes_and_a_partial_overlap_do_not_mislead():
     upper[70, 70] += 500
     lower[5, 5] -= 500
     assert_found(find_motion(lower, upper.isel(x=slice(28, None)))[0], moved, 0.03, 0.03)
+
+
+def with_spikes(face, seed, fraction=0.003, height=1.0):
+    """Cells at random off by 1 mm, of which the rule for outliers sees a part."""
+    rng = np.random.default_rng(seed)
+    spiked = rng.random(face.shape) < fraction
+    return face.copy(data=face.values + height * spiked * rng.choice([-1, 1], face.shape))
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.full)])
+def test_spikes_do_not_hold_the_faces_apart(seed):
+    true = motion((0.25, -0.17), 1.0, (0.003, -0.002))
+    lower, upper = joint(true, 0.5, noise=0.02, seed=seed)
+    plain, _ = find_motion(lower, upper)
+    spiked, found = find_motion(with_spikes(lower, seed), with_spikes(upper, seed + 100))
+    assert found["converged"]
+    # Noise alone moves what is found by some 0.003 cells; least squares were 0.01 off.
+    assert_found(spiked, plain, cells=0.003, degrees=0.003, slope=1e-4)
+    assert_found(spiked, true, cells=0.006, degrees=0.01, slope=5e-4)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_lost_rock_does_not_tilt_the_faces(sign):
+    true = motion((0.2, 0.1), 0.5, (0.002, 0.001))
+    lower, upper = joint(true, 0.7, noise=0.01)
+    y, x = np.indices(lower.shape)
+    lost = np.hypot(y - 20, x - 70) < 14  # 7 % of the face, at its rim
+    upper = upper.copy(data=upper.values + sign * 0.8 * lost)
+    found, _ = find_motion(lower, upper)
+    assert_found(found, true, cells=0.01, degrees=0.02, slope=3e-4)
+
+
+def test_the_biweight_spread_is_the_standard_deviation_but_for_spikes():
+    rng = np.random.default_rng(1)
+    gap = 5 + 0.1 * rng.normal(size=10_000)
+    limit = biweight_limit(gap)
+    assert limit == pytest.approx(4.685 * 0.1, rel=0.03)
+    assert biweight_spread(gap, limit) == pytest.approx(0.1, rel=0.08)  # less in its tails
+    assert biweight_spread(gap, 100.0) == pytest.approx(gap.std(), rel=1e-5)
+    spiked = np.where(rng.random(gap.size) < 0.003, gap + 100, gap)
+    assert biweight_spread(spiked, limit) == pytest.approx(biweight_spread(gap, limit), rel=0.05)
+    assert spiked.std() > 5
+    assert biweight_spread(3 * gap - 7, 3 * limit) == pytest.approx(3 * biweight_spread(gap, limit))
+    assert biweight_limit(np.full(20, 0.3)) == np.inf
+    assert biweight_spread(np.full(20, 0.3), np.inf) == pytest.approx(0, abs=1e-15)
 
 
 def test_rectangular_cells():
@@ -416,8 +432,12 @@ def test_the_specimen_keeps_what_was_done():
 @needs_scans
 @pytest.mark.full
 def test_granite_pair_fits_better_after_a_shift_in_x():
-    """A shift of 0.45 mm in x, in steps of half a cell, is where the spread is 4 % lower."""
-    for mode, gain in (("rigid", 0.047), ("translation", 0.038)):
+    """Least squares went 0.32 mm West and turned it by 0.39 degrees, led by where rock is lost.
+
+    What speaks for the biweight is the correlation without long waves, which neither minimises:
+    0.835 by least squares, 0.840 now.
+    """
+    for mode, gain in (("rigid", 0.068), ("translation", 0.051)):
         z_l, z_u = read_faces(*GRANITE, {"unit": "mm", "registration": mode})
         record = record_of(z_u)
         assert record["applied"] is True
@@ -426,9 +446,11 @@ def test_granite_pair_fits_better_after_a_shift_in_x():
         assert record["gap_mean_after_mm"] == pytest.approx(record["gap_mean_before_mm"], abs=1e-9)
         assert record["correlation_before"] == pytest.approx(0.972, abs=0.001)
         assert record["correlation_after"] > record["correlation_before"]
-        lowered = 1 - record["gap_sd_after_mm"] / record["gap_sd_before_mm"]
+        assert record["gap_sd_after_mm"] < 0.97 * record["gap_sd_before_mm"]
+        lowered = 1 - record["gap_spread_after_mm"] / record["gap_spread_before_mm"]
         assert lowered == pytest.approx(gain, abs=0.003)
-        assert -0.46 < record["shift_x_mm"] < -0.3  # the upper face moves West
+        assert record["match"] > 0.838
+        assert record["shift_x_mm"] == pytest.approx(-0.25, abs=0.03)  # the upper face moves West
         assert float((z_u - z_l).std()) == pytest.approx(record["gap_sd_after_mm"], rel=1e-6)
 
 

@@ -70,6 +70,7 @@ ENSEMBLES: dict[str, tuple] = {
     "spoilt scan files": (44, 300),
     "sound scan files": (("npy", "stl", "x3p", "nc"), None),
     "scattered points": (2500, 6000),
+    "registered pairs": (4, 20),
     # core
     "damages to kernels": (("cut in half", "one bit"), None),
     "processes that compile": (3, 6),

@@ -25,3 +25,5 @@ with job(snakemake) as log:
         dataset = result[stage] if isinstance(result, dict) else result
         netcdf.write(dataset, path)
         log.info("%s", dataset)
+        if dataset.attrs.get("warning"):
+            log.warning("warning: %s", dataset.attrs["warning"])

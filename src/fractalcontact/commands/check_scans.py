@@ -19,7 +19,7 @@ from ..core.labels import printable
 from ..domain.measured_map import read_contact_map
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
-from ..roughness.quality_words import length_words
+from ..roughness.quality_words import length_words, overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
 from ..study.checks import check_study, read_sidecar, with_coordinates
 from ..study.configuration import resolve_settings
@@ -168,8 +168,10 @@ def _specimen_row(scan, specimen, quality):
         if file.get("overrides"):
             lines.append(f"{face} face, the sidecar overrides: {file['overrides']}")
     if len(faces) == 2:
-        lines.append(_gap_words(specimen))
-    return Checked(scan.name, cells, lines, _warnings(attrs, quality))
+        lines.append(f"{_gap_words(specimen)}; {overlap_words(specimen, quality)}")
+    if suspicious := suspect_words(specimen):
+        lines.append(f"suspicious: {suspicious}")
+    return Checked(scan.name, cells, lines, _warnings(specimen, quality))
 
 
 def _noise(quality):
@@ -181,8 +183,9 @@ def _noise(quality):
     return f"<{length_words(limit)}" if math.isfinite(limit) else "-"
 
 
-def _warnings(attrs, quality):
+def _warnings(specimen, quality):
     """What a user should look at before a study is run."""
+    attrs = specimen.attrs
     warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
     if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
         warnings.append(
@@ -191,6 +194,13 @@ def _warnings(attrs, quality):
         )
     if attrs["tilt_degrees"] > STEEP_TILT:
         warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
+    if "overlap_cells" in quality and quality["overlap_cells"].sel(region="window"):
+        filled = attrs["outliers"] == "fill"
+        remedy = "" if filled else "; 'outliers: fill' in the sidecar fills lone and deep ones"
+        warnings.append(
+            f"{overlap_words(specimen, quality)}: contact at zero offset rests on errors of the "
+            f"scans{remedy}"
+        )
     note = json.loads(attrs.get("registration", "{}")).get("note", "")
     if "NOTE: " in note:
         warnings.append(note.partition("NOTE: ")[2])

@@ -14,8 +14,10 @@ from ..study.atlas import STAGES, read_atlas
 from ..study.figure_list import all_figures
 from .kit.drawing import Drawing, garbage_collection_paused, print_style, save
 
-#: Stages of the scan itself, not of contact at the resolutions a warning is about.
+#: Stages of the scan itself, not of contact that a warning is about.
 _OF_THE_SCAN = {"specimens", "quality", "surface_dimension"}
+#: Figures that state the warnings themselves.
+_STATING = {"quality"}
 
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
@@ -62,7 +64,8 @@ def draw_figures(
         Figure name to caption.
     """
     atlas = read_atlas(atlas_path)
-    return _draw(atlas, specimen, folder, names, atlas[f"quality/{specimen}"].attrs["warning"])
+    found = [atlas[f"{stage}/{specimen}"].attrs.get("warning") for stage in ("quality", "closure")]
+    return _draw(atlas, specimen, folder, names, "; ".join(filter(None, found)))
 
 
 def draw_study_figures(
@@ -95,7 +98,8 @@ def _draw(atlas, subject, folder, names, warning=""):
         for name in names:
             with garbage_collection_paused():
                 drawing = drawer_of(name)(atlas, subject)
-                if warning and not _OF_THE_SCAN.issuperset(all_figures()[name].needs):
+                of_scan = _OF_THE_SCAN.issuperset(all_figures()[name].needs)
+                if warning and not of_scan and name not in _STATING:
                     drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
                 save(drawing, folder, name)
             captions[name] = drawing.caption

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ..elastic.halfspace import HalfSpace
 from ..surface.specimen import nominal_area
 from .joint import composite_topography, direction_spacing, offsets_of
+from .overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of
 
 
@@ -121,6 +122,10 @@ class JointLoading:
     def composite(self, cells: int) -> np.ndarray:
         """Composite topography (ny, nx) of the window at an offset in cells, mm."""
         return composite_topography(self.specimen, self.direction, cells)
+
+    def suspect_nodes(self, cells: int) -> np.ndarray:
+        """Nodes (ny, nx) bool of that topography that suspicious cells of the scans are part of."""
+        return suspect_nodes(self.specimen, self.direction, cells)
 
     def half_space(self, shape: Iterable[int], factor: int = 1) -> HalfSpace:
         """The elastic half-space under a grid of ``factor`` times the scan's spacing."""

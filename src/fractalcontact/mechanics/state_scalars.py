@@ -6,15 +6,18 @@ import numpy as np
 
 from ..contact.state import STIFFNESS_ERROR, ContactState
 from .area import EDGE_EXCESS, contact_perimeter, corrected_area
+from .overlap import suspect_load_share
 from .states import SCALARS
 
 
-def numbers_of(state: ContactState) -> dict[str, Any]:
+def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dict[str, Any]:
     """Scalars of a contact state: what is kept of it but its fields.
 
     Parameters
     ----------
     state : ContactState
+    suspicious : (ny, nx) bool ndarray, optional
+        Nodes of suspicious cells, from :func:`mechanics.overlap.suspect_nodes`; none if left out.
 
     Returns
     -------
@@ -34,6 +37,9 @@ def numbers_of(state: ContactState) -> dict[str, Any]:
         # No less than what carries the force at the largest pressure, if there is one.
         "area_corrected": max(
             float(corrected_area(state.in_contact, spacing)), state.force / state.hardness
+        ),
+        "suspect_load_share": (
+            0.0 if suspicious is None else suspect_load_share(state.pressure, suspicious)
         ),
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}

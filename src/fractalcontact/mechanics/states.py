@@ -26,6 +26,7 @@ SCALARS = {
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
     "residual": ("1", "largest KKT residual, fraction of the closure"),
     "iterations": ("1", "applications of the elastic operator"),
+    "suspect_load_share": ("1", "fraction of the force on suspicious cells of the scans"),
 }
 
 #: Ends the long name of a bound on the error that the solver's tolerance leaves.

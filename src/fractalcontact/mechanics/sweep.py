@@ -180,12 +180,13 @@ def contact_states(
         touching = np.zeros((1, len(cells), len(forces), *grid), bool)
         for i, n in enumerate(cells):
             pressures, gaps = [], []
+            suspicious = prefractal(loading.suspect_nodes(n), factor)
             for j, state in _load_curve(loading, n, factor, space, mapped=n == mapped):
                 pressures.append(state.pressure.astype(np.float32))
                 gaps.append(state.gap.astype(np.float32))
                 solved[0, i, k, j] = True
                 touching[0, i, j] = state.in_contact
-                for name, value in numbers_of(state).items():
+                for name, value in numbers_of(state, suspicious).items():
                     scalars[name][0, i, k, j] = value
             if (
                 _in_first_direction(loading)

@@ -13,7 +13,8 @@ from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.intervals import INTERVAL
 from ..surface.grid import spacing_of
-from ..surface.specimen import cell_side
+from ..surface.specimen import cell_side, window_slices
+from ..surface.suspect import overlap_statistics
 from .fractal_range import FractalRange, find_fractal_range
 from .quality_words import AXES, interval_words
 from .spectra import STRIPS, profile_spectra, radial_spectrum
@@ -48,7 +49,8 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         averaged spectrum. On `face` and `axis`: spectra of profiles and the fractal range by
         :mod:`roughness.fractal_range`. `range_end` (mm), the shortest wavelength of the fractal
         range over all of them, with its cause as attribute ``ended_by``; `below_range` on
-        `resolution`. Attribute ``warning``: a sentence, "" if all is well.
+        `resolution`. Of two faces, on `region` ("scan", "window"): where they overlap, and their
+        gap. Attribute ``warning``: a sentence, "" if all is well.
 
     Notes
     -----
@@ -72,6 +74,8 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         },
         coords={"face": faces, "axis": list(AXES)},
     )
+    if len(faces) == 2:
+        result = result.assign(_overlap(specimen)).assign_coords(region=list(REGIONS))
     side = cell_side(specimen)
     end = _range_end(result, side)
     result = result.assign(_compared_with_range(end, np.array(resolutions), side))
@@ -79,6 +83,27 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     result.attrs["warning"] = _warning(result)
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result
+
+
+#: Parts of a scan whose overlap is stated.
+REGIONS = ("scan", "window")
+
+_OVERLAP = {
+    "overlap_cells": ("region", "1", "cells where the upper face lies below the lower one"),
+    "overlap_fraction": ("region", "1", "fraction of the cells of both faces that overlap"),
+    "overlap_depth": ("region", "mm", "deepest overlap of the faces as scanned and registered"),
+    "gap_mean": ("region", "mm", "mean gap of the faces as scanned and registered"),
+    "gap_sd": ("region", "mm", "standard deviation of that gap"),
+}
+
+
+def _overlap(specimen):
+    """Where two faces overlap as they were scanned and registered, and their gap."""
+    found = overlap_statistics(specimen, window_slices(specimen))
+    keys = ("cells", "fraction", "depth", "gap_mean", "gap_sd")
+    return labelled(
+        _OVERLAP, {name: list(found[key]) for name, key in zip(_OVERLAP, keys, strict=True)}
+    )
 
 
 _POINTS = {

@@ -1,5 +1,6 @@
 """Quality of a scan in sentences: noise floor, filter, roll-off, steps."""
 
+import json
 import math
 
 import numpy as np
@@ -103,3 +104,42 @@ def range_words(quality: xr.Dataset, face: str) -> str:
             f"{length_words(step / math.sqrt(12))} rms of noise"
         )
     return "; ".join(words)
+
+
+def suspect_words(specimen: xr.Dataset) -> str:
+    """Lone spikes and cells far from any point, counted; "" if there are none.
+
+    Parameters
+    ----------
+    specimen : Dataset
+        From `surface.specimen.make_specimen`.
+    """
+    counts = {
+        "lone spikes": int(specimen["spike"].sum()) if "spike" in specimen else 0,
+        "cells far from any point": int(specimen["sparse"].sum()) if "sparse" in specimen else 0,
+    }
+    return ", ".join(f"{count} {what}" for what, count in counts.items() if count)
+
+
+def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
+    """Where two faces overlap as scanned, in a clause; "" of one face.
+
+    Parameters
+    ----------
+    specimen, quality : Dataset
+    """
+    if "overlap_cells" not in quality:
+        return ""
+    record = json.loads(specimen.attrs.get("registration", "{}"))
+    if record.get("gap_mean_before_mm", 0.0) is None:
+        return "overlap not judged, as the height of the upper face was not measured"
+    window, scan = (quality.sel(region=region) for region in ("window", "scan"))
+    elsewhere = f"{int(scan['overlap_cells'])} in the whole scan"
+    if not window["overlap_cells"]:
+        return f"the faces overlap in no cell of the window ({elsewhere})"
+    count = int(window["overlap_cells"])
+    return (
+        f"the faces overlap as scanned in {count} cell{'s' * (count > 1)} of the window "
+        f"({100 * float(window['overlap_fraction']):.2g} %, up to "
+        f"{length_words(float(window['overlap_depth']))} deep; {elsewhere})"
+    )

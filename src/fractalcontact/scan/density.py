@@ -23,6 +23,9 @@ HOLE_FACTOR = 3.0
 #: cloud. Above this the points lie along lines or in clumps, and the nearest distance says nothing
 #: about the distance across.
 UNEVEN = 3.0
+#: A cell lies far from all points at this many times the side of the square that a point, or the
+#: cell, has to itself: on a regular lattice none is farther than 0.71 of it.
+FAR = 1.5
 
 
 @dataclass(frozen=True)
@@ -142,3 +145,26 @@ def points_per_cell(points: np.ndarray, heights: np.ndarray, lattice: Lattice) -
     empty = n_measured - len(counts)  # most cells may be, so that they are not listed
     middle = [(n_measured - 1) // 2 - empty, n_measured // 2 - empty]
     return float(np.mean([counts[i] if i >= 0 else 0 for i in middle]))
+
+
+def far_from_points(points: np.ndarray, lattice: Lattice, area: float) -> np.ndarray:
+    """Cells of a grid that lie far from every point of a cloud: their heights are interpolated.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+    lattice : Lattice
+    area : float
+        Area per point where points are, mm2.
+
+    Returns
+    -------
+    ndarray of bool, shape (ny, nx)
+    """
+    x = lattice.x0 + lattice.dx * np.arange(lattice.nx)
+    y = lattice.y0 + lattice.dy * np.arange(lattice.ny)
+    cells = np.stack(np.meshgrid(x, y), axis=-1)
+    reach = FAR * np.sqrt(max(area, lattice.dx * lattice.dy))
+    known = points[np.isfinite(points[:, 2])]
+    distance, _ = plane_tree(known).query(cells, distance_upper_bound=reach)
+    return ~np.isfinite(distance)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..core.errors import InputError
 from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
-from .density import points_per_cell
+from .density import far_from_points, points_per_cell
 from .measured import Measured
 from .pairs import MIRRORS, register
 from .plausible import check_relief, check_spacing
@@ -127,7 +127,9 @@ def _placed_heights(scan: Measured, cloud: Cloud) -> xr.DataArray:
 
 def _interpolated_heights(scan: Measured, cloud: Cloud, lattice: Lattice) -> xr.DataArray:
     heights, gridding = grid_cloud(cloud, lattice)
-    return _label(heights, lattice, scan, gridding, cloud)
+    sparse = far_from_points(cloud.points, lattice, cloud.area_per_point)
+    labelled = _label(heights, lattice, scan, gridding, cloud)
+    return labelled.assign_coords(sparse=(("y", "x"), sparse & np.isfinite(heights)))
 
 
 def _label(heights, lattice, scan: Measured, gridding: str, cloud=None) -> xr.DataArray:

@@ -12,11 +12,11 @@ from ..core.errors import InputError
 from ..core.mean_plane import without_mean_plane
 from .face_match import LARGEST_ROTATION, for_comparison, mirror_images
 from .raw import SMALLEST_SIDE
-from .registration import find_motion
+from .registration import biweight_limit, biweight_spread, find_motion
 from .surface_motion import Motion, Surface, correlation, grid_nodes
 
-#: A motion that lowers the gap's spread by less than this fraction is not made: interpolating
-#: between cells costs roughness, and the spread is not known better.
+#: A motion that lowers the gap's biweight spread by less than this fraction is not made:
+#: interpolating between cells costs roughness, and the spread is not known better.
 SMALLEST_GAIN = 0.01
 #: Faces whose match, the correlation without their longest waves, is below the first do not belong
 #: together: faces that have nothing to do with each other reach 0.5. The granite pair, a joint
@@ -53,10 +53,11 @@ def register(
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Move the upper face to where the spread of the gap is least; crop both to what they share.
 
-    Nothing is moved if the spread would fall by less than 1 %, or if the faces do not match. The
-    mean gap is a measurement and stays, so the upper face slides along its mean plane. Where the
-    mean gap is not known, because the face was turned over or shares no area with the lower one as
-    given, the upper face is set down until 1 % of the cells touch.
+    The spread is the biweight one of :mod:`scan.registration`, to which spikes and places where
+    rock is lost do not count. Nothing is moved if it would fall by less than 1 %, or if the faces
+    do not match. The mean gap is a measurement and stays, so the upper face slides along its mean
+    plane. Where the mean gap is not known, because the face was turned over or shares no area with
+    the lower one as given, the upper face is set down until 1 % of the cells touch.
 
     Parameters
     ----------
@@ -78,8 +79,9 @@ def register(
         ``shift_x_mm``, ``shift_y_mm``, ``rotation_degrees`` (from East to North),
         ``tilt_x_degrees``, ``tilt_y_degrees`` (positive where the face rises towards larger x or
         y) of the motion of the upper face, 0 if it was not moved; ``gap_mean_before_mm``,
-        ``gap_sd_before_mm``, ``correlation_before`` (of the levelled faces) and the same
-        ``_after``, null where they share no area; ``match``; and in words ``note``.
+        ``gap_sd_before_mm``, ``gap_spread_before_mm`` (biweight), ``correlation_before`` (of the
+        levelled faces) and the same ``_after``, null where they share no area; ``match``; and in
+        words ``note``.
 
     Raises
     ------
@@ -109,8 +111,9 @@ def register(
     moved, motion, how = _moved(lower, upper, motion, mode, regrid)
     moved = moved + _lift(lower, moved, before["gap_mean"])
     after = gap_statistics(lower, moved)
-    gain = 1 - after["gap_sd"] / before["gap_sd"] if before["gap_sd"] else 0.0
-    if before["gap_sd"] is not None and gain < SMALLEST_GAIN:
+    earlier, later = _spreads(lower, upper, moved)
+    gain = 1 - later / earlier if earlier and later is not None else 0.0
+    if earlier is not None and gain < SMALLEST_GAIN:
         return as_given(
             f"not moved: the best motion lowers the spread of the gap by {100 * max(gain, 0):.2g} "
             f"%, less than {100 * SMALLEST_GAIN:g} %",
@@ -130,17 +133,31 @@ def gap_statistics(lower: xr.DataArray, upper: xr.DataArray) -> dict:
 
     All are None where the faces share less than 8 x 8 cells: there is no gap to speak of.
     """
-    pair = _common_rectangle(lower, upper)
-    gap = None if pair is None else pair[1].values - pair[0].values
-    if gap is None or np.isfinite(gap).sum() < SMALLEST_SIDE**2:
-        return dict.fromkeys(("gap_mean", "gap_sd", "correlation"))
+    pair, gap = _common_rectangle(lower, upper), _common_gap(lower, upper)
+    if pair is None or gap is None:
+        return dict.fromkeys(("gap_mean", "gap_sd", "gap_spread", "correlation"))
     both = np.isfinite(gap)
     levelled = [without_mean_plane(np.where(both, face.values, np.nan)) for face in pair]
     return {
         "gap_mean": float(gap[both].mean()),
         "gap_sd": float(gap[both].std()),
+        "gap_spread": biweight_spread(gap, biweight_limit(gap)),
         "correlation": correlation(*levelled),
     }
+
+
+def _common_gap(lower, upper) -> np.ndarray | None:
+    """Gap over the rectangle that both faces cover; None where too few cells have one."""
+    pair = _common_rectangle(lower, upper)
+    gap = None if pair is None else pair[1].values - pair[0].values
+    return None if gap is None or np.isfinite(gap).sum() < SMALLEST_SIDE**2 else gap
+
+
+def _spreads(lower, first, second) -> list[float | None]:
+    """Biweight spreads of two gaps by one limit, mm; None where there is no gap to speak of."""
+    gaps = [_common_gap(lower, face) for face in (first, second)]
+    limit = max((biweight_limit(gap) for gap in gaps if gap is not None), default=np.inf)
+    return [None if gap is None else biweight_spread(gap, limit) for gap in gaps]
 
 
 def crop_to_common(
@@ -182,8 +199,8 @@ def _moved(lower, upper, motion, mode, regrid):
     moved = lower.copy(data=Surface(upper)(*motion.back(*grid_nodes(lower))))
     moved = _tilted(moved, motion)
     by_cells, cell_motion = _move_by_cells(upper, motion)
-    spread, spread_by_cells = (gap_statistics(lower, face)["gap_sd"] for face in (moved, by_cells))
-    if spread_by_cells is not None and spread_by_cells * (1 - SMALLEST_GAIN) <= spread:
+    spread, spread_by_cells = _spreads(lower, moved, by_cells)
+    if None not in (spread, spread_by_cells) and spread_by_cells * (1 - SMALLEST_GAIN) <= spread:
         return by_cells, cell_motion, "by whole cells"
     return moved, motion, "and interpolated between its cells by a cubic spline"
 
@@ -265,6 +282,8 @@ def _record(mode, motion, match, before, after, note) -> dict:
         "gap_mean_after_mm": after["gap_mean"],
         "gap_sd_before_mm": before["gap_sd"],
         "gap_sd_after_mm": after["gap_sd"],
+        "gap_spread_before_mm": before["gap_spread"],
+        "gap_spread_after_mm": after["gap_spread"],
         "correlation_before": before["correlation"],
         "correlation_after": after["correlation"],
         "match": match,

@@ -10,6 +10,7 @@ from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
 from ..mechanics.contact_fields import contact_fields
+from ..mechanics.overlap import load_warning
 from ..mechanics.plan import solve_plan
 from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
@@ -68,6 +69,7 @@ def state_stages(
         ),
         seating_force=_seating_force(settings, specimens),
     )
+    curves.attrs["warning"] = load_warning(curves, specimens, settings)
     dilatancy = elastic_dilatancy(curves, joints)
     laws = area_laws(
         curves,

@@ -6,6 +6,7 @@ from pathlib import Path
 import xarray as xr
 
 from ..scan.read import read_faces
+from ..scan.registration_scatter import motion_variables, scattered_motions
 from ..surface.specimen import make_specimen
 from .configuration import window_arguments
 
@@ -14,6 +15,8 @@ def prepare_specimen(
     lower: Path | str, upper: Path | str | None, options: Mapping, settings: Mapping, name: str
 ) -> xr.Dataset:
     """Read the faces of a specimen, level them and place the window.
+
+    Of two registered faces it also holds further motions that are statistically as good.
 
     Parameters
     ----------
@@ -36,4 +39,7 @@ def prepare_specimen(
         If a file cannot be read, or the window finds no place.
     """
     faces = read_faces(lower, upper, options)
-    return make_specimen(*faces, name=name, **window_arguments(settings))
+    specimen = make_specimen(*faces, name=name, **window_arguments(settings))
+    z_l, z_u = faces
+    motions = [] if z_u is None else scattered_motions(z_l, z_u)
+    return specimen.assign(motion_variables(motions)) if motions else specimen

@@ -240,6 +240,7 @@ SETTINGS_READ = {
         "contact_directions",
         "dilatancy_loads",
         "map_load",
+        "map_offset",
         "seating_load",
         "surface_range",
         "hyperbola_range",

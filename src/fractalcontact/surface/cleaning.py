@@ -7,8 +7,9 @@ from scipy import ndimage
 from ..core.errors import InputError
 from ..core.mean_plane import without_mean_plane
 from .grid import spacing_of
+from .suspect import Suspects, find_suspects
 
-OUTLIERS = ("keep", "mask")
+OUTLIERS = ("keep", "mask", "fill")
 #: A cell is compared with the 7 x 7 cells around it, of which a cluster of 3 x 3 spikes is a
 #: minority that can be set aside; so many must be present that some remain.
 _SIDE = 7
@@ -32,14 +33,16 @@ def clean_faces(
     largest_hole: int = 0,
     name: str = "specimen",
 ) -> tuple[list[xr.DataArray], dict[str, np.ndarray], dict]:
-    """Outliers of the scanned faces counted or masked, and their small holes filled.
+    """Suspicious cells of the scanned faces counted, masked or filled, and small holes filled.
 
     Parameters
     ----------
     scans : list of DataArray (y, x)
-        Heights in mm on one grid, as `scan.read_faces` gives them.
-    outliers : {"keep", "mask"}
-        "keep" leaves outliers as they are, "mask" makes them missing.
+        Heights in mm on one grid, as `scan.read_faces` gives them, the lower face first.
+    outliers : {"keep", "mask", "fill"}
+        "keep" leaves outliers as they are, "mask" makes them missing. "fill" puts the harmonic
+        surface in place of outliers, lone spikes and deep overlaps (of the face that stands off
+        more), see `surface.suspect`.
     largest_hole : int
         Rows and columns of the largest hole that is filled; 0 fills none.
     name : str
@@ -49,9 +52,12 @@ def clean_faces(
     -------
     faces : list of DataArray
     cells : dict
-        ``outlier`` and ``filled``, (y, x) bool ndarrays: in any of the faces.
+        ``outlier``, ``spike`` and ``filled``, in any of the faces; ``overlap`` of the faces as they
+        are now; ``sparse``, far from any point measured, of any face; ``suspect_lower`` and, of two
+        faces, ``suspect_upper``: all of these, of an overlap the deep ones. (y, x) bool ndarrays.
     attrs : dict
-        ``outliers``, ``outlier_count``, ``filled_count`` and, in words, ``cleaning``.
+        ``outliers``, ``outlier_count``, ``spike_count``, ``filled_count`` and, in words,
+        ``cleaning``.
 
     Raises
     ------
@@ -59,39 +65,96 @@ def clean_faces(
         If a setting is none of those allowed, or every cell would be masked.
     """
     if outliers not in OUTLIERS:
-        raise InputError(f"{name}: key 'outliers' is {outliers!r}; expected 'keep' or 'mask'")
+        allowed = ", ".join(repr(value) for value in OUTLIERS)
+        raise InputError(f"{name}: key 'outliers' is {outliers!r}; expected one of {allowed}")
     if isinstance(largest_hole, bool) or not isinstance(largest_hole, int) or largest_hole < 0:
         raise InputError(
             f"{name}: key 'fill_holes' is {largest_hole!r}; expected a number of cells, or 0"
         )
-    cells = {key: np.zeros(scans[0].shape, dtype=bool) for key in ("outlier", "filled")}
-    faces = []
-    for scan in scans:
-        outlying = find_outliers(scan.values)
-        heights = np.where(outlying, np.nan, scan.values) if outliers == "mask" else scan.values
-        heights, filled = fill_holes(heights, spacing_of(scan), largest_hole)
-        cells["outlier"] |= outlying
-        cells["filled"] |= filled
-        faces.append(scan.copy(data=heights))
-    attrs = {
-        "outliers": outliers,
-        "outlier_count": int(cells["outlier"].sum()),
-        "filled_count": int(cells["filled"].sum()),
+    outlying = [find_outliers(scan.values) for scan in scans]
+    suspects = find_suspects(scans)
+    removed = _removed(outlying, suspects, outliers)
+    faces, filled = _refilled(scans, removed, outliers, largest_hole)
+    overlap, deep = suspects.overlap, suspects.deep
+    if outliers == "fill":
+        left = find_suspects(faces)
+        if left.deep.any():  # both faces stand off there
+            removed = [cells | left.deep for cells in removed]
+            faces, filled = _refilled(scans, removed, outliers, largest_hole)
+            left = find_suspects(faces)
+        overlap, deep = left.overlap, left.deep
+    overlap, deep = (
+        cells & np.logical_and.reduce([np.isfinite(face.values) for face in faces])
+        for cells in (overlap, deep)
+    )
+    sparse = [_sparse(scan) for scan in scans]
+    each = zip(outlying, suspects.spikes, filled, sparse, strict=True)
+    suspicious = [np.logical_or.reduce([*cells, deep]) for cells in each]
+    cells = {
+        "outlier": np.logical_or.reduce(outlying),
+        "spike": np.logical_or.reduce(suspects.spikes),
+        "filled": np.logical_or.reduce(filled),
+        "sparse": np.logical_or.reduce(sparse),
+        "overlap": overlap,
     }
+    cells |= dict(zip(("suspect_lower", "suspect_upper"), suspicious, strict=False))
+    attrs: dict[str, str | int] = {"outliers": outliers}
+    attrs |= {f"{key}_count": int(cells[key].sum()) for key in ("outlier", "spike", "filled")}
     missing = int(np.logical_or.reduce([np.isnan(face.values) for face in faces]).sum())
     return faces, cells, attrs | {"cleaning": _in_words(attrs, largest_hole, missing)}
 
 
+def _removed(outlying, suspects: Suspects, outliers: str) -> list[np.ndarray]:
+    """Cells of each face that are made missing, to be filled or not."""
+    if outliers != "fill":
+        return [cells & (outliers == "mask") for cells in outlying]
+    removed = [a | b for a, b in zip(outlying, suspects.spikes, strict=True)]
+    if len(removed) == 2:
+        lower, upper = suspects.standing
+        # Where neither stands off, neither is more likely to be wrong.
+        removed[0] |= suspects.deep & (lower >= upper)
+        removed[1] |= suspects.deep & (upper >= lower)
+    return removed
+
+
+def _refilled(scans, removed, outliers, largest_hole):
+    """Faces without the cells removed, their holes filled as the study asks; what was filled."""
+    faces, filled = [], []
+    for scan, cells in zip(scans, removed, strict=True):
+        heights = np.where(cells, np.nan, scan.values)
+        again = cells if outliers == "fill" else None
+        heights, new = fill_holes(heights, spacing_of(scan), largest_hole, again)
+        faces.append(scan.copy(data=heights))
+        filled.append(new)
+    return faces, filled
+
+
+def _sparse(scan: xr.DataArray) -> np.ndarray:
+    """Cells of a gridded cloud that lie far from any point; of other scans none."""
+    if "sparse" not in scan.coords:
+        return np.zeros(scan.shape, dtype=bool)
+    return scan["sparse"].values.astype(bool) & np.isfinite(scan.values)
+
+
 def _in_words(attrs: dict, largest_hole: int, missing: int) -> str:
     """What was done to the faces, and the key that would do otherwise."""
-    count = attrs["outlier_count"]
+    count, spikes = attrs["outlier_count"], attrs["spike_count"]
     if count == 0:
         words = "no outliers"
     elif attrs["outliers"] == "mask":
         words = f"{count} outlying cells made missing"
-    else:
+    elif attrs["outliers"] == "keep":
         words = f"{count} outlying cells kept as they are ('outliers: mask' makes them missing)"
-    if largest_hole:
+    else:
+        words = f"{count} outlying cells"
+    if spikes and attrs["outliers"] == "fill":
+        words += f"; {spikes} lone spikes"
+    elif spikes:
+        words += f"; {spikes} lone spikes kept ('outliers: fill' fills them and deep overlaps)"
+    if attrs["outliers"] == "fill":
+        words += f"; {attrs['filled_count']} cells filled harmonically in place of them"
+        words += " and of deep overlaps" + (", and in small holes" if largest_hole else "")
+    elif largest_hole:
         words += f"; {attrs['filled_count']} cells filled harmonically, in holes of up to "
         words += f"{largest_hole} x {largest_hole} cells; {missing} cells stay missing"
     elif missing:
@@ -170,7 +233,10 @@ def _surroundings(z: np.ndarray, present: np.ndarray):
 
 
 def fill_holes(
-    heights: np.ndarray, spacing: tuple[float, float], largest: int
+    heights: np.ndarray,
+    spacing: tuple[float, float],
+    largest: int,
+    removed: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Fill small holes with the harmonic surface that continues their rims.
 
@@ -187,6 +253,9 @@ def fill_holes(
         (dy, dx), in one unit.
     largest : int
         0 fills nothing.
+    removed : (ny, nx) bool ndarray, optional
+        Missing cells whose holes are filled whatever their size, where they hold no other missing
+        cells and do not touch the rim.
 
     Returns
     -------
@@ -194,21 +263,25 @@ def fill_holes(
         A copy.
     filled : (ny, nx) bool ndarray
     """
-    fillable = _small_holes(~np.isfinite(heights), largest)
+    fillable = _small_holes(~np.isfinite(heights), largest, removed)
     filled = heights.copy()
     if fillable.any():
         filled[fillable] = _harmonic(heights, fillable, spacing)
     return filled, fillable
 
 
-def _small_holes(missing: np.ndarray, largest: int) -> np.ndarray:
+def _small_holes(
+    missing: np.ndarray, largest: int, removed: np.ndarray | None = None
+) -> np.ndarray:
     """Missing cells of the holes that may be filled."""
     labels, _ = ndimage.label(missing)
     fillable = np.zeros(missing.shape, dtype=bool)
     for label, box in enumerate(ndimage.find_objects(labels), 1):
+        hole = labels[box] == label
         inside = all(s.start > 0 and s.stop < n for s, n in zip(box, missing.shape, strict=True))
-        if inside and all(s.stop - s.start <= largest for s in box):
-            fillable[box] |= labels[box] == label
+        small = all(s.stop - s.start <= largest for s in box)
+        if inside and (small or (removed is not None and removed[box][hole].all())):
+            fillable[box] |= hole
     return fillable
 
 

@@ -25,7 +25,12 @@ _VARIABLES = {
     "upper": (("y", "x"), "mm", "height of the upper face, mean plane removed"),
     "valid": (("y", "x"), "1", "cell present in every scanned face"),
     "outlier": (("y", "x"), "1", "outlying cell of any scanned face"),
+    "spike": (("y", "x"), "1", "lone spike of any scanned face"),
     "filled": (("y", "x"), "1", "harmonically filled cell of any scanned face"),
+    "sparse": (("y", "x"), "1", "cell far from any point measured, of any scanned face"),
+    "overlap": (("y", "x"), "1", "upper face below the lower one as scanned and registered"),
+    "suspect_lower": (("y", "x"), "1", "suspicious cell of the lower face"),
+    "suspect_upper": (("y", "x"), "1", "suspicious cell of the upper face"),
 }
 
 
@@ -48,8 +53,9 @@ def make_specimen(
         was scanned.
     opposite : {"match", "flat"}
         What faces a single scanned face: its perfect match, or a rigid plane.
-    outliers : {"keep", "mask"}
-        Whether outlying cells stay as they are or become missing, see `cleaning.find_outliers`.
+    outliers : {"keep", "mask", "fill"}
+        Whether outlying cells stay as they are, become missing, or are filled with lone spikes and
+        deep overlaps, see `cleaning.clean_faces`.
     fill_holes : int
         Rows and columns of the largest hole that is filled, see `cleaning.fill_holes`; 0 for none.
     name : str
@@ -61,9 +67,10 @@ def make_specimen(
     Returns
     -------
     Dataset
-        ``lower``, ``upper`` (if scanned), ``valid``, ``outlier`` and ``filled`` (y, x); the window
-        in cells as the attributes ``window_y0, window_x0, window_ny, window_nx``; what was done to
-        the faces as ``cleaning``, ``levelling`` and, for two, ``registration`` (JSON).
+        ``lower``, ``upper`` (if scanned), ``valid`` and the cells that `cleaning.clean_faces`
+        names (y, x); the window in cells as the attributes ``window_y0, window_x0, window_ny,
+        window_nx``; what was done to the faces as ``cleaning``, ``levelling`` and, for two,
+        ``registration`` (JSON).
 
     Raises
     ------

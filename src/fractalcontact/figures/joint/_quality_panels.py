@@ -1,0 +1,233 @@
+"""Panels of the quality sheet: mask, heights, profiles and spectra of the faces of a scan."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...roughness.quality_words import AXES, length_words
+from ...surface.specimen import window_slices
+from ..kit.drawing import COLOURS, label_short_span
+from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
+from ..kit.words import length_unit
+
+#: Outliers up to this many are ringed, so that single cells can be seen.
+FEW_OUTLIERS = 400
+OUTLIER, FILLED, PRESENT, SPIKE = COLOURS[2], COLOURS[1], "0.96", COLOURS[0]
+FACE_COLOURS = {"lower": COLOURS[0], "upper": COLOURS[4]}
+AXIS_COLOURS = {"x": COLOURS[1], "y": COLOURS[2]}
+
+
+# -- maps ------------------------------------------------------------------------------------------
+
+
+def draw_mask(
+    axes: Axes, specimen: xr.Dataset, faces: Sequence[str], sides: Sequence[float]
+) -> list[Artist]:
+    """What of the scan is missing, filled or an outlier; the entries of a legend."""
+    missing = np.isnan([specimen[face].values for face in faces]).any(axis=0)
+    image = np.full((*missing.shape, 3), to_rgb(PRESENT))
+    image[missing] = to_rgb(MISSING)
+    marks: list[Artist] = [missing_patch()] if missing.any() else []
+    if "filled" in specimen and specimen["filled"].any():
+        image[specimen["filled"].values] = to_rgb(FILLED)
+        marks.append(Patch(facecolor=FILLED, label="filled"))
+    spikes = specimen["spike"].values if "spike" in specimen else np.zeros_like(missing)
+    if spikes.any():
+        image[spikes] = to_rgb(SPIKE)
+        marks.append(Patch(facecolor=SPIKE, label="lone spike"))
+    outliers = specimen["outlier"].values if "outlier" in specimen else np.zeros_like(missing)
+    image[outliers] = to_rgb(OUTLIER)
+    draw_map(axes, image, sides)
+    _, size = length_unit(max(sides))
+    if outliers.any():
+        marks.append(Patch(facecolor=OUTLIER, label="outlier"))
+    if 0 < outliers.sum() <= FEW_OUTLIERS:
+        y, x = np.nonzero(outliers)
+        places = [
+            (cells + 0.5) * specimen.attrs[f"spacing_{axis}"] / size
+            for cells, axis in ((x, "x"), (y, "y"))
+        ]
+        axes.plot(*places, "o", ms=4, mfc="none", mec=OUTLIER, mew=0.7)
+    axes.add_patch(window_outline(specimen, size, lw=1))
+    for axis, start in zip("yx", _middle(specimen), strict=True):
+        at = (start + 0.5) * specimen.attrs[f"spacing_{axis}"] / size
+        (axes.axhline if axis == "y" else axes.axvline)(at, color="0.4", lw=0.6, ls=":")
+    return marks
+
+
+def _middle(specimen):
+    """Row and column through the middle of the window."""
+    return tuple((cells.start + cells.stop) // 2 for cells in window_slices(specimen))
+
+
+# -- heights ---------------------------------------------------------------------------------------
+
+
+def draw_histogram(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
+    unit, size = length_unit(float(np.ptp(quality["edge"].values)))
+    for face in faces:
+        of_face = quality.sel(face=face)
+        axes.stairs(
+            of_face["density"].values * size,
+            quality["edge"].values / size,
+            color=FACE_COLOURS[face],
+            lw=1,
+        )
+    first = quality.sel(face=faces[0])
+    rms, z = first["rms"].item() / size, quality["edge"].values / size
+    axes.plot(
+        z, np.exp(-((z / rms) ** 2) / 2) / rms / np.sqrt(2 * np.pi), color="0.6", lw=0.8, ls="--"
+    )
+    axes.set(xlabel=f"height ({unit})", ylabel=f"fraction of cells (1/{unit})", ylim=(0, None))
+    words = "\n".join(
+        f"{face}: rms {length_words(float(q['rms']))}\n"
+        f"skew {q['skewness']:.2f}, kurt. {q['kurtosis']:.1f}"
+        for face, q in ((face, quality.sel(face=face)) for face in faces)
+    )
+    axes.text(0.02, 0.97, words, transform=axes.transAxes, va="top", fontsize=6)
+    axes.set_ylim(top=(1.2 + 0.3 * len(faces)) * axes.get_ylim()[1])  # room for the words
+
+
+def profile(specimen: xr.Dataset, face: str, axis: str) -> tuple[np.ndarray, np.ndarray]:
+    """Place (mm) and height (mm) along one axis, through the middle of the window."""
+    row, column = _middle(specimen)
+    z = specimen[face].values
+    z = z[row] if axis == "x" else z[:, column]
+    return (np.arange(z.size) + 0.5) * specimen.attrs[f"spacing_{axis}"], z
+
+
+def draw_profile(axes: Axes, specimen: xr.Dataset, faces: Sequence[str], axis: str) -> None:
+    place_unit, place = length_unit(max(scan_extent(specimen)))
+    profiles = {face: profile(specimen, face, axis) for face in faces}
+    heights = np.concatenate([z for _, z in profiles.values()])
+    span = np.ptp(heights[np.isfinite(heights)]) if np.isfinite(heights).any() else 1.0
+    unit, size = length_unit(span)
+    for face, (x, z) in profiles.items():
+        axes.plot(x / place, z / size, color=FACE_COLOURS[face], lw=0.7)
+    cells = dict(zip("yx", window_slices(specimen), strict=True))[axis]
+    spacing = specimen.attrs[f"spacing_{axis}"] / place
+    axes.axvspan(cells.start * spacing, cells.stop * spacing, color="0.93", zorder=0)
+    axes.set(xlabel=f"${axis}$ ({place_unit})", ylabel=f"height ({unit})")
+    axes.margins(x=0)
+
+
+# -- spectra ---------------------------------------------------------------------------------------
+
+
+def draw_spectrum(axes: Axes, quality: xr.Dataset, face: str) -> None:
+    """Spectra of profiles of one face with their models, floor and end; resolutions on top."""
+    found = quality.sel(face=face)
+    for axis in AXES:
+        of_axis, colour = found.sel(axis=axis), AXIS_COLOURS[axis]
+        waves, level = of_axis["wavelength"].values, of_axis["spectrum"].values
+        axes.loglog(waves, level, "os"[AXES.index(axis)], ms=2.5, color=colour, mfc="none", mew=0.7)
+        axes.loglog(waves, of_axis["spectrum_model"].values, color=colour, lw=0.9)
+        known = np.isfinite(waves)
+        if not known.any() or not any(of_axis["form"].values.ravel()):
+            continue
+        line = of_axis["line_level"].item() * waves ** of_axis["line_exponent"].item()
+        axes.loglog(waves, line, color=colour, lw=0.7, ls=":")
+        if np.isfinite(of_axis["noise_rms"]):
+            shortest = _spacing(quality, axis)
+            axes.axhline(of_axis["noise_rms"].item() ** 2 * shortest, color=colour, lw=0.8, ls="--")
+    _mark_range(axes, quality)
+    measured = found["spectrum"].values[found["spectrum"].values > 0]
+    if measured.size:
+        axes.set_ylim(measured.min() / 4, measured.max() * 4)
+    else:
+        axes.text(0.5, 0.5, "too small for a spectrum", ha="center", transform=axes.transAxes)
+    axes.set(xlabel="wavelength (mm)", ylabel="spectrum of profiles (mm³)")
+    label_short_span(axes.xaxis)
+
+
+def _spacing(quality, axis):
+    return quality.attrs[f"spacing_{axis}"]
+
+
+def _mark_range(axes, quality):
+    """The end of the fractal range, and 2 s of every resolution at the upper edge."""
+    end = quality["range_end"].item()
+    if np.isfinite(end):
+        axes.axvline(end, color="0.3", lw=0.8, ls="-.")
+    for side, below in zip(
+        quality["resolution"].values, quality["below_range"].values, strict=True
+    ):
+        axes.plot(
+            2 * side,
+            0.985,
+            "v",
+            ms=5,
+            transform=axes.get_xaxis_transform(),
+            clip_on=False,
+            color=OUTLIER if below else COLOURS[3],
+            mfc="none" if below else COLOURS[3],
+            zorder=5,
+        )
+
+
+def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
+    """Radially averaged spectra, with the floor that the profiles have."""
+    for face in faces:
+        found = quality.sel(face=face)
+        waves, level = found["radial_wavelength"].values, found["radial_spectrum"].values
+        axes.loglog(
+            waves, level, "o-", ms=2.5, mfc="none", mew=0.7, color=FACE_COLOURS[face], lw=0.8
+        )
+        noise = found["noise_rms"].values
+        if np.isfinite(noise).all():
+            area = _spacing(quality, "x") * _spacing(quality, "y")
+            axes.axhline(np.min(noise) ** 2 * area, color=FACE_COLOURS[face], lw=0.8, ls="--")
+    _mark_range(axes, quality)
+    if not np.isfinite(quality["radial_spectrum"]).any():
+        axes.text(0.5, 0.5, "too small for a spectrum", ha="center", transform=axes.transAxes)
+    axes.set(xlabel="wavelength (mm)", ylabel="radial spectrum (mm⁴)")
+    label_short_span(axes.xaxis)
+
+
+def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Line2D]:
+    """Entries of the legend for what stands in the lower panels."""
+    entries = [
+        Line2D([], [], color=FACE_COLOURS[face], lw=1, label=f"{face} face") for face in faces
+    ]
+    entries += [
+        Line2D(
+            [],
+            [],
+            color=AXIS_COLOURS[axis],
+            marker="os"[i],
+            ms=3,
+            mfc="none",
+            lw=0.9,
+            label=f"profiles along ${axis}$, model",
+        )
+        for i, axis in enumerate(AXES)
+    ]
+    entries.append(Line2D([], [], color="0.3", ls=":", lw=0.8, label="self-affine line"))
+    if quality["noise_rms"].notnull().any():
+        entries.append(Line2D([], [], color="0.3", ls="--", lw=0.8, label="noise floor"))
+    if quality["range_end"].notnull():
+        entries.append(
+            Line2D([], [], color="0.3", ls="-.", lw=0.8, label="end of the fractal range")
+        )
+    below = quality["below_range"].values
+    for which, label in ((False, "2 $s$ of a resolution"), (True, "2 $s$, below the range")):
+        if (below == which).any():
+            colour = OUTLIER if which else COLOURS[3]
+            entries.append(
+                Line2D(
+                    [],
+                    [],
+                    ls="none",
+                    marker="v",
+                    color=colour,
+                    label=label,
+                    mfc="none" if which else colour,
+                )
+            )
+    return entries

@@ -1,0 +1,136 @@
+"""Contact on suspicious cells of the scans: which nodes have them, and how much load they carry.
+
+What is suspicious is found in :mod:`surface.suspect` and :mod:`surface.cleaning`; a node of a
+composite topography is where either of its two cells is.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..core.directions import axis_and_sign
+from ..surface.specimen import nominal_area, window_slices
+from .area import RESOLVED_NODES
+from .states import chosen_offset, forces_of
+
+#: Above this fraction of the load on suspicious cells, errors of the scans decide a number.
+DECISIVE = 0.5
+
+
+def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
+    """Suspicious nodes of the composite topography of the window at an offset.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+        From :func:`surface.specimen.make_specimen`.
+    direction : {"E", "N", "W", "S", "none"}
+    cells : int
+        Offset in cells of the scan.
+
+    Returns
+    -------
+    (ny, nx) bool ndarray
+        Where the cell of either face is an outlier, a lone spike, filled, far from any point
+        measured, or in a deep overlap. At zero offset also where the faces overlap at all: a
+        node is there made of the two cells that were scanned at one place.
+    """
+    window = window_slices(specimen)
+    if "suspect_lower" not in specimen:
+        return np.zeros([part.stop - part.start for part in window], dtype=bool)
+    slid = list(window)
+    if direction != "none":
+        axis, sign = axis_and_sign(direction)
+        part = slid["yx".index(axis)]
+        slid["yx".index(axis)] = slice(part.start + sign * cells, part.stop + sign * cells)
+    suspicious = specimen["suspect_lower"].values[tuple(slid)].astype(bool)
+    opposite = {"match": "suspect_lower", "scanned": "suspect_upper"}
+    if specimen.attrs["opposite"] in opposite:
+        other = specimen[opposite[specimen.attrs["opposite"]]].values
+        suspicious = suspicious | other[window].astype(bool)
+    if cells == 0:
+        suspicious = suspicious | specimen["overlap"].values[window].astype(bool)
+    return suspicious
+
+
+def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:
+    """Fraction of the force that suspicious nodes carry.
+
+    Parameters
+    ----------
+    pressure : (ny, nx) ndarray
+    suspicious : (ny, nx) bool ndarray
+    """
+    if not suspicious.any():
+        return 0.0
+    total = float(pressure.sum())
+    return float(pressure[suspicious].sum()) / total if total > 0 else 0.0
+
+
+def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
+    """Curves whose fits rest on errors of the scans.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        From :func:`mechanics.closure.closure_curves`, or a part of it with all loads.
+
+    Returns
+    -------
+    xr.DataArray of bool
+        Where suspicious cells carry more than half of the load in half or more of the states that
+        have the nodes to be fitted; of all states where none has.
+    """
+    decisive = curves["suspect_load_share"] > DECISIVE
+    enough = curves["nodes"] >= RESOLVED_NODES
+    counted = enough.where(enough.any("normal_force"), curves["nodes"] > 0)
+    states = counted.sum("normal_force")
+    return (2 * (decisive & counted).sum("normal_force") >= states) & (states > 0)
+
+
+def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: Mapping[str, Any]) -> str:
+    """Warning where errors of the scans carry the load that decides a number, "" if nowhere.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        From :func:`mechanics.closure.closure_curves`.
+    specimen : xr.Dataset
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+
+    Returns
+    -------
+    str
+        On the first direction at the finest resolution: the offsets at which suspicious cells carry
+        more than half of the map load, and those at which they do so in half of the states fitted.
+    """
+    finest = curves.sel(resolution=curves["resolution"].min()).isel(direction=0)
+    (force,) = forces_of([settings["map_load"]], nominal_area(specimen))
+    mapped = finest["suspect_load_share"].sel(normal_force=force, method="nearest")
+    parts = []
+    worst = float(mapped.max())
+    if worst > DECISIVE:
+        where = _offset_words(mapped["offset"].values[mapped.values > DECISIVE])
+        at_map = chosen_offset(settings["map_offset"], finest["offset"].values)
+        share = float(mapped.sel(offset=at_map))
+        maps = ", the contact maps among them" if share > DECISIVE else ""
+        parts.append(f"up to {worst:.0%} of the map load (v = {where} mm{maps})")
+    fitted = fits_undetermined(finest)
+    if fitted.any():
+        where = _offset_words(fitted["offset"].values[fitted.values])
+        parts.append(f"most of the load in the states fitted (v = {where} mm)")
+    if not parts:
+        return ""
+    return (
+        f"suspicious cells of the scans carry {' and '.join(parts)}: "
+        "closure, stiffness and contact are undetermined there"
+    )
+
+
+def _offset_words(offsets: np.ndarray) -> str:
+    """Offsets in a list; of more than three only the ends."""
+    words = [f"{offset:.3g}" for offset in offsets]
+    return ", ".join(words) if len(words) <= 3 else f"{words[0]} ... {words[-1]}"

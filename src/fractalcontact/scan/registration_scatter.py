@@ -1,0 +1,155 @@
+"""Motions of two registered faces that are statistically as good as the one that was found.
+
+Blocks of the faces are drawn anew with replacement (bootstrap), and the fit is made again from
+them: how far it then moves is how well the faces determine their registration.
+"""
+
+import json
+
+import numpy as np
+import xarray as xr
+
+from .registration import PARAMETERS, biweight_limit, linearised
+from .surface_motion import Motion
+
+#: Draws, and blocks along the longer side: gaps farther apart than a block hardly depend on each
+#: other, and so many blocks tell a standard deviation to about a sixth.
+MOTIONS, BLOCKS = 20, 6
+#: A block with fewer of its cells present is left out.
+_FEWEST_CELLS = 16
+#: Fewest blocks of which a draw makes sense.
+_FEWEST_BLOCKS = 8
+
+
+def scattered_motions(lower: xr.DataArray, upper: xr.DataArray) -> list[Motion]:
+    """Further motions of the upper face that the faces do not tell from none.
+
+    Parameters
+    ----------
+    lower, upper : DataArray (y, x)
+        On one grid, from `scan.pairs.register`.
+
+    Returns
+    -------
+    list of Motion
+        `MOTIONS` of them, about the middle of the common area; empty where the faces do not match,
+        were given in one frame (``registration: none``), or have too few blocks.
+
+    Notes
+    -----
+    One Gauss-Newton step from the motion found, in the sums of each draw of blocks, less that in
+    the sums of all: the same draws each time (a fixed seed), so that results repeat.
+    """
+    record = json.loads(upper.attrs.get("registration", "{}"))
+    if record.get("mode", "none") == "none" or "do not match" in record["note"]:
+        return []
+    gap = upper.values - lower.values
+    rows, columns = np.nonzero(np.isfinite(gap))
+    middle = (float(lower.x.values[columns].mean()), float(lower.y.values[rows].mean()))
+    motion = Motion(middle, middle)
+    usable, terms, weights = linearised(lower, gap, motion, biweight_limit(gap), record["mode"])
+    normal, right = _block_sums(usable, terms, weights, gap[usable])
+    if len(normal) < _FEWEST_BLOCKS:
+        return []
+    whole = _step(normal.sum(axis=0), right.sum(axis=0))
+    rng = np.random.default_rng(0)
+    motions = []
+    for _ in range(MOTIONS):
+        counts = np.bincount(rng.integers(len(normal), size=len(normal)), minlength=len(normal))
+        step = _step(np.tensordot(counts, normal, 1), counts @ right) - whole
+        moved = dict(zip(PARAMETERS, np.pad(step, (0, 5 - len(step))), strict=True))
+        motions.append(
+            Motion(
+                middle,
+                (middle[0] + float(moved["end_x"]), middle[1] + float(moved["end_y"])),
+                float(moved["rotation"]),
+                (float(moved["slope_x"]), float(moved["slope_y"])),
+            )
+        )
+    return motions
+
+
+def _block_sums(usable, terms, weights, gap) -> tuple[np.ndarray, np.ndarray]:
+    """Normal matrices (block, k, k) and right-hand sides (block, k) of the blocks of cells."""
+    side = -(-max(usable.shape) // BLOCKS)
+    rows, columns = (cells // side for cells in np.nonzero(usable))
+    block = rows * BLOCKS + columns
+    normal, right = [], []
+    for label in np.unique(block):
+        cells = block == label
+        if cells.sum() < _FEWEST_CELLS:
+            continue
+        weighted = weights[cells] * terms[:, cells]
+        normal.append(np.einsum("ik,jk->ij", weighted, terms[:, cells]))
+        right.append(-np.einsum("ik,k->i", weighted, gap[cells]))
+    return np.array(normal), np.array(right)
+
+
+def _step(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solution of the normal equations, scaled; but for the height."""
+    scale = np.sqrt(np.diag(normal))
+    scale[scale == 0] = 1.0
+    scaled = normal / np.outer(scale, scale)
+    return (np.linalg.lstsq(scaled, right / scale, rcond=1e-12)[0] / scale)[:-1]
+
+
+_TABLE = {
+    "registration_shift_x": ("mm", "shift of the upper face towards East"),
+    "registration_shift_y": ("mm", "shift of the upper face towards North"),
+    "registration_rotation": ("degrees", "rotation of the upper face from East to North"),
+    "registration_slope_x": ("1", "rise of the upper face towards East"),
+    "registration_slope_y": ("1", "rise of the upper face towards North"),
+}
+
+
+def motion_variables(motions: list[Motion]) -> dict[str, tuple]:
+    """Variables (registration_motion) of a specimen that hold further motions of its upper face.
+
+    Parameters
+    ----------
+    motions : list of Motion
+        From :func:`scattered_motions`.
+
+    Returns
+    -------
+    dict
+        As ``Dataset.assign`` takes them; the point they turn about as attributes ``pivot_x_mm``,
+        ``pivot_y_mm`` of each.
+    """
+    values = [
+        (*motion.shift, float(np.degrees(motion.rotation)), *motion.slope) for motion in motions
+    ]
+    columns = np.array(values).reshape(-1, len(_TABLE)).T
+    pivot = motions[0].start if motions else (np.nan, np.nan)
+    of = "of a registration as good as the one made, from that"
+    return {
+        name: (
+            "registration_motion",
+            column,
+            {
+                "units": units,
+                "long_name": f"{words} {of}",
+                "pivot_x_mm": pivot[0],
+                "pivot_y_mm": pivot[1],
+            },
+        )
+        for (name, (units, words)), column in zip(_TABLE.items(), columns, strict=True)
+    }
+
+
+def stored_motions(specimen: xr.Dataset) -> list[Motion]:
+    """The motions that :func:`motion_variables` has stored in a specimen."""
+    if "registration_shift_x" not in specimen:
+        return []
+    shift_x, shift_y, rotation, slope_x, slope_y = (specimen[name].values for name in _TABLE)
+    attrs = specimen["registration_shift_x"].attrs
+    pivot = (float(attrs["pivot_x_mm"]), float(attrs["pivot_y_mm"]))
+    return [
+        Motion(
+            pivot,
+            (pivot[0] + float(shift_x[i]), pivot[1] + float(shift_y[i])),
+            float(np.radians(rotation[i])),
+            (float(slope_x[i]), float(slope_y[i])),
+        )
+        for i in range(len(shift_x))
+    ]

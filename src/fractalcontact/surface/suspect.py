@@ -1,0 +1,190 @@
+"""Suspicious cells of scanned faces: lone spikes, and places where two faces overlap."""
+
+import json
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+#: A lone spike stands off the median of its eight neighbours by this many times what cells around
+#: it do, typically. On self-affine Gaussian surfaces with H from 0.2 to 0.8 none of 160 000 cells
+#: comes to 6.
+ALONE = 8.0
+#: ... or by this many times, where the other face says so: it overlaps there, or the gap stands off
+#: its surroundings as much.
+CONFIRMED = 4.0
+#: An overlap is deep where its depth, and how far the gap falls below the median of its eight
+#: neighbours, exceed this many times what is typical: no error of the registration or of the mean
+#: gap, which neighbours share, makes it.
+DEEP = 3.0
+#: Fewer neighbours present, or cells around, and a cell is not judged.
+_FEWEST_NEIGHBOURS, _FEWEST_AROUND = 5, 12
+_HALF = 3  # cells around: 7 x 7 but the one in the middle
+_NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
+#: What arithmetic may add to equal heights, as a part of the largest.
+_ROUNDING = 1e-12
+_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+
+
+class Suspects(NamedTuple):
+    """Suspicious cells (ny, nx) bool of the scanned faces, by face, and of both together."""
+
+    spikes: list[np.ndarray]
+    """Lone spikes of each face."""
+    overlap: np.ndarray
+    """Upper face below the lower one; nowhere where its height is not known."""
+    deep: np.ndarray
+    """... where the gap stands off its neighbours, too."""
+    standing: list[np.ndarray]
+    """How far each face stands off towards the other, in multiples of what is typical."""
+
+
+def find_suspects(scans: list[xr.DataArray]) -> Suspects:
+    """Find lone spikes of one or two faces, and where two faces overlap.
+
+    Parameters
+    ----------
+    scans : list of DataArray (y, x)
+        Heights on one grid, the lower face first, as `scan.read_faces` gives them.
+
+    Returns
+    -------
+    Suspects
+
+    Notes
+    -----
+    A cell of one face is a spike where it stands off the median of its eight neighbours by more
+    than 8 times the typical deviation of a cell around it (1.4826 times the median of such
+    deviations in the 7 x 7 around, at least that of the whole scan), or by more than 4 times where
+    the other face confirms it: both cannot have been there.
+    """
+    found = [stand_off(scan.values) for scan in scans]
+    spikes = [abs(ratio) > ALONE for ratio in found]
+    empty = np.zeros(scans[0].shape, dtype=bool)
+    towards = [sign * ratio for sign, ratio in zip((1, -1), found, strict=False)]
+    if len(scans) == 1:
+        return Suspects(spikes, empty, empty, towards)
+    gap = scans[1].values - scans[0].values
+    of_gap = stand_off(gap)
+    overlap, deep = empty, empty
+    if height_is_known(scans[1]):
+        overlap = gap < -_ROUNDING * max(np.nanmax(abs(scan.values)) for scan in scans)
+        deep = overlap & (np.maximum(gap, _deviation(gap)) < -DEEP * typical_deviation(gap))
+    for spike, ratio in zip(spikes, towards, strict=True):
+        # What stands off towards the other face takes away from the gap.
+        confirmed = (overlap & (ratio > CONFIRMED)) | (
+            (abs(ratio) > CONFIRMED) & (abs(of_gap) > CONFIRMED) & (ratio * of_gap < 0)
+        )
+        spike |= confirmed
+    return Suspects(spikes, overlap, deep, towards)
+
+
+def height_is_known(upper: xr.DataArray) -> bool:
+    """Whether the mean gap was measured; else the upper face was set down until some cells touch.
+
+    Parameters
+    ----------
+    upper : DataArray
+        With the attribute ``registration`` of :func:`scan.pairs.register`, if it was registered.
+    """
+    record = json.loads(upper.attrs.get("registration", "{}"))
+    return record.get("gap_mean_before_mm", 0.0) is not None
+
+
+def stand_off(heights: np.ndarray) -> np.ndarray:
+    """How far each cell stands off its neighbours, in multiples of what is typical around it.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        NaN where missing; any unit.
+
+    Returns
+    -------
+    (ny, nx) ndarray
+        Signed, positive upwards; 0 where it is missing, cannot be judged, or is less than
+        `CONFIRMED`, so that most need no surroundings.
+    """
+    deviation = _deviation(heights)
+    typical = _typical(deviation, heights)
+    result = np.zeros(heights.shape)
+    if not typical > 0:
+        return result
+    rows, columns = np.nonzero(abs(deviation) > CONFIRMED * typical)
+    padded = np.pad(abs(deviation), _HALF, constant_values=np.nan)
+    side = 2 * _HALF + 1
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (side, side))
+    around = windows[rows, columns].reshape(len(rows), side**2)
+    around = np.sort(np.delete(around, side**2 // 2, axis=1), axis=1)  # missing ones come last
+    counts = np.isfinite(around).sum(axis=1)
+    local = _NORMAL * _middle(around.T, counts)
+    ratio = deviation[rows, columns] / np.maximum(local, typical)
+    result[rows, columns] = np.where(counts >= _FEWEST_AROUND, ratio, 0.0)
+    return result
+
+
+def typical_deviation(heights: np.ndarray) -> float:
+    """Typical deviation of a cell from the median of its eight neighbours: 1.4826 times the median.
+
+    At least the step in which heights are recorded; 0 of a plane without steps.
+    """
+    return _typical(_deviation(heights), heights)
+
+
+def _typical(deviation: np.ndarray, heights: np.ndarray) -> float:
+    known = abs(deviation[np.isfinite(deviation)])
+    if not known.size:
+        return 0.0
+    levels = np.unique(heights[np.isfinite(heights)])
+    step = float(np.median(np.diff(levels))) if levels.size > 1 else 0.0
+    return max(_NORMAL * float(np.median(known)), step)
+
+
+def _deviation(z: np.ndarray) -> np.ndarray:
+    """Height above the median of the eight neighbours; NaN where fewer than five are present."""
+    padded = np.pad(z, 1, constant_values=np.nan)
+    ny, nx = z.shape
+    around = np.array([padded[1 + i : 1 + i + ny, 1 + j : 1 + j + nx] for i, j in _NEIGHBOURS])
+    around.sort(axis=0)
+    counts = np.isfinite(around).sum(axis=0)
+    middle = _middle(around, counts)
+    return np.where(counts >= _FEWEST_NEIGHBOURS, z - middle, np.nan)
+
+
+def _middle(ordered: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Median along the first axis of ascending values, of which the first ``counts`` are known."""
+    low = np.maximum(counts - 1, 0) // 2
+    pair = np.stack([low, np.minimum(np.maximum(counts, 1) // 2, len(ordered) - 1)])
+    return np.take_along_axis(ordered, pair, axis=0).mean(axis=0)
+
+
+def overlap_statistics(
+    specimen: xr.Dataset, window: tuple[slice, slice]
+) -> dict[str, tuple[float, float]]:
+    """Overlap and gap of the two faces, in the whole scan and in the window.
+
+    Parameters
+    ----------
+    specimen : Dataset
+        From :func:`surface.specimen.make_specimen`, of two scanned faces.
+    window : (slice, slice)
+        Its rows and columns.
+
+    Returns
+    -------
+    dict
+        ``cells``, ``fraction`` (of the cells both faces have), ``depth`` (mm, the deepest),
+        ``gap_mean`` and ``gap_sd`` (mm): pairs (scan, window).
+    """
+    gap = specimen["upper"].values - specimen["lower"].values
+    overlap = specimen["overlap"].values
+    rows = []
+    for place in ((slice(None), slice(None)), window):
+        known = np.isfinite(gap[place])
+        cells = int(overlap[place].sum())
+        depth = float(-gap[place][overlap[place]].min()) if cells else 0.0
+        here = gap[place][known]
+        mean, spread = (here.mean(), here.std()) if here.size else (np.nan, np.nan)
+        rows.append((cells, cells / max(here.size, 1), depth, float(mean), float(spread)))
+    keys = ("cells", "fraction", "depth", "gap_mean", "gap_sd")
+    return dict(zip(keys, zip(*rows, strict=True), strict=True))
