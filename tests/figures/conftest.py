@@ -10,6 +10,7 @@ from fractalcontact.experiments.delta_sigma import dimension_test
 from fractalcontact.experiments.roll_off import roll_off_effect
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.atlas import join_stages
+from fractalcontact.stages.errors import error_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.windows import window_stages
@@ -141,9 +142,13 @@ def _stages_of(name, faces, settings):
         SOLVER,
     )
     before = {stage: known[stage] for stage in STAGES["closure"].needs}
+    of_states = state_stages(**before, parts=[states], settings=settings, solver=SOLVER)
+    curves = {name: of_states[name] for name in ("closure", "dilatancy", "domains")}
+    joint = {name: known[name] for name in ("specimens", "joints")}
     return {
         **known,
-        **state_stages(**before, parts=[states], settings=settings, solver=SOLVER),
+        **of_states,
+        **error_stages(**joint, **curves, settings=settings, solver=SOLVER),
         **window_stages(**before, settings=settings, solver=SOLVER),
     }
 

@@ -97,6 +97,30 @@ use rule analysis as analysis_against_plane with:
         specimen=one_of(FLAT),
 
 
+# Error of what is published, by source, and the solve plan that it completes: some states are solved
+# again on finer grids and in other windows of the scan.
+rule error_budget:
+    input:
+        **inputs_of("error_budget"),
+    output:
+        **outputs_of("error_budget"),
+    log:
+        f"{RESULTS}/logs/error_budget/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/error_budget/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=60,
+    params:
+        **calling("error_budget"),
+        settings=settings_of,
+        solver=SOLVER,
+    script:
+        "../scripts/stage.py"
+
+
 # A measured map of contact goes straight to the analysis of domains.
 rule contact_map:
     input:

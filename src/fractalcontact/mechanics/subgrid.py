@@ -1,4 +1,4 @@
-"""The same surface on finer grids: what the spacing of the solve, not the scan, leaves uncertain."""
+"""Sub-grids: the same surface on finer grids, and its contact states there."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -8,7 +8,6 @@ from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
-from ..mechanics.plan import solve_plan
 from ..mechanics.states import combine, domains_of, force_range, map_states, with_pressure
 from ..mechanics.strength import joint_strength
 from ..roughness.dimension import best_dimension
@@ -61,7 +60,6 @@ def state_stages(
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,
-        "choices": solve_plan(curves, dilatancy, settings, solver),
         "area": laws,
         "domains": domains,
         "contact": fields,

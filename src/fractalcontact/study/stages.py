@@ -63,8 +63,11 @@ class Stage:
 _SPECIMEN_STAGES = "stages.specimen:specimen_stages"
 _STATE_STAGES = "stages.states:state_stages"
 _WINDOW_STAGES = "stages.windows:window_stages"
+_ERROR_STAGES = "stages.errors:error_stages"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
+#: And what its contact states then gave.
+_OF_CURVES = ("specimens", "joints", "closure", "dilatancy", "domains")
 
 
 def _of_states(name, title, grain=SPECIMEN):
@@ -111,7 +114,20 @@ _TABLE = (
     ),
     _of_states("closure", "closure curves, stiffness, real contact area"),
     _of_states("dilatancy", "rigid and elastic dilatancy"),
-    _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
+    Stage(
+        "choices",
+        "what was solved and how exactly, why, and the errors that makes",
+        SPECIMEN,
+        _ERROR_STAGES,
+        _OF_CURVES,
+    ),
+    Stage(
+        "error_budget",
+        "error of the published quantities, split by source",
+        SPECIMEN,
+        _ERROR_STAGES,
+        _OF_CURVES,
+    ),
     _of_states("area", "laws of the real contact area, and the classical theories beside it"),
     _of_states("domains", "box counts, Delta_sigma and clusters of the contact domains"),
     _of_states("contact", "contact domains"),
