@@ -82,6 +82,11 @@ def budget_of(name, accuracy=None, **more):
     return loading.at_map_offset(), curves, budget, plan
 
 
+def reason_of(budget, source):
+    """Why a source of error of the closure has no value."""
+    return str(budget["reason"].sel(quantity="closure", source=source).values)
+
+
 @pytest.fixture(scope="module")
 def one():
     return budget_of("one")
@@ -157,9 +162,7 @@ def test_solved_and_interpolated_loads_are_told(one):
 def test_all_states_are_refined_where_the_study_asks_for_all():
     _, _, budget, _ = budget_of("flat", "full")
     assert (budget["finest_spacing"] == SPACING / 4).all()
-    assert "one face was scanned" in str(
-        budget["reason"].sel(quantity="closure", source="registration").values
-    )
+    assert "one face was scanned" in reason_of(budget, "registration")
     # From the plane z = 0, which is where the mean plane of the face lies.
     assert float(budget["published"].sel(quantity="separation")[0]) > 0
 
@@ -169,9 +172,7 @@ def test_what_is_not_known_has_its_reason(one):
     known = np.isfinite(budget["error"]).any("normal_force")
     told = budget["reason"] != ""
     assert bool((known | told).all())
-    assert str(budget["reason"].sel(quantity="closure", source="estimator").values).startswith(
-        "none"
-    )
+    assert reason_of(budget, "estimator").startswith("none")
     nothing = ~known & (budget["source"] == "numerical")
     assert not nothing.isel(quantity=slice(4)).any()
 
@@ -180,9 +181,7 @@ def test_a_scan_no_larger_than_its_window_has_no_others():
     _, _, budget, _ = budget_of("small")
     window = budget["error"].sel(source="window")
     assert np.isnan(window).all()
-    assert "not large enough" in str(
-        budget["reason"].sel(quantity="closure", source="window").values
-    )
+    assert "not large enough" in reason_of(budget, "window")
     assert int(budget["windows_solved"]) == 1
     # What is counted still is.
     assert np.isfinite(budget["total_of_population"].sel(quantity="closure")).all()
@@ -191,7 +190,7 @@ def test_a_scan_no_larger_than_its_window_has_no_others():
 def test_registration_enters_the_population_of_two_scanned_faces():
     _, _, unknown, _ = budget_of("two")
     assert np.isnan(unknown["total_of_population"]).all()
-    reason = str(unknown["reason"].sel(quantity="closure", source="registration").values)
+    reason = reason_of(unknown, "registration")
     assert reason == "no spread of registrations is known"
     spread = {"closure": np.full(5, 0.5), "stiffness": 3.0}
     _, _, budget, _ = budget_of("two", registration_spread=spread)
@@ -219,7 +218,7 @@ def test_the_plan_says_whether_the_accuracy_can_be_had(one):
     assert float(row["error"]) == pytest.approx(float(numerical.where(refined).max()))
 
 
-# -- what lies between loads, and other windows ------------------------------------------------------
+# -- what lies between loads, and other windows ----------------------------------------------------
 
 
 def test_a_power_law_is_interpolated_exactly():

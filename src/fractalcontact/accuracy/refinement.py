@@ -236,10 +236,10 @@ def _errors(curve, levels, finest) -> Refinement:
     rise = summit(curve.composite) - float(curve.composite.max())
     errors = curve_errors(levels, curve.curve["area"].values, curve.decay_length(), rise)
     solved = finest > 1
-    return Refinement(
-        *(np.where(solved, np.array(values), np.nan) for values in zip(*errors, strict=True)),
-        finest,
+    error, limit, order = (
+        np.where(solved, np.array(values), np.nan) for values in zip(*errors, strict=True)
     )
+    return Refinement(error, limit, order, finest)
 
 
 def curve_errors(

@@ -114,6 +114,15 @@ _TABLE = (
     ),
     _of_states("closure", "closure curves, stiffness, real contact area"),
     _of_states("dilatancy", "rigid and elastic dilatancy"),
+    _of_states("area", "laws of the real contact area, and the classical theories beside it"),
+    _of_states("domains", "box counts, Delta_sigma and clusters of the contact domains"),
+    _of_states("contact", "contact domains"),
+    _of_states("scaling", "renormalisation over resolutions"),
+    _of_states(
+        "domain_measures",
+        "lacunarity and generalised dimensions of the contact at the map offset",
+    ),
+    _of_states("strength", "dilatancy and friction angles, shear strength", JOINT),
     Stage(
         "choices",
         "what was solved and how exactly, why, and the errors that makes",
@@ -128,15 +137,6 @@ _TABLE = (
         _ERROR_STAGES,
         _OF_CURVES,
     ),
-    _of_states("area", "laws of the real contact area, and the classical theories beside it"),
-    _of_states("domains", "box counts, Delta_sigma and clusters of the contact domains"),
-    _of_states("contact", "contact domains"),
-    _of_states("scaling", "renormalisation over resolutions"),
-    _of_states(
-        "domain_measures",
-        "lacunarity and generalised dimensions of the contact at the map offset",
-    ),
-    _of_states("strength", "dilatancy and friction angles, shear strength", JOINT),
     Stage(
         "contact_maps",
         "measured contact maps, one group per map",
