@@ -104,7 +104,8 @@ def other_composites(
     Returns
     -------
     composites : list of ((ny, nx) ndarray, float)
-        h, mm, and the largest height at zero offset, mm; none where the scan is too small.
+        h, mm, and the largest height at zero offset, against a plane the mean one, mm; none where
+        the scan is too small.
     effective : float
         Windows' worth of area that these and the specimen's own cover.
     """
@@ -115,8 +116,8 @@ def other_composites(
     places, effective = window_places(present, window_slices(specimen))
     if effective < FEWEST_EFFECTIVE:
         return [], effective
-    slides = loading.slides
-    return [(whole[p], float(mated[p].max()) if slides else 0.0) for p in places[1:]], effective
+    datum = np.max if loading.slides else np.mean
+    return [(whole[place], float(datum(mated[place]))) for place in places[1:]], effective
 
 
 def window_spread(values: np.ndarray, effective: float) -> np.ndarray:

@@ -45,7 +45,7 @@ class LoadCurve:
     composite : (ny, nx) ndarray
         h, mm.
     reference : float
-        Largest height at zero offset, mm, from which dilatancy counts; 0 against a plane.
+        Largest height at zero offset, mm, from which dilatancy counts; against a plane, the mean.
     resolution : int
     curve, domains : xr.Dataset
         Stages ``closure`` and ``domains`` there, over normal_force.
