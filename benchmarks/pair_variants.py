@@ -24,7 +24,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.mechanics.closure import closure_curves, fit_hyperbola
+from fractalcontact.mechanics.closure import closure_curves
+from fractalcontact.mechanics.closure_laws import fit_hyperbola
 from fractalcontact.mechanics.first_contact import highest_node_scatter
 from fractalcontact.mechanics.joint import describe_joint, prefractal
 from fractalcontact.mechanics.loading import JointLoading

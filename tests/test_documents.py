@@ -11,7 +11,7 @@ DOCUMENTS = [
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "config/README.md")),
     *sorted(ROOT.glob("docs/*.md")),
 ]
-KEY = re.compile(r"`([a-z_.]+)`")
+KEY = re.compile(r"`([A-Za-z_.0-9]+)`")
 
 
 def keys_of(node):

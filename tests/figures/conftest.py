@@ -13,13 +13,22 @@ from fractalcontact.experiments.size_effect_test import size_effect_test
 from fractalcontact.experiments.size_states import solve_task
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.atlas import join_stages
+from fractalcontact.stages.errors import error_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
+from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
 from fractalcontact.study.size_tasks import size_tasks
-from fractalcontact.study.stages import CONTACT, EXPERIMENT, STAGES, read_by, solver_read_by
+from fractalcontact.study.stages import (
+    CONTACT,
+    EXPERIMENT,
+    SOLVER_READ,
+    STAGES,
+    read_by,
+    solver_read_by,
+)
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
@@ -156,7 +165,12 @@ def _stages_of(name, faces, settings):
         settings["resolutions"],
         solver_read(CONTACT),
     )
-    for stage, of_stage in (("window_states", window_stages), ("closure", state_stages)):
+    for stage, of_stage in (
+        ("window_states", window_stages),
+        ("closure", state_stages),
+        ("error_budget", error_stages),
+        ("windows", strength_stages),
+    ):
         before = {need: known[need] for need in STAGES[stage].needs}
         parts = {"parts": [states]} if stage == "closure" else {}
         known |= of_stage(**before, **parts, **given(STAGES[stage].function, settings))
@@ -173,7 +187,8 @@ def solver_read(function):
 
 
 def given(function, settings):
-    return {"settings": read(function, settings), "solver": solver_read(function)}
+    solver = {"solver": solver_read(function)} if function in SOLVER_READ else {}
+    return {"settings": read(function, settings), **solver}
 
 
 def _experiments():

@@ -6,8 +6,10 @@ import xarray as xr
 from declared import Declared
 
 from fractalcontact.mechanics.sweep import joint_states
+from fractalcontact.stages.errors import error_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
+from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
 from fractalcontact.study.stages import (
@@ -40,7 +42,9 @@ STUDY = {
         "window": "3.2 mm",
     },
 }
-SPECIMEN, STATES, WINDOWS = (STAGES[name].function for name in ("joints", "closure", "size_test"))
+SPECIMEN, STATES, WINDOWS, ERRORS, STRENGTH = (
+    STAGES[name].function for name in ("joints", "closure", "size_test", "error_budget", "strength")
+)
 
 
 def settings_of(function):
@@ -75,7 +79,11 @@ def ran():
         specimen, known["joints"], settings=settings[WINDOWS], solver=solvers[WINDOWS]
     )
     before = {stage: known[stage] for stage in STAGES["closure"].needs}
-    state_stages(**before, parts=[states], settings=settings[STATES], solver=solvers[STATES])
+    known |= state_stages(**before, parts=[states], settings=settings[STATES])
+    before = {stage: known[stage] for stage in STAGES["error_budget"].needs}
+    error_stages(**before, settings=settings[ERRORS], solver=solvers[ERRORS])
+    before = {stage: known[stage] for stage in STAGES["strength"].needs}
+    strength_stages(**before, settings=settings[STRENGTH])
     return settings, solvers
 
 
@@ -100,16 +108,16 @@ def test_a_key_that_is_not_declared_cannot_be_read():
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "again"),
     [
-        {"label": "another"},
-        {"basic_friction_angle": "35 deg"},
-        {"joint_wall_strength": "60 MPa"},
-        {"box_range": ["0.2 mm", "1 mm"]},
+        ({"label": "another"}, ()),
+        ({"basic_friction_angle": "35 deg"}, (STRENGTH,)),
+        ({"joint_wall_strength": "60 MPa"}, (STRENGTH,)),
+        ({"box_range": ["0.2 mm", "1 mm"]}, (STATES, WINDOWS, ERRORS)),
     ],
     ids=str,
 )
-def test_what_changes_no_state_solves_no_joint_again(change):
+def test_what_changes_no_state_solves_no_joint_again(change, again):
     study = {**STUDY, "defaults": dict(STUDY["defaults"])}
     if change.keys() <= STUDY["materials"]["rock"].keys():
         study["materials"] = {"rock": STUDY["materials"]["rock"] | change}
@@ -117,7 +125,6 @@ def test_what_changes_no_state_solves_no_joint_again(change):
         study["defaults"] |= change
     before, after = (resolve_settings(of, "rock", {}, "study") for of in (STUDY, study))
     assert before != after
-    solving = (SPECIMEN, CONTACT) if "box_range" in change else (SPECIMEN, CONTACT, WINDOWS)
-    for function in solving:
-        assert repr(read_by(function, before)) == repr(read_by(function, after))
-    assert (repr(read_by(STATES, before)) == repr(read_by(STATES, after))) == ("label" in change)
+    for function in SETTINGS_READ:
+        same = repr(read_by(function, before)) == repr(read_by(function, after))
+        assert same == (function not in again), function

@@ -67,7 +67,7 @@ def test_files_of_a_job_are_those_of_the_stages_of_its_function():
         stage: f"{stage}/{{specimen}}.nc"
         for stage in ("specimens", "quality", "surface_dimension", "joints")
     }
-    assert set(made_together("closure")) - set(made_together("closure", [SPECIMEN])) == {"strength"}
+    assert set(made_together("windows")) - set(made_together("windows", [SPECIMEN])) == {"strength"}
     assert needed_by("window_states") == {
         stage: f"{stage}/{{specimen}}.nc" for stage in ("specimens", "joints")
     }

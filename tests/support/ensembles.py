@@ -25,6 +25,7 @@ ENSEMBLES: dict[str, tuple] = {
     "elimination draws": (4, 12),
     "placements": (2, 4),
     "extrapolations": (10, 30),
+    "joints of known truth": ((8, 24), (40, 48)),
     # mechanics, size effect, experiments
     "fitted hyperbolas": (300, 1000),
     "side of a flat face": (64, 96),

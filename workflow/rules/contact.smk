@@ -59,9 +59,9 @@ def contact_parts(wildcards):
     return contact_parts_of(wildcards.specimen)
 
 
-# What follows from the states of a specimen: closure curves and laws of area; strength; box counts,
-# dimension and clusters of every contact domain, what changes with resolution, lacunarity and
-# generalised dimensions of the domains that are drawn. Seconds of work, so one job.
+# What follows from the states of a specimen: closure curves and laws of area; box counts, dimension
+# and clusters of every contact domain, what changes with resolution, lacunarity and generalised
+# dimensions of the domains that are drawn. Seconds of work, so one job.
 rule analysis:
     input:
         **inputs_of("closure"),
@@ -72,8 +72,6 @@ rule analysis:
         f"{RESULTS}/logs/analysis/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
-    wildcard_constraints:
-        specimen=one_of(SLIDING),
     conda:
         "../../environment.yml"
     resources:
@@ -82,21 +80,68 @@ rule analysis:
     params:
         **calling("closure"),
         settings=settings_read_by("closure"),
-        solver=solver_read_by("closure"),
+    script:
+        "../scripts/stage.py"
+
+
+# Strength and size laws: the only ones that read friction angles, and so alone in their job.
+rule strength:
+    input:
+        **inputs_of("windows"),
+    output:
+        **outputs_of("windows"),
+    log:
+        f"{RESULTS}/logs/strength/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
+    wildcard_constraints:
+        specimen=one_of(SLIDING),
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        **calling("windows"),
+        settings=settings_read_by("windows"),
     script:
         "../scripts/stage.py"
 
 
 # Strength needs sliding.
-use rule analysis as analysis_against_plane with:
+use rule strength as size_laws_against_plane with:
     output:
-        **outputs_of("closure", [stages.SPECIMEN]),
+        **outputs_of("windows", [stages.SPECIMEN]),
     log:
-        f"{RESULTS}/logs/analysis/{{specimen}}.log",
+        f"{RESULTS}/logs/strength/{{specimen}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
+        f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
         specimen=one_of(FLAT),
+
+
+# Error of what is published, by source, and the solve plan that it completes: some states are solved
+# again on finer grids and in other windows of the scan.
+rule error_budget:
+    input:
+        **inputs_of("error_budget"),
+    output:
+        **outputs_of("error_budget"),
+    log:
+        f"{RESULTS}/logs/error_budget/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/error_budget/{{specimen}}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=60,
+    params:
+        **calling("error_budget"),
+        settings=settings_read_by("error_budget"),
+        solver=solver_read_by("error_budget"),
+    script:
+        "../scripts/stage.py"
 
 
 # A measured map of contact goes straight to the analysis of domains.

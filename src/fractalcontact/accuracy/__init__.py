@@ -7,6 +7,7 @@ __getattr__, __dir__, __all__ = exports(
     {
         "DEFAULT_RTOL": ".speed",
         "ERRORS": ".speed",
+        "FACTORS": ".refinement",
         "FRONTS": ".speed",
         "HONEST": ".stability",
         "KINDS": ".hard_problems",
@@ -25,6 +26,7 @@ __getattr__, __dir__, __all__ = exports(
         "VERDICTS": ".stability",
         "ahead_of_ours": ".speed",
         "closure_at_fraction": ".reference",
+        "curve_errors": ".refinement",
         "error_against_time": ".speed",
         "hertz_convergence": ".convergence",
         "join": ".stability",

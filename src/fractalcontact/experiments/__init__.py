@@ -6,5 +6,6 @@ __getattr__, __dir__, __all__ = exports(
     __name__,
     {
         "SURFACES": ".roll_off",
+        "solve_task": ".size_states",
     },
 )

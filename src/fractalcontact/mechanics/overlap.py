@@ -109,12 +109,12 @@ def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: Mapping[str
     """
     finest = curves.sel(resolution=curves["resolution"].min()).isel(direction=0)
     (force,) = forces_of([settings["map_load"]], nominal_area(specimen))
+    at_map = chosen_offset(settings["map_offset"], finest["offset"].values)
     mapped = finest["suspect_load_share"].sel(normal_force=force, method="nearest")
     parts = []
     worst = float(mapped.max())
     if worst > DECISIVE:
         where = _offset_words(mapped["offset"].values[mapped.values > DECISIVE])
-        at_map = chosen_offset(settings["map_offset"], finest["offset"].values)
         share = float(mapped.sel(offset=at_map))
         maps = ", the contact maps among them" if share > DECISIVE else ""
         parts.append(f"up to {worst:.0%} of the map load (v = {where} mm{maps})")

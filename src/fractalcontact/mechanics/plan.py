@@ -69,6 +69,7 @@ def solve_plan(
     dilatancy: xr.Dataset,
     settings: Mapping[str, Any],
     solver: Mapping[str, Any],
+    budget: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """The solve plan of a specimen: quantity, value, reason and estimated error.
 
@@ -80,6 +81,8 @@ def solve_plan(
         From :func:`mechanics.closure.elastic_dilatancy`.
     settings, solver : mapping
         From :mod:`study.configuration`.
+    budget : xr.Dataset, optional
+        Stage ``error_budget``: with it the plan says what the spacing leaves uncertain.
 
     Returns
     -------
@@ -95,6 +98,8 @@ def solve_plan(
         _of_resolutions(curves),
         _of_extent(curves),
     ]
+    if budget is not None:
+        rows.append(_of_spacing(budget, requested))
     columns = (list(column) for column in zip(*rows, strict=True))
     return labelled_dataset(
         _COLUMNS,
@@ -203,3 +208,28 @@ def _of_extent(curves):
     )
     value = "equations on the contact set, displacements on the whole window"
     return "extent of the solve", value, reason, "", np.nan
+
+
+def _of_spacing(budget, requested):
+    """Numerical error of the closure, and whether that asked for can be had at this spacing."""
+    errors = budget["relative_error"].sel(quantity="closure", source="numerical").values
+    refined = np.isfinite(budget["finest_spacing"].values)
+    known = refined & np.isfinite(errors)
+    name = "numerical error of the closure"
+    if not known.any():
+        words = str(budget["reason"].sel(quantity="closure", source="numerical").values)
+        return name, "not known", words or "no refined state gives one", "", np.nan
+    spacings = budget["finest_spacing"].values[refined]
+    value = f"refined at {refined.sum()} of {len(refined)} loads, down to {spacings.min():.3g} mm"
+    of_known = errors[known]
+    least, most = f"{of_known.min():.2g}", f"{of_known.max():.2g}"
+    reason = f"at this spacing {100 * float(least):g} to {100 * float(most):g} %"
+    if requested is not None:
+        asked = requested["closure"]
+        reached = int(np.count_nonzero(of_known <= asked))
+        reason += f", asked {100 * asked:g} %: " + (
+            "reached"
+            if reached == known.sum()
+            else f"cannot be had at this spacing at {known.sum() - reached} of {known.sum()} loads"
+        )
+    return name, value, reason, "interface closure, by the grid", float(of_known.max())

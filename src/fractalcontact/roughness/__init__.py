@@ -19,10 +19,12 @@ __getattr__, __dir__, __all__ = exports(
         "length_words": ".quality_words",
         "measured_exponents": ".dimension",
         "noise_words": ".quality_words",
+        "overlap_words": ".quality_words",
         "range_words": ".quality_words",
         "ratio": ".curves",
         "scan_quality": ".quality",
         "slope_statistics": ".dimension",
         "surface_dimension": ".dimension",
+        "suspect_words": ".quality_words",
     },
 )

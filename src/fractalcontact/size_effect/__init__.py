@@ -6,6 +6,7 @@ __getattr__, __dir__, __all__ = exports(
     __name__,
     {
         "joint_by_size": ".laws",
+        "predict_whole_strength": ".prediction",
         "size_test": ".eq6",
     },
 )

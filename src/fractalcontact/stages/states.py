@@ -1,4 +1,4 @@
-"""What follows from contact states of a specimen: curves, laws, domains, dimensions, strength."""
+"""What follows from contact states of a specimen: curves, laws, domains, dimensions."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,7 +11,6 @@ from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy
 from ..mechanics.contact_fields import contact_fields
 from ..mechanics.overlap import load_warning
-from ..mechanics.plan import solve_plan
 from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
     combine,
@@ -21,21 +20,16 @@ from ..mechanics.states import (
     map_states,
     with_pressure,
 )
-from ..mechanics.strength import joint_strength
 from ..roughness.dimension import best_dimension
 from ..surface.specimen import cell_side, nominal_area, window_sides
-from .sizes import size_laws_of
 
 
 def state_stages(
     specimens: xr.Dataset,
     surface_dimension: xr.Dataset,
     joints: xr.Dataset,
-    window_states: xr.Dataset,
-    size_test: xr.Dataset,
     parts: Sequence[xr.Dataset],
     settings: Mapping,
-    solver: Mapping,
 ) -> dict[str, xr.Dataset]:
     """Stages that are computed from the contact states of one specimen.
 
@@ -43,19 +37,15 @@ def state_stages(
     ----------
     specimens, surface_dimension, joints : xr.Dataset
         Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    window_states, size_test : xr.Dataset
-        Likewise, from :func:`stages.windows.window_stages`.
     parts : sequence of xr.Dataset
         Contact states, from :func:`mechanics.sweep.joint_states`.
     settings : mapping
         From :func:`study.configuration.resolve_settings`.
-    solver : mapping
-        From :func:`study.configuration.solver_settings`.
 
     Returns
     -------
     dict of str to xr.Dataset
-        By stage; strength only of a joint that slides.
+        By stage.
     """
     states, spacing = combine(parts), cell_side(specimens)
     e_star = settings["material"]["e_star"]
@@ -86,7 +76,6 @@ def state_stages(
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,
-        "choices": solve_plan(curves, dilatancy, settings, solver),
         "area": laws,
         "domains": domains,
         "contact": contact_fields(fields, parts, joints, settings, nominal_area(specimens)),
@@ -96,10 +85,7 @@ def state_stages(
         "domain_measures": measures_of_map_states(
             map_states(parts), spacing, settings["box_range"]
         ),
-        "windows": size_laws_of(specimens, surface_dimension, window_states, size_test, settings),
     }
-    if specimens.attrs["opposite"] != "flat":
-        stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)
     area = nominal_area(specimens)
     return {name: with_pressure(stage, area) for name, stage in stages.items()}
 

@@ -16,7 +16,7 @@ def window_stages(
 ) -> dict[str, xr.Dataset]:
     """Stages that solve sub-windows of one specimen, along its first direction of contact.
 
-    What no solve needs is made of them by :func:`stages.sizes.size_laws_of`: a friction angle
+    What no solve needs is made of them by :func:`stages.strength.strength_stages`: a friction angle
     solves nothing again.
 
     Parameters

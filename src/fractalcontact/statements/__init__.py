@@ -9,6 +9,7 @@ __getattr__, __dir__, __all__ = exports(
         "HOLDS": ".judge",
         "ILL_POSED": ".judge",
         "PARTLY": ".judge",
+        "STATEMENTS": ".study",
         "UNDETERMINED": ".judge",
         "all_statements": ".judge",
         "judge_study": ".study",

@@ -5,7 +5,9 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "ARMS": ".size_tasks",
         "STAGES": ".atlas",
+        "SizeTask": ".size_tasks",
         "accuracy_figures_of": ".figure_list",
         "all_figures": ".figure_list",
         "check_study": ".checks",
@@ -25,6 +27,8 @@ __getattr__, __dir__, __all__ = exports(
         "solver_settings": ".configuration",
         "study_figures_of": ".figure_list",
         "study_name": ".documents",
+        "window_arguments": ".configuration",
+        "with_coordinates": ".checks",
         "write_atlas": ".atlas",
         "write_scan": ".embedded",
     },

@@ -68,14 +68,18 @@ _STATE_STAGES = "stages.states:state_stages"
 _WINDOW_STAGES = "stages.windows:window_stages"
 #: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
 CONTACT = "mechanics.sweep:joint_states"
+_ERROR_STAGES = "stages.errors:error_stages"
+_STRENGTH_STAGES = "stages.strength:strength_stages"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
-#: What all that follows from contact states is made of, beside these.
-_OF_STATES = (*_OF_JOINT, "window_states", "size_test")
+#: And what its contact states then gave.
+_OF_CURVES = ("specimens", "joints", "closure", "dilatancy", "domains")
+#: And those of its sub-windows: nothing is solved for a friction angle.
+_OF_STRENGTH = (*_OF_JOINT, "window_states", "size_test", "dilatancy")
 
 
-def _of_states(name, title, grain=SPECIMEN):
-    return Stage(name, title, grain, _STATE_STAGES, _OF_STATES)
+def _of_states(name, title):
+    return Stage(name, title, SPECIMEN, _STATE_STAGES, _OF_JOINT)
 
 
 def _experiment(name, title, function):
@@ -116,10 +120,8 @@ _TABLE = (
         _WINDOW_STAGES,
         ("specimens", "joints"),
     ),
-    _of_states("windows", "closure, roughness and strength of sub-windows against their size"),
     _of_states("closure", "closure curves, stiffness, real contact area"),
     _of_states("dilatancy", "rigid and elastic dilatancy"),
-    _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
     _of_states("area", "laws of the real contact area, and the classical theories beside it"),
     _of_states("domains", "box counts, Delta_sigma and clusters of the contact domains"),
     _of_states("contact", "contact domains"),
@@ -128,7 +130,34 @@ _TABLE = (
         "domain_measures",
         "lacunarity and generalised dimensions of the contact at the map offset",
     ),
-    _of_states("strength", "dilatancy and friction angles, shear strength", JOINT),
+    Stage(
+        "windows",
+        "closure, roughness and strength of sub-windows against their size",
+        SPECIMEN,
+        _STRENGTH_STAGES,
+        _OF_STRENGTH,
+    ),
+    Stage(
+        "strength",
+        "dilatancy and friction angles, shear strength",
+        JOINT,
+        _STRENGTH_STAGES,
+        _OF_STRENGTH,
+    ),
+    Stage(
+        "choices",
+        "what was solved and how exactly, why, and the errors that makes",
+        SPECIMEN,
+        _ERROR_STAGES,
+        _OF_CURVES,
+    ),
+    Stage(
+        "error_budget",
+        "error of the published quantities, split by source",
+        SPECIMEN,
+        _ERROR_STAGES,
+        _OF_CURVES,
+    ),
     Stage(
         "contact_maps",
         "measured contact maps, one group per map",
@@ -236,16 +265,21 @@ SETTINGS_READ = {
     CONTACT: (*_SOLVED, "contact_directions", "resolutions", "dilatancy_loads", "map_load"),
     _STATE_STAGES: (
         "material.e_star",
-        *_STRENGTH,
-        "contact_directions",
         "dilatancy_loads",
         "map_load",
         "map_offset",
         "seating_load",
-        "surface_range",
         "hyperbola_range",
         "box_range",
         "scaling_range",
+    ),
+    _STRENGTH_STAGES: (*_STRENGTH, "surface_range"),
+    _ERROR_STAGES: (
+        *_SOLVED,
+        "contact_directions",
+        "dilatancy_loads",
+        "map_load",
+        "box_range",
     ),
     _WINDOW_STAGES: (
         *_SOLVED,
@@ -259,7 +293,7 @@ SETTINGS_READ = {
 #: Keys of the solver's settings, likewise.
 SOLVER_READ = {
     CONTACT: ("rtol", "kernel", "accuracy"),
-    _STATE_STAGES: ("rtol", "accuracy"),
+    _ERROR_STAGES: ("rtol", "kernel", "accuracy"),
     _WINDOW_STAGES: ("rtol", "kernel", "accuracy"),
 }
 

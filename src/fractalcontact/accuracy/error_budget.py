@@ -1,0 +1,372 @@
+"""Error budget: the error of every published quantity, split by where it comes from."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from ..core.datasets import labelled_dataset
+from ..core.fitting import fit_line
+from ..core.intervals import t_quantile
+from ..core.labels import cf_attrs
+from ..mechanics.joint import prefractal
+from ..mechanics.loading import JointLoading
+from ..mechanics.subgrid import state_quantities
+from ..mechanics.sweep import load_steps
+from .other_windows import FEWEST_EFFECTIVE, TOO_SMALL, other_composites, window_spread
+from .refinement import (
+    BUDGET_QUANTITIES,
+    LoadCurve,
+    Refinement,
+    chosen_loads,
+    domain_dimension,
+    named_loads,
+    refine,
+)
+
+#: Sources of error: those of the number as a property of this surface, those of the population the
+#: window is a sample of, and the change of the surface with its resolution, which is in no total.
+OF_SURFACE = ("solver", "numerical", "estimator")
+OF_POPULATION = ("counting", "window", "registration")
+SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution")
+
+#: Numerical errors of states that are not refined, in errors interpolated between those that are:
+#: chance differs from state to state. Then 95 to 100 % of 100 other joints were covered, else
+#: 68 to 92 %.
+WIDENED = 2.0
+
+#: Standard deviation of the largest of many heights whose tail falls by e over a length: Gumbel's.
+_LARGEST_SPREAD = np.pi / np.sqrt(6)
+
+#: Contacts are separate where no larger fraction of the window touches.
+MOST_TOUCHING = 0.5
+
+_EACH, _ALL = ("quantity", "source", "normal_force"), ("quantity", "normal_force")
+_UNIT = "unit of the quantity"
+_TABLE = {
+    "error": (_EACH, _UNIT, "error by source, half-width at 95 %"),
+    "relative_error": (_EACH, "1", "error by source, fraction of the quantity"),
+    "published": (_ALL, _UNIT, "value of the quantity at the finest resolution"),
+    "total": (_ALL, _UNIT, "error of the number as a property of this surface, half-width at 95 %"),
+    "relative_total": (_ALL, "1", "that error, fraction of the quantity"),
+    "total_of_population": (
+        _ALL,
+        _UNIT,
+        "error of the number as that of the surface the window is cut from, half-width at 95 %",
+    ),
+    "relative_total_of_population": (_ALL, "1", "that error, fraction of the quantity"),
+    "limit": (_ALL, _UNIT, "value extrapolated to zero spacing of the same surface"),
+    "observed_order": (_ALL, "1", "observed order of convergence of the same surface"),
+    "finest_spacing": ("normal_force", "mm", "finest spacing solved; NaN where interpolated"),
+    "numerical_from": ("normal_force", "1", "what the numerical error is from"),
+    "unit": ("quantity", "1", "unit of the quantity"),
+    "meaning": ("quantity", "1", "quantity"),
+    "reason": (("quantity", "source"), "1", "why a source has no value, or is none"),
+    "windows_solved": ((), "1", "windows of the scan compared, this one among them"),
+    "windows_effective": ((), "1", "area that those windows cover, in windows"),
+}
+
+_FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
+_DEFINED = "none: no estimator is chosen"
+
+
+def map_curve(
+    loading: JointLoading, curves: xr.Dataset, domains: xr.Dataset, resolution: int
+) -> LoadCurve:
+    """The load curve at the offset of the contact maps, in one direction.
+
+    Parameters
+    ----------
+    loading : JointLoading
+        At that offset alone.
+    curves, domains : xr.Dataset
+        Stages ``closure`` and ``domains``.
+    resolution : int
+    """
+    (cells,) = loading.cells
+    place = {"direction": loading.direction, "resolution": resolution}
+    (offset,) = loading.offsets
+    here = [stage.sel(place).sel(offset=offset, method="nearest") for stage in (curves, domains)]
+    composite = prefractal(loading.composite(int(cells)), resolution)
+    # Against a plane there is no zero offset to open from: its distance is that of the mean plane.
+    mated = loading.composite(0)
+    mated = mated.max() if loading.slides else mated.mean()
+    return LoadCurve(loading, composite, float(mated), resolution, *here)
+
+
+def error_budget(
+    loading: JointLoading,
+    curves: xr.Dataset,
+    domains: xr.Dataset,
+    *,
+    registration_spread: Mapping[str, ArrayLike] | None = None,
+) -> xr.Dataset:
+    """Errors of closure, separation, area, stiffness and Delta_sigma at the map offset, by source.
+
+    Parameters
+    ----------
+    loading : JointLoading
+        In the first direction of contact, at the offset of the contact maps alone.
+    curves, domains : xr.Dataset
+        Stages ``closure`` and ``domains``.
+    registration_spread : mapping of str to (normal_force,) array_like, optional
+        By quantity, half-widths of the spread over registrations of two scanned faces that are
+        statistically as good, in the quantity's unit.
+
+    Returns
+    -------
+    xr.Dataset
+        The variables of :data:`_TABLE` over (quantity, source, normal_force).
+
+    Raises
+    ------
+    NotConverged
+        If a state on a finer grid, or of another window, could not be verified.
+
+    Notes
+    -----
+    All errors are half-widths of intervals of about 95 %. The sources are independent: totals are
+    root sums of squares. A spread over windows holds that of counting: only the larger enters.
+    """
+    finest = int(curves["resolution"].min())
+    curve = map_curve(loading, curves, domains, finest)
+    accuracy = loading.solver.get("accuracy")
+    found = refine(curve, loading.settings, None if accuracy is None else accuracy["closure"])
+    values = curve.values()
+    windows, n_windows, effective = _window_spread(curve)
+    errors = {
+        "solver": _solver(curve),
+        "numerical": over_loads(curve.forces, found.error, _scale(curve), WIDENED),
+        "estimator": _estimator(curve),
+        "counting": counting_error(curve),
+        "window": over_loads(curve.forces, windows, _scale(curve)),
+        "registration": _registration(registration_spread, len(curve.forces)),
+        "resolution": _resolution(loading, curves, domains, curve),
+    }
+    reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
+    return _budget(curve, values, errors, found, reasons, (n_windows, effective))
+
+
+def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
+    """The dataset from its parts."""
+    each = np.stack([errors[source] for source in SOURCES], axis=1)
+    total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
+    sampling = np.fmax(errors["counting"], errors["window"])
+    if curve.loading.specimen.attrs["opposite"] == "scanned":
+        sampling = np.hypot(sampling, errors["registration"])
+    of_population = np.hypot(total, sampling)
+    size = np.abs(np.where(values == 0, np.nan, values))
+    side = float(np.sqrt(curve.space.cell_area))
+    n_windows, effective = windows
+    table: dict[str, Any] = {
+        "error": each,
+        "relative_error": each / size[:, np.newaxis],
+        "published": values,
+        "total": total,
+        "relative_total": total / size,
+        "total_of_population": of_population,
+        "relative_total_of_population": of_population / size,
+        "limit": found.limit,
+        "observed_order": found.order,
+        "finest_spacing": np.where(found.finest > 1, side / found.finest, np.nan),
+        "numerical_from": [_FROM[n] if found.finest.max() > 1 else "" for n in found.finest],
+        "unit": [unit for unit, _ in BUDGET_QUANTITIES.values()],
+        "meaning": [words for _, words in BUDGET_QUANTITIES.values()],
+        "reason": reasons,
+        "windows_solved": n_windows,
+        "windows_effective": effective,
+    }
+    coords = {
+        "quantity": list(BUDGET_QUANTITIES),
+        "source": list(SOURCES),
+        "normal_force": curve.curve["normal_force"],
+    }
+    attrs = {
+        "direction": curve.loading.direction,
+        "offset_mm": float(curve.loading.offsets[0]),
+        "resolution": curve.resolution,
+    }
+    budget = labelled_dataset(_TABLE, table, coords, attrs)
+    for name, words in (("quantity", "published quantity"), ("source", "source of error")):
+        budget[name].attrs = cf_attrs("1", words)
+    return budget
+
+
+def over_loads(
+    forces: np.ndarray, errors: np.ndarray, scale: np.ndarray, widened: float = 1.0
+) -> np.ndarray:
+    """Errors under all loads, from those under some: their fractions interpolated.
+
+    Parameters
+    ----------
+    forces : (n,) ndarray
+        N, ascending.
+    errors, scale : (quantity, n) ndarray
+        Errors, NaN under other loads; and what they are taken as fractions of.
+    widened : float
+        By what errors are multiplied that are not known but interpolated.
+
+    Returns
+    -------
+    (quantity, n) ndarray
+        The logarithm of the fraction is linear in that of the force between loads that are known;
+        beyond them the fraction is that of the last.
+    """
+    filled = errors.copy()
+    for row, error, size in zip(filled, errors, np.abs(scale), strict=True):
+        with np.errstate(all="ignore"):
+            fraction = np.log(np.maximum(error / size, np.finfo(float).tiny))
+        known = np.isfinite(error) & np.isfinite(fraction)
+        if known.any():
+            between = np.exp(np.interp(np.log(forces), np.log(forces[known]), fraction[known]))
+            row[~known] = widened * (between * size)[~known]
+    return filled
+
+
+def _scale(curve: LoadCurve) -> np.ndarray:
+    """What errors are interpolated as fractions of: the values, and of separations their length."""
+    scale = curve.values()
+    names = list(BUDGET_QUANTITIES)
+    # A separation may pass through zero, the length over which the pressure falls does not.
+    scale[names.index("separation")] = curve.decay_length()
+    return scale
+
+
+def _solver(curve: LoadCurve) -> np.ndarray:
+    """Solver error bounds, as the stages state them."""
+    states = curve.curve
+    return np.array(
+        [
+            states["interface_closure_error"].values,
+            states["closure_error"].values,
+            states["area_corrected_error"].values,
+            states["interface_stiffness_error"].values,
+            curve.domains["delta_sigma_error"].values,
+        ]
+    )
+
+
+def _estimator(curve: LoadCurve) -> np.ndarray:
+    """Spread between estimators: of Delta_sigma the published one and the minimal cover's slope."""
+    domains = curve.domains
+    spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
+    sides = np.log(domains["box_side"].values)
+    for i, value in enumerate(domains["delta_sigma"].values):
+        used = domains["box_used"].values[i].astype(bool)
+        count = np.log(np.where(used, domains["box_count"].values[i], np.nan))
+        spread[-1, i] = abs(-fit_line(sides, count).slope - value)
+    return spread
+
+
+def counting_error(curve: LoadCurve) -> np.ndarray:
+    """Error from the number of contacts, half-width at 95 %.
+
+    Parameters
+    ----------
+    curve : LoadCurve
+
+    Returns
+    -------
+    (quantity, normal_force) ndarray
+
+    Notes
+    -----
+    N clusters that lie independently are known to 1/sqrt(N) of themselves (Poisson), and so are
+    their area and, as long as contacts act side by side, their stiffness. At a given separation the
+    force varies by as much, so that at a given force the separation does by
+    l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the length over which the pressure falls by e.
+    Closure also counts from the highest of the heights, whose tail falls over that length: the
+    largest of many such scatters by pi/sqrt(6) l (Gumbel). What the published interval of
+    Delta_sigma holds beside the spread of estimators is the jackknife over parts of the window,
+    which counts contacts in its own way. Where more than half of the window touches there are no
+    separate contacts, and nothing but the area is known: f (1 - f) is the variance of a fraction f.
+    """
+    clusters = np.maximum(curve.domains["clusters"].values, 1.0)
+    touching = curve.curve["area_share"].values
+    fraction = t_quantile(np.inf) / np.sqrt(clusters)
+    length = np.where(touching > MOST_TOUCHING, np.nan, curve.decay_length())
+    summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
+    domains = curve.domains
+    half = (domains["delta_sigma_high"].values - domains["delta_sigma_low"].values) / 2
+    rest = np.sqrt(np.maximum(half**2 - _estimator(curve)[-1] ** 2, 0.0))
+    _, _, area, stiffness, _ = curve.values()
+    return np.array(
+        [
+            np.hypot(fraction * length, summit_spread),
+            fraction * length,
+            fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
+            np.where(touching > MOST_TOUCHING, np.nan, fraction * stiffness),
+            rest,
+        ]
+    )
+
+
+def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
+    """Spread over other windows under some loads, how many windows, and the area they cover."""
+    loading, values = curve.loading, curve.values()
+    spread = np.full(values.shape, np.nan)
+    composites, effective = other_composites(loading, int(loading.cells[0]))
+    places = chosen_loads(curve, named_loads(loading.settings))
+    limits = loading.settings["box_range"]
+    if not composites:
+        return spread, 1, effective
+    found = np.full((len(composites) + 1, *values.shape), np.nan)
+    found[0] = values
+    for i, (whole, mated) in enumerate(composites, 1):
+        composite = prefractal(whole, curve.resolution)
+        states = load_steps(
+            composite, curve.space, curve.forces[places], loading.solving, f"{curve.where}, windows"
+        )
+        for place, state in zip(places, states, strict=True):
+            numbers = state_quantities(state, float(composite.max()), mated)
+            dimension = domain_dimension(state, limits)
+            found[i, :, place] = [*numbers.values(), dimension]
+    spread[:, places] = window_spread(found[:, :, places], effective)
+    return spread, len(found), effective
+
+
+def _registration(spread: Mapping[str, ArrayLike] | None, loads: int) -> np.ndarray:
+    nothing = np.full(loads, np.nan)
+    rows = [np.asarray((spread or {}).get(name, nothing), float) for name in BUDGET_QUANTITIES]
+    return np.array([np.broadcast_to(row, loads) for row in rows])
+
+
+def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
+    """Change from twice the spacing: of another surface, its every second node."""
+    coarse = 2 * curve.resolution
+    if coarse not in curves["resolution"]:
+        return np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
+    coarser = map_curve(loading, curves, domains, coarse)
+    return np.abs(coarser.values() - curve.values())
+
+
+def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> np.ndarray:
+    """Why sources have no value, or are none, (quantity, source)."""
+    scanned = curve.loading.specimen.attrs["opposite"] == "scanned"
+    missing = {
+        "solver": "not stated for these states",
+        "numerical": "the grid is too large to refine, or the faces are flush"
+        if found.finest.max() == 1
+        else "not resolved at any load refined",
+        "estimator": "no dimension at any load",
+        "counting": "no stiffness of the interface, or no dimension, at any load",
+        "window": TOO_SMALL
+        if effective < FEWEST_EFFECTIVE
+        else "no value in every window at any load",
+        "registration": "no spread of registrations is known"
+        if scanned
+        else "one face was scanned: there is nothing to register",
+        "resolution": "twice the spacing is not solved",
+    }
+    if scanned and registered:
+        missing["registration"] = "not known of this quantity"
+    reasons = np.full((len(BUDGET_QUANTITIES), len(SOURCES)), "", object)
+    for i, name in enumerate(BUDGET_QUANTITIES):
+        for j, source in enumerate(SOURCES):
+            if not np.isfinite(errors[source][i]).any():
+                reasons[i, j] = missing[source]
+            elif source == "estimator" and name != "delta_sigma":
+                reasons[i, j] = _DEFINED
+    return reasons.astype(str)

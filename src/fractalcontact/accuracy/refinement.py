@@ -1,0 +1,274 @@
+"""States of a load curve solved again on finer grids, where they change a digit that is asked for.
+
+At s/2 a few loads are solved, at s/4 those of them whose closure changed by more than the study
+asks for; what lies between is interpolated.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..contact.state import ContactState
+from ..domain.box_dimension import dimension_of_domain
+from ..elastic.halfspace import HalfSpace
+from ..mechanics.loading import JointLoading
+from ..mechanics.numerical_error import NumericalError, closure_error, numerical_error
+from ..mechanics.states import forces_of
+from ..mechanics.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
+
+#: Cells of the largest grid at s/2, and at s/4: of a study, and of one that asks for all states.
+MOST_CELLS_HALF, MOST_CELLS, MOST_CELLS_FULL = 2**22, 2**20, 2**22
+#: Grids at s/4 of no more than this cost next to nothing and are solved at all loads chosen.
+CHEAP_CELLS = 2**18
+#: Tolerance of the refined states, in that of the study: their differences count.
+TIGHTER = 0.1
+
+#: Spacings compared, as divisors of the scan's.
+FACTORS = (1, 2, 4)
+
+#: Quantities of the budget, in its order: unit, long name.
+_OTHERS = {"delta_sigma": ("1", "Delta_sigma by box counting")}
+BUDGET_QUANTITIES = QUANTITIES | _OTHERS
+
+
+@dataclass(frozen=True, eq=False)
+class LoadCurve:
+    """The load curve of one offset at the finest resolution, whose errors are asked for.
+
+    Attributes
+    ----------
+    loading : JointLoading
+        At one offset.
+    composite : (ny, nx) ndarray
+        h, mm.
+    reference : float
+        Largest height at zero offset, mm, from which dilatancy counts; against a plane, the mean.
+    resolution : int
+    curve, domains : xr.Dataset
+        Stages ``closure`` and ``domains`` there, over normal_force.
+    """
+
+    loading: JointLoading
+    composite: np.ndarray
+    reference: float
+    resolution: int
+    curve: xr.Dataset
+    domains: xr.Dataset
+
+    @property
+    def forces(self) -> np.ndarray:
+        """F, N, ascending."""
+        return self.curve["normal_force"].values
+
+    @property
+    def space(self) -> HalfSpace:
+        """The half-space of its own grid."""
+        return self.loading.half_space(self.composite.shape, self.resolution)
+
+    @property
+    def where(self) -> str:
+        """What is loaded, for errors."""
+        return f"specimen {self.loading.specimen.attrs['name']}, errors"
+
+    def values(self) -> np.ndarray:
+        """Published values (quantity, normal_force) of :data:`BUDGET_QUANTITIES`."""
+        curve = self.curve
+        return np.array(
+            [
+                curve["interface_closure"].values,
+                self.composite.max() - self.reference - curve["closure"].values,
+                curve["area_corrected"].values,
+                curve["interface_stiffness"].values,
+                self.domains["delta_sigma"].values,
+            ]
+        )
+
+    def decay_length(self) -> np.ndarray:
+        """sigma_0/(d sigma/d w_int) (normal_force), mm: over it the pressure falls by e."""
+        pressure = self.forces / self.loading.area
+        return pressure / self.curve["interface_stiffness"].values
+
+
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """What finer grids say of a load curve.
+
+    Attributes
+    ----------
+    error, limit, order : (quantity, normal_force) ndarray
+        From :mod:`mechanics.numerical_error`; NaN where nothing was solved.
+    finest : (normal_force,) int ndarray
+        Divisor of the finest spacing solved, 1 where none was.
+    """
+
+    error: np.ndarray
+    limit: np.ndarray
+    order: np.ndarray
+    finest: np.ndarray
+
+
+def refined_loads(curve: LoadCurve, settings: Mapping[str, Any], *, all_states: bool) -> np.ndarray:
+    """Loads that are solved on finer grids.
+
+    Parameters
+    ----------
+    curve : LoadCurve
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    all_states : bool
+        Whether the study requests all states.
+
+    Returns
+    -------
+    (n,) int ndarray
+        Indices of its forces, ascending; none where the grid is too large or the faces are flush.
+    """
+    too_many = FACTORS[1] ** 2 * curve.composite.size > MOST_CELLS_HALF
+    if np.ptp(curve.composite) == 0 or too_many:
+        return np.empty(0, int)
+    if all_states:
+        return np.flatnonzero(_solved_loads(curve))
+    return chosen_loads(curve, named_loads(settings))
+
+
+def named_loads(settings: Mapping[str, Any]) -> list[tuple[float, str]]:
+    """Loads that figures show: those of the dilatancy and of the contact maps."""
+    return [*settings["dilatancy_loads"], settings["map_load"]]
+
+
+def chosen_loads(curve: LoadCurve, named: Sequence[tuple[float, str]]) -> np.ndarray:
+    """Loads by name, and with them the smallest and the largest, as far as they are solved.
+
+    Parameters
+    ----------
+    curve : LoadCurve
+    named : sequence of (float, str)
+        Of the settings.
+
+    Returns
+    -------
+    (n,) int ndarray
+        Indices of its forces, ascending.
+    """
+    known = _solved_loads(curve)
+    wanted = np.isin(curve.forces, forces_of(named, curve.loading.area))
+    if known.any():
+        wanted[np.flatnonzero(known)[[0, -1]]] = True
+    return np.flatnonzero(wanted & known)
+
+
+def _solved_loads(curve: LoadCurve) -> np.ndarray:
+    return np.isfinite(curve.curve["closure"].values) & (curve.curve["nodes"].values > 0)
+
+
+def refine(curve: LoadCurve, settings: Mapping[str, Any], asked: float | None) -> Refinement:
+    """Numerical errors of a load curve.
+
+    Parameters
+    ----------
+    curve : LoadCurve
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    asked : float or None
+        Error of a closure that the study asks for, a fraction; None where it requests all states.
+
+    Returns
+    -------
+    Refinement
+
+    Raises
+    ------
+    NotConverged
+        If a refined state could not be verified.
+    """
+    published = curve.values()
+    levels = np.full((len(FACTORS), *published.shape), np.nan)
+    levels[0] = published
+    places = refined_loads(curve, settings, all_states=asked is None)
+    finest = np.ones(len(curve.forces), int)
+    for level, factor in enumerate(FACTORS[1:], 1):
+        if level == 2:
+            places = _needing_more(curve, levels, places, asked)
+        for place, numbers in zip(places, _solved(curve, factor, places), strict=True):
+            levels[level, :, place] = numbers
+            finest[place] = factor
+    return _errors(curve, levels, finest)
+
+
+def _needing_more(curve, levels, places, asked) -> np.ndarray:
+    """Loads solved at s/4: their closure changed by more than is asked for, or they cost little."""
+    cells = FACTORS[2] ** 2 * curve.composite.size
+    if cells <= CHEAP_CELLS:
+        return places
+    if cells > (MOST_CELLS_FULL if asked is None else MOST_CELLS):
+        return np.empty(0, int)
+    change = np.abs(levels[1, 0] / levels[0, 0] - 1)
+    return places if asked is None else places[change[places] > asked]
+
+
+def _solved(curve, factor, places):
+    """Quantities of refined states, one row a load."""
+    if not places.size:
+        return
+    loading = curve.loading
+    solving = {**loading.solving, "rtol": TIGHTER * loading.solving["rtol"]}
+    forces = curve.forces[places]
+    states = subgrid_states(curve.composite, curve.space, factor, forces, solving, curve.where)
+    for place, (state, highest) in zip(places, states, strict=True):
+        numbers = state_quantities(state, highest, curve.reference)
+        limits = tuple(float(curve.domains[f"fit_{end}"][place]) for end in ("min", "max"))
+        yield [*numbers.values(), domain_dimension(state, limits)]
+
+
+def domain_dimension(state: ContactState, limits: tuple[float, float] | None) -> float:
+    """Delta_sigma of a state by box counting, over a range of boxes in mm; NaN without one."""
+    if limits is not None and not np.isfinite(limits).all():
+        return np.nan
+    side = float(np.sqrt(state.space.cell_area))
+    return dimension_of_domain(state.in_contact, side, fit_range=limits).dimension
+
+
+def _errors(curve, levels, finest) -> Refinement:
+    """Errors from the values at all spacings."""
+    rise = summit(curve.composite) - float(curve.composite.max())
+    errors = curve_errors(levels, curve.curve["area"].values, curve.decay_length(), rise)
+    solved = finest > 1
+    error, limit, order = (
+        np.where(solved, np.array(values), np.nan) for values in zip(*errors, strict=True)
+    )
+    return Refinement(error, limit, order, finest)
+
+
+def curve_errors(
+    levels: np.ndarray, raw_area: np.ndarray, decay_length: np.ndarray, rise: float
+) -> list[NumericalError]:
+    """Numerical errors of the quantities of a load curve.
+
+    Parameters
+    ----------
+    levels : (3, quantity, normal_force) ndarray
+        Quantities in the order of :data:`BUDGET_QUANTITIES`, those after the stiffness or not, at
+        s, s/2 and s/4; NaN where they were not solved.
+    raw_area, decay_length : (normal_force,) ndarray
+        N s^2, mm2, and sigma_0/(d sigma/d w_int), mm, at s.
+    rise : float
+        By how much the summit of the surface is above its highest node at s, mm.
+
+    Returns
+    -------
+    list of NumericalError
+        Of each quantity.
+    """
+    closures, separations, areas, stiffnesses, *others = levels.swapaxes(0, 1)
+    edge = (raw_area - areas[0]) / raw_area
+    length = decay_length * edge
+    return [
+        closure_error(closures[0], separations, length, rise),
+        numerical_error("separation", separations, length),
+        numerical_error("area_corrected", areas, areas[0] * edge),
+        numerical_error("stiffness", stiffnesses, stiffnesses[0] * edge),
+        *(numerical_error(name, other) for name, other in zip(_OTHERS, others, strict=False)),
+    ]

@@ -1,0 +1,44 @@
+"""Figure of the error budget."""
+
+import numpy as np
+import pytest
+from cases import representative
+
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.joint.errors import INTERPOLATED, LEAST, SOURCES, TOTALS
+from fractalcontact.figures.kit.drawing import print_style
+
+
+@pytest.mark.parametrize("name", representative(["sliding", "flat", "pair"], 3))
+def test_errors_drawn_are_those_of_the_budget(atlas, name):
+    budget = atlas[f"error_budget/{name}"].to_dataset()
+    with print_style():
+        drawing = drawer_of("errors")(atlas, name)
+    assert set(drawing.data["source"]) <= {*SOURCES, *TOTALS}
+    for (quantity, source), rows in drawing.data.groupby(["quantity", "source"]):
+        here = budget.sel(quantity=quantity)
+        stated = here[source] if source in TOTALS else here["relative_error"].sel(source=source)
+        np.testing.assert_array_equal(rows["relative_error"], stated)
+    # What is not drawn at all is unknown or zero at every load.
+    drawn = set(zip(drawing.data["quantity"], drawing.data["source"], strict=True))
+    for quantity in budget["quantity"].values:
+        for source in SOURCES:
+            errors = budget["relative_error"].sel(quantity=quantity, source=source)
+            assert ((str(quantity), source) in drawn) == bool((errors > 0).any())
+    at_map = budget.sel(normal_force=budget["normal_force"].max())
+    assert np.isfinite(at_map["relative_total"].sel(quantity="closure"))
+    assert "closure" in drawing.caption
+    assert "numerical" in drawing.caption
+
+
+def test_interpolated_errors_are_hollow(atlas):
+    budget = atlas["error_budget/sliding"].to_dataset()
+    with print_style():
+        drawing = drawer_of("errors")(atlas, "sliding")
+    axes = drawing.figure.axes[0]
+    (hollow,) = [line for line in axes.lines if line.get_label() == INTERPOLATED]
+    assert hollow.get_markerfacecolor() == "white"
+    interpolated = budget["normal_force"][np.isnan(budget["finest_spacing"])]
+    assert interpolated.size > 0
+    np.testing.assert_array_equal(hollow.get_xdata(), interpolated)
+    assert all((np.asarray(line.get_ydata()) >= LEAST).all() for line in axes.lines)
