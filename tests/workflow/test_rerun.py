@@ -69,7 +69,7 @@ def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):
     ):
         append(project, name)
     (project / "src/fractalcontact/stages/another.py").write_text("# its function\n")
-    assert set(planned(project)) == {"windows", "analysis_against_plane", "atlas"}
+    assert set(planned(project)) == {"windows", "size_laws_against_plane", "atlas"}
 
 
 def test_a_scan_replaced_by_an_older_file_is_read(project):
@@ -78,7 +78,7 @@ def test_a_scan_replaced_by_an_older_file_is_read(project):
     os.utime(project / "other.npy", (1_000_000_000, 1_000_000_000))
     os.replace(project / "other.npy", scan)
     jobs = planned(project)
-    assert jobs["specimen"] == jobs["contact"] == jobs["analysis_against_plane"] == 1
+    assert jobs["specimen"] == jobs["contact"] == jobs["analysis"] == 1
 
 
 def test_a_missing_scan_and_a_damaged_file_stop_everything(project):
