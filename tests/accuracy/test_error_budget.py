@@ -107,6 +107,15 @@ def test_totals_are_root_sums_of_squares(one):
     np.testing.assert_allclose(budget["relative_total"], budget["total"] / abs(budget["published"]))
 
 
+def test_an_undetermined_dimension_has_no_small_error(one):
+    _, domains, budget, _ = one
+    error = budget["error"].sel(quantity="delta_sigma", source="estimator").values
+    half = (domains["delta_sigma_high"] - domains["delta_sigma_low"]).values.squeeze() / 2
+    known = np.isfinite(half)
+    assert known.any()
+    assert (error[known] >= half[known] - 1e-12).all()
+
+
 def test_published_values_are_those_of_the_stages(one):
     loading, curves, budget, _ = one
     here = curves.sel(direction="E", resolution=1).isel(offset=1)

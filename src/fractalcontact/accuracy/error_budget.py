@@ -8,8 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from ..core.fitting import fit_line
-from ..core.intervals import t_quantile
+from ..core.intervals import INTERVAL, t_quantile
 from ..core.labels import cf_attrs
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
@@ -70,6 +69,7 @@ _TABLE = {
 
 _FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
 _DEFINED = "none: no estimator is chosen"
+_COUNTED = "none beside the estimator's interval, which leaves out parts of the window"
 
 
 def map_curve(
@@ -249,14 +249,17 @@ def _solver(curve: LoadCurve) -> np.ndarray:
 
 
 def _estimator(curve: LoadCurve) -> np.ndarray:
-    """Spread between estimators: of Delta_sigma the published one and the minimal cover's slope."""
+    """Choice of the estimator of Delta_sigma; no other quantity has one.
+
+    The published interval, which holds fit range, rival laws and parts of the window left out, or
+    the distance to the ordinary slope if that is larger: what Fig. 9 calls undetermined has no
+    small error here.
+    """
     domains = curve.domains
     spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
-    sides = np.log(domains["box_side"].values)
-    for i, value in enumerate(domains["delta_sigma"].values):
-        used = domains["box_used"].values[i].astype(bool)
-        count = np.log(np.where(used, domains["box_count"].values[i], np.nan))
-        spread[-1, i] = abs(-fit_line(sides, count).slope - value)
+    value, low, high = (domains[f"delta_sigma{end}"].values for end in INTERVAL)
+    other = np.abs(domains["delta_sigma_ordinary"].values - value)
+    spread[-1] = np.fmax(np.fmax(high - value, value - low), other)
     return spread
 
 
@@ -278,9 +281,8 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     force varies by as much, so that at a given force the separation does by
     l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the length over which the pressure falls by e.
     Closure also counts from the highest of the heights, whose tail falls over that length: the
-    largest of many such scatters by pi/sqrt(6) l (Gumbel). What the published interval of
-    Delta_sigma holds beside the spread of estimators is the jackknife over parts of the window,
-    which counts contacts in its own way. Where more than half of the window touches there are no
+    largest of many such scatters by pi/sqrt(6) l (Gumbel). The interval of Delta_sigma, which is
+    its estimator's error, counts contacts in its own way. Where more than half of the window touches there are no
     separate contacts, and nothing but the area is known: f (1 - f) is the variance of a fraction f.
     """
     clusters = np.maximum(curve.domains["clusters"].values, 1.0)
@@ -288,9 +290,6 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     fraction = t_quantile(np.inf) / np.sqrt(clusters)
     length = np.where(touching > MOST_TOUCHING, np.nan, curve.decay_length())
     summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
-    domains = curve.domains
-    half = (domains["delta_sigma_high"].values - domains["delta_sigma_low"].values) / 2
-    rest = np.sqrt(np.maximum(half**2 - _estimator(curve)[-1] ** 2, 0.0))
     _, _, area, stiffness, _ = curve.values()
     return np.array(
         [
@@ -298,7 +297,7 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
             fraction * length,
             fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
             np.where(touching > MOST_TOUCHING, np.nan, fraction * stiffness),
-            rest,
+            np.full(len(curve.forces), np.nan),
         ]
     )
 
@@ -351,7 +350,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         if found.finest.max() == 1
         else "not resolved at any load refined",
         "estimator": "no dimension at any load",
-        "counting": "no stiffness of the interface, or no dimension, at any load",
+        "counting": "no stiffness of the interface at any load",
         "window": TOO_SMALL
         if effective < FEWEST_EFFECTIVE
         else "no value in every window at any load",
@@ -365,7 +364,9 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
     reasons = np.full((len(BUDGET_QUANTITIES), len(SOURCES)), "", object)
     for i, name in enumerate(BUDGET_QUANTITIES):
         for j, source in enumerate(SOURCES):
-            if not np.isfinite(errors[source][i]).any():
+            if source == "counting" and name == "delta_sigma":
+                reasons[i, j] = _COUNTED
+            elif not np.isfinite(errors[source][i]).any():
                 reasons[i, j] = missing[source]
             elif source == "estimator" and name != "delta_sigma":
                 reasons[i, j] = _DEFINED
