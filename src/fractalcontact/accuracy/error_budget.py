@@ -282,8 +282,9 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the length over which the pressure falls by e.
     Closure also counts from the highest of the heights, whose tail falls over that length: the
     largest of many such scatters by pi/sqrt(6) l (Gumbel). The interval of Delta_sigma, which is
-    its estimator's error, counts contacts in its own way. Where more than half of the window touches there are no
-    separate contacts, and nothing but the area is known: f (1 - f) is the variance of a fraction f.
+    its estimator's error, counts contacts in its own way. Where more than half of the window
+    touches there are no separate contacts, and nothing but the area is known: f (1 - f) is the
+    variance of a fraction f.
     """
     clusters = np.maximum(curve.domains["clusters"].values, 1.0)
     touching = curve.curve["area_share"].values
