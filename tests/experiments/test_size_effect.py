@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.errors import InputError
+from fractalcontact.experiments.size_decision import paired_exponent
 from fractalcontact.experiments.size_effect_test import size_effect_test
 from fractalcontact.experiments.size_states import seed_of, solve_task
 from fractalcontact.mechanics.theory import (
@@ -15,7 +16,7 @@ from fractalcontact.mechanics.theory import (
     linear_area,
     persson_area,
 )
-from fractalcontact.study.size_tasks import size_tasks
+from fractalcontact.study.size_tasks import size_jobs, size_tasks
 from fractalcontact.surface.synthesis import band_limited, band_slope
 
 RECIPE = {
@@ -28,6 +29,12 @@ RECIPE = {
         "R": {"sizes": [64], "surfaces": [3], "cut_offs": [4, 8, 16]},
         "S1": {"sizes": [64, 96], "surfaces": [3, 2]},
         "S3": {"sizes": [64], "surfaces": [2]},
+        "W": {"sizes": [32, 64], "surfaces": [2, 2]},
+        "G": {
+            "sizes": [96],
+            "surfaces": [2],
+            "constructions": ["weierstrass-mandelbrot", "random-midpoint", "cantor-punch"],
+        },
     },
 }
 
@@ -59,6 +66,54 @@ def test_every_surface_has_a_job_of_its_own_or_shares_one():
     assert counted["S1", 0.8, 128, 8] == list(range(40))
     assert len(counted) == 2 * (2 + 2)
     assert max(task.surfaces for task in tasks if task.size == 4096) == 1
+
+
+def test_small_classes_share_a_job_and_large_ones_do_not():
+    jobs = size_jobs(RECIPE)
+    assert sorted(task for tasks in jobs.values() for task in tasks) == sorted(size_tasks(RECIPE))
+    assert {name: name == tasks[0].name for name, tasks in jobs.items()} == dict.fromkeys(
+        jobs, True
+    )
+    assert len(jobs) == 2 * len(RECIPE["arms"])
+    large = RECIPE | {"arms": {"S1": {"sizes": [64, 128, 1024], "surfaces": [4, 4, 40]}}}
+    sizes = sorted([task.size for task in tasks] for tasks in size_jobs(large).values())
+    assert sizes == 2 * [[128, 64]] + 6 * [[1024]]
+
+
+def test_windows_are_parts_of_the_surfaces_without_a_roll_off():
+    whole = next(t for t in size_tasks(RECIPE) if t.arm == "S3" and t.hurst == 0.5)
+    part = next(t for t in size_tasks(RECIPE) if t.arm == "W" and t.size == 32 and t.hurst == 0.5)
+    same = next(t for t in size_tasks(RECIPE) if t.arm == "W" and t.size == 64 and t.hurst == 0.5)
+    assert seed_of(whole, 1) == seed_of(part, 1) == seed_of(same, 1)
+    loads = RECIPE["loads"]
+    states = solve_task(same, loads, 1e-5)
+    # One window is the surface itself.
+    np.testing.assert_allclose(
+        states["corrected_share"], solve_task(whole, loads, 1e-5)["corrected_share"], rtol=1e-3
+    )
+    assert solve_task(part, loads, 1e-5)["nodes"].max() < states["nodes"].max()
+
+
+def test_windows_of_one_surface_have_its_exponent():
+    sides, surfaces = np.tile([1.0, 2.0, 4.0], 5), np.repeat(np.arange(5), 3)
+    # Surfaces that differ by a factor differ in no exponent.
+    exact = paired_exponent(sides, (1 + surfaces) * sides**-0.3, surfaces)
+    assert exact.value == pytest.approx(-0.3)
+    assert exact.error == pytest.approx(0, abs=1e-12)
+    noise = np.exp(np.random.default_rng(1).normal(0, 0.1, 15))
+    rough = paired_exponent(sides, sides**-0.3 * noise, surfaces)
+    assert rough.low < -0.3 < rough.high
+    assert np.isnan(paired_exponent(sides[:3], sides[:3], surfaces[:3]).error)
+
+
+def test_other_constructions_stand_beside_their_cuts(found):
+    assert list(found["construction"]) == [
+        "cantor-punch",
+        "random-midpoint",
+        "weierstrass-mandelbrot",
+    ]
+    delta = found["geometry_delta"].isel(reduced_pressure=-1)
+    assert ((delta > 0) & (delta < 2.1)).all()
 
 
 @pytest.mark.parametrize(
@@ -143,7 +198,10 @@ def test_fudged_area_is_near_published_computations(pressure):
 def test_states_are_physical(found):
     assert (found["residual"] < 1e-4).all()
     assert (found["corrected_share"] <= found["area_share"]).all()
-    assert (found["area_share"].diff("reduced_pressure") > 0).all()
+    # Plateaus of the punch touch as a whole.
+    rough = found.isel(surface=found["of_construction"].values != "cantor-punch")
+    assert (rough["area_share"].diff("reduced_pressure") > 0).all()
+    assert (found["area_share"].diff("reduced_pressure") >= 0).all()
     assert (found["separation"].diff("reduced_pressure") < 0).all()
     assert (found["separation"] > 0).all()
     np.testing.assert_allclose(found["nodes"], found["area_share"] * found["of_size"] ** 2)
@@ -164,7 +222,7 @@ def test_longer_cut_offs_leave_more_area(found):
 
 def test_everything_is_labelled(found):
     for name, variable in found.variables.items():
-        if name not in ("arm",):
+        if name not in ("arm", "construction"):
             assert variable.attrs.get("units"), name
             assert variable.attrs.get("long_name"), name
 
@@ -218,6 +276,7 @@ def _empty(task, loads):
         "of_hurst": np.full(task.surfaces, task.hurst),
         "of_size": np.full(task.surfaces, task.size),
         "of_cut_off": np.full(task.surfaces, task.cut_off),
+        "of_construction": np.array([task.construction] * task.surfaces),
         "number": np.arange(task.first, task.first + task.surfaces),
         "rms_slope": np.full(task.surfaces, float(task.cut_off) ** (task.hurst - 1)),
     }

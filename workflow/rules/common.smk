@@ -29,7 +29,7 @@ from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
 from fractalcontact.study.sidecar import sidecar_of_matrix
-from fractalcontact.study.size_tasks import size_tasks
+from fractalcontact.study.size_tasks import size_jobs
 
 SCHEMA = yaml.safe_load((Path(workflow.basedir) / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"

@@ -2,7 +2,7 @@
 
 
 # States of sub-windows, and the direct test of eq. 6. Laws of size are made of them by the rule
-# `analysis`, so that a friction angle solves nothing again.
+# `strength`, so that a friction angle solves nothing again.
 rule windows:
     input:
         **inputs_of("window_states"),
@@ -27,32 +27,34 @@ rule windows:
         "../scripts/stage.py"
 
 
-# The decisive experiment: surfaces of one class a job, minutes each, in any order.
-SIZE_TASKS = (
-    {task.name: task for task in size_tasks(config["size_effect"])}
-    if "size_effect" in config
-    else {}
-)
+# The decisive experiment: surfaces of one class a job, minutes each, in any order; small classes
+# share a job.
+SIZE_JOBS = size_jobs(config["size_effect"]) if "size_effect" in config else {}
+
+
+def largest_side(job):
+    """Nodes per side of the largest surface of a job."""
+    return max(task.whole or task.size for task in SIZE_JOBS[job])
 
 
 rule size_effect_part:
     output:
-        f"{RESULTS}/size_effect_parts/{{task}}.nc",
+        f"{RESULTS}/size_effect_parts/{{job}}.nc",
     log:
-        f"{RESULTS}/logs/size_effect_parts/{{task}}.log",
+        f"{RESULTS}/logs/size_effect_parts/{{job}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/size_effect_parts/{{task}}.tsv"
+        f"{RESULTS}/benchmarks/size_effect_parts/{{job}}.tsv"
     wildcard_constraints:
-        task=one_of(SIZE_TASKS),
+        job=one_of(SIZE_JOBS),
     # The longest first: begun last it would keep one core busy and the others idle.
     priority: 1
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: (1000 + SIZE_TASKS[wc.task].size ** 2 // 4000) * attempt,
+        mem_mb=lambda wc, attempt: (1000 + largest_side(wc.job) ** 2 // 4000) * attempt,
         runtime=lambda wc, attempt: 60 * attempt,
     params:
-        task=lambda wc: list(SIZE_TASKS[wc.task]),
+        tasks=lambda wc: [list(task) for task in SIZE_JOBS[wc.job]],
         loads=config.get("size_effect", {}).get("loads"),
         rtol=SOLVER["rtol"],
         code=code("size_effect_part"),
@@ -62,7 +64,7 @@ rule size_effect_part:
 
 rule size_effect:
     input:
-        parts=expand(rules.size_effect_part.output[0], task=SIZE_TASKS),
+        parts=expand(rules.size_effect_part.output[0], job=SIZE_JOBS),
     output:
         **outputs_of("size_effect"),
     log:

@@ -1,5 +1,6 @@
-"""Solve surfaces of one class of the experiment on the size effect."""
+"""Solve surfaces of one or more classes of the experiment on the size effect."""
 
+import xarray as xr
 from _job import job
 
 from fractalcontact.core import netcdf
@@ -8,6 +9,7 @@ from fractalcontact.study.size_tasks import SizeTask
 
 with job(snakemake) as log:
     params = snakemake.params
-    states = solve_task(SizeTask(*params.task), params.loads, params.rtol)
+    tasks = [SizeTask(*task) for task in params.tasks]
+    states = xr.concat([solve_task(task, params.loads, params.rtol) for task in tasks], "surface")
     netcdf.write(states, snakemake.output[0])
-    log.info("%s, largest residual %s", params.task, states.residual.max().item())
+    log.info("%s, largest residual %s", params.tasks, states.residual.max().item())

@@ -19,6 +19,7 @@ ARMS = {
     "S1": "roll-off fixed",
     "S2": "roll-off in proportion to the side",
     "S3": "no roll-off",
+    "W": "windows of surfaces without a roll-off",
 }
 
 

@@ -106,6 +106,31 @@ def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
     return Exponent(value, error, value - half, value + half)
 
 
+def paired_exponent(sides: np.ndarray, values: np.ndarray, surfaces: np.ndarray) -> Exponent:
+    """Exponent of a positive quantity over the side, from windows of the same surfaces.
+
+    Parameters
+    ----------
+    sides, values, surfaces : (n,) array_like
+        Side, mean over the windows of that side, and the number of the surface they are cut from.
+
+    Returns
+    -------
+    Exponent
+        Mean over the surfaces of the slopes that each has; its interval is over surfaces.
+    """
+    sides, values, surfaces = (np.asarray(one) for one in (sides, values, surfaces))
+    usable = np.isfinite(values) & (values > 0)
+    slopes = []
+    for surface in np.unique(surfaces):
+        here = usable & (surfaces == surface)
+        x = np.log(sides[here])
+        lever = x - x.mean() if x.size else x
+        if np.any(lever):
+            slopes.append(float(lever @ np.log(values[here]) / (lever @ lever)))
+    return mean_exponent(np.array(slopes))
+
+
 class Decision(NamedTuple):
     """What one class of surfaces, at one load, says of eq. 6."""
 

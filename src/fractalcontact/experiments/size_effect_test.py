@@ -1,8 +1,9 @@
 """The decisive experiment on eq. 6: resolution, size and geometry of the contact varied one by one.
 
 Arm R varies the short cut-off at one size, S1, S2 and S3 vary the size at one short cut-off, with a
-fixed roll-off, one in proportion to the size, and none. What the classical theory (Persson's) says
-of each stands beside it, from the spectra of the very surfaces.
+fixed roll-off, one in proportion to the size, and none; W those of windows cut from one surface. G
+has surfaces of other constructions. What the classical theory (Persson's) says of each stands
+beside it, from the spectra of the very surfaces.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,11 +24,12 @@ from .size_decision import (
     differ,
     mean_exponent,
     overall,
+    paired_exponent,
     size_exponent,
 )
 
 #: Arms that vary the size.
-SIZE_ARMS = ("S1", "S2", "S3")
+SIZE_ARMS = ("S1", "S2", "S3", "W")
 
 #: Exponents over the side that every arm of sizes has: long name.
 OVER_SIDE = {
@@ -44,6 +46,11 @@ DIMENSIONS = {
     "box_delta": "Delta_sigma by box counts, largest surfaces of arm S1",
     "band_delta": "correlation dimension between cut-off and roll-off, finest surfaces of arm R",
     "cut_delta": "the same of the bearing-area cut",
+}
+#: What arm G gives.
+GEOMETRY = {
+    "geometry_delta": "correlation dimension of the contact domain, other constructions",
+    "geometry_cut": "the same of the bearing-area cut",
 }
 _ENDS = {"": "", "_error": ", standard error", "_low": ", lower 99 %", "_high": ", upper 99 %"}
 
@@ -63,11 +70,13 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     xr.Dataset
         The states of all surfaces; :data:`OVER_SIDE` over (arm, hurst, reduced_pressure) and
         :data:`DIMENSIONS` over (hurst, reduced_pressure), each with ``_error``, ``_low`` and
-        ``_high`` over surfaces (99 %); ``verdict``, ``reason`` and ``no_size_effect`` over (arm,
-        hurst, reduced_pressure); ``overall`` over (arm, hurst). Attribute ``summary``.
+        ``_high`` over surfaces (99 %), as are :data:`GEOMETRY` over (construction, hurst,
+        reduced_pressure) where there is an arm G; ``verdict``, ``reason`` and ``no_size_effect``
+        over (arm, hurst, reduced_pressure); ``overall`` over (arm, hurst). Attribute ``summary``.
     """
     samples = xr.concat(parts, "surface")
-    samples = samples.sortby(["of_arm", "of_hurst", "of_size", "of_cut_off", "number"])
+    order = ["of_arm", "of_construction", "of_hurst", "of_size", "of_cut_off", "number"]
+    samples = samples.sortby(order)
     samples["persson_share"] = _persson(samples)
     hursts, loads = np.unique(samples["of_hurst"]), samples["reduced_pressure"].values
     arms = [arm for arm in SIZE_ARMS if (samples["of_arm"] == arm).any()]
@@ -79,6 +88,9 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     by_class = _over_side(samples, arms, hursts, smallest)
     for name, found in by_class.items():
         values |= _columns(name, found, (len(arms), *shape))
+    constructions = np.unique(samples["of_construction"].values[samples["of_arm"] == "G"])
+    for name, found in _geometry(samples, constructions, hursts).items():
+        values |= _columns(name, found, (len(constructions), *shape))
     decisions = _decisions(by_class["alpha"], values, (len(arms), *shape))
     values |= {
         "verdict": _texts(decisions, lambda one: one.verdict, (len(arms), *shape)),
@@ -90,6 +102,7 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     }
     coords = {
         "arm": arms,
+        "construction": constructions,
         "hurst": ("hurst", hursts, cf_attrs("1", "Hurst exponent H")),
         "reduced_pressure": samples["reduced_pressure"],
     }
@@ -106,7 +119,12 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
 def _table() -> dict[str, tuple]:
     of_class, of_surface = ("arm", "hurst", "reduced_pressure"), ("hurst", "reduced_pressure")
     table: dict[str, tuple] = {}
-    for words, dims in ((OVER_SIDE, of_class), (DIMENSIONS, of_surface)):
+    of_geometry = ("construction", *of_surface)
+    for words, dims in (
+        (OVER_SIDE, of_class),
+        (DIMENSIONS, of_surface),
+        (GEOMETRY, of_geometry),
+    ):
         for name, long_name in words.items():
             table |= {f"{name}{end}": (dims, "1", long_name + of) for end, of in _ENDS.items()}
     return table | {
@@ -169,7 +187,23 @@ def _over_side(samples, arms, hursts, smallest) -> dict[str, list[Exponent]]:
             }
             for name, column in columns.items():
                 rows = column.transpose("reduced_pressure", "surface").values
-                found[name] += [size_exponent(sides, row) for row in rows]
+                if arm == "W":  # windows of one surface are no independent surfaces
+                    numbers = one["number"].values
+                    found[name] += [paired_exponent(sides, row, numbers) for row in rows]
+                else:
+                    found[name] += [size_exponent(sides, row) for row in rows]
+    return found
+
+
+def _geometry(samples, constructions, hursts) -> dict[str, list[Exponent]]:
+    """:data:`GEOMETRY` of every construction, Hurst exponent and load."""
+    found: dict[str, list[Exponent]] = {name: [] for name in GEOMETRY}
+    for construction in constructions:
+        for hurst in hursts:
+            one = _of(samples, arm="G", construction=construction, hurst=hurst)
+            for name, column in zip(GEOMETRY, ("band_dimension", "cut_dimension"), strict=True):
+                rows = one[column].transpose("reduced_pressure", "surface").values
+                found[name] += [mean_exponent(row) for row in rows]
     return found
 
 

@@ -14,19 +14,23 @@ import xarray as xr
 from ..contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
+from ..core.mean_plane import without_mean_plane
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement
 from ..mechanics.sweep import load_steps
-from ..study.size_tasks import ARMS, SizeTask
+from ..study.embedded import embedded_surface
+from ..study.size_tasks import SizeTask
 from ..surface.synthesis import band_limited, band_slope
 from .units import E_STAR, SPACING
 
 #: Prefactor C_0 of the spectrum, mm^(2 - 2H): nothing depends on it, for pressures are in units of
 #: E* h'_rms.
 PREFACTOR = 1e-6
+#: Standard deviation of the heights of other constructions, mm: nothing depends on it either.
+RMS = 1e-2
 
 _STATE = ("surface", "reduced_pressure")
 #: What is kept of every state: dimensions, unit and long name.
@@ -55,6 +59,7 @@ SURFACES: dict[str, tuple] = {
         "1",
         "longest self-affine wavelength, nodes; none without a roll-off",
     ),
+    "of_construction": ("surface", "1", "construction of the surface; none of a spectrum"),
     "number": ("surface", "1", "number of the surface in its class"),
     "rms_slope": ("surface", "1", "h'_rms of the surface, from its waves"),
     "rms_height": ("surface", "mm", "h_rms of the surface about its mean plane"),
@@ -84,16 +89,16 @@ def solve_task(task: SizeTask, loads: Sequence[float], rtol: float) -> xr.Datase
         If a state could not be verified; the message names it.
     """
     pressures = np.unique(loads)
-    slope = _mean_slope(task._replace(cut_off=task.finest))
     numbers = range(task.first, task.first + task.surfaces)
-    each = [_one_surface(task, number, pressures * slope, slope, rtol) for number in numbers]
-    values = {name: np.array([one[name] for one in each]) for name in each[0]}
+    each = [_one_surface(task, number, pressures, rtol) for number in numbers]
+    values: dict[str, Any] = {name: np.array([one[name] for one in each]) for name in each[0]}
     of_class = {
         "of_arm": np.array([task.arm] * task.surfaces),
         "of_hurst": np.full(task.surfaces, task.hurst),
         "of_size": np.full(task.surfaces, task.size),
         "of_cut_off": np.full(task.surfaces, task.cut_off),
         "of_roll_off": np.full(task.surfaces, np.nan if task.roll_off is None else task.roll_off),
+        "of_construction": np.array([task.construction] * task.surfaces),
         "number": np.array(numbers),
     }
     return labelled_dataset(
@@ -116,42 +121,87 @@ def _mean_slope(task: SizeTask) -> float:
     return band_slope((task.size, task.size), SPACING, task.hurst, **_class_of(task))
 
 
+#: Streams of seeds: windows are cut from the surfaces of arm S3.
+_STREAMS = {"R": 0, "S1": 1, "S2": 2, "S3": 3, "W": 3, "G": 4}
+
+
 def seed_of(task: SizeTask, number: int) -> int:
     """Seed of a surface: one for all cut-offs, so that each is the same surface, filtered."""
-    arm = sorted(ARMS).index(task.arm)
-    entropy = (arm, round(1000 * task.hurst), task.size, number)
+    entropy = (_STREAMS[task.arm], round(1000 * task.hurst), task.whole or task.size, number)
     return int(np.random.SeedSequence(entropy).generate_state(1)[0])
 
 
-def _one_surface(
-    task: SizeTask, number: int, pressures: np.ndarray, slope: float, rtol: float
-) -> dict[str, Any]:
-    """Numbers of one surface, those of its states over the loads."""
-    shape = (task.size, task.size)
-    heights = band_limited(
-        shape, SPACING, task.hurst, seed=seed_of(task, number), **_class_of(task)
+def _surface(task: SizeTask, number: int) -> np.ndarray:
+    """Heights of a surface, mm; of arm W the whole from which windows are cut."""
+    seed, side = seed_of(task, number), task.whole or task.size
+    if not task.construction:
+        return band_limited((side, side), SPACING, task.hurst, seed=seed, **_class_of(task))
+    return embedded_surface(
+        {
+            "size": side * SPACING,
+            "spacing": SPACING,
+            "outline": "square",
+            "construction": task.construction,
+            "dimension": 3 - task.hurst,
+            "rms": RMS,
+            "roll_off": None,
+            "seed": seed,
+        }
     )
-    space = HalfSpace(shape, (SPACING, SPACING), E_STAR)
-    forces = pressures * E_STAR * task.size**2 * SPACING**2
-    where = f"{task.name}, surface {number}"
-    states = load_steps(heights, space, forces, {"rtol": rtol}, where)
-    band = task.cut_off * SPACING, (task.roll_off or task.size / 8) * SPACING
-    rows = [_numbers_of(state, heights, slope, band) for state in states]
-    own = {
+
+
+def _windows(heights: np.ndarray, size: int) -> list[np.ndarray]:
+    """Windows that a surface falls into, each about its own mean plane."""
+    return [
+        without_mean_plane(heights[y : y + size, x : x + size])
+        for y in range(0, len(heights) - size + 1, size)
+        for x in range(0, len(heights) - size + 1, size)
+    ]
+
+
+def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float) -> dict[str, Any]:
+    """Numbers of one surface, those of its states over the loads: means over its windows."""
+    whole = _surface(task, number)
+    windows = [whole] if task.whole is None else _windows(whole, task.size)
+    if task.construction:
+        slope = own = float(np.sqrt(sum(np.mean(d**2) for d in np.gradient(whole, SPACING))))
+    else:
+        slope = _mean_slope(task._replace(cut_off=task.finest))
         # Not differences of nodes: those of waves of a few nodes are too small.
-        "rms_slope": _mean_slope(task),
-        "rms_height": float(np.sqrt(np.mean(heights**2))),
+        own = _mean_slope(task)
+    space = HalfSpace(windows[0].shape, (SPACING, SPACING), E_STAR)
+    forces = pressures * slope * E_STAR * windows[0].size * SPACING**2
+    band = task.cut_off * SPACING, (task.roll_off or len(windows[0]) / 8) * SPACING
+    where = f"{task.name}, surface {number}"
+    # One for all windows, so that means of what is divided by it are means of the quantity.
+    rms = float(np.mean([np.sqrt(np.mean(heights**2)) for heights in windows]))
+    found = [
+        [
+            _numbers_of(state, heights, rms, slope, band)
+            for state in load_steps(heights, space, forces, {"rtol": rtol}, where)
+        ]
+        for heights in windows
+    ]
+    means = {
+        name: _known_mean(np.array([[row[name] for row in rows] for rows in found], float))
+        for name in STATES
     }
-    return own | {name: [row[name] for row in rows] for name in rows[0]}
+    return {"rms_slope": own, "rms_height": rms} | means
+
+
+def _known_mean(values: np.ndarray) -> np.ndarray:
+    """Mean over the first axis of what is known, NaN where nothing is."""
+    known = np.isfinite(values)
+    with np.errstate(invalid="ignore"):
+        return np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
 
 
 def _numbers_of(
-    state: ContactState, heights: np.ndarray, slope: float, band: tuple[float, float]
+    state: ContactState, heights: np.ndarray, rms: float, slope: float, band: tuple[float, float]
 ) -> dict[str, float]:
     """:data:`STATES` of one state."""
     domain, space = state.in_contact, state.space
     side = len(heights) * SPACING
-    rms = float(np.sqrt(np.mean(heights**2)))
     centre = slice(len(heights) // 4, len(heights) - len(heights) // 4)
     central = domain[centre, centre]
     bulk = bulk_settlement(state.force, E_STAR, side, side) / state.force

@@ -5,7 +5,6 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
-        "ARMS": ".size_tasks",
         "STAGES": ".atlas",
         "SizeTask": ".size_tasks",
         "accuracy_figures_of": ".figure_list",
@@ -24,6 +23,7 @@ __getattr__, __dir__, __all__ = exports(
         "resolve_settings": ".configuration",
         "resolve_study": ".checks",
         "sidecar_of_matrix": ".sidecar",
+        "size_jobs": ".size_tasks",
         "solver_settings": ".configuration",
         "study_figures_of": ".figure_list",
         "study_name": ".documents",

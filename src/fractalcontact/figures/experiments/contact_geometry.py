@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -19,32 +20,65 @@ _CURVES = (
     ("band_delta", "elastic contact", "o", "-"),
     ("cut_delta", "bearing-area cut", "s", "--"),
 )
+_OTHERS = (
+    ("geometry_delta", "elastic contact", "o", "-"),
+    ("geometry_cut", "bearing-area cut", "s", "--"),
+)
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """Correlation dimension between the cut-offs against load, a panel for each Hurst exponent."""
+    """Correlation dimension of contact and of its null models against load.
+
+    A panel for each Hurst exponent of arm R and, below, for each construction of arm G.
+    """
     test = group(atlas, "size_effect", "surfaces")
-    hursts = test["hurst"].values
-    figure = Figure(figsize=(WIDTH, 3.4))
-    panels = np.atleast_1d(figure.subplots(1, len(hursts), sharey=True))
-    load = test["reduced_pressure"].values
-    for which, axes, hurst in zip("abcdefgh", panels, hursts, strict=False):
-        one = test.sel(hurst=hurst)
-        for i, (name, label, marker, line) in enumerate(_CURVES):
-            low, high = one[f"{name}_low"], one[f"{name}_high"]
-            error = [one[name] - low, high - one[name]]
-            style = {"marker": marker, "ls": line, "color": colour_of(i + 1)}
-            axes.errorbar(load, one[name], yerr=error, label=label, **style)
-        axes.axhline(2, color="k", lw=0.8, label="random nodes")
+    hursts, constructions = test["hurst"].values, test["construction"].values
+    rows = 2 if constructions.size else 1
+    figure = Figure(figsize=(WIDTH, 0.9 + 2.5 * rows))
+    parts = np.atleast_1d(figure.subfigures(rows, 1))
+    letters = iter("abcdefghijkl")
+    panels = np.atleast_1d(parts[0].subplots(1, len(hursts), sharey=True))
+    for axes, hurst in zip(panels, hursts, strict=True):
+        _draw_curves(axes, test.sel(hurst=hurst), _CURVES, colours=(1, 2))
         axes.axhline(1 + hurst, color="0.5", lw=0.8, ls=":", label="$1+H$")
-        axes.set_xscale("log")
-        axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$")
-        letter(axes, which, f"$H$ = {hurst:g}")
+        letter(axes, next(letters), f"$H$ = {hurst:g}")
     panels[0].set_ylabel("correlation dimension $D_2$")
-    legends_below(figure, entries(panels[0])[:2], entries(panels[0])[2:])
-    columns = [f"{name}{end}" for name, *_ in _CURVES for end in ("", "_low", "_high")]
-    table = test[columns].to_dataframe().reset_index()
-    return Drawing(figure, table, _caption(test))
+    handles = entries(panels[0])
+    if constructions.size:
+        others = np.atleast_1d(parts[1].subplots(1, len(constructions), sharey=True))
+        for axes, name in zip(others, constructions, strict=True):
+            for i, hurst in enumerate(hursts):
+                one = test.sel(construction=name, hurst=hurst)
+                _draw_curves(axes, one, _OTHERS, colours=(i + 3, i + 3), of=f", $H$ = {hurst:g}")
+            letter(axes, next(letters), str(name))
+        others[0].set_ylabel("correlation dimension $D_2$")
+        legends_below(parts[0], handles)
+        legends_below(parts[1], entries(others[0]))
+    else:
+        legends_below(figure, handles)
+    return Drawing(figure, _table(test), _caption(test))
+
+
+def _draw_curves(axes, one, curves, *, colours, of="") -> None:
+    """Dimension of the contact domain and of its cut, beside that of random nodes."""
+    load = one["reduced_pressure"].values
+    for (name, label, marker, line), colour in zip(curves, colours, strict=True):
+        low, high = one[f"{name}_low"], one[f"{name}_high"]
+        error = [one[name] - low, high - one[name]]
+        style = {"marker": marker, "ls": line, "color": colour_of(colour)}
+        axes.errorbar(load, one[name], yerr=error, label=f"{label}{of}", **style)
+    axes.axhline(2, color="k", lw=0.8, label="random nodes" if not of else None)
+    axes.set_xscale("log")
+    axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$")
+
+
+def _table(test) -> pd.DataFrame:
+    """One row a Hurst exponent, load and (of arm G) construction."""
+    tables = []
+    for curves in (_CURVES, _OTHERS):
+        columns = [f"{name}{end}" for name, *_ in curves for end in ("", "_low", "_high")]
+        tables.append(test[columns].to_dataframe().reset_index())
+    return pd.concat(tables, ignore_index=True)
 
 
 def _caption(test) -> str:
@@ -55,11 +89,9 @@ def _caption(test) -> str:
     rising = float((test["band_delta"].isel(reduced_pressure=-1) - test["band_delta"][:, 0]).mean())
     return (
         f"{supplementary('synthetic surfaces, arm R, finest cut-off')} Correlation dimension of "
-        "the "
-        "contact domain between cut-off and roll-off; bars: 99 % over surfaces. It differs from "
-        "the "
-        f"bearing-area cut's by {number(float(apart.min()))} to {number(float(apart.max()))}, "
-        f"beyond both intervals at {int(beyond.sum())} of {beyond.size} states, and rises with "
-        "load "
-        f"by {number(rising)}: no dimension of its own."
+        "the contact domain between cut-off and roll-off; bars: 99 % over surfaces. It differs "
+        f"from the bearing-area cut's by {number(float(apart.min()))} to "
+        f"{number(float(apart.max()))}, beyond both intervals at {int(beyond.sum())} of "
+        f"{beyond.size} states, and rises with load by {number(rising)}: no dimension of its own."
+        f"{' Below: other constructions.' if test.sizes['construction'] else ''}"
     )

@@ -32,6 +32,7 @@ _ARMS = {
     "S1": "roll-off fixed",
     "S2": "roll-off in proportion to $b$",
     "S3": "no roll-off",
+    "W": "windows of surfaces like S3",
 }
 #: Estimators of Delta_sigma: variable, words, filled.
 _ESTIMATORS = (("area_delta", "$A_r(s)$", True), ("box_delta", "box counts", False))
@@ -42,14 +43,19 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """alpha of every class and load against what eq. 6 wants by both estimators."""
     test = group(atlas, "size_effect", "surfaces")
     arms = test["arm"].values
-    figure = Figure(figsize=(WIDTH, 4.1))
-    panels = np.atleast_1d(figure.subplots(1, len(arms), sharey=True))
+    columns = min(len(arms), 2)
+    rows = -(-len(arms) // columns)
+    figure = Figure(figsize=(WIDTH, 1.1 + 3 * rows))
+    panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
     table = _table(test)
-    for which, axes, arm in zip("abc", panels, arms, strict=False):
+    for axes in panels.ravel()[len(arms) :]:
+        axes.remove()
+    for which, axes, arm in zip("abcd", panels.ravel(), arms, strict=False):
         _draw_arm(axes, table[table["arm"] == arm], test)
         letter(axes, which, f"{arm}: {_ARMS[str(arm)]}")
         axes.set_xlabel(r"eq. 6: $-(2-\Delta_\sigma)$")
-    panels[0].set_ylabel(r"found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$")
+    for axes in panels[:, 0]:
+        axes.set_ylabel(r"found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$")
     legends_below(figure, _classes(test), _loads(test), _lines())
     return Drawing(figure, table, _caption(test, table))
 
