@@ -35,7 +35,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     hursts, constructions = test["hurst"].values, test["construction"].values
     rows = 2 if constructions.size else 1
     figure = Figure(figsize=(WIDTH, 0.9 + 2.5 * rows))
-    parts = np.atleast_1d(figure.subfigures(rows, 1))
+    parts = np.ravel(figure.subfigures(rows, 1, squeeze=False))
     letters = iter("abcdefghijkl")
     panels = np.atleast_1d(parts[0].subplots(1, len(hursts), sharey=True))
     for axes, hurst in zip(panels, hursts, strict=True):
