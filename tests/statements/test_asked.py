@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fractalcontact.stages.atlas import chosen_for, is_capped_variant
 from fractalcontact.statements.judge import all_statements
-from fractalcontact.study.configuration import resolve_embedded
+from fractalcontact.study.configuration import resolve_embedded, resolve_settings
+from fractalcontact.study.selection import chosen_for, is_capped_variant
 
 ROOT = Path(__file__).parents[2]
 NAMES = {s.check.__name__ for s in all_statements()}
@@ -43,6 +43,15 @@ def test_the_capped_twin_repeats_the_other(paper):
     variants = [name for name in paper["embedded"] if is_capped_variant(paper, name)]
     assert variants == ["sandstone_capped"]
     assert not is_capped_variant(paper, "a scan")
+
+
+def test_settings_hold_it_for_the_atlas_that_figures_of_one_specimen_are_drawn_from(paper):
+    twin, capped = (
+        resolve_settings(paper, name, {}, "paper")
+        for name in ("sandstone_twin", "sandstone_capped")
+    )
+    assert twin["chosen_for"] == chosen_for(paper, "sandstone_twin")
+    assert (twin["capped_variant"], capped["capped_variant"]) == (False, True)
 
 
 def test_another_surface_or_no_other_hardness_repeats_nothing(paper):

@@ -52,34 +52,17 @@ def join_stages(
     )
 
 
-def chosen_for(study: Mapping, name: str) -> dict[str, str]:
-    """Statements that an embedded specimen was chosen for, and how, as the study says."""
-    return dict(study.get("embedded", {}).get(name, {}).get("chosen_for", {}))
-
-
-def is_capped_variant(study: Mapping, name: str) -> bool:
-    """Whether an embedded specimen with a hardness stands in the study once more without one."""
-    embedded = study.get("embedded", {})
-    if name not in embedded or not _has_hardness(study, name):
-        return False
-    return any(
-        _surface_of(embedded[other]) == _surface_of(embedded[name])
-        and not _has_hardness(study, other)
-        for other in embedded.keys() - {name}
-    )
-
-
 def _judged(of_joints, configuration):
     """Statements of every specimen and, where there are several, of the study."""
     if not of_joints:
         return {}
-    study, settings = configuration["study"], configuration["settings"]
-    variants = {name for name in of_joints if is_capped_variant(study, name)}
+    settings = configuration["settings"]
+    variants = {name for name in of_joints if settings[name]["capped_variant"]}
     judged = {
         name: judge(
             stages,
             settings[name],
-            circular=chosen_for(study, name),
+            circular=settings[name]["chosen_for"],
             capped_variant=name in variants,
         )
         for name, stages in of_joints.items()
@@ -88,15 +71,3 @@ def _judged(of_joints, configuration):
     # The atlas of one specimen, which its figures are drawn from, has no study to judge.
     several = {"study_statements": {WHOLE: judge_study(own, settings)}} if len(own) > 1 else {}
     return {"statements": judged, **several}
-
-
-def _surface_of(recipe):
-    """What makes the surface of an embedded specimen: its recipe but for words."""
-    return {key: value for key, value in recipe.items() if key not in ("label", "chosen_for")}
-
-
-def _has_hardness(study, name):
-    """Whether the study caps the pressure of a specimen."""
-    stated = {**study["defaults"], **study.get("specimens", {}).get(name, {})}["material"]
-    definition = stated if isinstance(stated, Mapping) else study["materials"][stated]
-    return "hardness" in definition

@@ -7,6 +7,7 @@ from ..core.errors import InputError
 from ..core.tolerance import tolerance
 from ..core.units import load, quantity, share
 from .schema import nearest
+from .selection import chosen_for, is_capped_variant
 
 #: Nodes per side of an embedded specimen: a surface of that many takes some 35 GB to make.
 FEWEST_NODES, MOST_NODES = 2, 16384
@@ -56,6 +57,8 @@ def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source
     settings = {
         "label": stated.get("label", recipe.get("label", name)),
         "known_dimension": float(recipe.get("dimension", math.nan)),
+        "chosen_for": chosen_for(config, name),
+        "capped_variant": is_capped_variant(config, name),
         "material": _material(config, stated["material"], stated.where("material"), source),
         "opposite": stated.get("opposite", "match"),
         "outliers": stated.get("outliers", "keep"),

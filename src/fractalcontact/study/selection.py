@@ -1,0 +1,34 @@
+"""How the embedded specimens of a study were chosen, and which of them are one surface twice."""
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def chosen_for(study: Mapping[str, Any], name: str | None) -> dict[str, str]:
+    """Statements that an embedded specimen was chosen for, and how, as the study says."""
+    return dict(study.get("embedded", {}).get(name, {}).get("chosen_for", {}))
+
+
+def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
+    """Whether an embedded specimen with a hardness stands in the study once more without one."""
+    embedded = study.get("embedded", {})
+    if name not in embedded or not _has_hardness(study, name):
+        return False
+    return any(
+        _surface_of(embedded[other]) == _surface_of(embedded[name])
+        and not _has_hardness(study, other)
+        for other in embedded.keys() - {name}
+    )
+
+
+def _surface_of(recipe):
+    """What makes the surface of an embedded specimen: its recipe but for words."""
+    return {key: value for key, value in recipe.items() if key not in ("label", "chosen_for")}
+
+
+def _has_hardness(study, name):
+    """Whether the study caps the pressure of a specimen."""
+    stated = {**study["defaults"], **study.get("specimens", {}).get(name, {})}["material"]
+    # An unknown material is refused where it is resolved.
+    definition = stated if isinstance(stated, Mapping) else study["materials"].get(stated, {})
+    return "hardness" in definition
