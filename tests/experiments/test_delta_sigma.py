@@ -35,15 +35,15 @@ def capped():
 def test_domain_that_fills_the_window_has_dimension_2(capped):
     full = capped.isel(capped_pressure=-1)
     assert (full["capped_area_share"] > 0.97).all()
-    assert full["capped_mean_delta_area"].item() == pytest.approx(2, abs=0.02)
-    assert full["capped_mean_delta_box"].item() == pytest.approx(2, abs=0.02)
-    assert (capped["capped_mean_delta_box"].diff("capped_pressure") > 0).all()
+    assert full["capped_mean_delta_sigma_area"].item() == pytest.approx(2, abs=0.02)
+    assert full["capped_mean_delta_sigma_box"].item() == pytest.approx(2, abs=0.02)
+    assert (capped["capped_mean_delta_sigma_box"].diff("capped_pressure") > 0).all()
     assert (capped["capped_area_share"].diff("capped_pressure") > 0).all()
 
 
 def test_area_follows_the_light_load_theory(found):
     # A_r = kappa F / (E* h'_rms) and h'_rms ~ s^(H - 1).
-    light = found["mean_delta_area"].sel(reduced_pressure=0.01)
+    light = found["mean_delta_sigma_area"].sel(reduced_pressure=0.01)
     np.testing.assert_allclose(
         light, found["light_load_delta"].values[:, None] + 0 * light, atol=0.2
     )
@@ -59,14 +59,14 @@ def test_boxes_are_counted_on_the_same_state(found):
     domain = solve_contact(surface, space, force=force).in_contact
     assert int(chosen["nodes"].sel(resolution=1)) == domain.sum()
     box = dimension_of_domain(domain, SIDE / size)
-    assert float(chosen["delta_box"]) == pytest.approx(box.dimension)
+    assert float(chosen["delta_sigma_box"]) == pytest.approx(box.dimension)
     assert float(chosen["boxes_per_node"].sel(resolution=1)) == 1
 
 
 def test_means_and_trends(found):
     values = found["difference"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
-    area = found["delta_area"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
-    box = found["delta_box"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
+    area = found["delta_sigma_area"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
+    box = found["delta_sigma_box"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
     np.testing.assert_allclose(values, area - box)
     mean = found.sel(dimension=2.5, size=128, reduced_pressure=0.05)
     expected = [float(end) for end in mean_interval(values)[:3]]
@@ -89,7 +89,7 @@ def test_same_pressure_touches_less_of_a_finer_surface(found):
 
 def test_neither_other_seeds_nor_the_order_of_the_loads_matter(found):
     again = dimension_test(RECIPE | {"seeds": [2], "loads": [0.01, 0.05], "dimensions": [2.5]})
-    for name in ("delta_area", "delta_box"):
+    for name in ("delta_sigma_area", "delta_sigma_box"):
         np.testing.assert_allclose(
             again[name].sel(seed=2, dimension=2.5), found[name].sel(seed=2, dimension=2.5)
         )

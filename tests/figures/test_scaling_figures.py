@@ -205,7 +205,7 @@ def test_interval_of_eq_6_brackets_its_line(atlas):
 def test_both_estimates_are_drawn_as_stored(atlas, specimen):
     table = draw(atlas, "fig12_evolution", specimen).data
     stored = finest(atlas, "scaling", specimen)
-    for label, key in (("A_r(s)", "delta_area"), ("box counting", "delta_box")):
+    for label, key in (("A_r(s)", "delta_sigma_area"), ("box counting", "delta_sigma_box")):
         rows = table[table["estimator"] == label]
         np.testing.assert_allclose(rows["delta_sigma"], stored[key])
         np.testing.assert_allclose(rows["load_N"], stored["normal_force"])
@@ -292,7 +292,7 @@ def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
     verdict = r"(They disagree|Their intervals overlap|They disagree at \d of \d loads)\.$"
     assert re.search(verdict, draw(atlas, "fig08_prefractals", "flat").caption)
     # One resolution gives no A_r(s) to fit.
-    assert np.isnan(finest(atlas, "scaling", "pair")["delta_area"]).all()
+    assert np.isnan(finest(atlas, "scaling", "pair")["delta_sigma_area"]).all()
     assert "One estimate is missing." in draw(atlas, "fig08_prefractals", "pair").caption
 
 

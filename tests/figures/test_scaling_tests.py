@@ -101,7 +101,9 @@ def test_estimators_labels_table_and_caption(atlas):
     axes_labels_have_units(drawing.figure)
     test = atlas["dimension_test/surfaces"].to_dataset()
     free = drawing.data[drawing.data["branch"] == "elastic"]
-    np.testing.assert_array_equal(free["mean_delta_area"], test["mean_delta_area"].values.ravel())
+    np.testing.assert_array_equal(
+        free["mean_delta_sigma_area"], test["mean_delta_sigma_area"].values.ravel()
+    )
     assert len(drawing.data[drawing.data["branch"] == "with hardness"]) == 3
     assert "intervals, against eq. 5" in drawing.caption
     assert "1.39" not in drawing.caption  # the paper's value is of another surface

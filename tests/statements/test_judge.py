@@ -53,8 +53,8 @@ def stages(**changes):
         "window_exponent": np.full(7, 0.4),
         "dilatancy": [1 - np.exp(-RIGID), 1.5 * (1 - np.exp(-RIGID))] * 2,
         "limit": 0.1,
-        "delta_area": [0.2, 0.8, 1.4, 1.9],
-        "delta_box": [0.2, 0.8, 1.4, 1.9],
+        "delta_sigma_area": [0.2, 0.8, 1.4, 1.9],
+        "delta_sigma_box": [0.2, 0.8, 1.4, 1.9],
         "half": 0.05,
         "disagree": np.zeros(4, bool),
         "difference_half": 0.1,
@@ -82,11 +82,11 @@ def stages(**changes):
         """As over_loads, at one resolution."""
         return dims, over_loads(found)[1][:, :, np.newaxis]
 
-    area, box = (np.asarray(values[f"delta_{key}"], float) for key in ("area", "box"))
+    area, box = (np.asarray(values[f"delta_sigma_{key}"], float) for key in ("area", "box"))
     half = values["half"]
     scaling = {
-        "delta_area": area,
-        "delta_box": box,
+        "delta_sigma_area": area,
+        "delta_sigma_box": box,
         "delta_sigma": area,
         "delta_sigma_low": area - half,
         "delta_sigma_high": area + half,
@@ -286,23 +286,27 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("dilatancy_is_anisotropic", {}, FAILS),
         ("dilatancy_is_anisotropic", {"dilatancy": RISING * 2}, HOLDS),
         ("domains_cluster", {"morisita": np.full(7, 2.0) - 0.1 * np.arange(7)}, FAILS),
-        ("area_is_lacunar", {"delta_area": np.full(4, 1.98)}, UNDETERMINED),
-        ("area_is_lacunar", {"delta_area": np.full(4, 2.1)}, FAILS),
-        ("area_is_lacunar", {"delta_area": np.full(4, np.nan)}, UNDETERMINED),
+        ("area_is_lacunar", {"delta_sigma_area": np.full(4, 1.98)}, UNDETERMINED),
+        ("area_is_lacunar", {"delta_sigma_area": np.full(4, 2.1)}, FAILS),
+        ("area_is_lacunar", {"delta_sigma_area": np.full(4, np.nan)}, UNDETERMINED),
         ("boxes_follow_one_law", {"half": 0.2}, PARTLY),
         ("boxes_follow_one_law", {"half": 0.4}, FAILS),
         ("boxes_follow_one_law", {"half": 0.6}, UNDETERMINED),
-        ("boxes_follow_one_law", {"delta_box": np.full(4, np.nan)}, UNDETERMINED),
+        ("boxes_follow_one_law", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
         ("estimates_agree", {"disagree": np.array([0, 1, 1, 0], bool)}, PARTLY),
         ("estimates_agree", {"disagree": np.ones(4, bool)}, FAILS),
-        ("estimates_agree", {"delta_box": np.full(4, np.nan)}, UNDETERMINED),
+        ("estimates_agree", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
         ("estimates_agree", {"difference_half": 0.6}, UNDETERMINED),
-        ("dimension_rises_by_area", {"delta_area": np.linspace(1.9, 1.2, 4)}, FAILS),
-        ("dimension_rises_by_boxes", {"delta_box": np.array([1, 1.9, 0.9, 1.9])}, UNDETERMINED),
-        ("dimension_rises_by_boxes", {"delta_box": np.full(4, np.nan)}, UNDETERMINED),
-        ("dimension_spans_all", {"delta_box": np.linspace(0.5, 1.9, 4)}, PARTLY),
-        ("dimension_spans_all", {"delta_box": np.linspace(0.5, 1.5, 4)}, FAILS),
-        ("dimension_spans_all", {"delta_box": np.linspace(0.27, 1.9, 4)}, UNDETERMINED),
+        ("dimension_rises_by_area", {"delta_sigma_area": np.linspace(1.9, 1.2, 4)}, FAILS),
+        (
+            "dimension_rises_by_boxes",
+            {"delta_sigma_box": np.array([1, 1.9, 0.9, 1.9])},
+            UNDETERMINED,
+        ),
+        ("dimension_rises_by_boxes", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
+        ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 1.9, 4)}, PARTLY),
+        ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 1.5, 4)}, FAILS),
+        ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.27, 1.9, 4)}, UNDETERMINED),
         (
             "size_effect_follows",
             {"size_verdict": [["agrees"] * 2, ["measured flatter"] * 2]},
@@ -326,7 +330,7 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("domains_are_fractal", {"null": "not distinguishable from random"}, FAILS),
         ("domains_are_fractal", {"null": "not distinguishable from the bearing-area cut"}, PARTLY),
         ("domains_are_fractal", {"null": "undetermined"}, UNDETERMINED),
-        ("domains_are_fractal", {"delta_box": np.full(4, np.nan)}, UNDETERMINED),
+        ("domains_are_fractal", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
         ("domains_differ_from_cuts", {"cut_less": 0.4}, FAILS),
         ("domains_differ_from_cuts", {"cut_less": np.array([0.1, 0.0, 0.1, 0.1])}, PARTLY),
         ("domains_differ_from_cuts", {"cut_half": 0.2}, UNDETERMINED),
@@ -430,7 +434,7 @@ def mathematical(values, monkeypatch):
     flat = {**SETTINGS, "opposite": "flat"}
     made = {}
     for dimension, value in zip((2.1, 2.3, 2.5), values, strict=False):
-        parts = stages(delta_area=np.full(4, value))
+        parts = stages(delta_sigma_area=np.full(4, value))
         made[str(dimension)] = {**parts, "surface_dimension": dimension}
     return verdicts_of(judge_study(made, dict.fromkeys(made, flat)))
 

@@ -198,16 +198,17 @@ def compare_dimensions(
     Returns
     -------
     xarray.Dataset
-        `delta_area`, `delta_box`, `difference` = area - box with `difference_low`, `_high`: the
-        ends of the two intervals combined as those of independent estimates (root of the sum of
-        squares); and whether they `disagree`: the interval of the difference leaves out zero.
+        `delta_sigma_area`, `delta_sigma_box`, `difference` = area - box with `difference_low`,
+        `_high`: the ends of the two intervals combined as those of independent estimates (root of
+        the sum of squares); and whether they `disagree`: the interval of the difference leaves out
+        zero.
     """
     difference = area - box
     low = difference - np.hypot(area - area_low, box_high - box)
     high = difference + np.hypot(area_high - area, box - box_low)
     values = {
-        "delta_area": area,
-        "delta_box": box,
+        "delta_sigma_area": area,
+        "delta_sigma_box": box,
         "difference": difference,
         "difference_low": low,
         "difference_high": high,
@@ -218,8 +219,8 @@ def compare_dimensions(
 
 #: Unit and long name of two estimates side by side.
 _COMPARED = {
-    "delta_area": ("1", "Delta_sigma from the contact area over resolutions"),
-    "delta_box": ("1", "Delta_sigma from box counting"),
+    "delta_sigma_area": ("1", "Delta_sigma from the contact area over resolutions"),
+    "delta_sigma_box": ("1", "Delta_sigma from box counting"),
     "difference": ("1", "Delta_sigma from area less that from box counting"),
     "difference_low": ("1", "lower end of the 95 % interval of the difference"),
     "difference_high": ("1", "upper end of the 95 % interval of the difference"),

@@ -34,12 +34,12 @@ PAPER_DELTA_SIGMA, PAPER_DIMENSION = 1.39, 2.1
 
 #: What is kept of every surface under every load, without a unit.
 ESTIMATES = {
-    "delta_area": "Delta_sigma from A_r(s) over the resolutions at one force",
-    "delta_area_low": "Delta_sigma from A_r(s), lower end of its 95 % interval",
-    "delta_area_high": "Delta_sigma from A_r(s), upper end of its 95 % interval",
-    "delta_box": "Delta_sigma from box counts at the finest resolution",
-    "delta_box_low": "Delta_sigma from box counts, lower end of its 95 % interval",
-    "delta_box_high": "Delta_sigma from box counts, upper end of its 95 % interval",
+    "delta_sigma_area": "Delta_sigma from A_r(s) over the resolutions at one force",
+    "delta_sigma_area_low": "Delta_sigma from A_r(s), lower end of its 95 % interval",
+    "delta_sigma_area_high": "Delta_sigma from A_r(s), upper end of its 95 % interval",
+    "delta_sigma_box": "Delta_sigma from box counts at the finest resolution",
+    "delta_sigma_box_low": "Delta_sigma from box counts, lower end of its 95 % interval",
+    "delta_sigma_box_high": "Delta_sigma from box counts, upper end of its 95 % interval",
     "delta_ordinary": "ordinary slope of the box counts at the finest resolution",
     "delta_ordinary_low": "ordinary slope of box counts, lower end of its 95 % interval",
     "delta_ordinary_high": "ordinary slope of box counts, upper end of its 95 % interval",
@@ -70,7 +70,7 @@ def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     -------
     xr.Dataset
         :data:`ESTIMATES`, ``difference`` (area less box) and ``boxes_per_node`` over (dimension,
-        size, seed, load); ``mean_delta_area``, ``mean_delta_box``,
+        size, seed, load); ``mean_delta_sigma_area``, ``mean_delta_sigma_box``,
         ``mean_delta_ordinary``, ``mean_delta_pairs`` and
         ``mean_difference`` over the seeds with ``_low`` and ``_high`` (95 %, Student's t) and
         ``_n``; ``light_load_delta`` (dimension) = 4 - Delta_g; ``growth`` (dimension, load), change
@@ -186,10 +186,10 @@ def _estimates(
     area = xr.DataArray(nodes, dims=("reduced_pressure", "resolution")) * s**2
     by_area = renormalisation(s, area, xr.DataArray(forces, dims="reduced_pressure"))
     return {
-        **{f"delta_area{end}": by_area[f"delta_sigma{end}"].values for end in INTERVAL},
-        "delta_box": [box.dimension for box in boxes],
-        "delta_box_low": [box.low for box in boxes],
-        "delta_box_high": [box.high for box in boxes],
+        **{f"delta_sigma_area{end}": by_area[f"delta_sigma{end}"].values for end in INTERVAL},
+        "delta_sigma_box": [box.dimension for box in boxes],
+        "delta_sigma_box_low": [box.low for box in boxes],
+        "delta_sigma_box_high": [box.high for box in boxes],
         **_ordinary([box.ordinary for box in boxes]),
         "delta_pairs": [line.value for line in pairs],
         "delta_pairs_low": [line.low for line in pairs],
@@ -256,7 +256,7 @@ def _labelled(axes: Mapping[str, Any], values: Mapping[str, np.ndarray]) -> xr.D
             name: (name, along, cf_attrs("1", _AXIS_WORDS[name])) for name, along in axes.items()
         },
     )
-    result["difference"] = result["delta_area"] - result["delta_box"]
+    result["difference"] = result["delta_sigma_area"] - result["delta_sigma_box"]
     result["difference"].attrs = cf_attrs("1", "Delta_sigma from A_r(s) less that from box counts")
     result["light_load_delta"] = 4.0 - result["dimension"]
     result["light_load_delta"].attrs = cf_attrs("1", "Delta_sigma = 1 + H of A_r(s) at light load")
@@ -265,7 +265,13 @@ def _labelled(axes: Mapping[str, Any], values: Mapping[str, np.ndarray]) -> xr.D
 
 def _add_means(result: xr.Dataset) -> None:
     """Means over the seeds with their intervals, into ``result``."""
-    for name in ("delta_area", "delta_box", "delta_ordinary", "delta_pairs", "difference"):
+    for name in (
+        "delta_sigma_area",
+        "delta_sigma_box",
+        "delta_ordinary",
+        "delta_pairs",
+        "difference",
+    ):
         values = result[name]
         dims = tuple(dim for dim in values.dims if dim != "seed")
         means = mean_interval(values.values, axis=values.dims.index("seed"))

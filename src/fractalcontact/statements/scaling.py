@@ -254,7 +254,7 @@ STATEMENTS = (
 def _over_load(joint, key):
     """Whether an estimate of Delta_sigma rises with log F, beyond the interval of the line."""
     states = joint.map_states("scaling")
-    line = fit_line(np.log10(states["normal_force"].values), states[f"delta_{key}"].values)
+    line = fit_line(np.log10(states["normal_force"].values), states[f"delta_sigma_{key}"].values)
     if not np.isfinite(line.slope):
         return Finding(UNDETERMINED, f"{line.n} of {FEWEST_POINTS} loads needed")
     return Finding(

@@ -31,8 +31,8 @@ ORDER = 30
 
 #: How each estimator is drawn: colour, line, name.
 _ESTIMATORS = {
-    "delta_area": (COLOURS[1], "-", "$A_r(s)$"),
-    "delta_box": (COLOURS[2], "--", "box counting"),
+    "delta_sigma_area": (COLOURS[1], "-", "$A_r(s)$"),
+    "delta_sigma_box": (COLOURS[2], "--", "box counting"),
     "delta_pairs": (COLOURS[3], ":", "correlation dimension"),
 }
 
@@ -70,7 +70,7 @@ def _draw_loads(axes, test, dimension, which):
             )
             style = {"color": colour, "ls": line, "marker": MARKERS[i], "lw": 0.8}
             beside = load * 1.04 ** (i - (one.sizes["size"] - 1) / 2)
-            axes.plot(beside, mean, **style, mfc=colour if name == "delta_area" else "white")
+            axes.plot(beside, mean, **style, mfc=colour if name == "delta_sigma_area" else "white")
             axes.vlines(beside, low, high, color=colour, lw=0.6)
     axes.axhline(float(one["light_load_delta"]), color="0.3", lw=0.8, ls="-.")
     if np.isclose(dimension, test.attrs["paper_dimension"]):
@@ -126,7 +126,7 @@ def _draw_capped(axes, test, which):
     part = test["capped_pressure"].values
     for i in range(test.sizes["dimension"]):
         one = test.isel(dimension=i)
-        for name, face in (("delta_area", colour_of(i)), ("delta_box", "white")):
+        for name, face in (("delta_sigma_area", colour_of(i)), ("delta_sigma_box", "white")):
             style = {"color": colour_of(i), "marker": MARKERS[i], "mfc": face, "lw": 0.8}
             line = _ESTIMATORS[name][1]
             axes.plot(part, one[f"capped_mean_{name}"].values, ls=line, **style)
@@ -222,8 +222,8 @@ def _paper_words(test):
     one = test.sel(dimension=wanted, method="nearest").isel(size=-1)
     ranges = []
     for name, words in (
-        ("delta_area", "by A_r(s)"),
-        ("delta_box", "by the count law"),
+        ("delta_sigma_area", "by A_r(s)"),
+        ("delta_sigma_box", "by the count law"),
         ("delta_ordinary", "by ordinary boxes"),
     ):
         values = one[f"mean_{name}"].values
@@ -241,8 +241,8 @@ def _capped_words(test, letters):
     if "capped_pressure" not in test.dims:
         return ""
     last = test.isel(capped_pressure=-1)
-    values = last["capped_mean_delta_box"].values
-    known = values[np.isfinite(last["capped_mean_delta_box_low"].values)]
+    values = last["capped_mean_delta_sigma_box"].values
+    known = values[np.isfinite(last["capped_mean_delta_sigma_box_low"].values)]
     if not known.size:
         return ""
     ends = " to ".join(dict.fromkeys((number(known.min()), number(known.max()))))
