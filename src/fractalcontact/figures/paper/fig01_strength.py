@@ -59,7 +59,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(strength), entries(slope))
     direction = str(laws["direction"].values)
     headline(figure, settings["label"], place(direction))
-    falls = claim(atlas, name, "fall of strength with size", "strength_falls_with_size")
+    falls = claim(
+        atlas, name, "fall of strength with size", "strength_falls_with_size", numbers=False
+    )
     return Drawing(figure, _table(laws), _caption(settings, laws, share, falls))
 
 

@@ -59,7 +59,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, settings["label"], place(str(laws["direction"].values)))
     if drawn:
         legends_below(figure, entries(angle), entries(strength))
-    falls = claim(atlas, name, "fall with size", "strength_falls_with_size")
+    falls = claim(atlas, name, "fall with size", "strength_falls_with_size", numbers=False)
     return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn, falls))
 
 

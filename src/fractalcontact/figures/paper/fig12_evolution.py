@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.resolved import CORRECTED_NODES
 from ..kit.domains import Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, letter
 from ..kit.maps import draw_domain
@@ -38,10 +39,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 3])  # type: ignore[misc]  # an array
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
     nominal = np.prod(loading.sides)
-    finest = loading.scaling["area"].sel(resolution=loading.finest).values
+    states = loading.scaling.sel(resolution=loading.finest)
+    finest = states["area"].values
+    corrected = np.where(states["nodes"] >= CORRECTED_NODES, states["area_corrected"], np.nan)
     for axes, which, i in zip(maps, "abcdef", shown, strict=False):
         draw_domain(axes, loading.domain(loading.finest, i), loading.sides, ticks=3)
-        share = percent(finest[i] / nominal)
+        known = np.isfinite(corrected[i])
+        share = percent((corrected if known else finest)[i] / nominal) + ("" if known else " (raw)")
         letter(axes, which, f"{force_label(loading.forces[i])}\n$A_r/A_0$ = {share}")
         axes.label_outer()
     axes = bottom.subplots()
@@ -52,7 +56,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
     _pressure_axis(axes, nominal)
     headline(figure, *loading.title)
-    table = pd.concat([_table(loading, finest, nominal), *_measured_rows(measured)])
+    table = pd.concat([_table(loading, finest, corrected, nominal), *_measured_rows(measured)])
     rises = rise_words(atlas, name, loading)
     caption = f"{_caption(loading, rises)}{_measured_words(measured)}"
     return Drawing(figure, table.reset_index(drop=True), caption)
@@ -103,7 +107,7 @@ def _measured_words(series):
     return f" Measured ({threshold_words(series)}): {' to '.join(ends)}."
 
 
-def _table(loading, area, nominal):
+def _table(loading, area, corrected, nominal):
     """One row a load and estimator."""
     return pd.concat(
         [
@@ -113,6 +117,7 @@ def _table(loading, area, nominal):
                     "nominal_pressure_MPa": loading.forces / nominal,
                     "offset_mm": loading.offset,
                     "area_mm2": area,
+                    "corrected_area_mm2": corrected,
                     "estimator": estimate.label,
                     "delta_sigma": estimate.value,
                     "delta_sigma_low": estimate.low,
