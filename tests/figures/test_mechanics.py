@@ -391,6 +391,17 @@ def without_statements(atlas, name):
     return unasked
 
 
+def test_parts_may_have_a_strength_where_the_whole_has_none(atlas):
+    changed = atlas.copy(deep=True)
+    laws = changed["windows/sliding"].to_dataset()
+    strength = laws["similar_strength"].values
+    strength[:, 0] = np.nan
+    strength[:, 1:] = 1.0
+    laws["similar_strength"] = laws["similar_strength"].copy(data=strength)
+    changed["windows/sliding"] = xr.DataTree(laws)
+    assert len(drawn(changed, "sliding", "fig11_slope_angle").data)
+
+
 def test_plateaus_are_counted_where_the_paper_says_nothing_of_the_material(atlas):
     atlas = without_statements(atlas, "sliding")
     level = with_changes(atlas, "dilatancy/sliding", rigid_dilatancy=0.5)

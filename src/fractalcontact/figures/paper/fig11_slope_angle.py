@@ -117,13 +117,14 @@ def _draw_ratio(axes, laws, share, drawn):
     axes.set_yscale("log")
     axes.set_ylabel(r"$\tau$ / $\tau$ of the whole window (1)")
     letter(axes, "b", "strength over that of the largest")
-    if not drawn:
+    ratio = laws["similar_strength"].values[share] / laws["similar_strength"].values[share, 0]
+    known = ratio[np.isfinite(ratio) & (ratio > 0)]
+    # The whole window may have no strength where its parts have.
+    if not (drawn and known.size):
         axes.set_yscale("linear")
         nothing_in(axes, "no strength to compare")
         return
-    ratio = laws["similar_strength"].values[share] / laws["similar_strength"].values[share, 0]
     quoted = (b.min() / b[0]) ** slope
-    known = ratio[np.isfinite(ratio) & (ratio > 0)]
     axes.set_ylim(0.7 * min(known.min(), 1), 1.4 * max(known.max(), quoted))
     plain_decades(axes.yaxis)
 
