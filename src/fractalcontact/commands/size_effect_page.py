@@ -60,15 +60,17 @@ def _head(test: xr.Dataset, study: str) -> list[str]:
         (arm S1) there is no size effect at all at {int(flat.sum())} of {flat.size} loads: the whole
         99 % interval of the exponent lies within 0.02 of zero."""
     origin = f"""
-        Written by `python -m fractalcontact.commands.size_effect_page` from the atlas of the study
-        `{study}` (`make STUDY=config/{study}.yaml`): {test.sizes["surface"]} surfaces. Every number
-        below is of that run; intervals are of 99 % and over surfaces."""
+        Written by `python -m fractalcontact.commands.size_effect_page` from the atlas of this
+        study: {test.sizes["surface"]} surfaces. Every number below is of that run; intervals are of
+        99 % and over surfaces."""
     return [
         "# What carries the size effect",
         "",
         *_prose(text.replace("\\\\", "\\")),
         *_prose(answer),
         *_prose(origin),
+        f"    make STUDY=config/{study}.yaml",
+        "",
     ]
 
 
