@@ -13,7 +13,6 @@ from fractalcontact.experiments.size_effect_test import size_effect_test
 from fractalcontact.experiments.size_states import solve_task
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.atlas import join_stages
-from fractalcontact.stages.errors import error_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.strength import strength_stages
@@ -168,7 +167,6 @@ def _stages_of(name, faces, settings):
     for stage, of_stage in (
         ("window_states", window_stages),
         ("closure", state_stages),
-        ("error_budget", error_stages),
         ("windows", strength_stages),
     ):
         before = {need: known[need] for need in STAGES[stage].needs}

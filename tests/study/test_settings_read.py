@@ -6,7 +6,6 @@ import xarray as xr
 from declared import Declared
 
 from fractalcontact.mechanics.sweep import joint_states
-from fractalcontact.stages.errors import error_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.strength import strength_stages
@@ -42,8 +41,8 @@ STUDY = {
         "window": "3.2 mm",
     },
 }
-SPECIMEN, STATES, WINDOWS, ERRORS, STRENGTH = (
-    STAGES[name].function for name in ("joints", "closure", "size_test", "error_budget", "strength")
+SPECIMEN, STATES, WINDOWS, STRENGTH = (
+    STAGES[name].function for name in ("joints", "closure", "size_test", "strength")
 )
 
 
@@ -79,9 +78,9 @@ def ran():
         specimen, known["joints"], settings=settings[WINDOWS], solver=solvers[WINDOWS]
     )
     before = {stage: known[stage] for stage in STAGES["closure"].needs}
-    known |= state_stages(**before, parts=[states], settings=settings[STATES])
-    before = {stage: known[stage] for stage in STAGES["error_budget"].needs}
-    error_stages(**before, settings=settings[ERRORS], solver=solvers[ERRORS])
+    known |= state_stages(
+        **before, parts=[states], settings=settings[STATES], solver=solvers[STATES]
+    )
     before = {stage: known[stage] for stage in STAGES["strength"].needs}
     strength_stages(**before, settings=settings[STRENGTH])
     return settings, solvers
@@ -113,7 +112,7 @@ def test_a_key_that_is_not_declared_cannot_be_read():
         ({"label": "another"}, ()),
         ({"basic_friction_angle": "35 deg"}, (STRENGTH,)),
         ({"joint_wall_strength": "60 MPa"}, (STRENGTH,)),
-        ({"box_range": ["0.2 mm", "1 mm"]}, (STATES, WINDOWS, ERRORS)),
+        ({"box_range": ["0.2 mm", "1 mm"]}, (STATES, WINDOWS)),
     ],
     ids=str,
 )

@@ -61,7 +61,8 @@ def contact_parts(wildcards):
 
 # What follows from the states of a specimen: closure curves and laws of area; box counts, dimension
 # and clusters of every contact domain, what changes with resolution, lacunarity and generalised
-# dimensions of the domains that are drawn. Seconds of work, so one job.
+# dimensions of the domains that are drawn; and the error of what is published, by source, for which
+# some states are solved again on finer grids and in other windows. Seconds of work, so one job.
 rule analysis:
     input:
         **inputs_of("closure"),
@@ -75,11 +76,12 @@ rule analysis:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=20,
+        mem_mb=lambda wc, attempt: 2000 * attempt,
+        runtime=60,
     params:
         **calling("closure"),
         settings=settings_read_by("closure"),
+        solver=solver_read_by("closure"),
     script:
         "../scripts/stage.py"
 
@@ -118,30 +120,6 @@ use rule strength as size_laws_against_plane with:
         f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
         specimen=one_of(FLAT),
-
-
-# Error of what is published, by source, and the solve plan that it completes: some states are solved
-# again on finer grids and in other windows of the scan.
-rule error_budget:
-    input:
-        **inputs_of("error_budget"),
-    output:
-        **outputs_of("error_budget"),
-    log:
-        f"{RESULTS}/logs/error_budget/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/error_budget/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
-    resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=60,
-    params:
-        **calling("error_budget"),
-        settings=settings_read_by("error_budget"),
-        solver=solver_read_by("error_budget"),
-    script:
-        "../scripts/stage.py"
 
 
 # A measured map of contact goes straight to the analysis of domains.

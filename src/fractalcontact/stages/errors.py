@@ -20,7 +20,7 @@ def error_stages(
     settings: Mapping,
     solver: Mapping,
 ) -> dict[str, xr.Dataset]:
-    """Stages that solve states again on finer grids, along the first direction of contact.
+    """Stages that solve some states again on finer grids, along the first direction of contact.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What follows from contact states of a specimen: curves, laws, domains, dimensions."""
+"""What follows from contact states of a specimen: curves, laws, domains, errors."""
 
 from collections.abc import Mapping, Sequence
 
@@ -22,6 +22,7 @@ from ..mechanics.states import (
 )
 from ..roughness.dimension import best_dimension
 from ..surface.specimen import cell_side, nominal_area, window_sides
+from .errors import error_stages
 
 
 def state_stages(
@@ -30,6 +31,7 @@ def state_stages(
     joints: xr.Dataset,
     parts: Sequence[xr.Dataset],
     settings: Mapping,
+    solver: Mapping,
 ) -> dict[str, xr.Dataset]:
     """Stages that are computed from the contact states of one specimen.
 
@@ -41,11 +43,14 @@ def state_stages(
         Contact states, from :func:`mechanics.sweep.joint_states`.
     settings : mapping
         From :func:`study.configuration.resolve_settings`.
+    solver : mapping
+        From :func:`study.configuration.solver_settings`.
 
     Returns
     -------
     dict of str to xr.Dataset
-        By stage.
+        By stage; the error budget and what it completes with them, by
+        :func:`stages.errors.error_stages`.
     """
     states, spacing = combine(parts), cell_side(specimens)
     e_star = settings["material"]["e_star"]
@@ -87,7 +92,14 @@ def state_stages(
         ),
     }
     area = nominal_area(specimens)
-    return {name: with_pressure(stage, area) for name, stage in stages.items()}
+    stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
+    return stages | error_stages(
+        specimens,
+        joints,
+        *(stages[name] for name in ("closure", "dilatancy", "domains")),
+        settings=settings,
+        solver=solver,
+    )
 
 
 def _seating_force(settings: Mapping, specimen: xr.Dataset) -> float | None:

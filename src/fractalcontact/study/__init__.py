@@ -5,6 +5,7 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "ARMS": ".size_tasks",
         "STAGES": ".atlas",
         "SizeTask": ".size_tasks",
         "accuracy_figures_of": ".figure_list",

@@ -68,12 +68,9 @@ _STATE_STAGES = "stages.states:state_stages"
 _WINDOW_STAGES = "stages.windows:window_stages"
 #: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
 CONTACT = "mechanics.sweep:joint_states"
-_ERROR_STAGES = "stages.errors:error_stages"
 _STRENGTH_STAGES = "stages.strength:strength_stages"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
-#: And what its contact states then gave.
-_OF_CURVES = ("specimens", "joints", "closure", "dilatancy", "domains")
 #: And those of its sub-windows: nothing is solved for a friction angle.
 _OF_STRENGTH = (*_OF_JOINT, "window_states", "size_test", "dilatancy")
 
@@ -130,6 +127,8 @@ _TABLE = (
         "domain_measures",
         "lacunarity and generalised dimensions of the contact at the map offset",
     ),
+    _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
+    _of_states("error_budget", "error of the published quantities, split by source"),
     Stage(
         "windows",
         "closure, roughness and strength of sub-windows against their size",
@@ -143,20 +142,6 @@ _TABLE = (
         JOINT,
         _STRENGTH_STAGES,
         _OF_STRENGTH,
-    ),
-    Stage(
-        "choices",
-        "what was solved and how exactly, why, and the errors that makes",
-        SPECIMEN,
-        _ERROR_STAGES,
-        _OF_CURVES,
-    ),
-    Stage(
-        "error_budget",
-        "error of the published quantities, split by source",
-        SPECIMEN,
-        _ERROR_STAGES,
-        _OF_CURVES,
     ),
     Stage(
         "contact_maps",
@@ -264,23 +249,16 @@ SETTINGS_READ = {
     ),
     CONTACT: (*_SOLVED, "contact_directions", "resolutions", "dilatancy_loads", "map_load"),
     _STATE_STAGES: (
-        "material.e_star",
+        *_SOLVED,
+        "contact_directions",
         "dilatancy_loads",
         "map_load",
-        "map_offset",
         "seating_load",
         "hyperbola_range",
         "box_range",
         "scaling_range",
     ),
     _STRENGTH_STAGES: (*_STRENGTH, "surface_range"),
-    _ERROR_STAGES: (
-        *_SOLVED,
-        "contact_directions",
-        "dilatancy_loads",
-        "map_load",
-        "box_range",
-    ),
     _WINDOW_STAGES: (
         *_SOLVED,
         "contact_directions",
@@ -293,7 +271,7 @@ SETTINGS_READ = {
 #: Keys of the solver's settings, likewise.
 SOLVER_READ = {
     CONTACT: ("rtol", "kernel", "accuracy"),
-    _ERROR_STAGES: ("rtol", "kernel", "accuracy"),
+    _STATE_STAGES: ("rtol", "kernel", "accuracy"),
     _WINDOW_STAGES: ("rtol", "kernel", "accuracy"),
 }
 
