@@ -96,7 +96,9 @@ def state_stages(
     return stages | error_stages(
         specimens,
         joints,
-        *(stages[name] for name in ("closure", "dilatancy", "domains")),
+        stages["closure"],
+        stages["dilatancy"],
+        stages["domains"],
         settings=settings,
         solver=solver,
     )
