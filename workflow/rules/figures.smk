@@ -152,6 +152,7 @@ def collect_everything(wildcards):
         *expand(list(rules.embedded.output), specimen=set(SPECIMENS) - set(SCANS)),
         *(path for paths in MAP_FILES.values() for path in paths),
         *STUDY_FILES.values(),
+        *expand(rules.size_effect_part.output[0], job=SIZE_JOBS),
         *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
     ]

@@ -3,7 +3,7 @@
 Arm R varies the short cut-off at one size, S1, S2 and S3 vary the size at one short cut-off, with a
 fixed roll-off, one in proportion to the size, and none; W those of windows cut from one surface. G
 has surfaces of other constructions. What the classical theory (Persson's) says of each stands
-beside it, from the spectra of the very surfaces.
+beside it, from the spectrum that the surfaces of a class have in the mean.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -143,6 +143,8 @@ def _persson(samples: xr.Dataset) -> xr.DataArray:
     values = fudged_persson_area(pressure, 1.0, samples["rms_slope"].broadcast_like(pressure))
     attrs = cf_attrs("1", "A_r / A_0 by Persson's theory with g = 0.435")
     area = xr.DataArray(values, dims=pressure.dims, attrs=attrs)
+    # Other constructions have no spectrum between cut-offs, and loads of their own.
+    area = area.where(samples["of_construction"] == "")
     return area.transpose("surface", "reduced_pressure")
 
 

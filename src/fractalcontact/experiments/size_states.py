@@ -61,7 +61,11 @@ SURFACES: dict[str, tuple] = {
     ),
     "of_construction": ("surface", "1", "construction of the surface; none of a spectrum"),
     "number": ("surface", "1", "number of the surface in its class"),
-    "rms_slope": ("surface", "1", "h'_rms of the surface, from its waves"),
+    "rms_slope": (
+        "surface",
+        "1",
+        "h'_rms of its class in the mean, from the spectrum; of arm G of its nodes",
+    ),
     "rms_height": ("surface", "mm", "h_rms of the surface about its mean plane"),
 }
 

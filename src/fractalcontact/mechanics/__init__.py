@@ -15,6 +15,7 @@ __getattr__, __dir__, __all__ = exports(
         "JRC_SAMPLING": ".jrc",
         "JointLoading": ".loading",
         "LARGEST_FRICTION_ANGLE": ".theory",
+        "LAWS": ".closure_laws",
         "LIGHT_LOAD": ".area",
         "NumericalError": ".numerical_error",
         "PERIODIC_AREAS": ".theory",

@@ -58,6 +58,9 @@ def domains_are_fractal(joint: Joint) -> Finding:
     )
     if not np.isfinite(value):
         return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
+    if verdict == departure.UNDETERMINED:
+        low, high = (float(state[f"delta_sigma_{end}"]) for end in ("low", "high"))
+        return Finding(UNDETERMINED, f"Delta_sigma within {high - low:.1f} only")
     return Finding(
         _LEFT[verdict],
         verdict,

@@ -137,7 +137,7 @@ def _caption(bias):
     return (
         f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of "
         f"{errors[name]:.3f}, {_place(errors, name)}; its 95 % intervals hold H in "
-        f"{100 * least[name]:.0f} % of every kind, those of all in "
+        f"{100 * least[name]:.0f} % of every kind or more, those of the worst estimator in "
         f"{100 * least.min():.0f} %.{_rough_words(bias, start)}"
     )
 

@@ -198,11 +198,6 @@ class Loading:
         """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""
         return self.contact[f"in_contact_{factor}"].isel(normal_force=load).values == 1
 
-    @property
-    def finest_spacing(self) -> float:
-        """s at the finest resolution, mm."""
-        return float(self.scaling["spacing"].min())
-
     def spread_loads(self, most: int, including: int | None = None) -> np.ndarray:
         """Indices of up to ``most`` loads: first and last, evenly between, and a given one."""
         chosen = spread(len(self.forces), most)
@@ -219,7 +214,7 @@ def departures(counts: xr.Dataset) -> str:
     counts : xr.Dataset
         Of the stage ``domains``, over load, of domains that are looked at closely.
     """
-    found = counts["null_departure"].values.astype(str)
+    found = counts["null_verdict"].values.astype(str)
     decided = found[found != UNDETERMINED]
     if not decided.size:
         return "Nulls: undetermined."

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
-from ...mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
+from ...mechanics.closure_laws import HYPERBOLA, LAWS, SEMI_LOGARITHMIC, UNDECIDED
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import cell_side, nominal_area
 from ..kit.drawing import (
@@ -345,12 +345,10 @@ def _laws_words(curves):
     fitted = np.isfinite(misfits[1])
     if not fitted.any():
         return f"No law could be fitted ({_no_law(curves.isel(offset=-1))})."
-    hyperbola, semi_logarithmic = (values[fitted] for values in misfits)
-    better = int((~(hyperbola <= semi_logarithmic)).sum())
-    return (
-        f"The semi-logarithmic law fits {better} of {fitted.sum()} curves better than the "
-        "hyperbola."
-    )
+    laws = curves["closure_law"].values.astype(str)[fitted]
+    named = {law: int((laws == law).sum()) for law in LAWS}
+    counts = ", ".join(f"{law} {n}" for law, n in named.items() if n)
+    return f"Better law of {fitted.sum()} curves: {counts}."
 
 
 def _stiffness_words(table):
