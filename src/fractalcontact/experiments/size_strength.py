@@ -146,11 +146,10 @@ def _slide(
                 domain = state.in_contact
                 # Where material has yielded the gap is negative: the planes come that much closer.
                 values["separation"][i, j, k] = state.gap.mean()
-                values["corrected_share"][i, j, k] = corrected_area(domain, space.spacing) / (
-                    size * SPACING
-                ) ** 2
+                values["corrected_share"][i, j, k] = (
+                    corrected_area(domain, space.spacing) / (size * SPACING) ** 2
+                )
                 values["nodes"][i, j, k] = np.count_nonzero(domain)
                 values["yielded"][i, j, k] = np.mean(state.pressure[domain] >= state.hardness)
                 values["residual"][i, j, k] = state.residual
     return values | {"composite_rms": rms}
-

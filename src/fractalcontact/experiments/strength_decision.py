@@ -6,6 +6,8 @@ mean of a bent function of rates that scatter more in small windows would fall w
 itself.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .size_decision import (
@@ -18,6 +20,8 @@ from .size_decision import (
 )
 
 FLAT, EFFECT, OPEN = "no size effect", "size effect", "undetermined"
+#: Of both kinds together.
+OF_V, OF_B = "size effect of v, not of b", "size effect of b"
 
 
 def friction_ratio(rate: np.ndarray, basic_angle: float) -> np.ndarray:
@@ -55,7 +59,9 @@ def mean_strength(rates: np.ndarray, basic_angle: float) -> Exponent:
     """
     mean = mean_exponent(rates)
     value, low, high = friction_ratio(np.array([mean.value, mean.low, mean.high]), basic_angle)
-    return Exponent(float(value), float(abs(_slope(mean.value, basic_angle)) * mean.error), low, high)
+    return Exponent(
+        float(value), float(abs(_slope(mean.value, basic_angle)) * mean.error), low, high
+    )
 
 
 def _slope(rate: float, basic_angle: float) -> float:
@@ -162,3 +168,42 @@ def size_verdict(exponent: Exponent, bound: float = NO_EFFECT) -> str:
     if max(abs(exponent.low), abs(exponent.high)) < bound:
         return FLAT
     return EFFECT if exponent.low > 0 or exponent.high < 0 else OPEN
+
+
+def joint_verdict(
+    at_v: Sequence[Exponent],
+    at_fraction: Sequence[Exponent],
+    predicted: Sequence[Exponent],
+    bound: float = NO_EFFECT,
+) -> str:
+    """Whether the strength of a class has a size effect, and of what.
+
+    Parameters
+    ----------
+    at_v : sequence of Exponent
+        Of tau/sigma_0 over the side at equal v, one a load.
+    at_fraction, predicted : sequence of Exponent
+        At equal v/b, and what v alone makes of it, one a load and fraction.
+    bound : float, optional
+        As of :func:`size_verdict`.
+
+    Returns
+    -------
+    str
+        Of b where an exponent at equal v is a size effect, or one at equal v/b differs from that by
+        v alone. Of v where at equal v there is none, and the exponents at equal v/b that v alone
+        makes a size effect are one, and no other. None where no exponent of either kind is. Else
+        undetermined.
+    """
+    rest = [beyond(*pair) for pair in zip(at_fraction, predicted, strict=True)]
+    verdicts = [size_verdict(one, bound) for one in at_v]
+    scaled = [size_verdict(one, bound) for one in at_fraction]
+    if EFFECT in verdicts or EFFECT in [size_verdict(one, bound) for one in rest]:
+        return OF_B
+    if not verdicts or set(verdicts) != {FLAT}:
+        return OPEN
+    if scaled and set(scaled) == {FLAT}:
+        return FLAT
+    by_v = [size_verdict(one, bound) for one in predicted]
+    explained = [pair == (EFFECT, EFFECT) for pair in zip(scaled, by_v, strict=True)]
+    return OF_V if any(explained) else OPEN

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from itertools import product
+from itertools import pairwise, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +23,7 @@ from .strength_decision import (
     beyond,
     equal_exponent,
     friction_ratio,
+    joint_verdict,
     linear_strengths,
     mean_strength,
     size_verdict,
@@ -63,6 +64,8 @@ VERDICTS = {
     "scaled_separation_exponent": "verdict on the separation at equal v/b",
     "beyond_exponent": "verdict on the strength at equal v/b beyond what v alone makes of it",
 }
+#: What decides a class, at equal v and at equal v/b.
+_DECIDING = ("pooled_exponent", "scaled_strength_exponent", "predicted_exponent")
 
 
 class _Sample(NamedTuple):
@@ -132,6 +135,7 @@ def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Data
     sizes |= dict(zip(_CLASS, shape, strict=True))
     values = _empty(sizes)
     basic = float(recipe["basic_friction_angle"])
+    found: dict[tuple[int, int], dict[str, list[Exponent]]] = {}
     for i, j, k in product(range(shape[0]), range(shape[1]), range(len(loads))):
         here = states["of_hurst"].values == hursts[i]
         one = states.isel(surface=here, law=j, reduced_pressure=k)
@@ -143,8 +147,14 @@ def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Data
             one["number"].values,
         )
         difference = states["height_difference"].values[i]
-        _fill(values, (i, j), k, _one_class(sample, sides, smallest, classes, basic))
+        one_class = _one_class(sample, sides, smallest, classes, basic)
+        _fill(values, (i, j), k, one_class)
+        for name in _DECIDING:
+            found.setdefault((i, j), {}).setdefault(name, []).extend(one_class[name])
         _fill(values, (i, j), k, _by_theory(sample, difference, offsets, classes, basic))
+    for at, exponents in found.items():
+        at_v, at_fraction, predicted = (exponents[name] for name in _DECIDING)
+        values["overall"][at] = joint_verdict(at_v, at_fraction, predicted)
     result = states.merge(
         labelled_dataset(_table(), values, _coords(offsets, sides, classes)), join="exact"
     )
@@ -178,7 +188,7 @@ def equal_fractions(
     """
     found: dict[tuple[Fraction, Fraction], dict[float, int]] = {}
     for side in sides:
-        for k, ends in enumerate(zip(offsets[:-1], offsets[1:], strict=True)):
+        for k, ends in enumerate(pairwise(offsets)):
             low, high = (Fraction(float(v)) / Fraction(float(side)) for v in ends)
             found.setdefault((low, high), {})[float(side)] = k
     return {
@@ -204,6 +214,7 @@ def _table() -> dict[str, tuple]:
             f"fraction of joints whose phi_b + i passes {LARGEST_FRICTION_ANGLE:g} degrees or is "
             "negative",
         ),
+        "overall": (_CLASS, "1", "whether the strength has a size effect, and of what"),
         "theory_strength": (_AT_V, "1", "tau/sigma_0 from S(v), the separation in its square root"),
         "theory_exponent": (_AT_FRACTION, "1", "exponent of theory_strength over b at equal v/b"),
     }
@@ -233,7 +244,7 @@ def _empty(sizes: Mapping[str, int]) -> dict[str, np.ndarray]:
     values = {}
     for name, (dims, _, _) in _table().items():
         shape = [sizes[dim] for dim in dims]
-        text = name.endswith("_verdict")
+        text = name.endswith("_verdict") or name == "overall"
         values[name] = np.full(shape, "", object) if text else np.full(shape, np.nan)
     return values
 
@@ -248,11 +259,10 @@ def _fill(
             values[name][where] = one
             continue
         shape = values[name][where].shape
-        flat = one if isinstance(one, list) else [one]
         for end, field in zip(_ENDS, Exponent._fields, strict=True):
-            values[f"{name}{end}"][where] = np.reshape([getattr(e, field) for e in flat], shape)
+            values[f"{name}{end}"][where] = np.reshape([getattr(e, field) for e in one], shape)
         if name in VERDICTS:
-            verdicts = np.array([size_verdict(e) for e in flat], object)
+            verdicts = np.array([size_verdict(e) for e in one], object)
             values[f"{name}_verdict"][where] = verdicts.reshape(shape)
 
 
@@ -279,7 +289,7 @@ def _one_class(
         "strength_exponent": [strength_exponent(one.sides, r, basic) for r in one.rates.T],
         "area_exponent": [size_exponent(one.sides, share) for share in one.shares.T],
         "separation_exponent": [size_exponent(one.sides, gap) for gap in one.separations.T],
-        "pooled_exponent": size_exponent(one.sides, pooled),
+        "pooled_exponent": [size_exponent(one.sides, pooled)],
     } | _scaled(one, linear, classes, basic)
 
 
