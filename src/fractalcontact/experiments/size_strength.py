@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
@@ -27,6 +28,9 @@ from .mated_faces import (
 from .strength_exponents import strength_exponents
 from .units import E_STAR, SPACING
 
+#: Largest KKT residual: a rate is a difference of two separations, each a part of the closure.
+RTOL = 1e-5
+
 _STATE = ("surface", "law", "offset", "reduced_pressure")
 #: What is kept of every state: dimensions, unit and long name.
 STATES: dict[str, tuple] = {
@@ -36,12 +40,17 @@ STATES: dict[str, tuple] = {
     "yielded": (_STATE, "1", "fraction of the nodes in contact that carry the hardness"),
     "residual": (_STATE, "1", "largest KKT residual, fraction of the closure"),
 }
-#: What is kept of every surface.
+#: What is kept of every surface, and of every spectrum.
 SURFACES: dict[str, tuple] = {
     "of_hurst": ("surface", "1", "Hurst exponent H"),
     "of_size": ("surface", "1", "nodes per side"),
     "number": ("surface", "1", "number of the surface in its class"),
     "composite_rms": (("surface", "offset"), "mm", "rms height of the composite topography"),
+    "height_difference": (
+        ("hurst", "offset"),
+        "mm2",
+        "height-difference function S(v) of the spectrum",
+    ),
 }
 
 
@@ -56,7 +65,7 @@ def size_strength(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
         ``sizes`` in nodes per side and as many numbers of ``surfaces``; and optionally
         ``hardness``, H / (E* h'_rms), for the capped law.
     rtol : float
-        Of the solves.
+        Of the solves, where it is tighter than :data:`RTOL`.
 
     Returns
     -------
@@ -89,67 +98,85 @@ def sliding_states(recipe: Mapping[str, Any], rtol: float) -> xr.Dataset:
             f"size_strength: {len(recipe['sizes'])} sizes and {len(recipe['surfaces'])} numbers of "
             "surfaces; write one number for each size"
         )
-    offsets, pressures = np.unique(recipe["offsets"]), np.unique(recipe["loads"])
-    laws = {"elastic": np.inf} | ({"capped": recipe["hardness"]} if "hardness" in recipe else {})
     rows: list[dict[str, Any]] = []
-    for hurst in recipe["hurst"]:
-        faces = face_class(hurst, recipe)
+    hursts, offsets = np.unique(recipe["hurst"]), np.unique(recipe["offsets"])
+    classes = {float(hurst): face_class(float(hurst), recipe) for hurst in hursts}
+    for hurst, faces in classes.items():
         for size, surfaces in zip(recipe["sizes"], recipe["surfaces"], strict=True):
             for number in range(surfaces):
                 face = sliding_face(faces, size, int(offsets[-1]), number)
                 where = f"mated faces, H = {hurst:g}, {size} nodes, surface {number}"
-                rows.append(
-                    {"of_hurst": hurst, "of_size": size, "number": number}
-                    | _slide(face, offsets, pressures, recipe["rms_slope"], laws, rtol, where)
-                )
+                joint = sliding_joint(face, recipe, min(rtol, RTOL), where)
+                rows.append({"of_hurst": hurst, "of_size": size, "number": number} | joint)
     values = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    values["height_difference"] = np.array(
+        [height_difference(offsets * SPACING, faces) for faces in classes.values()]
+    )
+    pressures = np.unique(recipe["loads"])
     coords = {
-        "law": list(laws),
+        "hurst": ("hurst", hursts, cf_attrs("1", "Hurst exponent H")),
+        "law": list(_laws(recipe)),
         "offset": ("offset", offsets * SPACING, cf_attrs("mm", "shear displacement v")),
         "reduced_pressure": ("reduced_pressure", pressures, cf_attrs("1", "p / (E* h'_rms)")),
     }
-    result = labelled_dataset(STATES | SURFACES, values, coords)
-    hursts = np.unique(recipe["hurst"])
-    spread = [height_difference(offsets * SPACING, face_class(h, recipe)) for h in hursts]
-    result["height_difference"] = (
-        ("hurst", "offset"),
-        np.array(spread),
-        cf_attrs("mm2", "height-difference function S(v) of the spectrum"),
-    )
-    return result.assign_coords(hurst=("hurst", hursts, cf_attrs("1", "Hurst exponent H")))
+    return labelled_dataset(STATES | SURFACES, values, coords)
 
 
-def _slide(
-    face: np.ndarray,
-    offsets: np.ndarray,
-    pressures: np.ndarray,
-    rms_slope: float,
-    laws: Mapping[str, float],
-    rtol: float,
-    where: str,
-) -> dict[str, Any]:
-    """Numbers of one joint over laws, displacements and loads."""
+def _laws(recipe: Mapping[str, Any]) -> dict[str, float]:
+    """H / (E* h'_rms) of the laws, infinite for elastic contact."""
+    return {"elastic": np.inf} | ({"capped": recipe["hardness"]} if "hardness" in recipe else {})
+
+
+def sliding_joint(
+    face: np.ndarray, recipe: Mapping[str, Any], rtol: float, where: str
+) -> dict[str, np.ndarray]:
+    """States of one face that slides over its copy.
+
+    Parameters
+    ----------
+    face : (n, n + reach) ndarray
+        Heights, mm.
+    recipe : mapping
+        ``offsets``, ``loads``, ``rms_slope`` and optionally ``hardness``, as of
+        :func:`size_strength`.
+    rtol : float
+        Of the solves.
+    where : str
+        What is loaded, for errors.
+
+    Returns
+    -------
+    dict of str to ndarray
+        :data:`STATES` over (law, offset, reduced_pressure), and ``composite_rms`` (offset).
+    """
     size = len(face)
+    area = (size * SPACING) ** 2
     space = HalfSpace((size, size), (SPACING, SPACING), E_STAR)
-    unit = E_STAR * np.sqrt(2) * rms_slope
-    forces = pressures * unit * (size * SPACING) ** 2
-    shape = len(laws), len(offsets), len(pressures)
-    values: dict[str, Any] = {name: np.full(shape, np.nan) for name in STATES}
-    rms = []
+    unit = E_STAR * np.sqrt(2) * recipe["rms_slope"]
+    offsets, pressures, laws = np.unique(recipe["offsets"]), recipe["loads"], _laws(recipe)
+    forces = np.unique(pressures) * unit * area
+    values = {name: np.full((len(laws), len(offsets), len(forces)), np.nan) for name in STATES}
+    rms = np.zeros(len(offsets))
     for j, offset in enumerate(offsets):
         composite = mated_composite(face, int(offset))
-        rms.append(float(np.sqrt(np.mean(composite**2))))
+        rms[j] = np.sqrt(np.mean(composite**2))
         for i, (law, hardness) in enumerate(laws.items()):
             solving = {"rtol": rtol} | ({"hardness": hardness * unit} if law == "capped" else {})
             of_state = f"{where}, v = {offset:g} nodes, {law}"
             for k, state in enumerate(load_steps(composite, space, forces, solving, of_state)):
-                domain = state.in_contact
-                # Where material has yielded the gap is negative: the planes come that much closer.
-                values["separation"][i, j, k] = state.gap.mean()
-                values["corrected_share"][i, j, k] = (
-                    corrected_area(domain, space.spacing) / (size * SPACING) ** 2
-                )
-                values["nodes"][i, j, k] = np.count_nonzero(domain)
-                values["yielded"][i, j, k] = np.mean(state.pressure[domain] >= state.hardness)
-                values["residual"][i, j, k] = state.residual
+                for name, value in _numbers_of(state, area).items():
+                    values[name][i, j, k] = value
     return values | {"composite_rms": rms}
+
+
+def _numbers_of(state: ContactState, area: float) -> dict[str, float]:
+    """:data:`STATES` of one state."""
+    domain = state.in_contact
+    return {
+        # Where material has yielded the gap is negative: the planes come that much closer.
+        "separation": float(state.gap.mean()),
+        "corrected_share": float(corrected_area(domain, state.space.spacing)) / area,
+        "nodes": int(np.count_nonzero(domain)),
+        "yielded": float(np.mean(state.pressure[domain] >= state.hardness)),
+        "residual": state.residual,
+    }
