@@ -23,7 +23,7 @@ ARMS = {
 }
 
 
-def page(test: xr.Dataset, study: str) -> str:
+def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> str:
     """The page in Markdown.
 
     Parameters
@@ -32,9 +32,19 @@ def page(test: xr.Dataset, study: str) -> str:
         Group ``size_effect/surfaces`` of an atlas.
     study : str
         Name of the study, from which the command follows.
+    strength : xr.Dataset, optional
+        Group ``size_strength/surfaces``, where the atlas has it.
     """
+    of_strength = [] if strength is None else _strength(strength)
     return "\n".join(
-        [*_head(test, study), *_size(test), *_resolution(test), *_geometry(test), *_questions(test)]
+        [
+            *_head(test, study),
+            *_size(test),
+            *_resolution(test),
+            *_geometry(test),
+            *of_strength,
+            *_questions(test),
+        ]
     )
 
 
@@ -151,6 +161,62 @@ def _geometry(test: xr.Dataset) -> list[str]:
     return [*lines, ""]
 
 
+def _strength(test: xr.Dataset) -> list[str]:
+    """Strength of sliding joints at equal v and at equal v/b, elastic and capped."""
+    share = float(test["truncated_share"].mean())
+    lines = [
+        "## Strength",
+        "",
+        f"Mated joints ({test.sizes['surface']} surfaces, h'_rms {test.attrs['rms_slope']:g}, "
+        f"roll-off {test.attrs['roll_off']:g} nodes) that slide over their copies, sides of "
+        f"{test.attrs['smallest_side']} nodes and more: exponent over b of τ/σ₀ = tan(φ_b + i), "
+        f"φ_b = {test.attrs['basic_friction_angle']:g}°, i = atan(Δδ/Δv) between successive "
+        "displacements, not truncated. A bound of "
+        f"{test.attrs['largest_friction_angle']:g}° (and of 0°) would meet {100 * share:.2g} % of "
+        "the angles. At equal v all intervals are taken together; at equal v/b `by v alone` is "
+        "what the largest joints have at the same v, `S(v)` what the height-difference function "
+        "alone makes of it.",
+        "",
+        "| H | contact | p/(E\\* h'_rms) | held equal | exponent | by v alone | S(v) | verdict |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for hurst in test["hurst"].values:
+        for law in test["law"].values:
+            for load in test["reduced_pressure"].values:
+                one = test.sel(hurst=hurst, law=law, reduced_pressure=load)
+                lines += _strength_rows(one, f"| {hurst:g} | {law} | {load:g} |")
+    rows = [
+        f"H = {hurst:g}, {law}: {test['overall'].sel(hurst=hurst, law=law).item()}"
+        for hurst in test["hurst"].values
+        for law in test["law"].values
+    ]
+    return [
+        *lines,
+        "",
+        f"An exponent within {test.attrs['bound']:g} of zero is no size effect. Over all loads: "
+        + "; ".join(rows)
+        + ".",
+        "",
+    ]
+
+
+def _strength_rows(one: xr.Dataset, start: str) -> list[str]:
+    """Rows of one class at one load."""
+    verdict = one["pooled_exponent_verdict"].item()
+    rows = [f"{start} v | {_with_error(one, 'pooled_exponent')} | 0 | 0 | {verdict} |"]
+    for k in range(one.sizes["fraction"]):
+        of_one = one.isel(fraction=k)
+        cells = [
+            f"v/b = {float(of_one['fraction_low']):.4g} to {float(of_one['fraction_high']):.4g}",
+            _with_error(of_one, "scaled_strength_exponent"),
+            _with_error(of_one, "predicted_exponent"),
+            f"{float(of_one['theory_exponent']):+.3f}",
+            of_one["scaled_strength_exponent_verdict"].item(),
+        ]
+        rows.append(f"{start} " + " | ".join(cells) + " |")
+    return rows
+
+
 def _questions(test: xr.Dataset) -> list[str]:
     central = abs(test["central_alpha"] - test["alpha"])
     errors = test["alpha_error"]
@@ -196,7 +262,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     atlas = read_atlas(stated.atlas, without=("contact",))
     if "size_effect" not in atlas.children:
         raise InputError(f"{stated.atlas}: no stage size_effect; run config/size_effect.yaml first")
-    text = page(atlas["size_effect/surfaces"].to_dataset(), stated.atlas.parent.name)
+    strength = (
+        atlas["size_strength/surfaces"].to_dataset() if "size_strength" in atlas.children else None
+    )
+    test = atlas["size_effect/surfaces"].to_dataset()
+    text = page(test, stated.atlas.parent.name, strength)
     with atomic_write(stated.page) as path:
         path.write_text(text, encoding="utf-8")
 
