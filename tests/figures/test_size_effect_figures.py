@@ -100,6 +100,8 @@ def test_page_states_the_strength(atlas, test_of):
     assert len(rows) == wanted
     assert f"{float(strength['pooled_exponent'][0, 0, 0]):+.3f}" in rows[0]
     assert {row.count("|") for row in rows} == {9}
+    largest = float(strength["area_exponent"].sel(law="capped").max())
+    assert f"to {largest:+.3f} (median" in section.split("capped, A_r/A_0")[1]
     assert "nan" not in section
     assert "## Strength" not in size_effect_page.page(test_of, "tiny")
 

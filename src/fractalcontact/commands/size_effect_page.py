@@ -195,9 +195,27 @@ def _strength(test: xr.Dataset) -> list[str]:
         "",
         f"An exponent within {test.attrs['bound']:g} of zero is no size effect. Over all loads: "
         + "; ".join(rows)
-        + ".",
+        + ". Contact area and separation at equal v, over all displacements: "
+        + "; ".join(_other_exponents(test, str(law)) for law in test["law"].values)
+        + ". A window alone on a half-space carries more at its rim as it grows, by which the mean "
+        "separation rises a little with b.",
         "",
     ]
+
+
+def _other_exponents(test: xr.Dataset, law: str) -> str:
+    """Range of the exponents of contact area and separation under one law."""
+    texts = []
+    for name, words in (("area_exponent", "A_r/A_0"), ("separation_exponent", "separation")):
+        values, errors = (test[f"{name}{end}"].sel(law=law) for end in ("", "_error"))
+        verdicts = test[f"{name}_verdict"].sel(law=law).values
+        effects = int((verdicts == "size effect").sum())
+        low, middle, high = (float(one()) for one in (values.min, values.median, values.max))
+        texts.append(
+            f"{words} {low:+.3f} to {high:+.3f} (median {middle:+.3f}, standard error up to "
+            f"{float(errors.max()):.3f}; a size effect in {effects} of {verdicts.size})"
+        )
+    return f"{law}, " + ", ".join(texts)
 
 
 def _strength_rows(one: xr.Dataset, start: str) -> list[str]:
