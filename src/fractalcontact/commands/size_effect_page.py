@@ -197,8 +197,8 @@ def _strength(test: xr.Dataset) -> list[str]:
         + "; ".join(rows)
         + ". Contact area and separation at equal v, over all displacements: "
         + "; ".join(_other_exponents(test, str(law)) for law in test["law"].values)
-        + ". A window alone on a half-space carries more at its rim as it grows, by which the mean "
-        "separation rises a little with b.",
+        + ". A window alone on a half-space carries more at its rim as it grows, which makes the "
+        "mean separation rise a little with b; eq. 6 wants the strength to fall.",
         "",
     ]
 

@@ -69,7 +69,7 @@ _DECIDING = ("pooled_exponent", "scaled_strength_exponent", "predicted_exponent"
 
 
 class _Sample(NamedTuple):
-    """Joints of one Hurst exponent under one law and load, the sides that enter exponents first."""
+    """Joints of one Hurst exponent under one law and load."""
 
     sides: np.ndarray
     rates: np.ndarray  # (surface, interval)
@@ -118,40 +118,25 @@ def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Data
         :data:`VERDICTS` after ``_verdict``; ``theory_strength`` and ``theory_exponent`` from S(v);
         ``truncated_share``. Sides from :data:`FEWEST_ROLL_OFFS` roll-offs on enter exponents.
     """
-    rates = dilatancy_rates(states)
     offsets = np.r_[0.0, states["offset"].values]
     sides = np.unique(states["of_size"].values)
     smallest = FEWEST_ROLL_OFFS * recipe["roll_off"]
     classes = equal_fractions(sides[sides >= smallest] * SPACING, offsets)
-    hursts, laws = states["hurst"].values, states["law"].values
-    loads = states["reduced_pressure"].values
-    shape = len(hursts), len(laws)
-    sizes = {
+    sizes = dict(states.sizes) | {
         "side": len(sides),
         "interval": len(offsets) - 1,
         "fraction": len(classes),
-        "reduced_pressure": len(loads),
     }
-    sizes |= dict(zip(_CLASS, shape, strict=True))
     values = _empty(sizes)
     basic = float(recipe["basic_friction_angle"])
     found: dict[tuple[int, int], dict[str, list[Exponent]]] = {}
-    for i, j, k in product(range(shape[0]), range(shape[1]), range(len(loads))):
-        here = states["of_hurst"].values == hursts[i]
-        one = states.isel(surface=here, law=j, reduced_pressure=k)
-        sample = _Sample(
-            one["of_size"].values,
-            rates[here][:, j, :, k],
-            one["corrected_share"].transpose("surface", "offset").values,
-            one["separation"].transpose("surface", "offset").values,
-            one["number"].values,
-        )
+    for (i, j, k), sample in _samples(states).items():
         difference = states["height_difference"].values[i]
         one_class = _one_class(sample, sides, smallest, classes, basic)
         _fill(values, (i, j), k, one_class)
+        _fill(values, (i, j), k, _by_theory(sample, difference, offsets, classes, basic))
         for name in _DECIDING:
             found.setdefault((i, j), {}).setdefault(name, []).extend(one_class[name])
-        _fill(values, (i, j), k, _by_theory(sample, difference, offsets, classes, basic))
     for at, exponents in found.items():
         at_v, at_fraction, predicted = (exponents[name] for name in _DECIDING)
         values["overall"][at] = joint_verdict(at_v, at_fraction, predicted)
@@ -169,6 +154,24 @@ def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Data
         **({"hardness": float(recipe["hardness"])} if "hardness" in recipe else {}),
     }
     return result
+
+
+def _samples(states: xr.Dataset) -> dict[tuple[int, int, int], _Sample]:
+    """Joints by the numbers of their Hurst exponent, law and load."""
+    rates, hursts = dilatancy_rates(states), states["hurst"].values
+    shape = (states.sizes[dim] for dim in (*_CLASS, "reduced_pressure"))
+    found = {}
+    for i, j, k in product(*map(range, shape)):
+        here = states["of_hurst"].values == hursts[i]
+        one = states.isel(surface=here, law=j, reduced_pressure=k)
+        found[i, j, k] = _Sample(
+            one["of_size"].values,
+            rates[here][:, j, :, k],
+            one["corrected_share"].transpose("surface", "offset").values,
+            one["separation"].transpose("surface", "offset").values,
+            one["number"].values,
+        )
+    return found
 
 
 def equal_fractions(
@@ -240,7 +243,7 @@ def _coords(
     }
 
 
-def _empty(sizes: Mapping[str, int]) -> dict[str, np.ndarray]:
+def _empty(sizes: Mapping[Any, int]) -> dict[str, np.ndarray]:
     values = {}
     for name, (dims, _, _) in _table().items():
         shape = [sizes[dim] for dim in dims]
