@@ -11,6 +11,7 @@ from fractalcontact.experiments.delta_sigma import dimension_test
 from fractalcontact.experiments.roll_off import roll_off_effect
 from fractalcontact.experiments.size_effect_test import size_effect_test
 from fractalcontact.experiments.size_states import solve_task
+from fractalcontact.experiments.size_strength import size_strength
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.stages.specimen import specimen_stages
@@ -100,6 +101,18 @@ SIZE_EFFECT = {
         "R": {"sizes": [32], "surfaces": [2], "cut_offs": [4, 8]},
         "S1": {"sizes": [32, 48], "surfaces": [2, 2]},
     },
+}
+SIZE_STRENGTH = {
+    "hurst": [0.5, 0.8],
+    "loads": [0.05],
+    "hardness": 0.5,
+    "cut_off": 4,
+    "roll_off": 8,
+    "rms_slope": 0.3,
+    "basic_friction_angle": 30,
+    "offsets": [2, 4, 8],
+    "sizes": [32, 64],
+    "surfaces": [2, 2],
 }
 ROLL_OFF = {
     "label": "made joints",
@@ -200,6 +213,7 @@ def _experiments():
             [solve_task(task, SIZE_EFFECT["loads"], 1e-4) for task in size_tasks(SIZE_EFFECT)],
             SIZE_EFFECT,
         ),
+        "size_strength": size_strength(SIZE_STRENGTH, 1e-4),
     }
     assert computed.keys() <= {name for name, s in STAGES.items() if s.grain == EXPERIMENT}
     return computed

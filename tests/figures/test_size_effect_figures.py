@@ -6,7 +6,12 @@ import xarray as xr
 
 from fractalcontact.commands import size_effect_page
 from fractalcontact.core.errors import InputError
-from fractalcontact.figures.experiments import contact_geometry, resolution_law, size_effect
+from fractalcontact.figures.experiments import (
+    contact_geometry,
+    resolution_law,
+    size_effect,
+    size_strength,
+)
 from fractalcontact.figures.kit.drawing import print_style
 
 
@@ -22,11 +27,11 @@ def drawn(module, atlas):
     return drawing
 
 
-@pytest.mark.parametrize("module", [size_effect, resolution_law, contact_geometry])
+@pytest.mark.parametrize("module", [size_effect, resolution_law, contact_geometry, size_strength])
 def test_labels_and_caption(atlas, module):
     drawing = drawn(module, atlas)
     assert len(drawing.caption.split()) < 70
-    assert drawing.caption.startswith("Supplementary figure: synthetic surfaces")
+    assert drawing.caption.startswith("Supplementary figure: synthetic ")
     assert "nan" not in drawing.caption
     for axes in drawing.figure.axes:
         assert axes.get_xlabel()
@@ -67,6 +72,38 @@ def test_geometry_drawn_is_that_of_the_atlas(atlas, test_of):
     for (hurst, load), row in table.iterrows():
         one = test_of.sel(hurst=hurst, reduced_pressure=load)
         np.testing.assert_allclose(row["cut_delta"], one["cut_delta"])
+
+
+def test_strength_drawn_is_that_of_the_atlas(atlas):
+    strength = atlas["size_strength/surfaces"].to_dataset()
+    drawing = drawn(size_strength, atlas)
+    table = drawing.data
+    assert (table["drawn"] == "strength").sum() == strength["strength"].size
+    assert (table["drawn"] == "equal v").sum() == strength["strength_exponent"].size
+    scaled = table[table["drawn"] == "equal v/b"]
+    assert len(scaled) == strength["scaled_strength_exponent"].size > 0
+    for _, row in scaled.iterrows():
+        one = strength.sel(hurst=row["hurst"], law=row["law"], reduced_pressure=0.05)
+        one = one.isel(fraction=int(np.argmin(abs(one["fraction_low"].values - row["low"]))))
+        np.testing.assert_allclose(row["value"], one["scaled_strength_exponent"])
+        np.testing.assert_allclose(row["by_v_alone"], one["predicted_exponent"])
+    for text in strength["overall"].values.ravel():
+        assert text in drawing.caption
+
+
+def test_page_states_the_strength(atlas, test_of):
+    strength = atlas["size_strength/surfaces"].to_dataset()
+    page = size_effect_page.page(test_of, "tiny", strength)
+    section = page.split("## Strength")[1].split("## ")[0]
+    rows = [line for line in section.splitlines() if line.startswith("| 0.")]
+    wanted = strength["pooled_exponent"].size + strength["scaled_strength_exponent"].size
+    assert len(rows) == wanted
+    assert f"{float(strength['pooled_exponent'][0, 0, 0]):+.3f}" in rows[0]
+    assert {row.count("|") for row in rows} == {9}
+    largest = float(strength["area_exponent"].sel(law="capped").max())
+    assert f"to {largest:+.3f} (median" in section.split("capped, A_r/A_0")[1]
+    assert "nan" not in section
+    assert "## Strength" not in size_effect_page.page(test_of, "tiny")
 
 
 def test_page_states_every_class(test_of):

@@ -44,6 +44,7 @@ def test_figures_of_a_study(atlas_file, atlas, tmp_path):
         "size_effect",
         "resolution_law",
         "contact_geometry",
+        "size_strength",
         "plateau",
         "area_slope",
         "dimension_test",

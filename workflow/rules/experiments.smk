@@ -90,3 +90,26 @@ rule estimator_bias:
         recipe=config.get("estimator_bias"),
     script:
         "../scripts/stage.py"
+
+
+# Whether the strength of sliding joints has a size effect.
+rule size_strength:
+    output:
+        **outputs_of("size_strength"),
+    log:
+        f"{RESULTS}/logs/size_strength.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/size_strength.tsv"
+    # Long, and nothing waits for it: begun last it would keep one core busy and the others idle.
+    priority: 1
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=lambda wc, attempt: 4000 * attempt,
+        runtime=lambda wc, attempt: 120 * attempt,
+    params:
+        **calling("size_strength"),
+        recipe=config.get("size_strength"),
+        rtol=SOLVER["rtol"],
+    script:
+        "../scripts/stage.py"

@@ -18,7 +18,7 @@ from ..study.atlas import read_atlas
 from ..study.size_tasks import ARMS
 
 
-def page(test: xr.Dataset, study: str) -> str:
+def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> str:
     """The page in Markdown.
 
     Parameters
@@ -27,9 +27,12 @@ def page(test: xr.Dataset, study: str) -> str:
         Group ``size_effect/surfaces`` of an atlas.
     study : str
         Name of the study, from which the command follows.
+    strength : xr.Dataset, optional
+        Group ``size_strength/surfaces``, where the atlas has it.
     """
     parts = (_head(test, study), _size(test), _stiffness(test), _resolution(test))
-    rest = (_geometry(test), _constructions(test), _questions(test), _surfaces(test))
+    of_strength = [] if strength is None else _strength(strength)
+    rest = (_geometry(test), _constructions(test), of_strength, _questions(test), _surfaces(test))
     return "\n".join(line for part in (*parts, *rest) for line in part)
 
 
@@ -239,6 +242,80 @@ def _constructions(test: xr.Dataset) -> list[str]:
     ]
 
 
+def _strength(test: xr.Dataset) -> list[str]:
+    """Strength of sliding joints at equal v and at equal v/b, elastic and capped."""
+    share = float(test["truncated_share"].mean())
+    lines = [
+        "## Strength",
+        "",
+        f"Mated joints ({test.sizes['surface']} surfaces, h'_rms {test.attrs['rms_slope']:g}, "
+        f"roll-off {test.attrs['roll_off']:g} nodes) that slide over their copies, sides of "
+        f"{test.attrs['smallest_side']} nodes and more: exponent over b of τ/σ₀ = tan(φ_b + i), "
+        f"φ_b = {test.attrs['basic_friction_angle']:g}°, i = atan(Δδ/Δv) between successive "
+        "displacements, not truncated. A bound of "
+        f"{test.attrs['largest_friction_angle']:g}° (and of 0°) would meet {100 * share:.2g} % of "
+        "the angles. At equal v all intervals are taken together; at equal v/b `by v alone` is "
+        "what the largest joints have at the same v, `S(v)` what the height-difference function "
+        "alone makes of it.",
+        "",
+        "| H | contact | p/(E\\* h'_rms) | held equal | exponent | by v alone | S(v) | verdict |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for hurst in test["hurst"].values:
+        for law in test["law"].values:
+            for load in test["reduced_pressure"].values:
+                one = test.sel(hurst=hurst, law=law, reduced_pressure=load)
+                lines += _strength_rows(one, f"| {hurst:g} | {law} | {load:g} |")
+    rows = [
+        f"H = {hurst:g}, {law}: {test['overall'].sel(hurst=hurst, law=law).item()}"
+        for hurst in test["hurst"].values
+        for law in test["law"].values
+    ]
+    return [
+        *lines,
+        "",
+        f"An exponent within {test.attrs['bound']:g} of zero is no size effect. Over all loads: "
+        + "; ".join(rows)
+        + ". Contact area and separation at equal v, over all displacements: "
+        + "; ".join(_other_exponents(test, str(law)) for law in test["law"].values)
+        + ". A window alone on a half-space carries more at its rim as it grows, which makes the "
+        "mean separation rise a little with b; eq. 6 wants the strength to fall.",
+        "",
+    ]
+
+
+def _other_exponents(test: xr.Dataset, law: str) -> str:
+    """Range of the exponents of contact area and separation under one law."""
+    texts = []
+    for name, words in (("area_exponent", "A_r/A_0"), ("separation_exponent", "separation")):
+        values, errors = (test[f"{name}{end}"].sel(law=law) for end in ("", "_error"))
+        verdicts = test[f"{name}_verdict"].sel(law=law).values
+        effects = int((verdicts == "size effect").sum())
+        low, middle, high = (float(one()) for one in (values.min, values.median, values.max))
+        texts.append(
+            f"{words} {low:+.3f} to {high:+.3f} (median {middle:+.3f}, standard error up to "
+            f"{float(errors.max()):.3f}; a size effect in {effects} of {verdicts.size})"
+        )
+    return f"{law}, " + ", ".join(texts)
+
+
+def _strength_rows(one: xr.Dataset, start: str) -> list[str]:
+    """Rows of one class at one load."""
+    verdict = one["pooled_exponent_verdict"].item()
+    rows = [f"{start} v | {_with_error(one, 'pooled_exponent')} | 0 | 0 | {verdict} |"]
+    for k in range(one.sizes["fraction"]):
+        of_one = one.isel(fraction=k)
+        cells = [
+            f"v/b = {float(of_one['fraction_low']):.4g} to {float(of_one['fraction_high']):.4g}",
+            _with_error(of_one, "scaled_strength_exponent"),
+            _with_error(of_one, "predicted_exponent"),
+            f"{float(of_one['theory_exponent']):+.3f}",
+            of_one["scaled_strength_exponent_verdict"].item(),
+        ]
+        rows.append(f"{start} " + " | ".join(cells) + " |")
+    return rows
+
+
 def _questions(test: xr.Dataset) -> list[str]:
     central = abs(test["central_alpha"] - test["alpha"])
     errors = test["alpha_error"]
@@ -306,7 +383,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     atlas = read_atlas(stated.atlas, without=("contact",))
     if "size_effect" not in atlas.children:
         raise InputError(f"{stated.atlas}: no stage size_effect; run config/size_effect.yaml first")
-    text = page(atlas["size_effect/surfaces"].to_dataset(), stated.atlas.parent.name)
+    strength = (
+        atlas["size_strength/surfaces"].to_dataset() if "size_strength" in atlas.children else None
+    )
+    test = atlas["size_effect/surfaces"].to_dataset()
+    text = page(test, stated.atlas.parent.name, strength)
     with atomic_write(stated.page) as path:
         path.write_text(text, encoding="utf-8")
 

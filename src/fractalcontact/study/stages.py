@@ -175,6 +175,11 @@ _TABLE = (
         "which exponent carries the size effect: resolution, size and geometry one by one",
         "experiments.size_effect_test:size_effect_test",
     ),
+    _experiment(
+        "size_strength",
+        "strength of sliding mated joints over their side, at equal v and at equal v/b",
+        "experiments.size_strength:size_strength",
+    ),
     Stage(
         "statements",
         "what the paper says, and whether it holds here",

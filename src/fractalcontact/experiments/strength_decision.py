@@ -1,0 +1,209 @@
+"""Whether the strength of a sliding joint has a size effect: the rule of decision, nothing else.
+
+tau/sigma_0 = tan(phi_b + i), and i is atan(d delta/dv) unbounded: truncation at a largest angle
+would hide a size effect of steep joints. The strength of a class is that of its mean rate, as the
+mean of a bent function of rates that scatter more in small windows would fall with the side by
+itself.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .size_decision import (
+    NO_EFFECT,
+    UNKNOWN,
+    Exponent,
+    mean_exponent,
+    quantile,
+    size_exponent,
+)
+
+FLAT, EFFECT, OPEN = "no size effect", "size effect", "undetermined"
+#: Of both kinds together.
+OF_V, OF_B = "size effect of v, not of b", "size effect of b"
+
+
+def friction_ratio(rate: np.ndarray, basic_angle: float) -> np.ndarray:
+    """Strength tau/sigma_0 = tan(phi_b + i) with i = atan(rate), the angle not truncated.
+
+    Parameters
+    ----------
+    rate : array_like
+        Dilatancy rate d delta/dv.
+    basic_angle : float
+        phi_b, degrees.
+
+    Returns
+    -------
+    ndarray
+        NaN where the angle reaches 90 degrees: no shear force makes that joint slide.
+
+    Notes
+    -----
+    Goodman (1989), as in :mod:`mechanics.strength`.
+    """
+    angle = np.radians(basic_angle) + np.arctan(rate)
+    with np.errstate(invalid="ignore"):
+        return np.where(angle < np.pi / 2, np.tan(angle), np.nan)
+
+
+def mean_strength(rates: np.ndarray, basic_angle: float) -> Exponent:
+    """Strength of the mean rate of surfaces of one class, with its 99 % interval over them.
+
+    Parameters
+    ----------
+    rates : (n,) array_like
+    basic_angle : float
+        Degrees.
+    """
+    mean = mean_exponent(rates)
+    value, low, high = friction_ratio(np.array([mean.value, mean.low, mean.high]), basic_angle)
+    return Exponent(
+        float(value), float(abs(_slope(mean.value, basic_angle)) * mean.error), low, high
+    )
+
+
+def _slope(rate: float, basic_angle: float) -> float:
+    """d (tau/sigma_0) / d rate."""
+    tangent = float(friction_ratio(np.array(rate), basic_angle))
+    return (1 + tangent**2) / (1 + rate**2)
+
+
+def linear_strengths(groups: np.ndarray, rates: np.ndarray, basic_angle: float) -> np.ndarray:
+    """Strengths of single surfaces, linear in their rates about the mean rate of their group.
+
+    Parameters
+    ----------
+    groups, rates : (n,) array_like
+        Group (side) and dilatancy rate of each surface.
+    basic_angle : float
+        Degrees.
+
+    Returns
+    -------
+    (n,) ndarray
+        Positive; the logarithms of a group have the mean ln tan(phi_b + i) of its mean rate, and
+        scatter as its rates do. NaN where the strength of that mean is not positive.
+    """
+    groups, rates = np.asarray(groups), np.asarray(rates, float)
+    result = np.full(rates.shape, np.nan)
+    for group in np.unique(groups):
+        here = (groups == group) & np.isfinite(rates)
+        if not here.any():
+            continue
+        mean = float(rates[here].mean())
+        tangent = float(friction_ratio(np.array(mean), basic_angle))
+        if tangent > 0:
+            lever = _slope(mean, basic_angle) / tangent
+            result[here] = tangent * np.exp(lever * (rates[here] - mean))
+    return result
+
+
+def strength_exponent(sides: np.ndarray, rates: np.ndarray, basic_angle: float) -> Exponent:
+    """Exponent of tau/sigma_0 over the side, from dilatancy rates of surfaces of each side.
+
+    Parameters
+    ----------
+    sides, rates : (n,) array_like
+    basic_angle : float
+        Degrees.
+    """
+    return size_exponent(sides, linear_strengths(sides, rates, basic_angle))
+
+
+def equal_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
+    """Exponent over the side as :func:`size_exponent`, but with one weight for all sides.
+
+    Over sides at equal v/b the strength follows v, and not along a straight line: with equal
+    weights a prediction for the same sides has the same line.
+
+    Parameters
+    ----------
+    sides, values : (n,) array_like
+    """
+    sides, values = np.asarray(sides, float), np.asarray(values, float)
+    usable = np.isfinite(values) & (values > 0)
+    groups = {side: np.log(values[usable & (sides == side)]) for side in np.unique(sides)}
+    groups = {side: group for side, group in groups.items() if group.size > 1}
+    if len(groups) < 2:
+        return UNKNOWN
+    lever = np.log(list(groups)) - np.mean(np.log(list(groups)))
+    parts = lever / np.sum(lever**2)
+    value = float(np.sum(parts * [group.mean() for group in groups.values()]))
+    of_sides = parts**2 * [np.var(group, ddof=1) / group.size for group in groups.values()]
+    variance = of_sides.sum()
+    freedom = np.array([group.size - 1 for group in groups.values()])
+    # Welch and Satterthwaite; surfaces that are all alike have no scatter and any freedom.
+    joint = variance**2 / np.sum(of_sides**2 / freedom) if variance > 0 else freedom.sum()
+    half = quantile(float(joint)) * float(np.sqrt(variance))
+    return Exponent(value, float(np.sqrt(variance)), value - half, value + half)
+
+
+def beyond(found: Exponent, predicted: Exponent) -> Exponent:
+    """What remains of an exponent when a prediction is taken off, with the joint interval."""
+    value = found.value - predicted.value
+    half = float(np.hypot(found.high - found.value, predicted.high - predicted.value))
+    error = float(np.hypot(found.error, predicted.error))
+    return Exponent(value, error, value - half, value + half)
+
+
+def size_verdict(exponent: Exponent, bound: float = NO_EFFECT) -> str:
+    """Whether an exponent over the side is a size effect.
+
+    Parameters
+    ----------
+    exponent : Exponent
+    bound : float, optional
+        Exponents smaller than this are of no consequence.
+
+    Returns
+    -------
+    str
+        No size effect where the whole interval lies within the bound, a size effect where it
+        excludes zero and is not within the bound, else undetermined.
+    """
+    if not np.isfinite(exponent.error):
+        return OPEN
+    if max(abs(exponent.low), abs(exponent.high)) < bound:
+        return FLAT
+    return EFFECT if exponent.low > 0 or exponent.high < 0 else OPEN
+
+
+def joint_verdict(
+    at_v: Sequence[Exponent],
+    at_fraction: Sequence[Exponent],
+    predicted: Sequence[Exponent],
+    bound: float = NO_EFFECT,
+) -> str:
+    """Whether the strength of a class has a size effect, and of what.
+
+    Parameters
+    ----------
+    at_v : sequence of Exponent
+        Of tau/sigma_0 over the side at equal v, one a load.
+    at_fraction, predicted : sequence of Exponent
+        At equal v/b, and what v alone makes of it, one a load and fraction.
+    bound : float, optional
+        As of :func:`size_verdict`.
+
+    Returns
+    -------
+    str
+        Of b where an exponent at equal v is a size effect, or one at equal v/b differs from that by
+        v alone. Of v where at equal v there is none, and the exponents at equal v/b that v alone
+        makes a size effect are one, and no other. None where no exponent of either kind is. Else
+        undetermined.
+    """
+    rest = [beyond(*pair) for pair in zip(at_fraction, predicted, strict=True)]
+    verdicts = [size_verdict(one, bound) for one in at_v]
+    scaled = [size_verdict(one, bound) for one in at_fraction]
+    if EFFECT in verdicts or EFFECT in [size_verdict(one, bound) for one in rest]:
+        return OF_B
+    if not verdicts or set(verdicts) != {FLAT}:
+        return OPEN
+    if scaled and set(scaled) == {FLAT}:
+        return FLAT
+    by_v = [size_verdict(one, bound) for one in predicted]
+    explained = [pair == (EFFECT, EFFECT) for pair in zip(scaled, by_v, strict=True)]
+    return OF_V if any(explained) else OPEN

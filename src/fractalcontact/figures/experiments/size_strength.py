@@ -1,0 +1,259 @@
+"""Size effect of the strength of sliding mated joints: at equal v, and at equal v/b."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from xarray import DataTree
+
+from ..kit.drawing import (
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    group,
+    heading,
+    legends_below,
+    letter,
+)
+from ..kit.words import number, percent, supplementary
+
+TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
+SUBJECT = "study"
+NEEDS = ("size_strength",)
+KEY = "size_strength"
+ORDER = 8
+
+_ENDS = ("", "_low", "_high")
+#: Colours of the laws; sides have the others.
+_LAWS = {"elastic": colour_of(0), "capped": colour_of(2)}
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Strength over v by side, and its exponents over the side with what v alone makes of them."""
+    test = group(atlas, "size_strength", "surfaces")
+    hursts = test["hurst"].values
+    figure = Figure(figsize=(WIDTH, 7.4))
+    panels = figure.subplots(2, len(hursts), sharey="row", squeeze=False)
+    strengths, exponents = _strengths(test), _exponents(test)
+    for i, hurst in enumerate(hursts):
+        upper, lower = panels[:, i]
+        _draw_strength(upper, strengths[strengths["hurst"] == hurst], test)
+        letter(upper, "abcdefgh"[i], rf"$H$ = {hurst:g}")
+        upper.set_xlabel("shear displacement $v$ (nodes)")
+        _draw_exponents(lower, exponents[exponents["hurst"] == hurst], test)
+        letter(lower, "abcdefgh"[i + len(hursts)], rf"$H$ = {hurst:g}")
+        lower.set_xlabel("equal $v$ (nodes) | equal $v/b$")
+    panels[0, 0].set_ylabel(r"strength $\tau/\sigma_0$ (1)")
+    panels[1, 0].set_ylabel(r"$\mathrm{d}\ln(\tau/\sigma_0)/\mathrm{d}\ln b$ (1)")
+    legends_below(figure, _side_entries(test), _law_entries(test), _line_entries(test))
+    table = pd.concat([strengths, exponents], ignore_index=True)
+    return Drawing(figure, table, _caption(test, strengths, exponents))
+
+
+def _strengths(test: xr.Dataset) -> pd.DataFrame:
+    """One row a class, load, side and interval: the strength and that from S(v)."""
+    rows = []
+    for hurst, law, load in _classes(test):
+        for k in range(test.sizes["interval"]):
+            one = test.sel(hurst=hurst, law=law, reduced_pressure=load).isel(interval=k)
+            for side in test["side"].values:
+                of_side = one.sel(side=side)
+                rows.append(
+                    {
+                        "drawn": "strength",
+                        "hurst": hurst,
+                        "law": law,
+                        "p_over_E_slope": load,
+                        "side": side,
+                        "low": float(one["interval_low"]),
+                        "high": float(one["interval_high"]),
+                        **{f"value{end}": float(of_side[f"strength{end}"]) for end in _ENDS},
+                        "by_theory": float(one["theory_strength"]),
+                        "truncated_share": float(of_side["truncated_share"]),
+                    }
+                )
+    return pd.DataFrame(rows)
+
+
+def _exponents(test: xr.Dataset) -> pd.DataFrame:
+    """One row a class, load and interval of v, or of v/b: the exponent and that by v alone."""
+    rows = []
+    for hurst, law, load in _classes(test):
+        for dim, name in (
+            ("interval", "strength_exponent"),
+            ("fraction", "scaled_strength_exponent"),
+        ):
+            for k in range(test.sizes[dim]):
+                one = test.sel(hurst=hurst, law=law, reduced_pressure=load).isel({dim: k})
+                scaled = dim == "fraction"
+                rows.append(
+                    {
+                        "drawn": "equal v/b" if scaled else "equal v",
+                        "hurst": hurst,
+                        "law": law,
+                        "p_over_E_slope": load,
+                        "low": float(one[f"{dim}_low"]),
+                        "high": float(one[f"{dim}_high"]),
+                        **{f"value{end}": float(one[f"{name}{end}"]) for end in _ENDS},
+                        "by_v_alone": float(one["predicted_exponent"]) if scaled else 0.0,
+                        "by_theory": float(one["theory_exponent"]) if scaled else 0.0,
+                        "verdict": one[f"{name}_verdict"].item(),
+                    }
+                )
+    return pd.DataFrame(rows)
+
+
+def _classes(test: xr.Dataset) -> list[tuple]:
+    return [
+        (hurst, law, load)
+        for hurst in test["hurst"].values
+        for law in test["law"].values
+        for load in test["reduced_pressure"].values
+    ]
+
+
+def _draw_strength(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
+    """Strength over v at the lightest load; points of one v stand side by side."""
+    table = table[table["p_over_E_slope"] == table["p_over_E_slope"].min()]
+    sides = list(test["side"].values)
+    middles = np.sqrt(np.maximum(table["low"], table["high"] / 4) * table["high"])
+    for (law, side), one in table.groupby(["law", "side"]):
+        i = sides.index(side)
+        shift = 1.06 ** (i - (len(sides) - 1) / 2) * (1.0 if law == "elastic" else 1.03)
+        colour = colour_of(i + 1)
+        axes.errorbar(
+            middles[one.index] * shift,
+            one["value"],
+            yerr=[one["value"] - one["value_low"], one["value_high"] - one["value"]],
+            fmt=MARKERS[i],
+            color=colour,
+            mfc=colour if law == "elastic" else "white",
+            elinewidth=0.7,
+        )
+    of_theory = table[(table["law"] == "elastic") & (table["side"] == sides[-1])]
+    axes.plot(middles[of_theory.index], of_theory["by_theory"], "-", color="0.6", lw=1, zorder=0)
+    axes.axhline(
+        np.tan(np.radians(test.attrs["basic_friction_angle"])), color="0.6", ls=":", lw=1, zorder=0
+    )
+    axes.set_xscale("log")
+    ticks = of_theory["high"].to_numpy()
+    axes.set_xticks(ticks, [f"{v:g}" for v in ticks])
+    axes.minorticks_off()
+
+
+def _draw_exponents(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
+    """Exponents with their intervals, those at equal v to the left, at equal v/b to the right."""
+    places = list(
+        dict.fromkeys(zip(table["drawn"], table["low"], table["high"], strict=True)),
+    )
+    groups = _groups(test)
+    axes.axhspan(-test.attrs["bound"], test.attrs["bound"], color="0.9", lw=0, zorder=0)
+    axes.axhline(0, color="0.6", lw=0.8, zorder=0)
+    for n, (law, load) in enumerate(groups):
+        one = table[(table["law"] == law) & (table["p_over_E_slope"] == load)]
+        x = np.array(
+            [places.index(key) for key in zip(one["drawn"], one["low"], one["high"], strict=True)],
+            float,
+        )
+        x += 0.7 * ((n + 0.5) / len(groups) - 0.5)
+        colour, marker = _style(law, load, test)
+        axes.errorbar(
+            x,
+            one["value"],
+            yerr=[one["value"] - one["value_low"], one["value_high"] - one["value"]],
+            fmt=marker,
+            color=colour,
+            mfc=colour if law == "elastic" else "white",
+            elinewidth=0.7,
+        )
+        scaled = (one["drawn"] == "equal v/b").to_numpy()
+        axes.plot(x[scaled], one["by_v_alone"][scaled], "_", color=colour, ms=12, zorder=0)
+        axes.plot(x[scaled], one["by_theory"][scaled], "x", color="0.6", ms=5, zorder=0)
+    if any(kind == "equal v/b" for kind, _, _ in places):
+        axes.axvline(test.sizes["interval"] - 0.5, color="0.6", lw=0.8)
+    axes.set_xticks(range(len(places)), [_ends_text(*place) for place in places], fontsize=7)
+
+
+def _ends_text(kind: str, low: float, high: float) -> str:
+    if kind == "equal v":
+        return f"{low:g}\nto {high:g}"
+    return f"1/{1 / low:.4g}\nto 1/{1 / high:.4g}"
+
+
+def _groups(test: xr.Dataset) -> list[tuple[str, float]]:
+    return [(law, load) for load in test["reduced_pressure"].values for law in test["law"].values]
+
+
+def _style(law: str, load: float, test: xr.Dataset) -> tuple[str, str]:
+    return _LAWS[str(law)], MARKERS[list(test["reduced_pressure"].values).index(load)]
+
+
+def _side_entries(test: xr.Dataset) -> list:
+    marks = [
+        Line2D([], [], color=colour_of(i + 1), marker=MARKERS[i], ls="none", label=f"{side:g}")
+        for i, side in enumerate(test["side"].values)
+    ]
+    return [heading("above: side $b$ (nodes)"), *marks]
+
+
+def _law_entries(test: xr.Dataset) -> list:
+    entries: list = [heading("below; hollow: capped")]
+    for law, load in _groups(test):
+        colour, marker = _style(law, load, test)
+        fill = colour if law == "elastic" else "white"
+        entries.append(
+            Line2D(
+                [],
+                [],
+                color=colour,
+                marker=marker,
+                ls="none",
+                mfc=fill,
+                label=f"{law}, $p^*$ = {load:g}",
+            )
+        )
+    return entries
+
+
+def _line_entries(test: xr.Dataset) -> list:
+    return [
+        Line2D([], [], color="0.3", marker="_", ms=12, ls="none", label="by $v$ alone"),
+        Line2D([], [], color="0.6", marker="x", ls="-", label="from $S(v)$"),
+        Line2D([], [], color="0.6", ls=":", label=r"$\tan\varphi_b$"),
+        Patch(color="0.9", label=f"no size effect: within {test.attrs['bound']:g}"),
+    ]
+
+
+def _caption(test: xr.Dataset, strengths: pd.DataFrame, exponents: pd.DataFrame) -> str:
+    pooled = test["pooled_exponent"].values.ravel()
+    scaled = exponents[exponents["drawn"] == "equal v/b"]["value"].dropna()
+    beyond = test["beyond_exponent"].values
+    texts, count = np.unique(test["overall"].values, return_counts=True)
+    verdicts = "; ".join(f"{text} ({n})" for text, n in zip(texts, count, strict=True))
+    at_v = (
+        f"At equal v the exponent over b is {_range(pooled)}" if np.isfinite(pooled).any() else ""
+    )
+    at_fraction = (
+        f", at equal v/b {_range(scaled)}, within {number(np.nanmax(abs(beyond)), 3)} of what v "
+        "alone makes of it"
+        if len(scaled) and np.isfinite(beyond).any()
+        else ""
+    )
+    found = f"{at_v}{at_fraction}. " if at_v else ""
+    return (
+        f"{supplementary('synthetic mated joints that slide')} Strength without truncation of the "
+        f"angle (which would meet {percent(strengths['truncated_share'].mean())}); bars: 99 % over "
+        "surfaces. "
+        f"{found}Classes: {verdicts}."
+    )
+
+
+def _range(values: np.ndarray) -> str:
+    low, high = (number(end, 3) for end in (np.nanmin(values), np.nanmax(values)))
+    return low if low == high else f"{low} to {high}"
