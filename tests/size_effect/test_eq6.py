@@ -13,7 +13,7 @@ from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import split
-from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, VERDICTS, size_test
+from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, size_test
 from fractalcontact.size_effect.laws import joint_by_size
 from fractalcontact.size_effect.load_ladder import (
     SPARE_DOUBLINGS,
@@ -21,6 +21,7 @@ from fractalcontact.size_effect.load_ladder import (
     solve_sub_windows,
 )
 from fractalcontact.size_effect.prediction import PREDICTORS, predict_whole
+from fractalcontact.size_effect.size_verdict import NOTHING_PREDICTED, VERDICTS
 from fractalcontact.size_effect.slope import equal_pressure, real_pressures, slopes_at_equal_star
 from fractalcontact.size_effect.windows import window_states
 from fractalcontact.study.configuration import resolve_settings
@@ -172,7 +173,10 @@ def test_full_contact_is_euclidean():
     _, found = pressed_apart(np.zeros((side, side)), "flat", [0], window=side / 10)
     np.testing.assert_allclose(found["slope"], 0, atol=1e-9)
     np.testing.assert_allclose(found["delta_sigma"], 2, atol=1e-9)
-    assert (found["verdict"] == "agrees").all()
+    # No size effect is measured and none predicted: that says nothing of eq. 6.
+    np.testing.assert_allclose(found["area_exponent"], 0, atol=1e-9)
+    assert (found["area_reason"] == NOTHING_PREDICTED).all()
+    assert (found["verdict"] == "undecided").all()
     assert not found["size_effect"].any()
     np.testing.assert_allclose(found["area_error"], 0, atol=1e-9)
 

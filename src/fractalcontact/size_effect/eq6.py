@@ -198,7 +198,7 @@ def _line_through_occupied(domain: np.ndarray, parts: Sequence[int]) -> LineFit:
     return line._replace(slope_low=line.slope - half, slope_high=line.slope + half)
 
 
-# -- verdicts --------------------------------------------------------------------------------------
+# -- in words --------------------------------------------------------------------------------------
 
 
 def summary(result: xr.Dataset) -> str:

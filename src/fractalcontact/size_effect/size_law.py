@@ -64,11 +64,13 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     nodes = tested["nodes"].isel(resolution=0).transpose(*dims)
     places = [np.arange(n) for n in states["windows"].values]
     compliance = tested["interface_compliance"].transpose(*dims)
+    resolved = usable_sizes(nodes.values, RESOLVED_NODES)
+    edge_ratio = (tested["bulk_compliance"] / compliance.mean("window")).values
     result = labelled_dataset(
         _TABLE,
         {
             "least_nodes": nodes.min("window").values.T,
-            "edge_ratio": (tested["bulk_compliance"] / compliance.mean("window")).values.T,
+            "edge_ratio": np.where(resolved, edge_ratio, np.nan).T,
             "central_load": tested["central_load"].mean("window").transpose(*_OF_SIZE).values,
         },
         coords={"part": states["part"]},
