@@ -31,6 +31,7 @@ from ..core.datasets import labelled_dataset
 from ..core.fitting import LineFit, fit_line
 from ..core.intervals import CONFIDENCE, INTERVAL
 from ..core.ranges import within
+from ..core.resolved import CORRECTED_NODES
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.renormalisation import FEWEST_NODES, renormalisation
 from ..mechanics.loading import JointLoading
@@ -39,7 +40,7 @@ from .division import PARTS, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
 from .prediction import predict_whole, predict_whole_strength
 from .size_law import size_law
-from .size_verdict import NOT_TESTED, VERDICTS, WORST_CONDITION, size_verdicts
+from .size_verdict import NOT_TESTED, VERDICTS, size_verdicts
 from .slope import real_pressures, slopes_at_equal_star
 
 #: Estimators of Delta_sigma in the whole window under each load: its area over resolutions, boxes
@@ -74,14 +75,14 @@ def size_test(
         From :func:`size_effect.size_law.size_law` and
         :func:`size_effect.size_verdict.size_verdicts`. Over (estimator, normal_force):
         ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of the whole window with intervals.
-        Over (normal_force): the measured ``slope`` of all windows of a size taken together and ``window_slope`` of the
-        median of windows one by one, each with ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``;
-        ``share_exponent`` and ``sensitivity``, which explain it. Over (normal_force, part):
-        ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the solver's, which is
-        infinite where the value may not be reached at all), ``windows_below``, ``windows_above``,
-        ``windows_unknown``, ``crossings``; and what is predicted for the whole window, see
-        :func:`size_effect.prediction.predict_whole`. Loads ``beyond_study`` are those of
-        :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
+        Over (normal_force): the measured ``slope`` of all windows of a size taken together and
+        ``window_slope`` of the median of windows one by one, each with ``_low``, ``_high``, ``_n``,
+        ``_b_min``, ``_b_max``; ``share_exponent`` and ``sensitivity``, which explain it. Over
+        (normal_force, part): ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the
+        solver's, which is infinite where the value may not be reached at all), ``windows_below``,
+        ``windows_above``, ``windows_unknown``, ``crossings``; and what is predicted for the whole
+        window, see :func:`size_effect.prediction.predict_whole`. Loads ``beyond_study`` are those
+        of :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
 
     Notes
     -----
@@ -94,9 +95,10 @@ def size_test(
     lightest loads show the slope -2 exactly: one node in every window.
 
     The interval of that slope is of a regression over sizes, which are pieces of one joint and not
-    independent; that of the exponents at equal sigma_0 is over windows. Where a curve sigma*(sigma_0) meets the target several times, the geometric mean of
-    the places is taken and they are counted; where that is so for the whole window, its sigma* does
-    not determine sigma_0 and the verdict is "ambiguous". The composite topography of a sub-window
+    independent; that of the exponents at equal sigma_0 is over windows. Where a curve
+    sigma*(sigma_0) meets the target several times, the geometric mean of the places is taken and
+    they are counted; where that is so for the whole window, its sigma* does not determine sigma_0
+    and the verdict is "ambiguous". The composite topography of a sub-window
     is loaded as it lies, see :func:`size_effect.windows.window_states`.
 
     Raises
@@ -110,8 +112,8 @@ def size_test(
         return _dimensions(mapped, whole, domains, parts)
 
     states, _ = solve_sub_windows(mapped, parts, estimate)
-    of_windows = ["nodes", "nodes_error", "interface_closure", "bulk_compliance", *OF_WINDOWS]
-    result = states.drop_vars(of_windows).merge(size_law(states))
+    of_windows = ["nodes", "nodes_error", "interface_closure", "whole_area", "bulk_compliance"]
+    result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states))
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(size_verdicts(result))
     result = result.merge(predict_whole(states, result["delta_sigma"], FEWEST_NODES))
@@ -173,12 +175,14 @@ def _dimensions(
 
 
 def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> list[np.ndarray]:
-    """Delta_sigma (load) and its interval from the area of the whole window over resolutions."""
+    """Delta_sigma (load) and its interval from the corrected area of the whole over resolutions."""
     areas = whole_areas(loading, whole)
     s = spacing * areas["resolution"]
     if loading.settings["scaling_range"] is not None:
         areas = areas.where(within(s, *loading.settings["scaling_range"]))
-    by_area = renormalisation(s, areas, whole["normal_force"])
+    by_area = renormalisation(
+        s, areas["area_corrected"], whole["normal_force"], areas["nodes"], CORRECTED_NODES
+    )
     return [by_area[f"delta_sigma{ending}"].values for ending in INTERVAL]
 
 
@@ -217,11 +221,11 @@ def summary(result: xr.Dataset) -> str:
     if not measured.any():
         return "no load at which two sizes hold nodes enough to be tested"
     effect = int(result["size_effect"].values.sum())
-    conditioned = result["slope_verdict"] != NOT_TESTED
-    conditioned = conditioned & (abs(result["condition_number"]) <= WORST_CONDITION)
+    tested = (result["slope_verdict"] != NOT_TESTED).any("estimator")
+    conditioned = int((tested & result["well_conditioned"]).sum())
     rows = [
         f"of {int(measured.sum())} loads tested A_r/A_0 differs between sizes at {effect}, and "
-        f"eq. 6's own form is well-conditioned at {int(conditioned.any('estimator').sum())}"
+        f"eq. 6's own form is well-conditioned at {conditioned}"
     ]
     for name, words in DELTA_SIGMA_ESTIMATORS.items():
         verdicts = result["verdict"].sel(estimator=name).values

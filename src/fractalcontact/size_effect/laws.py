@@ -103,14 +103,15 @@ def size_laws(
         ``corrected_area_share`` and ``mean_gap`` (part, offset, load) with the interval of the mean
         over the sub-windows and the ``_error`` of the solver, and the exponents of closure,
         compliance and corrected area (offset, normal_force) with intervals over disjoint
-        sub-windows, see :func:`size_effect.size_exponents.size_exponent`. Strength, where the joint slides: see
-        :func:`size_effect.strength_laws.strength_by_size`.
+        sub-windows, see :func:`size_effect.size_exponents.size_exponent`. Strength, where the
+        joint slides: see :func:`size_effect.strength_laws.strength_by_size`.
 
     Notes
     -----
-    Any other power law is a line through the logarithms of the means, one a size. The largest size is one
-    window: nothing is known of the scatter of its value, and it weighs as much as the others. Small
-    sub-windows are pieces of large ones, so that the sizes are not independent either.
+    Any other power law is a line through the logarithms of the means, one a size. The largest size
+    is one window: nothing is known of the scatter of its value, and it weighs as much as the
+    others. Small sub-windows are pieces of large ones, so that the sizes are not independent
+    either.
     """
     result = states[["side", "nominal_pressure", "scale_side", "scale_n"]].copy()
     result["windows"] = states["sigma_z"].isel(offset=0).notnull().sum("window")

@@ -54,8 +54,9 @@ def solve_sub_windows(
         What was estimated, and
         ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
         solver leaves ambiguous; ``interface_closure`` and :data:`OF_WINDOWS` (part, window, step)
-        at the finest resolution, ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps
-        are those of the loads. Steps that no window of a size needs are NaN.
+        at the finest resolution, ``whole_area`` (resolution, step), ``side`` b and ``windows``
+        (part), ``ladder_pressure`` (step) whose first steps are those of the loads. Steps that no
+        window of a size needs are NaN.
     domains : (load, ny, nx) bool ndarray
         Contact domain of the whole window at the finest resolution.
 
@@ -85,13 +86,15 @@ def solve_sub_windows(
     ]
     of_study = loading.forces(settings["loads"]) / area
     pressures = _ladder(of_study, loading.solving["hardness"])
+    # Stiffness costs a solve of its own: at the loads whose closure is looked at.
+    looked_at = loading.forces(settings["dilatancy_loads"]) / area
+    compliant = np.isclose(pressures[:, np.newaxis], looked_at, rtol=1e-9).any(axis=1)
     n_tested = min(len(of_study) + TESTED_DOUBLINGS, len(pressures))
     sizes = []
     for n in parts:
         windows = _cut(composite, n, max(factors))
-        size = _LoadedSize(
-            loading, windows, factors, pressures, f"{n} x {n} parts", len(of_study)
-        )
+        where = f"{n} x {n} parts"
+        size = _LoadedSize(loading, windows, factors, pressures, where, compliant)
         size.extend(n_tested + 1)
         sizes.append(size)
 
@@ -124,13 +127,15 @@ class _LoadedSize:
         Nominal, MPa.
     what : str
         For errors.
-    compliant : int
+    compliant : (step,) bool ndarray
         Steps whose compliance is found, where `RESOLVED_NODES` nodes touch.
 
     Attributes
     ----------
     nodes, ambiguous : (window, resolution, step) ndarray
         In contact, and those of which it is not certain; NaN for steps not solved yet.
+    corrected : (window, resolution, step) ndarray
+        Corrected real contact area, mm2; of several windows at the finest resolution alone.
     finest : dict of str to (window, step) ndarray
         ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
@@ -148,7 +153,7 @@ class _LoadedSize:
         factors: Sequence[int],
         pressures: np.ndarray,
         what: str,
-        compliant: int,
+        compliant: np.ndarray,
     ) -> None:
         cells = np.array(windows.shape[1:])
         self.sides, self.pressures, self.factors = cells * loading.spacing, pressures, factors
@@ -158,6 +163,7 @@ class _LoadedSize:
         self.ambiguous = self.nodes.copy()
         names = ("interface_closure", *OF_WINDOWS)
         self.finest = {name: np.full((len(windows), len(pressures)), np.nan) for name in names}
+        self.corrected = self.nodes.copy()
         self._compliant = compliant
         self.domains: list[np.ndarray] = []
         self.solved = 0
@@ -180,6 +186,8 @@ class _LoadedSize:
             for step, state in zip(following, rising, strict=False):
                 self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
                 self.ambiguous[j, k, step] = state.ambiguous
+                if k == 0 or len(self.nodes) == 1:
+                    self.corrected[j, k, step] = _corrected(state)
                 if k == 0:
                     for name, value in self._of_state(state, j, step).items():
                         self.finest[name][j, step] = value
@@ -195,16 +203,14 @@ class _LoadedSize:
         middle = np.s_[ny // 4 : ny - ny // 4, nx // 4 : nx - nx // 4]
         even = state.pressure[middle].size / state.pressure.size
         compliance = np.nan
-        resolved = step < self._compliant and np.count_nonzero(domain) >= RESOLVED_NODES
+        resolved = self._compliant[step] and np.count_nonzero(domain) >= RESOLVED_NODES
         if resolved and not flush and state.stiffness > 0:
             compliance = area / state.stiffness - self.bulk_compliance
-        corrected = float(corrected_area(domain, state.space.spacing))
         return {
             "interface_closure": interface_closure(state.closure, settlement, flush),
-            # No less than what carries the force at the largest pressure, if there is one.
-            "area_fraction": max(corrected, state.force / state.hardness) / area,
+            "area_fraction": self.corrected[window, 0, step] / area,
             "interface_compliance": compliance,
-            "mean_gap": float(state.gap.mean()),
+            "mean_gap": 0.0 if flush else float(state.gap.mean()),
             "central_load": float(state.pressure[middle].sum() / state.pressure.sum() / even),
         }
 
@@ -238,6 +244,11 @@ _TABLE = {
     "nodes_error": (_OF_NODES, "1", f"nodes in contact, {SOLVER_ERROR}"),
     "interface_closure": (_OF_WINDOW, "mm", "interface closure w_int = w - w_b of a sub-window"),
     **{name: (_OF_WINDOW, *words) for name, words in OF_WINDOWS.items()},
+    "whole_area": (
+        ("resolution", "step"),
+        "mm2",
+        "corrected real contact area of the whole window",
+    ),
     "bulk_compliance": ("part", "mm/MPa", "bulk settlement of a sub-window over sigma_0"),
     "side": ("part", "mm", "side b of the sub-windows"),
     "windows": ("part", "1", "sub-windows solved of each size"),
@@ -272,6 +283,7 @@ def _labelled(
     values = {
         "nodes": nodes,
         "nodes_error": ambiguous,
+        "whole_area": sizes[0].corrected[0],
         "bulk_compliance": [size.bulk_compliance for size in sizes],
         "side": [np.sqrt(size.sides.prod()) for size in sizes],
         "windows": np.square(parts),
@@ -314,8 +326,8 @@ def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> 
     return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
 
 
-def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.DataArray:
-    """Real area of the whole window at all resolutions of the study.
+def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.Dataset:
+    """Corrected real area of the whole window at all resolutions of the study.
 
     Parameters
     ----------
@@ -326,26 +338,36 @@ def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.DataArray:
 
     Returns
     -------
-    xr.DataArray (resolution, normal_force)
-        mm2.
+    xr.Dataset
+        ``area_corrected``, mm2, and ``nodes`` (resolution, normal_force).
     """
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings["resolutions"], states["normal_force"]
-    solved = states["nodes"].sel(part=1).isel(window=0, step=slice(len(loads)))
+    solved = states.sel(part=1).isel(window=0, step=slice(len(loads)))
     # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)
-    areas = []
+    areas, nodes = [], []
     for factor in factors:
         if uncut and factor in solved["resolution"]:
-            cell = np.prod(loading.spacing * factor)
-            areas.append(solved.sel(resolution=factor).values * cell)
+            known = solved.sel(resolution=factor)
+            areas.append(known["whole_area"].values)
+            nodes.append(known["nodes"].values)
             continue
         h = prefractal(composite, factor)
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
-        areas.append([state.area for state in steps])
+        found = np.array([(_corrected(state), state.in_contact.sum()) for state in steps])
+        areas.append(found[:, 0])
+        nodes.append(found[:, 1])
+    dims = ("resolution", "normal_force")
     coords = {"resolution": factors, "normal_force": loads}
-    return xr.DataArray(areas, dims=("resolution", "normal_force"), coords=coords)
+    return xr.Dataset({"area_corrected": (dims, areas), "nodes": (dims, nodes)}, coords)
+
+
+def _corrected(state: ContactState) -> float:
+    """Corrected area, mm2: no less than what carries the force at the largest pressure."""
+    area = float(corrected_area(state.in_contact, state.space.spacing))
+    return max(area, state.force / state.hardness)
 
 
 def _ladder(pressures: np.ndarray, hardness: float) -> np.ndarray:

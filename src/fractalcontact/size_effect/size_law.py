@@ -54,8 +54,9 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     Edges: a window stands alone, and the rigid block presses its rim harder where the bulk is soft
     beside the interface. Both compliances are equal (``edge_ratio`` 1) at sides of about the
     elastic length E* d w_int / d sigma_0; longer windows carry like a punch, at their rim. The
-    ratio grows as b, so that edges enter large windows first: ``central_load`` below 1 shows it. A
-    mean gap or compliance of such windows is one of the rim. A_r/A_0 hardly knows it as long as
+    ratio grows as b, so that edges enter large windows first: ``central_load``, where several
+    windows have a mean, falls below 1 (that of a single window shows where its hills are as well).
+    A mean gap or compliance of such windows is one of the rim. A_r/A_0 hardly knows it as long as
     A_r ~ F holds locally, for then it does not matter where the load is carried.
     """
     loads = states.sizes["normal_force"]

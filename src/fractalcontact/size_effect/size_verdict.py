@@ -163,7 +163,8 @@ def size_verdicts(result: xr.Dataset) -> xr.Dataset:
     xr.Dataset
         Over (estimator, normal_force): ``area_difference``, ``slope_difference`` with intervals,
         ``area_verdict``, ``slope_verdict``, ``verdict`` of both, each with its ``_reason``
-        (``reason`` of both). Over (normal_force,): ``condition_number`` and ``size_effect``.
+        (``reason`` of both). Over (normal_force,): ``condition_number``,
+        ``well_conditioned`` and ``size_effect``.
     """
     dims = ("estimator", "normal_force")
     predicted = [result[f"predicted_slope{end}"].transpose(*dims).values for end in INTERVAL]
@@ -180,10 +181,10 @@ def size_verdicts(result: xr.Dataset) -> xr.Dataset:
     words: dict[str, np.ndarray] = {name: np.empty(shape, object) for name in names}
     for index in np.ndindex(shape):
         load = index[1]
-        said = Interval(*(values[index] for values in predicted))
-        area, slope = (Interval(*(v[load] for v in measured[form])) for form in _FORMS)
+        said = Interval(*(float(values[index]) for values in predicted))
+        area, slope = (Interval(*(float(v[load]) for v in measured[form])) for form in _FORMS)
         of_area = judge_exponent(area, said)
-        own = judge_own_form(slope, said, condition[load], int(crossings[load]))
+        own = judge_own_form(slope, said, float(condition[load]), int(crossings[load]))
         differences["area"][:, *index] = of_area.difference
         differences["slope"][:, *index] = own.difference
         found = (*of_area[:2], *own[:2], *both_forms(of_area, own))
@@ -202,6 +203,11 @@ def size_verdicts(result: xr.Dataset) -> xr.Dataset:
         verdicts[name] = (dims, words[name].astype(str), attrs)
     attrs = cf_attrs("1", "d ln sigma_0 / d ln sigma* of the whole window")
     verdicts["condition_number"] = ("normal_force", condition, attrs)
+    single = (crossings == 1) & (abs(condition) <= WORST_CONDITION)
+    attrs = cf_attrs(
+        "1", f"sigma* determines sigma_0, with a condition number up to {WORST_CONDITION:g}"
+    )
+    verdicts["well_conditioned"] = ("normal_force", single, attrs)
     _, low, high = measured["area"]
     effect = (low > ROUNDING) | (high < -ROUNDING)
     attrs = cf_attrs("1", "whether the exponent of A_r/A_0 differs from zero")

@@ -194,12 +194,13 @@ def _solved(
     """:data:`STATES` (n_load,) of one sub-window under rising forces."""
     ny, nx = space.shape
     area = space.cell_area * ny * nx
+    flush = np.ptp(composite) == 0
     values = {name: np.full(len(forces), np.nan) for name in STATES}
     for j, state in enumerate(load_steps(composite, space, forces, loading.solving, where)):
         for name in ("closure", "area", "stiffness"):
             values[name][j] = getattr(state, name)
         values["nodes"][j] = np.count_nonzero(state.in_contact)
-        values["mean_gap"][j] = state.gap.mean()
+        values["mean_gap"][j] = 0.0 if flush else state.gap.mean()
         corrected = float(corrected_area(state.in_contact, space.spacing))
         values["corrected_area_share"][j] = max(corrected, state.force / state.hardness) / area
         off = state_errors(state)
@@ -209,7 +210,6 @@ def _solved(
         stiffness_error = off["stiffness_error"]
         values["interface_compliance_error"][j] = stiffness_error * area / state.stiffness**2
     values["area_share"] = values["area"] / area
-    flush = np.ptp(composite) == 0
     values["interface_closure"] = interface_closure(values["closure"], settlement, flush)
     if flush:
         values["interface_closure_error"][:] = 0.0

@@ -23,6 +23,9 @@ NEAR_POINTS, NEAR_FULL = 0.25, 1.75
 #: Verdicts of the size test that decide something; the first is in favour of eq. 6.
 DECIDED = ("agrees", "measured steeper", "measured flatter")
 
+#: An exponent over the side b whose whole interval is smaller is no size effect.
+NO_EFFECT = 0.02
+
 #: An interval of the difference of the two estimates, or of one, that is wider decides nothing.
 WIDEST = 1.0
 
@@ -133,7 +136,7 @@ def size_effect_follows(joint: Joint) -> Finding:
     wanted = zip(ESTIMATES.values(), best["predicted_slope"].values, strict=True)
     numbers = (
         f"A_r/A_0 ~ b^e, e = {value:.2f} [{low:.2f}, {high:.2f}] at "
-        f"{float(best['nominal_pressure']):.3g} MPa, wanted "
+        f"{float(best['nominal_pressure']):.3g} MPa, against "
         + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
     )
     decided = test["verdict"].isin(DECIDED).values
@@ -141,7 +144,9 @@ def size_effect_follows(joint: Joint) -> Finding:
         reasons = [str(words) for words in test["reason"].values[:, known].ravel()]
         counts = {words: reasons.count(words) for words in dict.fromkeys(reasons)}
         why = "; ".join(f"{words} ({n} of {len(reasons)})" for words, n in counts.items())
-        return Finding(UNDETERMINED, numbers, f"no load decides: {why}")
+        return Finding(
+            UNDETERMINED, numbers, f"e less -(2 - Delta_sigma) decides at no load: {why}"
+        )
     agree = (test["verdict"] == DECIDED[0]).values
     words = ", ".join(
         f"{by} at {agree[i].sum()} of {decided[i].sum()}" for i, by in enumerate(ESTIMATES.values())
@@ -149,8 +154,8 @@ def size_effect_follows(joint: Joint) -> Finding:
     return Finding(
         share(int(agree.sum()), int(decided.sum())),
         numbers,
-        f"it agrees {words} loads that decide, on windows within one joint; where A_r/A_0 agrees "
-        "the slope of log sigma_0 over log b at equal sigma* must agree too",
+        f"e is the -(2 - Delta_sigma) wanted, {words} loads that decide, on windows within one "
+        "joint; where it is, the slope of log sigma_0 over log b at equal sigma* must agree too",
     )
 
 
@@ -161,8 +166,9 @@ def larger_domains_are_less_dense(joint: Joint) -> Finding:
     if not np.isfinite(value):
         return Finding(UNDETERMINED, "fewer than two sizes of window with 30 nodes in contact")
     pressure = float(windows["nominal_pressure"])
+    none = max(abs(low), abs(high)) < NO_EFFECT
     return Finding(
-        by_sign(low, high, rising=False),
+        FAILS if none else by_sign(low, high, rising=False),
         f"e = {value:.2f} [{low:.2f}, {high:.2f}]",
         f"A_r/A_0 ~ b^e at {pressure:.3g} MPa",
     )

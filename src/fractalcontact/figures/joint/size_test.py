@@ -6,7 +6,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...size_effect.size_verdict import ILL_CONDITIONED
 from ..kit.drawing import (
     COLOURS,
     MARKERS,
@@ -24,8 +23,8 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.sizes import apart, draw_bars, nothing_in, plain_decades, size_axis
-from ..kit.verdicts import claim
-from ..kit.words import interval, percent, place, short, supplementary
+from ..kit.verdicts import claim, sentences
+from ..kit.words import interval, place, short, supplementary
 
 TITLE = "Size test on parts of the window: contact at equal pressure, and eq. 6"
 SUBJECT = "specimen"
@@ -81,8 +80,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         Line2D([], [], color=colour_of(i), marker=MARKERS[i], lw=0.8, label=words)
         for i, words in enumerate(_PREDICTORS.values())
     ]
-    of_whole = [heading("(e), (f): whole predicted by"), *predictors]
-    legends_below(figure, shown + inverted, said + measured, of_whole)
+    of_whole = heading("(e), (f): whole predicted by")
+    legends_below(figure, shown + inverted, said + measured, [of_whole, *predictors])
     where = place(str(test["direction"].values), float(test["offset"]))
     headline(figure, settings["label"], where)
     follows = claim(atlas, name, "eq. 6", "size_effect_follows")
@@ -93,7 +92,7 @@ def _draw_area(axes, test):
     """A_r/A_0 over b at some sigma_0 with intervals, and what eq. 6 wants; legend entries."""
     b = test["side"].values
     fraction, low, high = (test[f"area_fraction{end}"].values for end in ("", "_low", "_high"))
-    fitted = np.flatnonzero(np.isfinite(test["area_exponent"].values))
+    fitted = _first_loads(test, "area_exponent_low")
     loads = fitted[spread(len(fitted), _LOADS)]
     handles = [heading(r"(a): $\sigma_0$, exponent measured")]
     for n, i in enumerate(loads):
@@ -118,6 +117,13 @@ def _draw_area(axes, test):
     axes.set_ylim(np.nanmin(fraction[loads]) / 2.5, np.nanmax(fraction[loads]) * 8)
     plain_decades(axes.yaxis)
     return handles
+
+
+def _first_loads(test, name):
+    """Loads with a value: those of the study, or where it has none those beyond."""
+    known = np.isfinite(test[name].values)
+    of_study = known & ~test["beyond_study"].values.astype(bool)
+    return np.flatnonzero(of_study if of_study.any() else known)
 
 
 def _draw_exponents(axes, test):
@@ -177,8 +183,8 @@ def _others(axes):
 def _draw_equal(axes, test):
     """sigma_0 over b at the sigma* of the whole, with the slopes predicted; legend entries."""
     b = test["side"].values
-    fitted = np.flatnonzero(np.isfinite(test["slope"].values))
-    loads = fitted[spread(len(fitted), _LOADS)] if len(fitted) else fitted
+    fitted = _first_loads(test, "slope")
+    loads = fitted[spread(len(fitted), _LOADS)]
     handles = [heading(r"(c): $\sigma_0$ of the whole, measured slope")]
     for n, i in enumerate(loads):
         style = {"color": COLOURS[n], "marker": MARKERS[n]}
@@ -214,7 +220,7 @@ def _draw_slopes(axes, test):
     slope, low, high = (test[f"slope{end}"].values for end in ("", "_low", "_high"))
     known = np.isfinite(slope)
     axes.vlines(pressure[known], low[known], high[known], color="k", lw=0.8)
-    determined = known & (test["slope_reason"] != ILL_CONDITIONED).all("estimator").values
+    determined = known & test["well_conditioned"].values.astype(bool)
     for chosen, face, words in (
         (determined, "k", "(d): measured"),
         (known & ~determined, "white", "(d): ill-conditioned"),
@@ -353,17 +359,22 @@ def _equal_pressure_table(test, i, common):
 
 def _caption(settings, test, where, follows):
     return (
-        f"{supplementary(settings['label'], where)} Size test on parts: (a), (b) contact at equal "
-        "sigma_0; (c), (d) eq. 6's own form; (e), (f) predictions of the whole. "
-        f"{follows} {_edge_words(test)}"
+        f"{supplementary(settings['label'], where)} Parts of the window: (a), (b) at equal "
+        "sigma_0; (c), (d) eq. 6's own form; (e), (f) the whole predicted. "
+        f"{sentences(follows, _edge_words(test))}"
     )
 
 
 def _edge_words(test):
-    """How much of the load the middle of the whole window carries, at the last load tested."""
-    known = np.flatnonzero(np.isfinite(test["area_exponent"].values))
-    if not len(known):
+    """Compliance of the bulk beside that of the interface, at the last load that has both."""
+    if not np.isfinite(test["area_exponent_low"].values).any():
         return "Parts hold too few nodes in contact."
-    load = float(test["central_load"].sel(part=1)[known[-1]])
+    ratio = test["edge_ratio"].sel(part=1).values
+    known = np.flatnonzero(ratio > 0)
+    if not len(known):
+        return ""
     pressure = short(test["nominal_pressure"][known[-1]])
-    return f"Edges: its central half carries {percent(load)} of an even load at {pressure} MPa."
+    return (
+        f"Bulk over interface compliance: {short(ratio[known[-1]], 2)} at {pressure} MPa; from 1 "
+        "on edges matter."
+    )
