@@ -77,8 +77,9 @@ def test_direct_test_points_are_those_of_the_atlas(atlas, name):
 
 def test_direct_test_without_a_slope(atlas):
     def nothing_found(test):
-        for name in ("slope", "slope_low", "slope_high"):
-            test[name] = test[name] * np.nan
+        for name in ("slope", "area_exponent"):
+            for end in ("", "_low", "_high"):
+                test[f"{name}{end}"] = test[f"{name}{end}"] * np.nan
         return test
 
     drawing = drawn(size_test, changed(atlas, "size_test/flat", nothing_found), "flat")

@@ -13,7 +13,7 @@ from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import split
-from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, VERDICTS, size_test
+from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, size_test
 from fractalcontact.size_effect.laws import joint_by_size
 from fractalcontact.size_effect.load_ladder import (
     SPARE_DOUBLINGS,
@@ -21,6 +21,7 @@ from fractalcontact.size_effect.load_ladder import (
     solve_sub_windows,
 )
 from fractalcontact.size_effect.prediction import PREDICTORS, predict_whole
+from fractalcontact.size_effect.size_verdict import NOTHING_PREDICTED, VERDICTS
 from fractalcontact.size_effect.slope import equal_pressure, real_pressures, slopes_at_equal_star
 from fractalcontact.size_effect.windows import window_states
 from fractalcontact.study.configuration import resolve_settings
@@ -172,8 +173,14 @@ def test_full_contact_is_euclidean():
     _, found = pressed_apart(np.zeros((side, side)), "flat", [0], window=side / 10)
     np.testing.assert_allclose(found["slope"], 0, atol=1e-9)
     np.testing.assert_allclose(found["delta_sigma"], 2, atol=1e-9)
-    assert (found["verdict"] == "agrees").all()
+    # No size effect is measured and none predicted: that says nothing of eq. 6.
+    np.testing.assert_allclose(found["area_exponent"], 0, atol=1e-9)
+    assert (found["area_reason"] == NOTHING_PREDICTED).all()
+    assert (found["verdict"] == "undecided").all()
     assert not found["size_effect"].any()
+    # A rigid flat punch presses at its rim, small or large.
+    assert (found["central_load"] < 0.9).all()
+    assert found["mean_gap"].isnull().all()
     np.testing.assert_allclose(found["area_error"], 0, atol=1e-9)
 
 
@@ -200,6 +207,24 @@ def test_windows_have_the_sigma_star_of_the_whole(flat):
                 measure.append(hausdorff_measure(0.1 * k, np.mean(area), delta))
             stars.append(p * side**2 / np.exp(np.mean(np.log(measure))))
         assert stars[1] == pytest.approx(stars[0], rel=0.03)
+
+
+def test_contact_at_equal_pressure_is_that_of_the_windows_solved_for_themselves(flat):
+    specimen, found = flat
+    loading = JointLoading(specimen, "none", [0], settings("flat"), SOLVER)
+    states = window_states(loading, (1, 2, 4), 16).isel(offset=0)
+    at = found.sel(normal_force=states["normal_force"], method="nearest").sel(part=states["part"])
+    np.testing.assert_allclose(at["nominal_pressure"], states["nominal_pressure"])
+    least = states["nodes"].min("window")
+    np.testing.assert_array_equal(at["least_nodes"], least.T)
+    for name, of_states, fewest in (
+        ("area_fraction", "corrected_area_share", 30),
+        ("interface_compliance", "interface_compliance", 10),
+        ("mean_gap", "mean_gap", 10),
+    ):
+        mean = states[of_states].mean("window").where(least >= fewest)
+        assert mean.notnull().sum() >= 4
+        np.testing.assert_allclose(at[name], mean.T, rtol=1e-4)
 
 
 # -- properties ------------------------------------------------------------------------------------

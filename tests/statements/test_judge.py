@@ -60,6 +60,7 @@ def stages(**changes):
         "difference_half": 0.1,
         "density_exponent": -0.3,
         "size_verdict": [["agrees"] * 2, ["agrees", "undecided"]],
+        "beyond": [False, False],
         "strength_exponent": np.full((2, 1), -0.3),
         "held": np.zeros((2, 1)),
         "length": 0.5,
@@ -203,9 +204,17 @@ def stages(**changes):
         "size_test": xr.Dataset(
             {
                 "verdict": (("estimator", "normal_force"), values["size_verdict"]),
-                "slope": ("normal_force", [-0.6, -0.4]),
+                "reason": (("estimator", "normal_force"), np.full((2, 2), "too wide")),
+                "predicted_slope": (("estimator", "normal_force"), np.full((2, 2), -0.5)),
+                "area_exponent": ("normal_force", [-0.6, -0.4]),
+                "area_exponent_low": ("normal_force", [-0.8, -0.5]),
+                "area_exponent_high": ("normal_force", [-0.4, -0.3]),
+                "beyond_study": ("normal_force", values["beyond"]),
             },
-            {"estimator": ["area", "box"]},
+            {
+                "estimator": ["area", "box"],
+                "nominal_pressure": ("normal_force", [25.0, 75.0]),
+            },
         ),
         "windows": xr.Dataset(windows, {"offset": V, "normal_force": [1000.0]}),
     }
@@ -315,9 +324,16 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("size_effect_follows", {"size_verdict": [["measured steeper"] * 2] * 2}, FAILS),
         (
             "size_effect_follows",
-            {"size_verdict": [["not tested", "ambiguous"]] * 2},
+            {"size_verdict": [["not tested", "undecided"]] * 2},
             UNDETERMINED,
         ),
+        # Loads that no rock would stand decide nothing.
+        (
+            "size_effect_follows",
+            {"size_verdict": [["measured flatter", "agrees"]] * 2, "beyond": [False, True]},
+            FAILS,
+        ),
+        ("size_effect_follows", {"beyond": [True, True]}, UNDETERMINED),
         ("larger_domains_are_less_dense", {"density_exponent": -0.05}, UNDETERMINED),
         ("larger_domains_are_less_dense", {"density_exponent": 0.3}, FAILS),
         ("strength_falls_with_size", {"strength_exponent": np.array([[-0.3], [0.0]])}, PARTLY),

@@ -29,6 +29,7 @@ ENSEMBLES: dict[str, tuple] = {
     # mechanics, size effect, experiments
     "fitted hyperbolas": (300, 1000),
     "side of a flat face": (64, 96),
+    "joints whose size exponent is known": (200, 1000),
     "faces of one exponent": (4, 8),
     "surfaces of every exponent": (10, 20),
     "surfaces with many hills": ((256, 4), (512, 5)),

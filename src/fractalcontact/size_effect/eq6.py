@@ -1,4 +1,8 @@
-"""The direct test of eq. 6: sub-windows of one joint loaded until they reach the same sigma*.
+"""The direct test of eq. 6 on sub-windows of one joint: at equal sigma_0, and at equal sigma*.
+
+The well-conditioned form comes first: the contact of windows of all sizes at one nominal pressure,
+see :mod:`size_effect.size_law`. Then eq. 6's own form. Both are judged by one rule,
+:mod:`size_effect.size_verdict`.
 
 Eq. 6 has a joint of side b reach a given sigma* at the nominal pressure sigma_0 ~ b^-(2 - Delta).
 Here windows of several sizes are cut from one joint, the pressure at which each has the sigma* of
@@ -11,7 +15,9 @@ whatever Delta is. So one slope is measured, in which Delta does not occur; the 
 in what they predict for it. And where the real area goes with the load alone, A_r = kappa F,
 sigma_n is the same at any sigma_0: sigma* then does not determine sigma_0, and no b can come in. A
 size effect appears just where the fraction of the window in contact at a given sigma_0 depends on
-b.
+b. With m = d ln sigma* / d ln sigma_0 (``sensitivity``) a slope e at equal sigma* is an exponent
+m e of A_r/A_0 at equal sigma_0: both forms want the same number only where m is 1, as in dilations
+of one contact set, and 1/m is the condition number of the own form.
 """
 
 from collections.abc import Sequence
@@ -24,21 +30,18 @@ from scipy import special
 from ..core.datasets import labelled_dataset
 from ..core.fitting import LineFit, fit_line
 from ..core.intervals import CONFIDENCE, INTERVAL
-from ..core.labels import cf_attrs
 from ..core.ranges import within
+from ..core.resolved import CORRECTED_NODES
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.renormalisation import FEWEST_NODES, renormalisation
 from ..mechanics.loading import JointLoading
 from ..surface.specimen import cell_side
 from .division import PARTS, split
-from .load_ladder import solve_sub_windows, whole_areas
+from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
 from .prediction import predict_whole, predict_whole_strength
+from .size_law import size_law
+from .size_verdict import NOT_TESTED, VERDICTS, size_verdicts
 from .slope import real_pressures, slopes_at_equal_star
-
-#: Slopes that differ by no more than this differ by rounding alone.
-SLOPE_ROUNDING = 1e-9
-#: A slope whose 95 % interval is wider than this decides nothing.
-WIDEST = 1.0
 
 #: Estimators of Delta_sigma in the whole window under each load: its area over resolutions, boxes
 #: of all sizes at its finest resolution, and the number of sub-windows that its contact domain
@@ -49,21 +52,11 @@ DELTA_SIGMA_ESTIMATORS = {
     "box_sizes": "occupied windows",
 }
 
-#: What may come of one estimator under one load.
-VERDICTS = (
-    "agrees",
-    "measured steeper",
-    "measured flatter",
-    "undecided",
-    "ambiguous",
-    "not tested",
-)
-
 
 def size_test(
     loading: JointLoading, windows: xr.Dataset | None = None, parts: Sequence[int] = PARTS
 ) -> xr.Dataset:
-    """Slope of log sigma_0 over log b at equal sigma*, beside what eq. 6 predicts.
+    """Size test of a joint: contact against b at equal sigma_0 and at equal sigma*, and eq. 6.
 
     Parameters
     ----------
@@ -79,16 +72,17 @@ def size_test(
     Returns
     -------
     xr.Dataset
-        Over (estimator, normal_force): ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of
-        the whole window with intervals, ``slope_difference`` and ``verdict``. Over (normal_force):
-        the measured ``slope`` of all windows of a size taken together and ``window_slope`` of the
-        median of windows one by one, each with ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``;
-        ``share_exponent`` and ``sensitivity``, which explain it. Over (normal_force, part):
-        ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the solver's, which is
-        infinite where the value may not be reached at all), ``windows_below``, ``windows_above``,
-        ``windows_unknown``, ``crossings``; and what is predicted for the whole window, see
-        :func:`size_effect.prediction.predict_whole`. Loads ``beyond_study`` are those of
-        :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
+        From :func:`size_effect.size_law.size_law` and
+        :func:`size_effect.size_verdict.size_verdicts`. Over (estimator, normal_force):
+        ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of the whole window with intervals.
+        Over (normal_force): the measured ``slope`` of all windows of a size taken together and
+        ``window_slope`` of the median of windows one by one, each with ``_low``, ``_high``, ``_n``,
+        ``_b_min``, ``_b_max``; ``share_exponent`` and ``sensitivity``, which explain it. Over
+        (normal_force, part): ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the
+        solver's, which is infinite where the value may not be reached at all), ``windows_below``,
+        ``windows_above``, ``windows_unknown``, ``crossings``; and what is predicted for the whole
+        window, see :func:`size_effect.prediction.predict_whole`. Loads ``beyond_study`` are those
+        of :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
 
     Notes
     -----
@@ -96,14 +90,15 @@ def size_test(
     laboratory would test, but small ones hold few nodes: a window with fewer than `FEWEST_NODES` at
     a resolution has no sigma* that means anything, and a mean over those that are left would be one
     over the few whose contacts are many and soft. So their median is taken, with the windows whose
-    place is only known to lie below or above the loads solved. The verdict rests on all windows
+    place is only known to lie below or above the loads solved. It is measured on all windows
     together; a size counts where they hold `FEWEST_NODES` on the average. Without that rule the
     lightest loads show the slope -2 exactly: one node in every window.
 
-    The sizes are pieces of one joint and not independent, and the interval is that of a regression
-    over them. Where a curve sigma*(sigma_0) meets the target several times, the geometric mean of
-    the places is taken and they are counted; where that is so for the whole window, its sigma* does
-    not determine sigma_0 and the verdict is "ambiguous". The composite topography of a sub-window
+    The interval of that slope is of a regression over sizes, which are pieces of one joint and not
+    independent; that of the exponents at equal sigma_0 is over windows. Where a curve
+    sigma*(sigma_0) meets the target several times, the geometric mean of the places is taken and
+    they are counted; where that is so for the whole window, its sigma* does not determine sigma_0
+    and the verdict is "ambiguous". The composite topography of a sub-window
     is loaded as it lies, see :func:`size_effect.windows.window_states`.
 
     Raises
@@ -117,9 +112,10 @@ def size_test(
         return _dimensions(mapped, whole, domains, parts)
 
     states, _ = solve_sub_windows(mapped, parts, estimate)
-    result = states.drop_vars(["nodes", "nodes_error", "interface_closure"])
+    of_windows = ["nodes", "nodes_error", "interface_closure", "whole_area", "bulk_compliance"]
+    result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states))
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
-    result = result.merge(_verdicts(result))
+    result = result.merge(size_verdicts(result))
     result = result.merge(predict_whole(states, result["delta_sigma"], FEWEST_NODES))
     if loading.slides and windows is not None:
         result = result.merge(predict_whole_strength(windows, result["delta_sigma"]))
@@ -179,12 +175,14 @@ def _dimensions(
 
 
 def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> list[np.ndarray]:
-    """Delta_sigma (load) and its interval from the area of the whole window over resolutions."""
+    """Delta_sigma (load) and its interval from the corrected area of the whole over resolutions."""
     areas = whole_areas(loading, whole)
     s = spacing * areas["resolution"]
     if loading.settings["scaling_range"] is not None:
         areas = areas.where(within(s, *loading.settings["scaling_range"]))
-    by_area = renormalisation(s, areas, whole["normal_force"])
+    by_area = renormalisation(
+        s, areas["area_corrected"], whole["normal_force"], areas["nodes"], CORRECTED_NODES
+    )
     return [by_area[f"delta_sigma{ending}"].values for ending in INTERVAL]
 
 
@@ -204,42 +202,7 @@ def _line_through_occupied(domain: np.ndarray, parts: Sequence[int]) -> LineFit:
     return line._replace(slope_low=line.slope - half, slope_high=line.slope + half)
 
 
-# -- verdicts --------------------------------------------------------------------------------------
-
-
-_VERDICTS = {
-    "slope_difference": "measured slope less that of eq. 6",
-    "slope_difference_low": "lower end of its 95 % interval",
-    "slope_difference_high": "upper end of its 95 % interval",
-    "verdict": "whether the measured slope agrees with that of eq. 6",
-    "size_effect": "whether the measured slope differs from zero",
-}
-
-
-def _verdicts(result: xr.Dataset) -> xr.Dataset:
-    """Measured slope less the one predicted, and in a word whether they agree."""
-    slope, low, high = (result[f"slope{end}"] for end in INTERVAL)
-    said, said_low, said_high = (result[f"predicted_slope{end}"] for end in INTERVAL)
-    difference = slope - said
-    lower = difference - np.hypot(slope - low, said_high - said)
-    upper = difference + np.hypot(high - slope, said - said_low)
-    verdict = xr.where(lower > SLOPE_ROUNDING, "measured flatter", "agrees")
-    verdict = xr.where(upper < -SLOPE_ROUNDING, "measured steeper", verdict)
-    verdict = xr.where((verdict == "agrees") & (high - low > WIDEST), "undecided", verdict)
-    verdict = xr.where(result["crossings"].isel(part=0) > 1, "ambiguous", verdict)
-    verdict = xr.where(np.isfinite(lower), verdict, "not tested")
-    verdicts = xr.Dataset(
-        {
-            "slope_difference": difference,
-            "slope_difference_low": lower,
-            "slope_difference_high": upper,
-            "verdict": verdict.astype(str),
-            "size_effect": (low > SLOPE_ROUNDING) | (high < -SLOPE_ROUNDING),
-        }
-    ).transpose("estimator", "normal_force")
-    for name, words in _VERDICTS.items():
-        verdicts[name].attrs = cf_attrs("1", words)
-    return verdicts
+# -- in words --------------------------------------------------------------------------------------
 
 
 def summary(result: xr.Dataset) -> str:
@@ -254,18 +217,19 @@ def summary(result: xr.Dataset) -> str:
     -------
     str
     """
-    measured = np.isfinite(result["slope"].values)
+    measured = np.isfinite(result["area_exponent_low"].values)
     if not measured.any():
-        return "no load at which three sizes hold nodes enough to be tested"
-    determined = measured & (result["crossings"].isel(part=0).values == 1)
-    effect = int(result["size_effect"].values[determined].sum())
+        return "no load at which two sizes hold nodes enough to be tested"
+    effect = int(result["size_effect"].values.sum())
+    tested = (result["slope_verdict"] != NOT_TESTED).any("estimator")
+    conditioned = int((tested & result["well_conditioned"]).sum())
     rows = [
-        f"of {int(measured.sum())} loads tested sigma* determines sigma_0 at "
-        f"{int(determined.sum())}, and the slope differs from zero at {effect}"
+        f"of {int(measured.sum())} loads tested A_r/A_0 differs between sizes at {effect}, and "
+        f"eq. 6's own form is well-conditioned at {conditioned}"
     ]
     for name, words in DELTA_SIGMA_ESTIMATORS.items():
         verdicts = result["verdict"].sel(estimator=name).values
-        tested = verdicts[verdicts != "not tested"]
+        tested = verdicts[verdicts != NOT_TESTED]
         counts = {v: int((tested == v).sum()) for v in VERDICTS[:-1]}
         shown = ", ".join(f"{v} at {n}" for v, n in counts.items() if n)
         rows.append(f"eq. 6 with Delta_sigma from {words}: {shown or 'not tested'}")

@@ -8,7 +8,10 @@ import xarray as xr
 from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
 from ..core.ranges import within
+from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..mechanics.jrc import profile_roughness
+from .division import spread_windows
+from .size_exponents import add_size_exponents, usable_sizes
 from .strength_laws import strength_by_size
 from .window_means import add_law, add_mean
 
@@ -16,11 +19,20 @@ from .window_means import add_law, add_mean
 #: the range of the roughness-length estimator of :mod:`roughness.dimension`.
 FIRST_FITTED_CELLS, LAST_FITTED_FRACTION = 8, 1 / 4
 
-#: Means over sub-windows that are fitted as powers of b: name of the exponent.
+#: Means over sub-windows that are fitted as powers of b: name of the exponent, fewest nodes in
+#: contact of every sub-window of a size.
 _OVER_LOADS = {
-    "interface_closure": ("closure_exponent", "exponent of w_int against b"),
-    "interface_compliance": ("compliance_exponent", "exponent of interface compliance against b"),
-    "area_share": ("area_exponent", "exponent of A_r/A_0 against b"),
+    "interface_closure": ("closure_exponent", RESOLVED_NODES, "exponent of w_int against b"),
+    "interface_compliance": (
+        "compliance_exponent",
+        RESOLVED_NODES,
+        "exponent of interface compliance against b",
+    ),
+    "corrected_area_share": (
+        "area_exponent",
+        CORRECTED_NODES,
+        "exponent of corrected A_r/A_0 against b",
+    ),
 }
 
 
@@ -87,29 +99,48 @@ def size_laws(
     xr.Dataset
         Eq. 2: ``hurst`` (offset) of the composite topography and ``face_hurst``, with ``_low``,
         ``_high``, ``_n``; ``expected_hurst`` with its interval; the curves they come from.
-        Closure: ``interface_closure``, ``interface_compliance`` and ``area_share`` (part, offset,
-        load) with the interval of the mean over the sub-windows and the ``_error`` of the solver,
-        and their exponents (offset, normal_force). Strength, where the joint slides: see
-        :func:`size_effect.strength_laws.strength_by_size`.
+        Closure: ``interface_closure``, ``interface_compliance``, ``area_share``,
+        ``corrected_area_share`` and ``mean_gap`` (part, offset, load) with the interval of the mean
+        over the sub-windows and the ``_error`` of the solver, and the exponents of closure,
+        compliance and corrected area (offset, normal_force) with intervals over disjoint
+        sub-windows, see :func:`size_effect.size_exponents.size_exponent`. Strength, where the
+        joint slides: see :func:`size_effect.strength_laws.strength_by_size`.
 
     Notes
     -----
-    A power law is a line through the logarithms of the means, one a size. The largest size is one
-    window: nothing is known of the scatter of its value, and it weighs as much as the others. Small
-    sub-windows are pieces of large ones, so that the sizes are not independent either.
+    Any other power law is a line through the logarithms of the means, one a size. The largest size
+    is one window: nothing is known of the scatter of its value, and it weighs as much as the
+    others. Small sub-windows are pieces of large ones, so that the sizes are not independent
+    either.
     """
     result = states[["side", "nominal_pressure", "scale_side", "scale_n"]].copy()
     result["windows"] = states["sigma_z"].isel(offset=0).notnull().sum("window")
     result["windows"].attrs = cf_attrs("1", "sub-windows solved of each size")
     _add_hurst(result, states, dimension, fit_range)
-    for name, (exponent, words) in _OVER_LOADS.items():
-        add_mean(result, name, states[name], states[f"{name}_error"])
-        add_law(result, exponent, result["side"], result[name], words)
-    for name in ("sigma_z", "tilt_share"):
+    _add_exponents(result, states)
+    for name in ("sigma_z", "tilt_share", "mean_gap"):
         add_mean(result, name, states[name])
     if states["direction"].item() != "none":
         result = result.merge(strength_by_size(states, material, roughness))
     return result.assign_attrs(states.attrs)
+
+
+def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
+    """Means under every load, and exponents of sizes whose contact is resolved, into ``result``."""
+    add_mean(result, "area_share", states["area_share"], states["area_share_error"])
+    places = [
+        spread_windows(int(parts), int(count))
+        for parts, count in zip(states["part"], result["windows"], strict=True)
+    ]
+    dims = ("part", "window", "offset", "normal_force")
+    nodes = states["nodes"].transpose(*dims)
+    for name, (exponent, fewest, words) in _OVER_LOADS.items():
+        add_mean(result, name, states[name], states[f"{name}_error"])
+        values = states[name].transpose(*dims)
+        positive = ((values > 0) | values.isnull()).all("window")
+        usable = usable_sizes(nodes.values, fewest) & positive.values
+        values = values.where(xr.DataArray(usable, dims=("part", *dims[2:])))
+        add_size_exponents(result, exponent, values, places, words)
 
 
 def _add_hurst(

@@ -9,7 +9,9 @@ from ..contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.ranges import within
+from ..core.resolved import RESOLVED_NODES
 from ..domain.renormalisation import FEWEST_NODES
+from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
@@ -51,9 +53,10 @@ def solve_sub_windows(
     states : xr.Dataset
         What was estimated, and
         ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
-        solver leaves ambiguous; ``interface_closure`` (part, window, step) at the finest
-        resolution, ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps
-        are those of the loads. Steps that no window of a size needs are NaN.
+        solver leaves ambiguous; ``interface_closure`` and :data:`OF_WINDOWS` (part, window, step)
+        at the finest resolution, ``whole_area`` (resolution, step), ``side`` b and ``windows``
+        (part), ``ladder_pressure`` (step) whose first steps are those of the loads. Steps that no
+        window of a size needs are NaN.
     domains : (load, ny, nx) bool ndarray
         Contact domain of the whole window at the finest resolution.
 
@@ -83,11 +86,15 @@ def solve_sub_windows(
     ]
     of_study = loading.forces(settings["loads"]) / area
     pressures = _ladder(of_study, loading.solving["hardness"])
+    # Stiffness costs a solve of its own: at the loads whose closure is looked at.
+    looked_at = loading.forces(settings["dilatancy_loads"]) / area
+    compliant = np.isclose(pressures[:, np.newaxis], looked_at, rtol=1e-9).any(axis=1)
     n_tested = min(len(of_study) + TESTED_DOUBLINGS, len(pressures))
     sizes = []
     for n in parts:
         windows = _cut(composite, n, max(factors))
-        size = _LoadedSize(loading, windows, factors, pressures, f"{n} x {n} parts")
+        where = f"{n} x {n} parts"
+        size = _LoadedSize(loading, windows, factors, pressures, where, compliant)
         size.extend(n_tested + 1)
         sizes.append(size)
 
@@ -120,15 +127,21 @@ class _LoadedSize:
         Nominal, MPa.
     what : str
         For errors.
+    compliant : (step,) bool ndarray
+        Steps whose compliance is found, where `RESOLVED_NODES` nodes touch.
 
     Attributes
     ----------
     nodes, ambiguous : (window, resolution, step) ndarray
         In contact, and those of which it is not certain; NaN for steps not solved yet.
-    closure : (window, step) ndarray
-        Of the interface, mm.
+    corrected : (window, resolution, step) ndarray
+        Corrected real contact area, mm2; of several windows at the finest resolution alone.
+    finest : dict of str to (window, step) ndarray
+        ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
         Of the first window at the finest resolution, a step each.
+    bulk_compliance : float
+        Bulk settlement over sigma_0, mm/MPa.
     solved : int
         Steps solved so far.
     """
@@ -140,6 +153,7 @@ class _LoadedSize:
         factors: Sequence[int],
         pressures: np.ndarray,
         what: str,
+        compliant: np.ndarray,
     ) -> None:
         cells = np.array(windows.shape[1:])
         self.sides, self.pressures, self.factors = cells * loading.spacing, pressures, factors
@@ -147,11 +161,15 @@ class _LoadedSize:
         self.loads = pressures * self.sides.prod()
         self.nodes = np.full((len(windows), len(factors), len(pressures)), np.nan)
         self.ambiguous = self.nodes.copy()
-        self.closure = np.full((len(windows), len(pressures)), np.nan)
+        names = ("interface_closure", *OF_WINDOWS)
+        self.finest = {name: np.full((len(windows), len(pressures)), np.nan) for name in names}
+        self.corrected = self.nodes.copy()
+        self._compliant = compliant
         self.domains: list[np.ndarray] = []
         self.solved = 0
         modulus = loading.settings["material"]["e_star"]
         self._settlement = bulk_settlement(self.loads, modulus, *self.sides)
+        self.bulk_compliance = self._settlement[0] / pressures[0]
         self._flush = [np.ptp(window) == 0 for window in windows]
         self._states: dict[tuple[int, int], Iterator[ContactState]] = {}
         for k, factor in enumerate(factors):
@@ -168,13 +186,33 @@ class _LoadedSize:
             for step, state in zip(following, rising, strict=False):
                 self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
                 self.ambiguous[j, k, step] = state.ambiguous
+                if k == 0 or len(self.nodes) == 1:
+                    self.corrected[j, k, step] = _corrected(state)
                 if k == 0:
-                    self.closure[j, step] = interface_closure(
-                        state.closure, self._settlement[step], self._flush[j]
-                    )
+                    for name, value in self._of_state(state, j, step).items():
+                        self.finest[name][j, step] = value
                     if j == 0:
                         self.domains.append(state.in_contact)
         self.solved = following.stop
+
+    def _of_state(self, state: ContactState, window: int, step: int) -> dict[str, float]:
+        """What is kept of a state at the finest resolution."""
+        flush, settlement = self._flush[window], self._settlement[step]
+        area, domain = self.sides.prod(), state.in_contact
+        ny, nx = domain.shape
+        middle = np.s_[ny // 4 : ny - ny // 4, nx // 4 : nx - nx // 4]
+        even = state.pressure[middle].size / state.pressure.size
+        compliance = np.nan
+        resolved = self._compliant[step] and np.count_nonzero(domain) >= RESOLVED_NODES
+        if resolved and not flush and state.stiffness > 0:
+            compliance = area / state.stiffness - self.bulk_compliance
+        return {
+            "interface_closure": interface_closure(state.closure, settlement, flush),
+            "area_fraction": self.corrected[window, 0, step] / area,
+            "interface_compliance": compliance,
+            "mean_gap": 0.0 if flush else float(state.gap.mean()),
+            "central_load": float(state.pressure[middle].sum() / state.pressure.sum() / even),
+        }
 
     def extend_to(self, pressure: float, real_pressure: float) -> None:
         """Extend to a nominal pressure, and until every sub-window has a real mean pressure."""
@@ -190,15 +228,28 @@ class _LoadedSize:
         return real_pressure(self.loads, self.nodes.swapaxes(1, 2), self.spacing)
 
 
+_OF_WINDOW = ("part", "window", "step")
+#: What is known of every sub-window at the finest resolution, for
+#: :mod:`size_effect.size_law`: unit, long name.
+OF_WINDOWS = {
+    "area_fraction": ("1", "corrected real contact area A_r/A_0 of a sub-window"),
+    "interface_compliance": ("mm/MPa", "compliance d w_int / d sigma_0 of a sub-window"),
+    "mean_gap": ("mm", "mean gap of a sub-window"),
+    "central_load": ("1", "load on the central half of a sub-window over that of an even spread"),
+}
+
 _OF_NODES = ("part", "window", "resolution", "step")
 _TABLE = {
     "nodes": (_OF_NODES, "1", "nodes in contact"),
     "nodes_error": (_OF_NODES, "1", f"nodes in contact, {SOLVER_ERROR}"),
-    "interface_closure": (
-        ("part", "window", "step"),
-        "mm",
-        "interface closure w_int = w - w_b of a sub-window",
+    "interface_closure": (_OF_WINDOW, "mm", "interface closure w_int = w - w_b of a sub-window"),
+    **{name: (_OF_WINDOW, *words) for name, words in OF_WINDOWS.items()},
+    "whole_area": (
+        ("resolution", "step"),
+        "mm2",
+        "corrected real contact area of the whole window",
     ),
+    "bulk_compliance": ("part", "mm/MPa", "bulk settlement of a sub-window over sigma_0"),
     "side": ("part", "mm", "side b of the sub-windows"),
     "windows": ("part", "1", "sub-windows solved of each size"),
     "nominal_pressure": ("normal_force", "MPa", "nominal pressure sigma_0 of the whole window"),
@@ -220,22 +271,27 @@ def _labelled(
     n_windows, n_factors = max(parts) ** 2, len(sizes[0].spacing)
     nodes = np.full((len(parts), n_windows, n_factors, len(pressures)), np.nan)
     ambiguous = nodes.copy()
-    closure = np.full((len(parts), n_windows, len(pressures)), np.nan)
+    finest = {
+        name: np.full((len(parts), n_windows, len(pressures)), np.nan) for name in sizes[0].finest
+    }
     for i, size in enumerate(sizes):
         taken = slice(len(size.nodes))
         nodes[i, taken], ambiguous[i, taken] = size.nodes, size.ambiguous
-        closure[i, taken] = size.closure
+        for name, values_of_size in size.finest.items():
+            finest[name][i, taken] = values_of_size
     tested = pressures[:n_tested]
     values = {
         "nodes": nodes,
         "nodes_error": ambiguous,
-        "interface_closure": closure,
+        "whole_area": sizes[0].corrected[0],
+        "bulk_compliance": [size.bulk_compliance for size in sizes],
         "side": [np.sqrt(size.sides.prod()) for size in sizes],
         "windows": np.square(parts),
         "nominal_pressure": tested,
         "beyond_study": tested > largest_of_study,
         "ladder_pressure": pressures,
         "spacing": sizes[0].spacing,
+        **finest,
     }
     coords = {
         "part": ("part", parts, cf_attrs("1", "sub-windows along a side of the window")),
@@ -270,8 +326,8 @@ def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> 
     return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
 
 
-def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.DataArray:
-    """Real area of the whole window at all resolutions of the study.
+def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.Dataset:
+    """Corrected real area of the whole window at all resolutions of the study.
 
     Parameters
     ----------
@@ -282,26 +338,36 @@ def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.DataArray:
 
     Returns
     -------
-    xr.DataArray (resolution, normal_force)
-        mm2.
+    xr.Dataset
+        ``area_corrected``, mm2, and ``nodes`` (resolution, normal_force).
     """
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings["resolutions"], states["normal_force"]
-    solved = states["nodes"].sel(part=1).isel(window=0, step=slice(len(loads)))
+    solved = states.sel(part=1).isel(window=0, step=slice(len(loads)))
     # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)
-    areas = []
+    areas, nodes = [], []
     for factor in factors:
         if uncut and factor in solved["resolution"]:
-            cell = np.prod(loading.spacing * factor)
-            areas.append(solved.sel(resolution=factor).values * cell)
+            known = solved.sel(resolution=factor)
+            areas.append(known["whole_area"].values)
+            nodes.append(known["nodes"].values)
             continue
         h = prefractal(composite, factor)
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
-        areas.append([state.area for state in steps])
+        found = np.array([(_corrected(state), state.in_contact.sum()) for state in steps])
+        areas.append(found[:, 0])
+        nodes.append(found[:, 1])
+    dims = ("resolution", "normal_force")
     coords = {"resolution": factors, "normal_force": loads}
-    return xr.DataArray(areas, dims=("resolution", "normal_force"), coords=coords)
+    return xr.Dataset({"area_corrected": (dims, areas), "nodes": (dims, nodes)}, coords)
+
+
+def _corrected(state: ContactState) -> float:
+    """Corrected area, mm2: no less than what carries the force at the largest pressure."""
+    area = float(corrected_area(state.in_contact, state.space.spacing))
+    return max(area, state.force / state.hardness)
 
 
 def _ladder(pressures: np.ndarray, hardness: float) -> np.ndarray:

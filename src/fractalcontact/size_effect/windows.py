@@ -13,6 +13,7 @@ from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_planes
 from ..elastic.halfspace import HalfSpace
+from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import sliding_axis
 from ..mechanics.loading import JointLoading
@@ -32,9 +33,16 @@ STATES = {
     "area": ("mm2", "real contact area A_r"),
     "area_share": ("1", "real contact area A_r / A_0 of the sub-window"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
+    "corrected_area_share": ("1", "corrected real contact area A_r / A_0 of the sub-window"),
     "interface_compliance": ("mm/MPa", "compliance of the interface d w_int / d sigma"),
+    "mean_gap": ("mm", "mean gap of the sub-window"),
+    "nodes": ("1", "nodes in contact"),
     "interface_closure_error": ("mm", f"interface closure w_int, {SOLVER_ERROR}"),
     "area_share_error": ("1", f"real contact area A_r / A_0, {SOLVER_ERROR}"),
+    "corrected_area_share_error": (
+        "1",
+        f"corrected real contact area A_r / A_0, {SOLVER_ERROR}",
+    ),
     "interface_compliance_error": ("mm/MPa", f"compliance of the interface, {SOLVER_ERROR}"),
 }
 
@@ -186,17 +194,22 @@ def _solved(
     """:data:`STATES` (n_load,) of one sub-window under rising forces."""
     ny, nx = space.shape
     area = space.cell_area * ny * nx
+    flush = np.ptp(composite) == 0
     values = {name: np.full(len(forces), np.nan) for name in STATES}
     for j, state in enumerate(load_steps(composite, space, forces, loading.solving, where)):
         for name in ("closure", "area", "stiffness"):
             values[name][j] = getattr(state, name)
+        values["nodes"][j] = np.count_nonzero(state.in_contact)
+        values["mean_gap"][j] = 0.0 if flush else state.gap.mean()
+        corrected = float(corrected_area(state.in_contact, space.spacing))
+        values["corrected_area_share"][j] = max(corrected, state.force / state.hardness) / area
         off = state_errors(state)
+        values["corrected_area_share_error"][j] = off["area_corrected_error"] / area
         values["interface_closure_error"][j] = off["closure_error"]
         values["area_share_error"][j] = off["area_error"] / area
         stiffness_error = off["stiffness_error"]
         values["interface_compliance_error"][j] = stiffness_error * area / state.stiffness**2
     values["area_share"] = values["area"] / area
-    flush = np.ptp(composite) == 0
     values["interface_closure"] = interface_closure(values["closure"], settlement, flush)
     if flush:
         values["interface_closure_error"][:] = 0.0

@@ -98,7 +98,7 @@ def larger_samples_close_more(joint: Joint) -> Finding:
         float(windows[f"compliance_exponent{end}"]) for end in ("", "_low", "_high")
     )
     if not np.isfinite(value):
-        return Finding(UNDETERMINED, "fewer than three sizes of window")
+        return Finding(UNDETERMINED, "fewer than two sizes of window with ten nodes in contact")
     closure = float(windows["closure_exponent"])
     return Finding(
         by_sign(low, high, rising=True),

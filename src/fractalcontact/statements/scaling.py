@@ -24,6 +24,9 @@ NEAR_POINTS, NEAR_FULL = 0.25, 1.75
 #: Verdicts of the size test that decide something; the first is in favour of eq. 6.
 DECIDED = ("agrees", "measured steeper", "measured flatter")
 
+#: An exponent over the side b whose whole interval is smaller is no size effect.
+NO_EFFECT = 0.02
+
 #: An interval of the difference of the two estimates, or of one, that is wider decides nothing.
 
 #: The two estimates of Delta_sigma, as their variables and in words.
@@ -126,34 +129,54 @@ def dimension_spans_all(joint: Joint) -> Finding:
 
 
 def size_effect_follows(joint: Joint) -> Finding:
-    """Verdicts of the direct test of eq. 6, over loads, with either estimate of Delta_sigma."""
+    """Verdicts of the size test under the study's loads, with either estimate of Delta_sigma.
+
+    They are of both forms together: A_r/A_0 over b at equal sigma_0 first, then eq. 6's own form.
+    """
     test = joint.stages["size_test"].sel(estimator=list(ESTIMATES))
+    test = test.isel(normal_force=~test["beyond_study"].values.astype(bool))
+    low, high = (test[f"area_exponent{end}"].values for end in ("_low", "_high"))
+    known = np.isfinite(high - low)
+    if not known.any():
+        return Finding(UNDETERMINED, "no load at which two sizes of window hold nodes enough")
+    best = test.isel(normal_force=int(np.nanargmin(high - low)))
+    value, low, high = (float(best[f"area_exponent{end}"]) for end in ("", "_low", "_high"))
+    wanted = zip(ESTIMATES.values(), best["predicted_slope"].values, strict=True)
+    numbers = (
+        f"A_r/A_0 ~ b^e, e = {value:.2f} [{low:.2f}, {high:.2f}] at "
+        f"{float(best['nominal_pressure']):.3g} MPa, against "
+        + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
+    )
     decided = test["verdict"].isin(DECIDED).values
     if not decided.any():
-        return Finding(UNDETERMINED, "no load at which the parts decide")
+        reasons = [str(words) for words in test["reason"].values[:, known].ravel()]
+        counts = {words: reasons.count(words) for words in dict.fromkeys(reasons)}
+        why = "; ".join(f"{words} ({n} of {len(reasons)})" for words, n in counts.items())
+        return Finding(
+            UNDETERMINED, numbers, f"e less -(2 - Delta_sigma) decides at no load: {why}"
+        )
     agree = (test["verdict"] == DECIDED[0]).values
     words = ", ".join(
-        f"{ESTIMATES[key]} at {agree[i].sum()} of {decided[i].sum()}"
-        for i, key in enumerate(ESTIMATES)
+        f"{by} at {agree[i].sum()} of {decided[i].sum()}" for i, by in enumerate(ESTIMATES.values())
     )
-    slope = test["slope"].values[decided.any(axis=0)]
     return Finding(
         share(int(agree.sum()), int(decided.sum())),
-        words,
-        "of loads it agrees with the slope of log sigma_0 over log b measured on windows within "
-        f"one joint, {slope.min():.2f} to {slope.max():.2f}",
+        numbers,
+        f"e is the -(2 - Delta_sigma) wanted, {words} loads that decide, on windows within one "
+        "joint; where it is, the slope of log sigma_0 over log b at equal sigma* must agree too",
     )
 
 
 def larger_domains_are_less_dense(joint: Joint) -> Finding:
-    """Exponent of A_r/A_0 against window size at one nominal pressure."""
+    """Exponent of corrected A_r/A_0 against window size at one nominal pressure."""
     windows = joint.map_windows()
     value, low, high = (float(windows[f"area_exponent{end}"]) for end in ("", "_low", "_high"))
     if not np.isfinite(value):
-        return Finding(UNDETERMINED, "fewer than three sizes of window")
+        return Finding(UNDETERMINED, "fewer than two sizes of window with 30 nodes in contact")
     pressure = float(windows["nominal_pressure"])
+    none = max(abs(low), abs(high)) < NO_EFFECT
     return Finding(
-        by_sign(low, high, rising=False),
+        FAILS if none else by_sign(low, high, rising=False),
         f"e = {value:.2f} [{low:.2f}, {high:.2f}]",
         f"A_r/A_0 ~ b^e at {pressure:.3g} MPa",
     )

@@ -112,7 +112,7 @@ _TABLE = (
     ),
     Stage(
         "size_test",
-        "the direct test of eq. 6, and the whole predicted from its parts",
+        "contact against size at equal nominal pressure, eq. 6's own form, and the whole predicted",
         SPECIMEN,
         _WINDOW_STAGES,
         ("specimens", "joints"),

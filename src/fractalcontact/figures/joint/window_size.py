@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.ranges import within
 from ...mechanics.states import chosen_offset
 from ..kit.drawing import (
     MARKERS,
@@ -98,9 +99,10 @@ def _draw_closure(axes, laws, mapped):
         slope = float(laws["closure_exponent"][mapped, j])
         closure = laws["interface_closure"].values[:, mapped, j]
         if np.isfinite(slope):
-            fitted = closure > 0
+            b_min, b_max = (laws[f"closure_exponent_b_{end}"][mapped, j] for end in ("min", "max"))
+            fitted = (closure > 0) & within(b, float(b_min), float(b_max))
             level = np.exp(np.mean(np.log(closure[fitted]) - slope * np.log(b[fitted])))
-            axes.plot(b, level * b**slope, color=style["color"], lw=0.8)
+            axes.plot(b[fitted], level * b[fitted] ** slope, color=style["color"], lw=0.8)
     size_axis(axes, b, "sub-windows")
     closures = laws["interface_closure"].values[:, mapped]
     if (closures > 0).any():
@@ -193,7 +195,7 @@ def _closure_words(laws, mapped):
     exponent = laws["closure_exponent"]
     known = np.isfinite(exponent)
     if not known.any():
-        return "No exponent: fewer than three sizes have closure."
+        return "No exponent: too few sizes hold ten nodes in contact."
     return f"w_int ~ b^e, e = {_range(exponent.values[mapped])} in (b)."
 
 

@@ -1,0 +1,90 @@
+"""The well-conditioned form of the size test: contact against b at equal nominal pressure.
+
+A joint without a size effect has the same A_r/A_0, compliance and mean gap in windows of any side b
+at one sigma_0. Nothing is inverted here, so that errors of the states come through as they are.
+"""
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled_dataset
+from ..core.intervals import INTERVAL, mean_interval
+from ..core.labels import cf_attrs
+from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
+from .size_exponents import add_size_exponents, usable_sizes
+
+#: Quantities of sub-windows: name, exponent, fewest nodes of every window of a size, what it is.
+QUANTITIES = {
+    "area_fraction": ("area_exponent", CORRECTED_NODES, "corrected A_r/A_0"),
+    "interface_compliance": ("compliance_exponent", RESOLVED_NODES, "interface compliance"),
+    "mean_gap": ("gap_exponent", RESOLVED_NODES, "mean gap"),
+}
+
+_OF_SIZE = ("normal_force", "part")
+_TABLE = {
+    "least_nodes": (_OF_SIZE, "1", "fewest nodes in contact of any sub-window of that size"),
+    "edge_ratio": (_OF_SIZE, "1", "compliance of the bulk over that of the interface"),
+    "central_load": (
+        _OF_SIZE,
+        "1",
+        "mean load on the central half of the sub-windows over that of an even spread",
+    ),
+}
+
+
+def size_law(states: xr.Dataset) -> xr.Dataset:
+    """Corrected area, compliance and mean gap against b at equal nominal pressure.
+
+    Parameters
+    ----------
+    states : xr.Dataset
+        From :func:`size_effect.load_ladder.solve_sub_windows`.
+
+    Returns
+    -------
+    xr.Dataset
+        Over (normal_force, part): :data:`QUANTITIES`, means over the disjoint sub-windows of a size
+        with the interval over them, NaN where one of them holds too few nodes; ``least_nodes``,
+        ``edge_ratio`` and ``central_load``. Over (normal_force,): ``area_exponent``,
+        ``compliance_exponent`` and ``gap_exponent``, as
+        :func:`size_effect.size_exponents.add_size_exponents` makes them.
+
+    Notes
+    -----
+    Edges: a window stands alone, and the rigid block presses its rim harder where the bulk is soft
+    beside the interface. Both compliances are equal (``edge_ratio`` 1) at sides of about the
+    elastic length E* d w_int / d sigma_0; longer windows carry like a punch, at their rim. The
+    ratio grows as b, so that edges enter large windows first: ``central_load``, where several
+    windows have a mean, falls below 1 (that of a single window shows where its hills are as well).
+    A mean gap or compliance of such windows is one of the rim. A_r/A_0 hardly knows it as long as
+    A_r ~ F holds locally, for then it does not matter where the load is carried.
+    """
+    loads = states.sizes["normal_force"]
+    tested = states.isel(step=slice(loads)).rename(step="normal_force")
+    dims = ("part", "window", "normal_force")
+    nodes = tested["nodes"].isel(resolution=0).transpose(*dims)
+    places = [np.arange(n) for n in states["windows"].values]
+    compliance = tested["interface_compliance"].transpose(*dims)
+    resolved = usable_sizes(nodes.values, RESOLVED_NODES)
+    edge_ratio = (tested["bulk_compliance"] / compliance.mean("window")).values
+    result = labelled_dataset(
+        _TABLE,
+        {
+            "least_nodes": nodes.min("window").values.T,
+            "edge_ratio": np.where(resolved, edge_ratio, np.nan).T,
+            "central_load": tested["central_load"].mean("window").transpose(*_OF_SIZE).values,
+        },
+        coords={"part": states["part"]},
+    ).assign(side=states["side"])
+    for name, (exponent, fewest, words) in QUANTITIES.items():
+        values = tested[name].transpose(*dims).drop_vars("normal_force", errors="ignore")
+        positive = (values > 0) | values.isnull()
+        usable = usable_sizes(nodes.values, fewest) & positive.all("window").values
+        values = values.where(xr.DataArray(usable, dims=("part", "normal_force")))
+        means = mean_interval(values.values, axis=1)[:3]
+        for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
+            attrs = cf_attrs(tested[name].attrs["units"], f"mean {words} of sub-windows{of_end}")
+            result[f"{name}{ending}"] = (_OF_SIZE, mean.T, attrs)
+        text = f"exponent of {words} against b at equal sigma_0"
+        add_size_exponents(result, exponent, values, places, text)
+    return result.drop_vars("side")

@@ -1,0 +1,215 @@
+"""The rule that decides whether a specimen follows eq. 6: the only one, and nothing else.
+
+Eq. 6 is tested in two forms. The well-conditioned one compares the exponent of A_r/A_0 over b at
+equal nominal pressure with -(2 - Delta_sigma), which dilations of one contact set have. Its own
+form compares the slope of log sigma_0 over log b at equal sigma* with the same number; there
+sigma_0 is inverted from sigma*, which hardly depends on it where A_r ~ F. A specimen follows eq. 6
+only if it does so in both.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..core.intervals import INTERVAL
+from ..core.labels import cf_attrs
+
+#: Exponents that differ by no more than this differ by rounding alone.
+ROUNDING = 1e-9
+#: A prediction whose 95 % interval is wider than this, end to end, decides nothing.
+WIDEST_PREDICTION = 0.4
+#: A prediction or an exponent smaller than this is no size effect.
+NO_EFFECT = 0.02
+#: A slope whose own 95 % interval is wider than this decides nothing.
+WIDEST_SLOPE = 1.0
+#: A larger condition number |d ln sigma_0 / d ln sigma*| decides nothing: what the area of 30 nodes
+#: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
+WORST_CONDITION = 10.0
+
+AGREES, FLATTER, STEEPER = "agrees", "measured flatter", "measured steeper"
+UNDECIDED, AMBIGUOUS, NOT_TESTED = "undecided", "ambiguous", "not tested"
+#: What may come of one estimator of Delta_sigma under one load.
+VERDICTS = (AGREES, STEEPER, FLATTER, UNDECIDED, AMBIGUOUS, NOT_TESTED)
+
+#: Why nothing is decided, or on what grounds it is.
+TOO_WIDE = f"the prediction is wider than {WIDEST_PREDICTION:g}"
+TOO_WIDE_MISSED = f"{TOO_WIDE}, and missed all the same"
+NOTHING_PREDICTED = "the prediction is next to no size effect"
+NEITHER = "neither eq. 6 nor no size effect is excluded"
+ILL_CONDITIONED = f"the condition number is larger than {WORST_CONDITION:g}"
+SLOPE_TOO_WIDE = f"the measured slope is known within {WIDEST_SLOPE:g} only or worse"
+SEVERAL = "sigma* does not determine sigma_0"
+NO_SIZES = "too few sizes whose windows hold nodes enough"
+NO_PREDICTION = "Delta_sigma is unknown"
+
+
+class Interval(NamedTuple):
+    """An exponent and its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+class Judgement(NamedTuple):
+    """A verdict, its reason, and measured less predicted with its interval."""
+
+    verdict: str
+    reason: str
+    difference: Interval
+
+
+def judge_exponent(measured: Interval, predicted: Interval) -> Judgement:
+    """Whether a measured exponent is the one predicted: the rule of both forms.
+
+    Parameters
+    ----------
+    measured, predicted : Interval
+        NaN where unknown.
+
+    Returns
+    -------
+    Judgement
+        Undecided where the prediction is wide or next to nothing, or where the measured interval
+        holds both the prediction and zero.
+    """
+    value = measured.value - predicted.value
+    low = value - np.hypot(measured.value - measured.low, predicted.high - predicted.value)
+    high = value + np.hypot(measured.high - measured.value, predicted.value - predicted.low)
+    difference = Interval(value, low, high)
+
+    def judged(verdict: str, reason: str = "") -> Judgement:
+        return Judgement(verdict, reason, difference)
+
+    if not np.isfinite(measured).all():
+        return judged(NOT_TESTED, NO_SIZES)
+    if not np.isfinite(predicted).all():
+        return judged(NOT_TESTED, NO_PREDICTION)
+    missed = low > ROUNDING or high < -ROUNDING
+    if predicted.high - predicted.low > WIDEST_PREDICTION:
+        return judged(UNDECIDED, TOO_WIDE_MISSED if missed else TOO_WIDE)
+    if abs(predicted.value) < NO_EFFECT:
+        return judged(UNDECIDED, NOTHING_PREDICTED)
+    if missed:
+        return judged(FLATTER if low > 0 else STEEPER)
+    if measured.low <= 0 <= measured.high:
+        return judged(UNDECIDED, NEITHER)
+    return judged(AGREES)
+
+
+def judge_own_form(
+    measured: Interval, predicted: Interval, condition: float, crossings: int
+) -> Judgement:
+    """As :func:`judge_exponent`, of the slope at equal sigma*: only where that determines sigma_0.
+
+    Parameters
+    ----------
+    measured, predicted : Interval
+    condition : float
+        d ln sigma_0 / d ln sigma* of the whole window, of any sign.
+    crossings : int
+        Pressures at which the whole window has its sigma*.
+    """
+    found = judge_exponent(measured, predicted)
+    if found.verdict == NOT_TESTED:
+        return found
+    if crossings != 1:
+        return found._replace(verdict=AMBIGUOUS, reason=SEVERAL)
+    if not abs(condition) <= WORST_CONDITION:
+        return found._replace(verdict=UNDECIDED, reason=ILL_CONDITIONED)
+    if found.verdict == AGREES and measured.high - measured.low > WIDEST_SLOPE:
+        return found._replace(verdict=UNDECIDED, reason=SLOPE_TOO_WIDE)
+    return found
+
+
+def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:
+    """Verdict and reason on eq. 6 under one load, from both of its forms.
+
+    Parameters
+    ----------
+    area, own : Judgement
+        Of the exponent of A_r/A_0, and of eq. 6's own form.
+
+    Returns
+    -------
+    verdict, reason : str
+        The well-conditioned form's; where that agrees, what its own form adds.
+    """
+    if area.verdict != AGREES:
+        return area.verdict, area.reason
+    if own.verdict in (AGREES, FLATTER, STEEPER):
+        return own.verdict, own.reason
+    return UNDECIDED, own.reason
+
+
+_FORMS = {
+    "area": ("A_r/A_0 at equal sigma_0", "exponent of A_r/A_0"),
+    "slope": ("its own form, at equal sigma*", "slope of log sigma_0"),
+}
+
+
+def size_verdicts(result: xr.Dataset) -> xr.Dataset:
+    """Verdicts on eq. 6 by estimator and load, in both forms and together.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        With ``area_exponent``, ``slope`` and ``predicted_slope`` with intervals, ``sensitivity``
+        and ``crossings`` as of :func:`size_effect.eq6.size_test`.
+
+    Returns
+    -------
+    xr.Dataset
+        Over (estimator, normal_force): ``area_difference``, ``slope_difference`` with intervals,
+        ``area_verdict``, ``slope_verdict``, ``verdict`` of both, each with its ``_reason``
+        (``reason`` of both). Over (normal_force,): ``condition_number``,
+        ``well_conditioned`` and ``size_effect``.
+    """
+    dims = ("estimator", "normal_force")
+    predicted = [result[f"predicted_slope{end}"].transpose(*dims).values for end in INTERVAL]
+    measured = {
+        form: [result[f"{name}{end}"].values for end in INTERVAL]
+        for form, name in (("area", "area_exponent"), ("slope", "slope"))
+    }
+    crossings = result["crossings"].isel(part=0).values
+    with np.errstate(divide="ignore"):
+        condition = 1 / result["sensitivity"].values
+    shape = predicted[0].shape
+    differences = {form: np.full((3, *shape), np.nan) for form in _FORMS}
+    names = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
+    words: dict[str, np.ndarray] = {name: np.empty(shape, object) for name in names}
+    for index in np.ndindex(shape):
+        load = index[1]
+        said = Interval(*(float(values[index]) for values in predicted))
+        area, slope = (Interval(*(float(v[load]) for v in measured[form])) for form in _FORMS)
+        of_area = judge_exponent(area, said)
+        own = judge_own_form(slope, said, float(condition[load]), int(crossings[load]))
+        differences["area"][:, *index] = of_area.difference
+        differences["slope"][:, *index] = own.difference
+        found = (*of_area[:2], *own[:2], *both_forms(of_area, own))
+        for name, word in zip(names, found, strict=True):
+            words[name][index] = word
+    verdicts = xr.Dataset()
+    for form, (of, quantity) in _FORMS.items():
+        for (ending, of_end), values in zip(INTERVAL.items(), differences[form], strict=True):
+            attrs = cf_attrs("1", f"{quantity} less -(2 - Delta_sigma){of_end}")
+            verdicts[f"{form}_difference{ending}"] = (dims, values, attrs)
+        for name, text in (("verdict", "whether eq. 6 agrees"), ("reason", "why undecided")):
+            attrs = cf_attrs("1", f"{text}, {of}")
+            verdicts[f"{form}_{name}"] = (dims, words[f"{form}_{name}"].astype(str), attrs)
+    for name, text in (("verdict", "whether eq. 6 agrees"), ("reason", "why undecided")):
+        attrs = cf_attrs("1", f"{text}, both forms together")
+        verdicts[name] = (dims, words[name].astype(str), attrs)
+    attrs = cf_attrs("1", "d ln sigma_0 / d ln sigma* of the whole window")
+    verdicts["condition_number"] = ("normal_force", condition, attrs)
+    single = (crossings == 1) & (abs(condition) <= WORST_CONDITION)
+    attrs = cf_attrs(
+        "1", f"sigma* determines sigma_0, with a condition number up to {WORST_CONDITION:g}"
+    )
+    verdicts["well_conditioned"] = ("normal_force", single, attrs)
+    _, low, high = measured["area"]
+    effect = (low > ROUNDING) | (high < -ROUNDING)
+    attrs = cf_attrs("1", "whether the exponent of A_r/A_0 differs from zero")
+    verdicts["size_effect"] = ("normal_force", effect, attrs)
+    return verdicts
