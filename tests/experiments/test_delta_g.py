@@ -135,7 +135,7 @@ def test_verdict_follows_the_numbers(bias):
     good["coverage"] = xr.full_like(bias["coverage"], 0.95)
     words = drawn(good).caption
     assert "has an rms error of 0.010, the least" in words
-    assert "hold H in 95 % of every kind, those of all in 95 %" in words
+    assert "hold H in 95 % of every kind or more, those of the worst estimator in 95 %" in words
     bad = bias.assign(overall_error=xr.where(errors["estimator"] == "variogram", 0.01, 0.2))
     bad["least_coverage"] = xr.full_like(least, 0.5)
     bad["coverage"] = xr.full_like(bias["coverage"], 0.5)
