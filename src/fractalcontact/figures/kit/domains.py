@@ -221,7 +221,7 @@ def departures(counts: xr.Dataset) -> str:
     return f"Beyond both nulls: {int((decided == BEYOND_BOTH).sum())} of {decided.size}."
 
 
-def rise_words(atlas: DataTree, name: str, loading: Loading) -> str:
+def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = True) -> str:
     """Verdicts on the rise of Delta_sigma with the load, by both estimates.
 
     Parameters
@@ -231,10 +231,12 @@ def rise_words(atlas: DataTree, name: str, loading: Loading) -> str:
     name : str
         The specimen.
     loading : Loading
+    numbers : bool, optional
+        Whether the numbers follow that decide.
     """
     rows = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
     return ", ".join(
-        f"by {estimate.label} {verdict_words(atlas, name, rows[estimate.key])}"
+        f"by {estimate.label} {verdict_words(atlas, name, rows[estimate.key], numbers=numbers)}"
         for estimate in loading.estimates
     )
 

@@ -43,7 +43,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     draw_axes(axes)
     axes.set_title("eq. 6 extrapolated to other sizes; markers: the specimen")
     headline(figure, *loading.title)
-    return Drawing(figure, table, _caption(loading, rise_words(atlas, name, loading)))
+    return Drawing(
+        figure, table, _caption(loading, rise_words(atlas, name, loading, numbers=False))
+    )
 
 
 def _draw_lines(axes, loading, estimate, shown, table):
