@@ -281,3 +281,14 @@ def test_the_seating_load_is_one_of_the_loads_or_left_to_the_states():
     stated["defaults"]["seating_load"] = "2 MPa"
     with pytest.raises(InputError, match="seating_load: '2 MPa' is not among the loads"):
         resolve_settings(stated, None, {}, "x")
+
+
+def test_a_plane_is_opposite_to_no_pair_of_scanned_faces(study, tmp_path):
+    for name in ("one.npy", "two.lower.npy", "two.upper.npy"):
+        (tmp_path / name).write_text("")
+    study["scans"] = str(tmp_path)
+    study["defaults"]["opposite"] = "flat"
+    settings = resolve_study(study, SCHEMA, "here").settings
+    assert (settings["one"]["directions"], settings["one"]["offsets"]) == (["none"], [0.0])
+    assert settings["two"]["directions"] == study["defaults"]["directions"]
+    assert settings["two"]["opposite"] == "match"

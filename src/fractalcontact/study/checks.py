@@ -76,7 +76,8 @@ def resolve_study(config: Mapping, schema: Mapping, source: str) -> Study:
         if is_contact_map(options[name]):
             labels[name] = own.get("label", name)
         else:
-            settings[name] = resolve_settings(config, name, own, source)
+            pair = scans[name].upper is not None
+            settings[name] = resolve_settings(config, name, own, source, pair=pair)
     for name in embedded:
         settings[name] = resolve_settings(config, name, {}, source)
     return Study(scans, settings, options, labels, solver_settings(config, source))

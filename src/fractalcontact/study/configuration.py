@@ -19,7 +19,9 @@ ACCURACY = {"closure": "1 %", "delta_sigma": 0.02}
 FULL_RTOL = 1e-6
 
 
-def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source: str) -> dict:
+def resolve_settings(
+    config: Mapping, name: str | None, sidecar: Mapping, source: str, *, pair: bool = False
+) -> dict:
     """Settings of one specimen: the defaults, then the study's own for it, then its sidecar's.
 
     Parameters
@@ -32,6 +34,8 @@ def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source
         Settings of its sidecar.
     source : str
         For errors.
+    pair : bool, optional
+        Whether both faces were scanned: then ``opposite`` has nothing to say.
 
     Returns
     -------
@@ -51,7 +55,8 @@ def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source
             )
     stated = _Stated(config, name, sidecar, source)
     loads = stated.loads("loads")
-    flat = stated.get("opposite", "match") == "flat"
+    opposite = "match" if pair else stated.get("opposite", "match")
+    flat = opposite == "flat"
     directions = stated.get("directions", ["E", "N", "W", "S"])
     recipe = config.get("embedded", {}).get(name, {})
     settings = {
@@ -60,7 +65,7 @@ def resolve_settings(config: Mapping, name: str | None, sidecar: Mapping, source
         "chosen_for": chosen_for(config, name),
         "capped_variant": is_capped_variant(config, name),
         "material": _material(config, stated["material"], stated.where("material"), source),
-        "opposite": stated.get("opposite", "match"),
+        "opposite": opposite,
         "outliers": stated.get("outliers", "keep"),
         "fill_holes": stated.get("fill_holes", 0),
         "window": stated.lengths("window"),
