@@ -109,20 +109,16 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
     spans = {k: np.max(h) - np.mean(h) for k, h in ((1, heights), (2, prefractal(heights, 2)))}
     fine = curves.sel(resolution=1)
     hyperbolas = {k: fitted_hyperbola(curves.sel(resolution=k), loading.area) for k in (1, 2)}
-    values = {
-        "k_ni": hyperbolas[1].k_ni,
-        "stiffness": float(at["interface_stiffness"]),
-        "closure": float(at["interface_closure"]),
-        "separation": spans[1] - float(at["closure"]),
-        "area_corrected": float(at["area_corrected"]),
-    }
-    coarser = {
-        "k_ni": hyperbolas[2].k_ni,
-        "stiffness": float(coarse["interface_stiffness"]),
-        "closure": float(coarse["interface_closure"]),
-        "separation": spans[2] - float(coarse["closure"]),
-        "area_corrected": float(coarse["area_corrected"]),
-    }
+    values, coarser = (
+        {
+            "k_ni": hyperbolas[k].k_ni,
+            "stiffness": float(state["interface_stiffness"]),
+            "closure": float(state["interface_closure"]),
+            "separation": spans[k] - float(state["closure"]),
+            "area_corrected": float(state["area_corrected"]),
+        }
+        for k, state in ((1, at), (2, coarse))
+    )
     counting = 1.96 / np.sqrt(max(float(at["nodes"]), 1.0))
     highest = highest_node_scatter(heights)
     own = {

@@ -135,7 +135,7 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
     representative(
         [
             ({"hardness": 1e3}, "beyond the hardness (1 GPa)"),
-            ({"hardness": 1e9}, "within the hardness (1000000 GPa)"),
+            ({"hardness": 1e9}, "within the hardness (1e+06 GPa)"),
             ({"hardness": np.inf, "joint_wall_strength": 80.0}, "beyond the joint wall strength"),
         ]
     ),

@@ -57,6 +57,7 @@ def job(snakemake):
     except (InputError, NotConverged, OutputError) as error:
         lines = [str(error), *getattr(error, "__notes__", [])]
         message = "error: " + "; ".join(lines)
+        logging.raiseExceptions = False  # the log may stand on the same full disk
         log.error(message)
         sys.exit(message)
     except (Exception, KeyboardInterrupt) as error:

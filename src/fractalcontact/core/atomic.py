@@ -13,7 +13,7 @@ from .errors import OutputError
 #: Beginning of the names of files that are being written; what a killed run left of them is swept.
 UNFINISHED = ".unfinished-"
 #: Of a disk with fewer bytes left than this, any error in writing is taken to come from that: the
-#: netCDF library says no more than "HDF error".
+#: netCDF library says no more than "HDF error" or "permission denied".
 FULL_DISK = 2**20
 
 
@@ -54,7 +54,9 @@ def atomic_write(path: Path | str) -> Iterator[Path]:
             os.fsync(file.fileno())
         os.replace(temporary, path)
     except Exception as error:
-        if _is_full(path.parent, error) or isinstance(error, PermissionError):
+        if _is_full(path.parent, error):
+            raise _unwritten(path, _NO_SPACE) from error
+        if isinstance(error, PermissionError):
             raise _explained(path, error) from error
         raise
     finally:
@@ -100,14 +102,19 @@ def _is_full(folder, error):
     return shutil.disk_usage(folder).free < FULL_DISK
 
 
+_NO_SPACE = "no space left on its disk; make room there"
+
+
 def _explained(path, error):
-    if isinstance(error, OSError) and not isinstance(error, PermissionError):
-        full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-        why = "no space left on its disk" if full else error.strerror or str(error)
-    else:
-        why = "no permission" if isinstance(error, PermissionError) else "no space left on its disk"
-    what = "make room there" if "space" in why else "allow writing there"
-    return OutputError(f"{path}: cannot be written, {why}; {what} and run again")
+    """The error of one that says itself what is wrong."""
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return _unwritten(path, _NO_SPACE)
+    why = "no permission" if isinstance(error, PermissionError) else error.strerror or str(error)
+    return _unwritten(path, f"{why}; allow writing there")
+
+
+def _unwritten(path, why):
+    return OutputError(f"{path}: cannot be written, {why} and run again")
 
 
 def _umask():

@@ -17,7 +17,7 @@ RATIOS = (2, 3, 4, 5)
 #: Compiled code counts nodes in four bytes.
 _MOST_CELLS = 2**31 - 1
 
-#: Sizes of whole parts of a cell are tried at every origin up to so many parts.
+#: Largest q of box sides p / q cells that are tried at every grid origin.
 _MOST_PARTS = 4
 
 #: Boxes of no size cover more than this many times an oblong extent.
@@ -241,7 +241,7 @@ def _checked_sizes(sizes):
 
 @njit(cache=True)
 def _summed(domain):
-    """Nodes below and left of each corner: four look-ups then tell how many are in a box."""
+    """Nodes below and left of each corner: four look-ups then give the number in a box."""
     ny, nx = domain.shape
     nodes = np.zeros((ny + 1, nx + 1), np.int32)
     for y in range(ny):

@@ -24,7 +24,7 @@ LAG_FIELDS = {
 
 
 def contact_at_lag(domain: np.ndarray, direction: str, lag: int = LAG) -> dict[str, float]:
-    """Probability that a node has contact where another so many nodes off has, by direction.
+    """Probability that a node has contact where another at a lag of `lag` nodes has, by direction.
 
     Parameters
     ----------

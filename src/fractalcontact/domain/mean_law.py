@@ -222,8 +222,8 @@ def block_error(
     """Half the t-interval of a statistic of counts, by the jackknife over parts of the window.
 
     The larger error of two: by parts left out, and by rows or columns of them. Neighbouring parts
-    of one set are alike, the more so as the largest boxes are wider than one, and each tells much
-    of what the one left out told. A strip has fewer neighbours; but of strips there are few.
+    of one set are alike, the more so as the largest boxes are wider than one, and each holds much
+    of what the one left out held. A strip has fewer neighbours; but of strips there are few.
 
     Parameters
     ----------

@@ -5,7 +5,9 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "REFUTED": ".size_decision",
         "SURFACES": ".roll_off",
+        "UPHELD": ".size_decision",
         "solve_task": ".size_states",
     },
 )

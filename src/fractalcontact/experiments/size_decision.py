@@ -23,10 +23,12 @@ WIDEST_PREDICTION = 0.4
 #: Loads at which a class must follow eq. 6 before it is supported.
 SUPPORTING_LOADS = 3
 
-#: Sides from so many roll-offs on hold enough hills to be compared.
+#: Sides from this number of roll-offs on hold enough hills to be compared.
 FEWEST_ROLL_OFFS = 4
 
 REFUTED, SUPPORTED, OPEN = "eq. 6 refuted", "eq. 6 agrees", "undetermined"
+#: What enough loads that agree are called together.
+UPHELD = "eq. 6 supported"
 
 
 class Exponent(NamedTuple):
@@ -153,7 +155,7 @@ def decide(alpha: Exponent, by_area: Exponent, by_boxes: Exponent) -> Decision:
     -------
     Decision
         Refuted where alpha differs from both predictions beyond their joint interval; agreeing
-        where it does not differ from one that is narrow enough to tell; else undetermined.
+        where it does not differ from one that is narrow enough to decide; else undetermined.
         ``no_size_effect`` where the whole interval of alpha lies within :data:`NO_EFFECT` of zero.
     """
     flat = max(abs(alpha.low), abs(alpha.high)) < NO_EFFECT
@@ -196,5 +198,5 @@ def overall(decisions: list[Decision], *, follows: bool) -> str:
     refuted = sum(decision.verdict == REFUTED for decision in decisions)
     agreeing = sum(decision.verdict == SUPPORTED for decision in decisions)
     if agreeing >= SUPPORTING_LOADS and follows:
-        return "eq. 6 supported"
+        return UPHELD
     return REFUTED if refuted and not agreeing else OPEN

@@ -83,7 +83,7 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     smallest = FEWEST_ROLL_OFFS * recipe["roll_off"]
     values: dict[str, np.ndarray] = {}
     shape = len(hursts), len(loads)
-    for name, found in _dimensions(samples, hursts, recipe).items():
+    for name, found in _dimensions(samples, hursts).items():
         values |= _columns(name, found, shape)
     by_class = _over_side(samples, arms, hursts, smallest)
     for name, found in by_class.items():
@@ -209,7 +209,7 @@ def _geometry(samples, constructions, hursts) -> dict[str, list[Exponent]]:
     return found
 
 
-def _dimensions(samples, hursts, recipe) -> dict[str, list[Exponent]]:
+def _dimensions(samples, hursts) -> dict[str, list[Exponent]]:
     """:data:`DIMENSIONS` of every Hurst exponent and load."""
     found: dict[str, list[Exponent]] = {name: [] for name in DIMENSIONS}
     for hurst in hursts:

@@ -17,6 +17,7 @@ from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
+from ..domain.null_models import bearing_area_cut
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement
@@ -206,6 +207,7 @@ def _numbers_of(
     """:data:`STATES` of one state."""
     domain, space = state.in_contact, state.space
     side = len(heights) * SPACING
+    cut = bearing_area_cut(heights, int(np.count_nonzero(domain)))
     centre = slice(len(heights) // 4, len(heights) - len(heights) // 4)
     central = domain[centre, centre]
     bulk = bulk_settlement(state.force, E_STAR, side, side) / state.force
@@ -220,15 +222,6 @@ def _numbers_of(
         "box_dimension": dimension_of_domain(domain, SPACING).dimension,
         "correlation_dimension": correlation_dimension(domain, SPACING).value,
         "band_dimension": correlation_dimension(domain, SPACING, band).value,
-        "cut_dimension": correlation_dimension(_bearing_cut(heights, domain), SPACING, band).value,
+        "cut_dimension": correlation_dimension(cut, SPACING, band).value,
         "residual": state.residual,
     }
-
-
-def _bearing_cut(heights: np.ndarray, domain: np.ndarray) -> np.ndarray:
-    """The highest nodes of a surface, as many as are in contact."""
-    count = np.count_nonzero(domain)
-    order = np.argpartition(heights.ravel(), heights.size - count)[heights.size - count :]
-    cut = np.zeros(heights.size, bool)
-    cut[order] = True
-    return cut.reshape(heights.shape)

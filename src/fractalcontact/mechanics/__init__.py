@@ -22,7 +22,6 @@ __getattr__, __dir__, __all__ = exports(
         "PERIODIC_SCATTER": ".theory",
         "PERIODIC_SLOPE": ".theory",
         "QUANTITIES": ".subgrid",
-        "RESOLVED_NODES": ".area",
         "RIGID_SLIDE": ".joint",
         "SEMI_LOGARITHMIC": ".closure_laws",
         "SOLVER_ERROR": ".states",

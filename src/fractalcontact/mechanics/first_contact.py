@@ -4,7 +4,7 @@ import numpy as np
 
 #: Blocks along a side of the window: of each the highest node counts, not its neighbours too.
 BLOCKS = 8
-#: Heights of so many blocks, the highest, show how the tail falls off.
+#: Number of the highest blocks, whose heights show how the tail falls off.
 HIGHEST = 10
 #: Half of the 95 % interval of a Gumbel distribution, from -ln ln 40 to -ln -ln 0.975, in its
 #: scale.

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.directions import axis_and_sign
+from ..core.resolved import RESOLVED_NODES
 from ..surface.specimen import nominal_area, window_slices
-from .area import RESOLVED_NODES
 from .states import chosen_offset, forces_of
 
 #: Above this fraction of the load on suspicious cells, errors of the scans decide a number.

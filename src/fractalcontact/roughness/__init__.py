@@ -15,6 +15,7 @@ __getattr__, __dir__, __all__ = exports(
         "below_offset": ".fit_range",
         "best_dimension": ".dimension",
         "beyond_roll_off": ".recommended",
+        "dimension_table": ".recommended",
         "dimension_words": ".recommended",
         "length_words": ".quality_words",
         "measured_exponents": ".dimension",

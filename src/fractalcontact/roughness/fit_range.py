@@ -16,7 +16,7 @@ FIRST_CELLS, LAST_PART = 4, 1 / 8
 #: longest fitted are half of it. What is missing up to there is taken off as known bias.
 LAST_OF_ROLL_OFF = 1 / 4
 
-#: A range cut by a roll-off may begin so many cells earlier to span this ratio.
+#: A range cut by a roll-off may begin at this number of cells to span this ratio.
 FEWEST_CELLS, LEAST_RATIO = 2, 3.0
 
 #: Shortest offset (cells) below which four lags are left: 2 to 5 cells.

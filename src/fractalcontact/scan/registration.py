@@ -25,7 +25,7 @@ _SMALL_STEP = 1e-3  # of a cell: a step that moves no cell further ends the sear
 #: (Beaton and Tukey, Technometrics 16 (1974) 147).
 _BIWEIGHT = 4.685
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
-#: The limit follows the gap until it changes by less than this part, so many times at most.
+#: The limit follows the gap until it changes by less than this part, this number of times at most.
 _SAME_LIMIT, _MOST_LIMITS = 0.02, 4
 _ROUNDING = 1e-9  # relative: gaps that differ by less are one
 

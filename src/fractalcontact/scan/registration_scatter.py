@@ -13,7 +13,7 @@ from .registration import PARAMETERS, biweight_limit, linearised
 from .surface_motion import Motion
 
 #: Draws, and blocks along the longer side: gaps farther apart than a block hardly depend on each
-#: other, and so many blocks tell a standard deviation to about a sixth.
+#: other, and from this number of blocks a standard deviation is known to about a sixth.
 MOTIONS, BLOCKS = 20, 6
 #: A block with fewer of its cells present is left out.
 _FEWEST_CELLS = 16
@@ -22,7 +22,7 @@ _FEWEST_BLOCKS = 8
 
 
 def scattered_motions(lower: xr.DataArray, upper: xr.DataArray) -> list[Motion]:
-    """Further motions of the upper face that the faces do not tell from none.
+    """Further motions of the upper face that the faces do not distinguish from none.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ from ..mechanics.loading import JointLoading
 from ..surface.specimen import cell_side
 from .division import PARTS, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
-from .prediction import predict_whole, predict_whole_strength
+from .prediction import predict_whole
 from .size_law import size_law
 from .size_verdict import NOT_TESTED, VERDICTS, size_verdicts
 from .slope import real_pressures, slopes_at_equal_star
@@ -53,18 +53,13 @@ DELTA_SIGMA_ESTIMATORS = {
 }
 
 
-def size_test(
-    loading: JointLoading, windows: xr.Dataset | None = None, parts: Sequence[int] = PARTS
-) -> xr.Dataset:
+def size_test(loading: JointLoading, parts: Sequence[int] = PARTS) -> xr.Dataset:
     """Size test of a joint: contact against b at equal sigma_0 and at equal sigma*, and eq. 6.
 
     Parameters
     ----------
     loading : JointLoading
         Offsets ascending. Contact is tested at the study's map offset (without one the third).
-    windows : xr.Dataset, optional
-        From :func:`size_effect.laws.joint_by_size`: strength of the parts at all offsets. Without
-        it no strength is predicted.
     parts : sequence of int
         Sub-windows along each side; all of those are solved that
         :func:`size_effect.division.solvable_parts` takes.
@@ -117,8 +112,6 @@ def size_test(
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(size_verdicts(result))
     result = result.merge(predict_whole(states, result["delta_sigma"], FEWEST_NODES))
-    if loading.slides and windows is not None:
-        result = result.merge(predict_whole_strength(windows, result["delta_sigma"]))
     opposite = loading.specimen.attrs["opposite"]
     return result.assign_attrs(opposite=opposite, summary=summary(result))
 

@@ -52,7 +52,8 @@ def state_stages(
         By stage; the error budget and what it completes with them, by
         :func:`stages.errors.error_stages`.
     """
-    states, spacing = combine(parts), cell_side(specimens)
+    states, mapped = combine(parts), map_states(parts)
+    spacing, area = cell_side(specimens), nominal_area(specimens)
     e_star = settings["material"]["e_star"]
     curves = closure_curves(
         states,
@@ -62,7 +63,7 @@ def state_stages(
         openings=prefractal_openings(
             specimens, joints, [int(k) for k in states["resolution"].values]
         ),
-        seating_force=_seating_force(settings, specimens),
+        seating_force=_seating_force(settings, area),
     )
     curves.attrs["warning"] = load_warning(curves, specimens, settings)
     dilatancy = elastic_dilatancy(curves, joints)
@@ -74,24 +75,19 @@ def state_stages(
     )
     fields = domains_of(states)
     domains = analyse_domains(fields, spacing, fit_range=settings["box_range"])
-    nulls = nulls_of_map_states(
-        map_states(parts), spacing, joints["composite"], settings["box_range"]
-    )
+    nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings["box_range"])
     domains = beside_domains(domains, nulls)
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,
         "area": laws,
         "domains": domains,
-        "contact": contact_fields(fields, parts, joints, settings, nominal_area(specimens)),
+        "contact": contact_fields(fields, parts, joints, settings, area),
         "scaling": scaling_over_resolutions(
             curves, domains, spacing, fit_range=settings["scaling_range"]
         ),
-        "domain_measures": measures_of_map_states(
-            map_states(parts), spacing, settings["box_range"]
-        ),
+        "domain_measures": measures_of_map_states(mapped, spacing, settings["box_range"]),
     }
-    area = nominal_area(specimens)
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     return stages | error_stages(
         specimens,
@@ -104,7 +100,7 @@ def state_stages(
     )
 
 
-def _seating_force(settings: Mapping, specimen: xr.Dataset) -> float | None:
+def _seating_force(settings: Mapping, area: float) -> float | None:
     """Force from which closure is seated, N; None where the study leaves it to the states."""
     seating = settings["seating_load"]
-    return None if seating is None else float(forces_of([seating], nominal_area(specimen))[0])
+    return None if seating is None else float(forces_of([seating], area)[0])

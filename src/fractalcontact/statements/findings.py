@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.fitting import fit_line
-from ..mechanics.area import RESOLVED_NODES
+from ..core.resolved import RESOLVED_NODES
 from ..mechanics.states import chosen_offset, forces_of
 from ..surface.specimen import nominal_area
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..domain import departure
-from ..domain.departure import BEYOND_BOTH, LIKE_CUT, LIKE_RANDOM
+from ..domain.departure import LIKE_CUT, LIKE_RANDOM, is_fractal
 from ..mechanics.closure_laws import HYPERBOLA, UNDECIDED
 from .findings import (
     FAILS,
@@ -18,13 +18,8 @@ from .findings import (
     share,
 )
 
-#: What a departure from the null models leaves of "lacunar fractal sets".
-_LEFT = {
-    BEYOND_BOTH: HOLDS,
-    LIKE_RANDOM: FAILS,
-    LIKE_CUT: PARTLY,
-    departure.UNDETERMINED: UNDETERMINED,
-}
+#: What a departure that is not fractal leaves of "lacunar fractal sets".
+_LEFT = {LIKE_RANDOM: FAILS, LIKE_CUT: PARTLY}
 
 
 def closure_is_hyperbolic(joint: Joint) -> Finding:
@@ -62,7 +57,7 @@ def domains_are_fractal(joint: Joint) -> Finding:
         low, high = (float(state[f"delta_sigma_{end}"]) for end in ("low", "high"))
         return Finding(UNDETERMINED, f"Delta_sigma within {high - low:.1f} only")
     return Finding(
-        _LEFT[verdict],
+        HOLDS if is_fractal(verdict) else _LEFT[verdict],
         verdict,
         f"Delta_sigma = {value:.2f}, as many random nodes {low:.2f} to {high:.2f} "
         f"(mean {random:.2f}), the cut {cut:.2f}",

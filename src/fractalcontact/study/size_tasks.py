@@ -1,7 +1,7 @@
 """Jobs of the experiment on the size effect: which surfaces each of them makes and solves.
 
 Light, because the workflow reads it: a job takes seeds of one arm, one Hurst exponent, one size and
-one short cut-off, so many that it lasts for minutes.
+one short cut-off, as many as last for minutes.
 """
 
 import math
@@ -23,8 +23,8 @@ ARMS = {
 
 #: Nodes of all surfaces of one job together, about.
 NODES_A_JOB = 2**24
-#: Tasks of one arm and H with fewer nodes share a job, up to that many: else most of its time would
-#: go into its start.
+#: Tasks of one arm and H with fewer nodes than the first share a job of no more than the second:
+#: else most of its time would go into its start.
 SMALL_TASK, NODES_SHARED = 2**21, 2**22
 
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...experiments.size_decision import REFUTED, UPHELD
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -59,7 +60,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for axes in panels[:, 0]:
         axes.set_ylabel(r"found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$")
     legends_below(figure, _classes(test), _loads(test), _lines())
-    return Drawing(figure, table, _caption(test, table))
+    return Drawing(figure, table, _caption(test))
 
 
 def _table(test: xr.Dataset) -> pd.DataFrame:
@@ -141,10 +142,10 @@ def _lines() -> list:
     ]
 
 
-def _caption(test: xr.Dataset, table: pd.DataFrame) -> str:
+def _caption(test: xr.Dataset) -> str:
     classes = test["overall"]
-    refuted = int((classes == "eq. 6 refuted").sum())
-    supported = int((classes == "eq. 6 supported").sum())
+    refuted = int((classes == REFUTED).sum())
+    supported = int((classes == UPHELD).sum())
     flat = int(test["no_size_effect"].sum())
     largest = float(np.nanmax(abs(test["alpha"].values)))
     return (

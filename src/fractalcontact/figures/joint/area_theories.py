@@ -229,7 +229,7 @@ def _between_words(law):
     """Where the mean kappa lies between the theories."""
     reason = str(law["no_corrected_mean_kappa"].values)
     if reason:
-        return f"There is no kappa at light load: {reason}."
+        return f"No kappa at light load: {reason}."
     value = float(law["corrected_mean_kappa"])
     low, high = law.attrs["persson_kappa"], law.attrs["bush_gibson_thomas_kappa"]
     side = "between" if low <= value <= high else "below both" if value < low else "above both"

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.fitting import fit_line
+from ...core.resolved import RESOLVED_NODES
 from ...domain.clusters import follows_law
-from ...mechanics.area import RESOLVED_NODES
 from ...surface.specimen import cell_side
 from ..kit.drawing import (
     LINES,

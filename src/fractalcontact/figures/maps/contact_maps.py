@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...domain.departure import is_fractal
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import map_table, measured_series, threshold_words
@@ -70,7 +71,7 @@ def _title(name, one):
 def _caption(series, maps):
     shares = [float(one["area_share"]) for _, one in maps]
     verdicts = [one["null_verdict"].item() for _, one in maps]
-    beyond = sum(verdict.startswith("beyond") for verdict in verdicts)
+    beyond = sum(is_fractal(verdict) for verdict in verdicts)
     warned = sum(bool(one.attrs["warning"]) for _, one in maps)
     words = (
         f"{supplementary('measured contact maps')} Cells in contact (black), "

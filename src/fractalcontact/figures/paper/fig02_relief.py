@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 from xarray import DataTree
 
+from ...roughness.recommended import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.words import interval, length_unit, opening, percent
@@ -215,9 +216,8 @@ def _caption(label, specimen, faces, dimension):
 
 def _words(dimension):
     """The recommended Delta_g, beside the known one and those of the other estimators."""
-    values = dimension["dimension"].values
-    known = values[np.isfinite(values)]
-    if not known.size:
+    table = dimension_table(dimension)
+    if not table["n"]:
         return "No dimension could be fitted: the scan has too few scales."
     reason = dimension["no_dimension"].item()
     if reason:
@@ -230,8 +230,8 @@ def _words(dimension):
     return (
         f"Delta_g of the lower face is {_recommended_words(dimension)} by "
         f"{estimator.replace('_', ' ')}, {kind}s {first:.3g} to {last:.3g} mm"
-        f"{_roll_off_words(dimension)}{_known_words(dimension)}; {known.size} estimators give "
-        f"{known.min():.2f} to {known.max():.2f}. {_axes_words(dimension)}"
+        f"{_roll_off_words(dimension)}{_known_words(dimension)}; {table['n']} estimators give "
+        f"{table['lowest']:.2f} to {table['highest']:.2f}. {_axes_words(dimension)}"
     )
 
 

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
+from ...core.resolved import RESOLVED_NODES
 from ...mechanics.closure_laws import HYPERBOLA, LAWS, SEMI_LOGARITHMIC, UNDECIDED
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import cell_side, nominal_area
@@ -76,7 +77,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_area(panels["b"], curves, drawn, direction, laws, area)
     _draw_stiffness(panels["c"], stiffness)
     legends_below(figure, entries(panels["a"]), entries(panels["b"]))
-    letter(panels["a"], "a", "closure (hollow: fewer than 10 nodes)")
+    letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
     letter(panels["b"], "b", "real contact area (filled: corrected, hollow: raw)")
     letter(panels["c"], "c", f"stiffness over the spacing, {_state(direction, stiffness)}")
     headline(figure, settings["label"], place(direction))
