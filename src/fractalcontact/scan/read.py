@@ -145,14 +145,19 @@ def _measure(path: Path, options) -> Measured:
     _refuse_idle_keys(raw, options, path)
     overrides: list[str] = []
     notes = list(raw.notes)
+    if raw.unread:
+        notes.append(f"not used of its header: {'; '.join(raw.unread)}")
+    if raw.factor not in (None, 1) and not _has_number(options.unit_z):
+        notes.append(f"heights multiplied by {raw.factor:g}, as the file says")
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
     assert unit_z is not None
+    factor = _height_factor(raw, options, path)
     missing = _choose("missing", raw.missing, options, overrides)
     if raw.layout == "matrix":
         values = _without_missing(raw.values, missing)
-        values *= length_factor(unit_z, f"{path}: unit_z")
+        values *= factor * length_factor(unit_z, f"{path}: unit_z")
         if _choose("first_row", raw.first_row, options, overrides) == "top":
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
@@ -163,7 +168,7 @@ def _measure(path: Path, options) -> Measured:
         values = raw.values.copy()
         values[:, 2] = _without_missing(raw.values[:, 2], missing)
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
-        values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
+        values[:, 2] *= factor * length_factor(unit_z, f"{path}: unit_z")
         spacing = None
     _refuse_enormous(values, path)
     grid = options.grid
@@ -223,6 +228,31 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
     return given or stated
 
 
+def _height_factor(raw: RawScan, options: ScanOptions, path: Path) -> float:
+    """Number the file says its heights are to be multiplied by, where the sidecar has no unit.
+
+    Raises
+    ------
+    InputError
+        If the sidecar has a unit: it may mean the numbers before or after.
+    """
+    unit_z = options.unit_z or options.unit
+    if raw.factor in (None, 1) or _has_number(unit_z):
+        return 1.0
+    if unit_z is not None and unit_z != raw.unit_z:
+        raise InputError(
+            f"{path}: its header says that heights are to be multiplied by {raw.factor:g}; write "
+            f"that with their unit into the sidecar, 'unit_z: {raw.factor:g} {unit_z}', or "
+            f"'unit_z: 1 {unit_z}' if it is done already"
+        )
+    return raw.factor
+
+
+def _has_number(unit: str | None) -> bool:
+    """Whether a unit is one of counts, "0.1 um"."""
+    return unit is not None and unit[:1] in "0123456789.+-"
+
+
 def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Path) -> None:
     """Ask for everything the file lacks in one message, ready to be copied."""
     stated_spacing = options.spacing if options.spacing is not None else raw.spacing
@@ -233,19 +263,34 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     lacks_unit = unit_z is None or (needs_unit_xy and unit_xy is None)
     if not (lacks_unit or lacks_spacing):
         return
-    what = " and ".join(
-        word for word, lacks in (("unit", lacks_unit), ("spacing", lacks_spacing)) if lacks
-    )
-    lines = []
-    if lacks_unit:
-        lines.append("    unit: mm          # of its lengths; unit_xy and unit_z where they differ")
+    lacking = _lacking_unit(unit_xy, unit_z, needs_unit_xy) if lacks_unit else ()
+    what = " and ".join(filter(None, (*lacking[:1], "spacing" if lacks_spacing else "")))
+    lines = list(lacking[1:])
     if lacks_spacing:
         lines.append("    spacing: 0.1 mm   # between neighbouring cells")
     name, _ = split_file_name(path.name)
     raise InputError(
-        f"{path}: the file states no {what}. Write into {path.with_name(name + '.yaml')}, "
+        f"{path}: the file states no {what}{_said(raw)}. Write into "
+        f"{path.with_name(name + '.yaml')}, "
         "with your own values:\n" + "\n".join(lines)
     )
+
+
+def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
+    """What unit is missing, and the line of a sidecar that states it."""
+    if unit_z is None and unit_xy is not None:
+        return "unit of heights", "    unit_z: um        # of its heights"
+    if unit_z is not None and needs_unit_xy:
+        return "unit of x and y", "    unit_xy: mm       # of x and y"
+    return "unit", "    unit: mm          # of its lengths; unit_xy and unit_z where they differ"
+
+
+def _said(raw: RawScan) -> str:
+    """What the file says all the same, in brackets: that could not be used, or was found out."""
+    said = "; ".join((*(f"it says {line!r}" for line in raw.unread), *raw.notes))
+    if raw.unread:
+        said = f"that can be used: {said}"
+    return f" ({said})" if said else ""
 
 
 def _has_units_of_its_own(spacing) -> bool:
