@@ -15,7 +15,8 @@ _UNIT = (
     r"(?![\w]))"
 )
 _PER_CELL = r"(?:\s*(?:/|per)\s*(?:px|pixels?|pt|points?|samples?|steps?|cells?)\b)?"
-_LENGTH_AFTER = re.compile(rf"\s*({_UNIT}){_PER_CELL}")
+#: Right behind its number, or as a field of its own at the end of the line.
+_LENGTH_AFTER = re.compile(rf"(?:\s*|[\s,;]+(?=\S*\s*$))({_UNIT}){_PER_CELL}")
 _IN_BRACKETS = re.compile(rf"[\[(]\s*({_UNIT}){_PER_CELL}\s*[\])]")
 _POINT_NUMBER = r"(?<![\w.,])[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?(?![\d,]*\d)"
 _COMMA_NUMBER = r"(?<![\w.,])[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?(?![\d.,]*\d)"

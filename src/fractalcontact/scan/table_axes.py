@@ -97,8 +97,11 @@ def without_axes(
         along_y = _edge(table, where, "column")
         if along_y is None and header_x.size < table.shape[1]:
             raise _uneven(where, "column")
-        rows, along_x = table, ruler(header_x[-(table.shape[1] - bool(along_y)) :])
-    refuse_begun_anew(rows, along_x, where)
+        header_x = header_x[-(table.shape[1] - bool(along_y)) :]
+        rows, along_x = table, ruler(header_x)
+        if along_x is None and _is_monotone(header_x):
+            raise _uneven(where, "row")
+    refuse_begun_anew(rows, None, where)
     heights = rows[:, 1:] if along_y else rows
     if along_x and along_x.step < 0:
         heights = heights[:, ::-1]
@@ -109,6 +112,8 @@ def _both_edges(table: np.ndarray, where: str) -> tuple[Ruler | None, Ruler | No
     """Rulers in the first row and column; one alone takes in the corner between them."""
     along_y = _edge(table[1:], where, "column")
     along_x = _edge(table[:, 1:].T, where, "row")
+    if along_x:
+        refuse_begun_anew(table[1:], along_x, where)
     if along_y and not along_x:
         along_y = ruler(table[:, 0])
         if along_y is None:

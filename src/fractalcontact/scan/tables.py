@@ -269,7 +269,7 @@ def _refuse_no_matrix(
     if n_columns < SMALLEST_SIDE:
         return
     is_named = layout.names_are_sure and layout.above is None
-    if names and is_named and (has_record_names(names) or not numbers_columns(names)):
+    if names and is_named and not numbers_columns(names):
         called = ", ".join(names[:6]) + ", ..." * (n_columns > 6)
         raise InputError(
             f"{where}: its columns are called {called}, different quantities and no matrix of "
@@ -279,7 +279,7 @@ def _refuse_no_matrix(
     if n_columns <= FEW_COLUMNS and n_rows > n_columns:
         with np.errstate(invalid="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # of columns without any number
-            spread = np.nanstd(table[1:, 1:], axis=0)
+            spread = np.ptp(np.nanpercentile(table[1:, 1:], [16, 84], axis=0), axis=0)
         spread = spread[np.isfinite(spread)]
         if spread.size and spread.max() > UNLIKE * np.median(spread):
             raise InputError(

@@ -173,7 +173,8 @@ def numbers_above(header: list[str], style: Style) -> tuple[np.ndarray | None, l
         found = [_ABOVE.fullmatch(cell.replace(",", ".")) for cell in cells]
         first = 0 if found and found[0] else 1
         if all(found[first:]) and style.width - 1 <= len(found) - first <= style.width:
-            if style.width < SMALLEST_SIDE:
+            of_y = first and len(found) > style.width and cells[0].lower().startswith("y")
+            if style.width < SMALLEST_SIDE or of_y:
                 continue
             values = [float(match[1]) for match in found[first:] if match]
             units = {match[2] for match in found[first:] if match}

@@ -55,9 +55,10 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     stated = gwyddion_header(header, table.shape, where) or esri_header(header, table.shape, where)
     if stated:
         return RawScan(table, "matrix", reader=_reader(), notes=notes, **stated)
-    names, sure, named_in = column_names(header, style.delimiter, style.width)
-    above, rest = numbers_above(header, style)
-    header = [line for number, line in enumerate(rest) if not (sure and number == named_in)]
+    above, header = numbers_above(header, style)
+    names, sure, number = column_names(header, style.delimiter, style.width)
+    if sure and number is not None:
+        header = header[:number] + header[number + 1 :]
     layout = TextLayout(sure, above, reading.breaks)
     said = read_statements(header, style.decimal)
     return table_to_raw(table, names, options, where, layout, reader=_reader(), notes=notes, **said)
@@ -78,7 +79,7 @@ def _wide(head: bytes) -> str | None:
         return None
     even, odd = head[0::2], head[1::2]
     for zeros, others, name in ((odd, even, "utf-16-le"), (even, odd, "utf-16-be")):
-        if not zeros.strip(b"\0") and b"\0" not in others:
+        if zeros.count(0) > 0.8 * len(zeros) and b"\0" not in others:  # signs beyond Latin-1
             return name
     return None
 
@@ -306,5 +307,5 @@ FORMAT = Format(
     endings=(".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz"),
     takes=is_text,
     libraries=("pandas",),
-    refusal="not a text file; damaged, or the wrong extension?",
+    refusal="not a text file; export it again as text, or give it the extension of its format",
 )
