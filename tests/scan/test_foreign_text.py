@@ -70,7 +70,12 @@ AXES = [
     Case("axes", framed(X, np.exp(Y)), FULL, "first column rises.*export x, y, z"),
 ]
 UNITS = [
-    Case("units", PLAIN, {"unit": unit, "spacing": "1 mm"}, f"{unit}.*no unit of length known here.*'20 mm'")
+    Case(
+        "units",
+        PLAIN,
+        {"unit": unit, "spacing": "1 mm"},
+        f"{unit}.*no unit of length known here.*'20 mm'",
+    )
     for unit in ("px", "point", "pica", "yard")
 ]
 UNITS += [
@@ -122,7 +127,8 @@ NAMED = [
     Case("names", "Height,Row,Col\n" + rows(points("zrc")), MM, "states no spacing"),
     Case("names", "row;z;column\n" + rows(points("rzc"), ";"), FULL),
     Case("names", "Northing,Easting,Elevation\n" + rows(points("yxz")), MM),
-    Case("names", "x [px],y [px],z [mm]\n" + rows(points("crz")), {"spacing": ["0.5 mm", "0.25 mm"]}),
+    Case("names", "x [px],y [px],z [mm]\n" + rows(points("crz")),
+         {"spacing": ["0.5 mm", "0.25 mm"]}),
     Case("names", "time,load,displacement\n" + rows(points()), MM, "time, load, displ.*'columns: "),
     Case("names", "t F s\n" + rows(points(), " "), MM, "are called t, F, s"),
     Case("names", "Slip [mm],Load [kN],Gap [mm]\n" + rows(points()), MM, "which are no x, y and z"),
@@ -148,7 +154,8 @@ PROGRAMS = [
     Case("programs", "Zygo XYZ Data File - Format 2\n0 1 5\n#\n" + rows(points(), " "), MM,
          r"Zygo instrument; save it as \.datx"),
     Case("programs", '"XY Calibration","0.5","mm/pixel"\n"Z Unit","mm"\n' + PLAIN, steps=(DX, DX)),
-    Case("programs", f"# Channel: Z\n# Width: 5 mm\n# Height: 3 mm\n# Value units: mm\n{rows(Z[::-1])}"),
+    Case("programs", "# Channel: Z\n# Width: 5 mm\n# Height: 3 mm\n# Value units: mm\n"
+         + rows(Z[::-1])),
     Case("programs", f"# Channel: U\n# Width: 5 mm\n# Height: 3 mm\n# Value units: V\n{PLAIN}", {},
          "says 'Value units: V'.*unit_z"),
 ]  # fmt: skip
@@ -171,9 +178,10 @@ STACKED = [
     Case("stacked", PLAIN + rows(Z + 40), FULL, "2 tables of 12 rows"),
     Case("stacked", framed(X, Y) * 2, MM, "2 tables of 12 rows"),
     Case("stacked", rows(np.column_stack([range(NY), Z])) * 3, FULL, "3 tables of 12 rows"),
-    Case("stacked", f"x,y,z\n{rows(points())}x,y,z\n{rows(points() + [0, 0, 1])}", MM,
+    Case("stacked", f"x,y,z\n{rows(points())}x,y,z\n{rows(points() * [1, 1, 2])}", MM,
          "2 tables of 120 rows"),
-    Case("stacked", f"{PLAIN}Upper face:\n{PLAIN}", FULL, "line 13 is not numbers.*files of their own"),
+    Case("stacked", f"{PLAIN}Upper face:\n{PLAIN}", FULL,
+         "line 13 is not numbers.*files of their own"),
 ]  # fmt: skip
 CASES = [*AXES, *UNITS, *HEADERS, *UNITS_IN_HEADERS, *NAMED, *TABS, *FRONT, *PROGRAMS, *WORDS]
 CASES += [*PROFILES, *STACKED]

@@ -4,6 +4,7 @@ A dialect is a way to lay out numbers and words. How numbers are written, what p
 and encoding are drawn for each file besides.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -91,6 +92,11 @@ class Pen:
         self.x = surface.dx * np.arange(nx) / self.xy
         self.y = surface.dy * np.arange(ny) / self.xy
         self.heights = surface.heights / self.z
+
+    def place(self, value: float) -> str:
+        """One coordinate, in as many decimals as its step needs."""
+        step = min(self.surface.dx, self.surface.dy) / self.xy
+        return self.number(value, max(0, 4 - math.floor(math.log10(step))))
 
     def number(self, value: float, decimals: int | None = None) -> str:
         """One number; ``decimals`` of a coordinate."""

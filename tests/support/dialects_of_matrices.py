@@ -27,7 +27,7 @@ def _counts(values, start: int = 0) -> list[str]:
 
 
 def _places(pen: Pen, values, offset: float = 0.0) -> list[str]:
-    return [pen.number(value + offset, 6) for value in values]
+    return [pen.place(value + offset) for value in values]
 
 
 @dialect

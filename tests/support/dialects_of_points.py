@@ -9,7 +9,7 @@ SYNONYMS = [("x", "y", "z"), ("X", "Y", "Z"), ("Easting", "Northing", "Elevation
 
 
 def _rows(pen: Pen, points: np.ndarray) -> list[list[str]]:
-    return [[pen.number(x, 6), pen.number(y, 6), pen.number(z)] for x, y, z in points]
+    return [[pen.place(x), pen.place(y), pen.number(z)] for x, y, z in points]
 
 
 def _names(pen: Pen) -> list[str]:
@@ -131,13 +131,13 @@ def _points_with_colours(pen: Pen) -> Sheet:
 
 @dialect
 def _columns_said_by_the_sidecar(pen: Pen) -> Sheet:
-    rows = [["7.5", *row[::-1], "1"] for row in _rows(pen, pen.points())]
+    rows = [[pen.number(7.5), *row[::-1], "1"] for row in _rows(pen, pen.points())]
     return Sheet(rows, sidecar={**pen.unit_sidecar(), "columns": [3, 2, 1]})
 
 
 @dialect
 def _further_columns_without_names(pen: Pen) -> Sheet:
-    rows = [[*row, "7.5", str(n % 7)] for n, row in enumerate(_rows(pen, pen.points()))]
+    rows = [[*row, pen.number(7.5), str(n % 7)] for n, row in enumerate(_rows(pen, pen.points()))]
     return Sheet(rows, sidecar=pen.unit_sidecar(), expected="refused")
 
 

@@ -47,7 +47,7 @@ _AXES = {
 _LATERAL = re.compile(r"\b(xy|x|y|lateral|coordinates?|positions?|spacing|horizontal)\b")
 _EVERY = re.compile(r"\b(all|lengths?|dimensions?|everything|units?|xyz)\b")
 _UNIT_LINE = re.compile(
-    r"units?\b(?:\s+(?:of|for)\s+[\w ,]+?)?\s*[:=,\t ]\s*([^\s,;:=]+)", re.IGNORECASE
+    r"units?\b(?:(?:\s+[\w ,]+?)?\s*[:=]\s*|[\s,;]+)([^\s,;:=]+)", re.IGNORECASE
 )
 _IN_UNIT = re.compile(rf"\bin\s+({_UNIT})|[\[(]\s*({_UNIT})\s*[\])]")
 _ORIGIN = re.compile(r"\b(first row|origin)\b.*?\b(top|upper|bottom|lower)\b", re.IGNORECASE)
@@ -176,6 +176,8 @@ def _of_number(key: str, numbers: list[float], unit: str | None, line: str) -> I
     plain = _plain(key).replace("pixelsize", "pixel size")
     axes = {axis for axis, words in _AXES.items() if words.search(plain)}
     if _MISSING.fullmatch(plain) and len(numbers) == 1:
+        if not re.search(r"\d\s*(?:$|[,;\t)\]])", line):
+            return  # how many are missing: "invalid 3 of 400 cells"
         yield Statement("missing", numbers[0], line)
     elif _OTHER_STEPS.search(plain):
         if unit is not None:
@@ -195,7 +197,7 @@ def _of_number(key: str, numbers: list[float], unit: str | None, line: str) -> I
 
 def _of_units(text: str) -> Iterator[Statement]:
     """Units alone: "unit: mm", "z unit = um", "x, y in mm, heights in um", "Height [um]"."""
-    if match := _UNIT_LINE.search(text):
+    if match := _UNIT_LINE.search(text.replace("_", " ")):
         word = match[1].strip("[]()\"'.")
         if not length_unit(word):
             yield Statement("unread", None, text)

@@ -122,6 +122,8 @@ def _both_edges(table: np.ndarray, where: str) -> tuple[Ruler | None, Ruler | No
         along_x = ruler(table[0])
         if along_x is None:
             raise _uneven(where, "column")
+    elif not (along_x or along_y) and _is_alone(table[1:]) and _is_alone(table[:, 1:].T):
+        raise _uneven(where, "column")
     return along_x, along_y
 
 
@@ -156,12 +158,29 @@ def _edge(table: np.ndarray, where: str, name: str) -> Ruler | None:
     if found := ruler(first):
         even = np.mean([ruler(other) is not None for other in others])
         return found if even < FEW or _is_outlying(table) else None
-    if len(first) < SMALLEST_SIDE or not _is_monotone(first):
+    if not _is_alone(table):
         return None
     whole = bool(np.all(first == np.round(first))) and np.ptp(first) <= MOST_GAPS * len(first)
-    if np.mean([_is_monotone(other) for other in others]) < FEW and (whole or _jumps(table)):
+    if whole or _is_mostly_even(first) or _jumps(table):
         raise _uneven(where, name)
     return None
+
+
+def _is_alone(table: np.ndarray) -> bool:
+    """Whether the first column rises or falls throughout and few others do."""
+    others = table[:, 1 : 1 + _SAMPLE].T
+    return (
+        len(table) >= SMALLEST_SIDE
+        and _is_monotone(table[:, 0])
+        and bool(np.mean([_is_monotone(other) for other in others]) < FEW)
+    )
+
+
+def _is_mostly_even(numbers: np.ndarray) -> bool:
+    """Whether most steps are the same: coordinates with gaps."""
+    steps = np.diff(numbers)
+    middle = np.median(steps)
+    return bool(np.mean(np.abs(steps - middle) <= EVEN * abs(middle)) > 0.5)
 
 
 def _uneven(where: str, name: str) -> InputError:

@@ -24,6 +24,7 @@ _MISSING_MARKS = re.compile(
 )
 _TYPOGRAPHY = str.maketrans("\u2212\u2012\u2013\u00a0\u2009\u202f", "---   ")
 _FORTRAN_EXPONENT = re.compile(r"(?<=[\d.])[dD](?=[-+]?\d)")
+_QUOTED = re.compile(r'"[^"]*"')
 _ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
 #: A coordinate in a header line, with its unit.
 _ABOVE = re.compile(r"(?:[xX]\s*=\s*)?([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\W\d_]*)")
@@ -78,7 +79,8 @@ def numbers_of(line: str, in_front: bool) -> str | None:
     if in_front and text != line and len(re.findall(r"[^\s,;]+", text)) < 3:
         return None
     text = _FORTRAN_EXPONENT.sub("e", text)
-    if '"' in text and not re.search(r'"[^",;\t]*[,;\t][^",;\t]*"(?:[,;\t]|$)', text):
+    quoted = "".join(_QUOTED.findall(text))
+    if quoted and not any(mark in quoted and mark in _QUOTED.sub("", text) for mark in ",;\t"):
         text = text.replace('"', "")
     return text
 
@@ -135,9 +137,7 @@ def split_cells(line: str, delimiter: str) -> list[str]:
     return line.split() if delimiter == " " else line.split(delimiter)
 
 
-def column_names(
-    header: list[str], delimiter: str, width: int
-) -> tuple[list[str] | None, bool, int | None]:
+def column_names(header: list[str], style: Style) -> tuple[list[str] | None, bool, int | None]:
     """Take the last header line with one word a column as the columns' names.
 
     Returns
@@ -149,13 +149,17 @@ def column_names(
     number : int or None
         Of the line in the header.
     """
+    delimiter, width = style.delimiter, style.width
     for number in range(len(header) - 1, -1, -1):
         text = header[number].lstrip("#%!/ ").removesuffix(delimiter)
-        for separator in (delimiter, ",", ";", "\t", " "):
+        others = [] if re.search(r"[:=]|\d,\d", text) else [",", ";", "\t", " "]
+        for separator in (delimiter, *others):
             names = [name.strip().strip("\"'") for name in split_cells(text, separator)]
             if len(names) == width and any(map(has_words, names)):
                 units = any(parse_name(name).unit for name in names)
-                return names, separator != " " or units, number
+                # No title has as many words as a matrix has columns.
+                is_line = width >= SMALLEST_SIDE and not header[number].startswith(COMMENT_MARKS)
+                return names, separator != " " or units or is_line, number
             glued = re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)
             if separator == " " and len(glued) == width and re.search(r"[\[(]", text):
                 return glued, True, number

@@ -56,7 +56,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     if stated:
         return RawScan(table, "matrix", reader=_reader(), notes=notes, **stated)
     above, header = numbers_above(header, style)
-    names, sure, number = column_names(header, style.delimiter, style.width)
+    names, sure, number = column_names(header, style)
     if sure and number is not None:
         header = header[:number] + header[number + 1 :]
     layout = TextLayout(sure, above, reading.breaks)
