@@ -66,6 +66,9 @@ AXES = [
     Case("axes", rows(np.column_stack([range(NY), Z])), FULL),
     Case("axes", rows(np.vstack([range(NX), Z])), FULL),
     Case("axes", rows(np.vstack([X, Z])), MM, "states no spacing .*coordinates from 3 to 7.5"),
+    Case("axes", framed(X, Y, "x\\y"), MM, "stands in the corner .* write 'y' there"),
+    Case("axes", f"# dx = 100 um, dy = 100 um\n{framed(X, Y)}", MM, "header says 100 and 100 um"),
+    Case("axes", rows(np.column_stack([Z, Y])), FULL, "last column runs in equal steps"),
     Case("axes", framed(X**2, Y), FULL, "first row rises as coordinates do.*'axes: none'"),
     Case("axes", framed(X, np.exp(Y)), FULL, "first column rises.*export x, y, z"),
 ]

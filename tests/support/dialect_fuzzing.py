@@ -45,7 +45,7 @@ def judge(written: Written, folder: Path) -> Judgement:
     path = folder / f"rock{written.ending}"
     path.write_bytes(written.content)
     try:
-        fault = _fault_without_sidecar(written, path)
+        fault = _fault_without_sidecar(written, path) if written.sidecar else ""
         outcome, message = _read(path, written, written.sidecar)
     finally:
         path.unlink()

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from dialects import NOISE, Pen, Sheet, dialect, plain_unit, restyle, whole
+from dialects import FACTORS, NOISE, Pen, Sheet, dialect, plain_unit, restyle, whole
 
 
 @dialect
@@ -114,6 +114,28 @@ def _coordinates_from_the_right(pen: Pen) -> Sheet:
     sheet = _coordinates(pen, "0")
     sheet.rows = [[row[0], *row[:0:-1]] for row in sheet.rows]
     return sheet
+
+
+@dialect
+def _coordinates_whose_corner_names_x(pen: Pen) -> Sheet:
+    corner = str(pen.rng.choice(["x", "x\\y", "X/Y"]))
+    return replace(_coordinates(pen, corner), expected="refused")
+
+
+@dialect
+def _coordinates_and_a_pixel_size(pen: Pen) -> Sheet:
+    sheet = _coordinates(pen, "0")
+    unit = "um" if pen.style.unit_xy != "um" else "mm"
+    dx, dy = (step / FACTORS[unit] for step in (pen.surface.dx, pen.surface.dy))
+    line = pen.remark(f"dx = {dx:.9g} {unit}; dy = {dy:.9g} {unit}")
+    return replace(sheet, front=[line.replace(".", pen.style.decimal)], expected="either")
+
+
+@dialect
+def _coordinates_behind(pen: Pen) -> Sheet:
+    rows = [[*row, side] for row, side in zip(pen.matrix(), _places(pen, pen.y), strict=True)]
+    restyle(pen, trailing=False)
+    return Sheet(rows, sidecar=pen.matrix_sidecar(), expected="refused")
 
 
 @dialect

@@ -94,36 +94,47 @@ def without_axes(
         along_x, along_y = _both_edges(table, where)
         rows = table[1:] if along_x else table
     else:
-        along_y = _edge(table, where, "column")
+        along_y = _edge(table, where, "first column")
         if along_y is None and header_x.size < table.shape[1]:
-            raise _uneven(where, "column")
+            raise _uneven(where, "first column")
         header_x = header_x[-(table.shape[1] - bool(along_y)) :]
         rows, along_x = table, ruler(header_x)
         if along_x is None and _is_monotone(header_x):
-            raise _uneven(where, "row")
+            raise _uneven(where, "first row")
     refuse_begun_anew(rows, None, where)
     heights = rows[:, 1:] if along_y else rows
+    _refuse_axes_behind(heights, where)
     if along_x and along_x.step < 0:
         heights = heights[:, ::-1]
     return heights, _stated(along_x, along_y)
 
 
+def _refuse_axes_behind(heights: np.ndarray, where: str) -> None:
+    """Refuse coordinates in the last row or column, where no program is known to write them."""
+    for name, turned in (("column", heights[:, ::-1]), ("row", heights[::-1].T)):
+        if _edge(turned, where, f"last {name}"):
+            raise InputError(
+                f"{where}: its last {name} runs in equal steps as coordinates do; export x, y, z "
+                f"as three columns, or the heights alone; {_KEEP}"
+            )
+
+
 def _both_edges(table: np.ndarray, where: str) -> tuple[Ruler | None, Ruler | None]:
     """Rulers in the first row and column; one alone takes in the corner between them."""
-    along_y = _edge(table[1:], where, "column")
-    along_x = _edge(table[:, 1:].T, where, "row")
+    along_y = _edge(table[1:], where, "first column")
+    along_x = _edge(table[:, 1:].T, where, "first row")
     if along_x:
         refuse_begun_anew(table[1:], along_x, where)
     if along_y and not along_x:
         along_y = ruler(table[:, 0])
         if along_y is None:
-            raise _uneven(where, "row")
+            raise _uneven(where, "first row")
     elif along_x and not along_y:
         along_x = ruler(table[0])
         if along_x is None:
-            raise _uneven(where, "column")
+            raise _uneven(where, "first column")
     elif not (along_x or along_y) and _is_alone(table[1:]) and _is_alone(table[:, 1:].T):
-        raise _uneven(where, "column")
+        raise _uneven(where, "first column")
     return along_x, along_y
 
 
@@ -184,9 +195,9 @@ def _is_mostly_even(numbers: np.ndarray) -> bool:
 
 
 def _uneven(where: str, name: str) -> InputError:
-    other = "row" if name == "column" else "column"
+    other = "row" if name.endswith("column") else "column"
     return InputError(
-        f"{where}: its first {name} rises as coordinates do, but in uneven steps or without a "
+        f"{where}: its {name} rises as coordinates do, but in uneven steps or without a "
         f"{other} of them beside it; export x, y, z as three columns, or the heights alone; {_KEEP}"
     )
 

@@ -151,8 +151,22 @@ def table_to_raw(
         return RawScan(table, "matrix", **stated)
     _refuse_stacked(table, layout.breaks, where)
     heights, found = without_axes(table, where, layout.above)
+    _refuse_two_spacings(stated, found, options, where)
     notes = (*stated.pop("notes", ()), *found.pop("notes", ()))
     return RawScan(heights, "matrix", notes=notes, **{**stated, **found})
+
+
+def _refuse_two_spacings(stated: dict, found: dict, options: ScanOptions, where: str) -> None:
+    """Refuse a header and coordinates that say different spacings: their units may differ."""
+    said, seen = stated.get("spacing"), found.get("spacing")
+    if not (said and seen) or options.spacing is not None:
+        return
+    if not np.allclose(said, seen, rtol=1e-3, atol=0):
+        raise InputError(
+            f"{where}: its coordinates go in steps of {seen[0]:.6g} and {seen[1]:.6g}, its header "
+            f"says {said[0]:.6g} and {said[1]:.6g} {stated.get('unit_xy', '')}; write which is "
+            "right into the sidecar, 'spacing: [0.1 mm, 0.2 mm]'"
+        )
 
 
 def _points(
@@ -280,8 +294,8 @@ def _refuse_no_matrix(
         with np.errstate(invalid="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # of columns without any number
             spread = np.ptp(np.nanpercentile(table[1:, 1:], [16, 84], axis=0), axis=0)
-        spread = spread[np.isfinite(spread)]
-        if spread.size and spread.max() > UNLIKE * np.median(spread):
+        spread = spread[spread > 0]
+        if spread.size and spread.max() > UNLIKE * spread.min():
             raise InputError(
                 f"{where}: its {n_columns} columns scatter by {spread.min():.3g} to "
                 f"{spread.max():.3g}, different quantities rather than a matrix of heights; say in "

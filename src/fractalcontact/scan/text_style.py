@@ -166,10 +166,17 @@ def column_names(header: list[str], style: Style) -> tuple[list[str] | None, boo
     return None, False, None
 
 
-def numbers_above(header: list[str], style: Style) -> tuple[np.ndarray | None, list[str]]:
+def numbers_above(
+    header: list[str], style: Style, where: str
+) -> tuple[np.ndarray | None, list[str]]:
     """Numbers that a header line holds, one for each column: coordinates; and the other lines.
 
     A word may stand in the corner, "y/x [mm]", and a unit with each number.
+
+    Raises
+    ------
+    InputError
+        If that word says that x may run down the side.
     """
     for number in range(len(header) - 1, -1, -1):
         text = header[number].lstrip("#%!/ ").removesuffix(style.delimiter)
@@ -180,6 +187,12 @@ def numbers_above(header: list[str], style: Style) -> tuple[np.ndarray | None, l
             of_y = first and len(found) > style.width and cells[0].lower().startswith("y")
             if style.width < SMALLEST_SIDE or of_y:
                 continue
+            if len(found) == style.width and parse_name(cells[0]).word.startswith("x"):
+                raise InputError(
+                    f"{where}: {cells[0]!r} stands in the corner between its coordinates, so that "
+                    "x may run down its side; write 'y' there if x runs along its rows, else export "
+                    "it transposed, or x, y, z as columns"
+                )
             values = [float(match[1]) for match in found[first:] if match]
             units = {match[2] for match in found[first:] if match}
             rest = header[:number] + header[number + 1 :]

@@ -55,7 +55,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     stated = gwyddion_header(header, table.shape, where) or esri_header(header, table.shape, where)
     if stated:
         return RawScan(table, "matrix", reader=_reader(), notes=notes, **stated)
-    above, header = numbers_above(header, style)
+    above, header = numbers_above(header, style, where)
     names, sure, number = column_names(header, style)
     if sure and number is not None:
         header = header[:number] + header[number + 1 :]
@@ -175,7 +175,7 @@ class _Reading:
         """Take counts off the front of the lines; complete a row of coordinates without corner."""
         taken = 0
         while data and taken < _MOST_COUNTS:
-            cells = split_cells(data[0][1].strip(), style.delimiter)
+            cells = [cell.strip() for cell in split_cells(data[0][1].strip(), style.delimiter)]
             if len(cells) == 1:  # counts may be parted otherwise than the numbers
                 cells = data[0][1].split()
             if len(cells) >= min(style.width, _MOST_COUNTS) or not all(map(str.isdecimal, cells)):
