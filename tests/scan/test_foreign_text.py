@@ -159,6 +159,11 @@ PROGRAMS = [
     Case("programs", '"XY Calibration","0.5","mm/pixel"\n"Z Unit","mm"\n' + PLAIN, steps=(DX, DX)),
     Case("programs", "# Channel: Z\n# Width: 5 mm\n# Height: 3 mm\n# Value units: mm\n"
          + rows(Z[::-1])),
+    Case("programs", "# Channel: Z\n# Width: 10 px\n# Height: 12 px\n# Value units: mm\n"
+         + rows(Z[::-1]), {"spacing": ["0.5 mm", "0.25 mm"]}),
+    Case("programs", "# Channel: Z\n# Width: 10\n# Height: 12\n# Value units: \n" + rows(Z[::-1]),
+         FULL),
+    Case("programs", "# columns: 10\n# rows: 12\n# unit: mm\n" + PLAIN, {"spacing": [DX, DY]}),
     Case("programs", f"# Channel: U\n# Width: 5 mm\n# Height: 3 mm\n# Value units: V\n{PLAIN}", {},
          "says 'Value units: V'.*unit_z"),
 ]  # fmt: skip
@@ -233,3 +238,33 @@ def test_axes_of_an_array_are_found_whatever_the_format(tmp_path):
     np.testing.assert_array_equal(heights.values, Z)
     assert (heights.attrs["spacing_x"], heights.attrs["spacing_y"]) == (DX, DY)
     assert "coordinates from 3 to 7.5 of its columns" in heights.attrs["notes"]
+
+
+@pytest.mark.parametrize("unit", ["px", "point", "pica"])
+def test_parts_of_an_inch_are_no_lengths_in_any_format(tmp_path, unit):
+    import h5py
+    import netCDF4
+    import tifffile
+
+    tifffile.imwrite(
+        tmp_path / "rock.tif",
+        Z.astype("f4"),
+        imagej=True,
+        resolution=(2, 4),
+        metadata={"unit": unit},
+    )
+    with netCDF4.Dataset(tmp_path / "rock.nc", "w") as file:
+        file.createDimension("y", NY)
+        file.createDimension("x", NX)
+        file.createVariable("z", "f8", ("y", "x"))[:] = Z
+        file["z"].units = unit
+    with h5py.File(tmp_path / "rock.h5", "w") as file:
+        file["z"] = Z
+        file["z"].attrs["unit"] = unit
+    for ending, said in ((".tif", "x"), (".nc", "z"), (".h5", "z")):
+        path = tmp_path / f"rock{ending}"
+        with pytest.raises(InputError, match=rf"no unit.*it says \"{said} in '{unit}'\""):
+            read_scan(path)
+        heights = read_scan(path, FULL)
+        assert heights.attrs["spacing_x"] == DX
+        assert f"{said} in '{unit}'" in heights.attrs["notes"]

@@ -329,6 +329,9 @@ def _refuse_repeated(points: np.ndarray, breaks: Sequence[int], where: str) -> N
     if not breaks or np.ptp(sizes) or sizes[0] < SMALLEST_SIDE**2:
         return
     blocks = points.reshape(len(sizes), sizes[0], 3)
+    corners = np.concatenate([blocks[:, :, :2].min(axis=1), blocks[:, :, :2].max(axis=1)], axis=1)
+    if not (corners == corners[0]).all():
+        return
     ordered = [block[np.lexsort(block.T[:2])] for block in blocks]
     if all(np.array_equal(block[:, :2], ordered[0][:, :2]) for block in ordered):
         raise stacked(where, *blocks.shape[:2])

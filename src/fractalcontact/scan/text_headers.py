@@ -7,7 +7,8 @@ from ..core.errors import InputError
 from ..core.units import length_factor, length_unit
 
 _NUMBER = r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?"
-_SIZE = re.compile(rf"#?\s*([^:=]+):\s*({_NUMBER})\s*([^\W\d]+)")
+_SIZE = re.compile(rf"#?\s*([^:=]+):\s*({_NUMBER})\s*([^\W\d]*)")
+_CHANNEL = re.compile(r"#\s*Channel:")
 _UNIT = re.compile(r"#?\s*[^:=]+:\s*(\S*)")
 _ESRI = re.compile(rf"([a-z_]+)[\s:=]+({_NUMBER})")
 #: Programs whose text says neither size nor unit in a way that is read here, and what to do.
@@ -33,25 +34,28 @@ def gwyddion_header(header: list[str], shape: tuple[int, int], where: str) -> di
     """
     for first, second, third in zip(header, header[1:], [*header[2:], ""], strict=False):
         sizes = [_SIZE.fullmatch(line.strip()) for line in (first, second)]
-        if None in sizes or not all(length_unit(m[3]) and _is_total(m[1]) for m in sizes if m):
+        if None in sizes or not all(_is_total(m[1]) for m in sizes if m):
             continue
         if third and not _UNIT.fullmatch(third.strip()):
             continue
-        width, height = (
-            float(m[2].replace(",", ".")) * length_factor(m[3], where) for m in sizes if m
-        )
-        rows, columns = shape
-        stated: dict[str, Any] = {
-            "unit_xy": "mm",
-            "spacing": (width / columns, height / rows),
-            "first_row": "top",
-        }
+        stated: dict[str, Any] = {"first_row": "top"}
+        unread = []
+        if all(length_unit(m[3]) for m in sizes if m):
+            width, height = (
+                float(m[2].replace(",", ".")) * length_factor(m[3], where) for m in sizes if m
+            )
+            rows, columns = shape
+            stated |= {"unit_xy": "mm", "spacing": (width / columns, height / rows)}
+        elif _CHANNEL.match(header[0]):  # in pixels, or without a unit
+            unread = [first.lstrip("# ")]
+        else:
+            continue
         unit = (_UNIT.fullmatch(third.strip()) or [""] * 2)[1]
         if unit and length_unit(unit):
             stated["unit_z"] = unit
         elif unit:
-            stated["unread"] = (third.lstrip("# ")[:80],)
-        return stated
+            unread.append(third.lstrip("# "))
+        return stated | {"unread": tuple(line[:80] for line in unread)}
     return None
 
 

@@ -190,8 +190,8 @@ def numbers_above(
             if len(found) == style.width and parse_name(cells[0]).word.startswith("x"):
                 raise InputError(
                     f"{where}: {cells[0]!r} stands in the corner between its coordinates, so that "
-                    "x may run down its side; write 'y' there if x runs along its rows, else export "
-                    "it transposed, or x, y, z as columns"
+                    "x may run down its side; write 'y' there if x runs along its rows, else "
+                    "export it transposed, or x, y, z as columns"
                 )
             values = [float(match[1]) for match in found[first:] if match]
             units = {match[2] for match in found[first:] if match}
