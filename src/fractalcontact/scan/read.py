@@ -153,11 +153,11 @@ def _measure(path: Path, options) -> Measured:
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
     assert unit_z is not None
-    factor = _height_factor(raw, options, path)
+    unit_z = _with_factor(unit_z, raw, options, path)
     missing = _choose("missing", raw.missing, options, overrides)
     if raw.layout == "matrix":
         values = _without_missing(raw.values, missing)
-        values *= factor * length_factor(unit_z, f"{path}: unit_z")
+        values *= length_factor(unit_z, f"{path}: unit_z")
         if _choose("first_row", raw.first_row, options, overrides) == "top":
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
@@ -168,7 +168,7 @@ def _measure(path: Path, options) -> Measured:
         values = raw.values.copy()
         values[:, 2] = _without_missing(raw.values[:, 2], missing)
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
-        values[:, 2] *= factor * length_factor(unit_z, f"{path}: unit_z")
+        values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
     _refuse_enormous(values, path)
     grid = options.grid
@@ -228,24 +228,24 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
     return given or stated
 
 
-def _height_factor(raw: RawScan, options: ScanOptions, path: Path) -> float:
-    """Number the file says its heights are to be multiplied by, where the sidecar has no unit.
+def _with_factor(unit_z: str, raw: RawScan, options: ScanOptions, path: Path) -> str:
+    """The unit of heights with the number that the file says they are to be multiplied by.
 
     Raises
     ------
     InputError
         If the sidecar has a unit: it may mean the numbers before or after.
     """
-    unit_z = options.unit_z or options.unit
-    if raw.factor in (None, 1) or _has_number(unit_z):
-        return 1.0
-    if unit_z is not None and unit_z != raw.unit_z:
+    given = options.unit_z or options.unit
+    if raw.factor in (None, 1) or _has_number(given):
+        return unit_z
+    if given is not None and given != raw.unit_z:
         raise InputError(
             f"{path}: its header says that heights are to be multiplied by {raw.factor:g}; write "
-            f"that with their unit into the sidecar, 'unit_z: {raw.factor:g} {unit_z}', or "
-            f"'unit_z: 1 {unit_z}' if it is done already"
+            f"that with their unit into the sidecar, 'unit_z: {raw.factor:g} {given}', or "
+            f"'unit_z: 1 {given}' if it is done already"
         )
-    return raw.factor
+    return f"{raw.factor:.15g} {unit_z}"
 
 
 def _has_number(unit: str | None) -> bool:

@@ -147,6 +147,7 @@ def table_to_raw(
         return _points(table[:, :3], (None,) * 3, layout, where, stated)
     if options.layout is None:
         _refuse_no_matrix(table, names, layout, where)
+        _refuse_unlike_columns(table, options.missing or stated.get("missing"), where)
     if options.axes == "none":
         return RawScan(table, "matrix", **stated)
     _refuse_stacked(table, layout.breaks, where)
@@ -290,17 +291,26 @@ def _refuse_no_matrix(
             "heights; say in the sidecar which are x, y and z, 'columns: [0, 1, 2]', or 'layout: "
             "matrix'"
         )
-    if n_columns <= FEW_COLUMNS and n_rows > n_columns:
-        with np.errstate(invalid="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # of columns without any number
-            spread = np.ptp(np.nanpercentile(table[1:, 1:], [16, 84], axis=0), axis=0)
-        spread = spread[spread > 0]
-        if spread.size and spread.max() > UNLIKE * spread.min():
-            raise InputError(
-                f"{where}: its {n_columns} columns scatter by {spread.min():.3g} to "
-                f"{spread.max():.3g}, different quantities rather than a matrix of heights; say in "
-                "the sidecar which are x, y and z, 'columns: [0, 1, 2]', or 'layout: matrix'"
-            )
+
+
+def _refuse_unlike_columns(table: np.ndarray, missing: Any, where: str) -> None:
+    """Refuse a list of points with colours or normals where a matrix is needed."""
+    n_rows, n_columns = table.shape
+    if n_columns > FEW_COLUMNS or n_rows <= n_columns:
+        return
+    marks = missing if isinstance(missing, tuple) else (missing,)
+    is_mark = np.isin(table, [mark for mark in marks if isinstance(mark, float | int)])
+    present = np.where(is_mark, np.nan, table)[1:, 1:]  # without coordinates beside it
+    with np.errstate(invalid="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of columns without any number
+        spread = np.ptp(np.nanpercentile(present, [25, 75], axis=0), axis=0)
+    spread = spread[spread > 0]
+    if spread.size and spread.max() > UNLIKE * spread.min():
+        raise InputError(
+            f"{where}: its {n_columns} columns scatter by {spread.min():.3g} to "
+            f"{spread.max():.3g}, different quantities rather than a matrix of heights; say in "
+            "the sidecar which are x, y and z, 'columns: [0, 1, 2]', or 'layout: matrix'"
+        )
 
 
 def _refuse_stacked(table: np.ndarray, breaks: Sequence[int], where: str) -> None:
