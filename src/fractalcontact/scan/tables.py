@@ -132,9 +132,9 @@ def table_to_raw(
     if options.columns and options.layout != "matrix":
         chosen = [_column_index(c, names, n_columns, where) for c in options.columns]
         units = [parse_name(names[c]).unit if names else None for c in chosen]
-        return _points(table[:, chosen], units, layout, where, stated)
+        return _points(_selected(table, chosen), units, layout, where, stated)
     if named is not None:
-        columns = table[:, named.columns]
+        columns = _selected(table, named.columns)
         if named.counted:
             return _counted(columns, named.units[2], where, stated)
         return _points(columns, named.units, layout, where, stated)
@@ -155,6 +155,13 @@ def table_to_raw(
     _refuse_two_spacings(stated, found, options, where)
     notes = (*stated.pop("notes", ()), *found.pop("notes", ()))
     return RawScan(heights, "matrix", notes=notes, **{**stated, **found})
+
+
+def _selected(table: np.ndarray, columns: Sequence[int]) -> np.ndarray:
+    """Columns of a table; itself where they are all of it, as a copy would be in vain."""
+    if list(columns) == list(range(table.shape[1])):
+        return table
+    return table[:, list(columns)]
 
 
 def _refuse_two_spacings(stated: dict, found: dict, options: ScanOptions, where: str) -> None:
