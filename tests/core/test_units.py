@@ -87,7 +87,7 @@ def test_what_only_the_library_calls_a_length_is_refused(unit):
 def test_what_one_count_is_lies_above_zero():
     assert length_factor("0.1 um", "k") == pytest.approx(1e-4)
     for unit in ("-1 um", "0 mm"):
-        with pytest.raises(InputError, match="k: .*not above zero"):
+        with pytest.raises(InputError, match=r"k: .*not above zero"):
             length_factor(unit, "k")
 
 

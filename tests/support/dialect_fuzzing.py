@@ -11,10 +11,12 @@ import re
 import sys
 import tempfile
 import time
+import traceback
 import warnings
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
+from unittest import mock
 
 import dialects_of_matrices  # noqa: F401  # enter their dialects
 import dialects_of_points  # noqa: F401
@@ -23,7 +25,8 @@ from dialects import Written, make
 from places import ROOT
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan.read import read_scan
+from fractalcontact.scan import read
+from fractalcontact.scan.formats import read_raw
 
 #: Words of a sentence that says what to do.
 _ADVICE = re.compile(r"\b(export|write|save|say|remove|mend|set|name)\b|'[a-z_]+: ", re.IGNORECASE)
@@ -41,9 +44,18 @@ class Judgement:
 
 
 def judge(written: Written, folder: Path) -> Judgement:
-    """Read one file with its sidecar, and without, and compare what was read with the truth."""
+    """Read one file with its sidecar, and without, and compare what was read with the truth.
+
+    It is read in this process: what the reader's own process does is `fuzzing`'s matter, and it
+    takes ten times as long.
+    """
     path = folder / f"rock{written.ending}"
     path.write_bytes(written.content)
+    with mock.patch.object(read, "read_confined", read_raw):
+        return _judge(written, path)
+
+
+def _judge(written: Written, path: Path) -> Judgement:
     try:
         fault = _fault_without_sidecar(written, path) if written.sidecar else ""
         outcome, message = _read(path, written, written.sidecar)
@@ -77,9 +89,11 @@ def _fault_without_sidecar(written: Written, path: Path) -> str:
 def _read(path: Path, written: Written, sidecar: dict) -> tuple[str, str]:
     """The outcome, and the refusal or what differs from the truth."""
     try:
-        heights = read_scan(path, sidecar)
+        heights = read.read_scan(path, sidecar)
     except InputError as error:
         return "refused", str(error)
+    except Exception:
+        return "wrong", traceback.format_exc(limit=-4)
     truth = written.surface
     if heights.shape != truth.heights.shape:
         return "wrong", f"{heights.shape} cells in place of {truth.heights.shape}"
