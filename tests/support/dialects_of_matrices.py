@@ -430,11 +430,9 @@ def _stray_tab(pen: Pen) -> Sheet:
 
 @dialect
 def _typographers_minus(pen: Pen) -> Sheet:
-    rows = [[cell.replace("-", "\u2212") for cell in row] for row in pen.matrix()]
     restyle(pen, mark="nan")
-    return Sheet(
-        rows, sidecar=pen.matrix_sidecar(), expected="read" if pen.style.mark else "either"
-    )
+    rows = [[cell.replace("-", "\u2212") for cell in row] for row in pen.matrix()]
+    return Sheet(rows, sidecar=pen.matrix_sidecar())
 
 
 @dialect
