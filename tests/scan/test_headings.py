@@ -18,6 +18,7 @@ from fractalcontact.scan.headings import read_statements
         ),
         (["XY calibration\t1389\tnm/pixel"], {"unit_xy": "nm", "spacing": (1389, 1389)}),
         (["spacing 0.1"], {"spacing": (0.1, 0.1)}),
+        (["10 columns, 12 rows, unit: mm"], {"unit_xy": "mm", "unit_z": "mm"}),
         (["unit: mm"], {"unit_xy": "mm", "unit_z": "mm"}),
         (["# x, y in mm, heights in um"], {"unit_xy": "mm", "unit_z": "um"}),
         (["z scale: 0.5 nm"], {"factor": 0.5, "unit_z": "nm"}),

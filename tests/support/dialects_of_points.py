@@ -74,6 +74,19 @@ def _units_of_x_and_y_differ(pen: Pen) -> Sheet:
 
 
 @dialect
+def _units_in_a_line_below_the_names(pen: Pen) -> Sheet:
+    style = pen.style
+    form = str(pen.rng.choice(["{}", "[{}]", "({})"]))
+    units = [form.format(unit) for unit in (style.unit_xy, style.unit_xy, style.unit_z)]
+    return Sheet([_names(pen), units, *_rows(pen, pen.points())], states_units=True)
+
+
+@dialect
+def _cells_counted_without_names(pen: Pen) -> Sheet:
+    return Sheet(_by_cells(pen), sidecar=pen.matrix_sidecar())
+
+
+@dialect
 def _unit_of_z_that_is_no_length(pen: Pen) -> Sheet:
     names = ["x", "y", f"z[{pen.rng.choice(['V', 'px', 'point', 'counts', 'deg'])}]"]
     return Sheet([names, *_rows(pen, pen.points())], sidecar=pen.unit_sidecar())

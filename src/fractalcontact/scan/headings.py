@@ -135,12 +135,12 @@ def _statements(text: str, decimal: str) -> Iterator[Statement]:
         yield Statement(
             "first_row", "top" if match[2].lower() in ("top", "upper") else "bottom", text
         )
-    numbered = False
-    for key, numbers, unit in _items(text, decimal):
-        numbered = True
-        yield from _of_number(key, numbers, unit, text)
-    if not numbered:
-        yield from _of_units(text)
+    numbered = [
+        statement
+        for key, numbers, unit in _items(text, decimal)
+        for statement in _of_number(key, numbers, unit, text)
+    ]
+    yield from numbered or _of_units(text)
 
 
 def _items(text: str, decimal: str) -> Iterator[tuple[str, list[float], str | None]]:

@@ -286,11 +286,10 @@ def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
 
 
 def _said(raw: RawScan) -> str:
-    """What the file says all the same, in brackets: that could not be used, or was found out."""
+    """What the file says all the same, in brackets: it could not be used, or was found out."""
     said = "; ".join((*(f"it says {line!r}" for line in raw.unread), *raw.notes))
-    if raw.unread:
-        said = f"that can be used: {said}"
-    return f" ({said})" if said else ""
+    usable = " that can be used" if raw.unread else ""
+    return f"{usable} ({said})" if said else ""
 
 
 def _has_units_of_its_own(spacing) -> bool:

@@ -15,6 +15,10 @@ from .options import ScanOptions
 from .raw import SMALLEST_SIDE, RawScan, foreign_units, stated_unit
 from .table_axes import stacked, without_axes
 
+_WHOLE = (
+    "x and y are whole numbers from 0 or 1 on, taken in the file's unit; if they count cells, "
+    "write 'spacing: 0.1 mm'"
+)
 #: Numbered columns and rows may leave so many times more cells empty than they fill.
 MOST_EMPTY = 20
 #: Points on a grid fill at least one of so many of its nodes.
@@ -132,19 +136,19 @@ def table_to_raw(
     if options.columns and options.layout != "matrix":
         chosen = [_column_index(c, names, n_columns, where) for c in options.columns]
         units = [parse_name(names[c]).unit if names else None for c in chosen]
-        return _points(_selected(table, chosen), units, layout, where, stated)
+        return _points(_selected(table, chosen), units, layout, options, where, stated)
     if named is not None:
         columns = _selected(table, named.columns)
         if named.counted:
             return _counted(columns, named.units[2], where, stated)
-        return _points(columns, named.units, layout, where, stated)
+        return _points(columns, named.units, layout, options, where, stated)
     if options.layout == "points" or (options.layout is None and n_columns == 3):
         if options.layout is None:
             _refuse_other_names(names, layout, where)
         _column_index(2, names, n_columns, where)
         if options.layout is None:
             _refuse_other_order(table, where)
-        return _points(table[:, :3], (None,) * 3, layout, where, stated)
+        return _points(table[:, :3], (None,) * 3, layout, options, where, stated)
     if options.layout is None:
         _refuse_no_matrix(table, names, layout, where)
         _refuse_unlike_columns(table, options.missing or stated.get("missing"), where)
@@ -178,15 +182,23 @@ def _refuse_two_spacings(stated: dict, found: dict, options: ScanOptions, where:
 
 
 def _points(
-    columns: np.ndarray, units: Sequence, layout: TextLayout, where: str, stated: dict
+    columns: np.ndarray,
+    units: Sequence,
+    layout: TextLayout,
+    options: ScanOptions,
+    where: str,
+    stated: dict,
 ) -> RawScan:
     """Points in the units of their columns, y in that of x."""
     _refuse_repeated(columns, layout.breaks, where)
     stated = dict(stated)
     spacing, first_row = stated.pop("spacing", None), stated.pop("first_row", None)
-    if spacing is not None and _counts_cells(columns):
+    counted = _counts_cells(columns)
+    if counted and (spacing is not None or options.spacing is not None):
         more = {"spacing": spacing} | ({"first_row": first_row} if first_row else {})
         return _counted(columns, units[2], where, stated | more)
+    if counted:
+        stated["notes"] = (*stated.get("notes", ()), _WHOLE)
     points = np.ascontiguousarray(columns)
     unit_x, unit_y, unit_z = units
     unread = (*stated.pop("unread", ()), *foreign_units(x=unit_x, y=unit_y, z=unit_z))
@@ -202,6 +214,9 @@ def _points(
 
 def _counts_cells(columns: np.ndarray) -> bool:
     """Whether x and y are whole numbers from 0 or 1 on."""
+    lateral = columns[:1000, :2]
+    if not np.all(lateral == np.round(lateral)):
+        return False
     lateral = columns[:, :2]
     return bool(
         np.isfinite(lateral).all()

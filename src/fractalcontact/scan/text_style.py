@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.units import length_unit
 from .column_names import parse_name
 from .raw import SMALLEST_SIDE
 
@@ -156,6 +157,8 @@ def column_names(header: list[str], style: Style) -> tuple[list[str] | None, boo
         for separator in (delimiter, *others):
             names = [name.strip().strip("\"'") for name in split_cells(text, separator)]
             if len(names) == width and any(map(has_words, names)):
+                if number and (named := _with_units(header[number - 1], names, separator)):
+                    return named, True, number - 1
                 units = any(parse_name(name).unit for name in names)
                 # No title has as many words as a matrix has columns.
                 is_line = width >= SMALLEST_SIDE and not header[number].startswith(COMMENT_MARKS)
@@ -164,6 +167,15 @@ def column_names(header: list[str], style: Style) -> tuple[list[str] | None, boo
             if separator == " " and len(glued) == width and re.search(r"[\[(]", text):
                 return glued, True, number
     return None, False, None
+
+
+def _with_units(line: str, units: list[str], separator: str) -> list[str] | None:
+    """Names of a line above one that holds nothing but their units: "X [mm]"."""
+    plain = [unit.strip("[]() ") for unit in units]
+    names = [name.strip().strip("\"'") for name in split_cells(line.lstrip("#%!/ "), separator)]
+    if len(names) != len(units) or not all(length_unit(unit) for unit in plain if unit):
+        return None
+    return [f"{name} [{unit}]" if unit else name for name, unit in zip(names, plain, strict=True)]
 
 
 def numbers_above(
