@@ -118,6 +118,8 @@ UNITS_IN_HEADERS = [
     Case("units in headers", f"# pixel size: {DX} mm\n{PLAIN}", {"unit_z": "mm"}, steps=(DX, DX)),
     Case("units in headers", f"# unit: mm\n# height factor: 0.01\n{PLAIN}", {"spacing": [DX, DY]},
          times=0.01),
+    Case("units in headers", f"# pixel size: 500 x 250 um\n{PLAIN}", MM, "write 'unit_z: mm' if"),
+    Case("units in headers", "X [um],Y [um],Z [mm]\n" + rows(points()), MM, "heights in mm, its"),
     Case("units in headers", f"# height factor: 0.01\n{PLAIN}", FULL, "multiplied by 0.01; write"),
     Case("units in headers", f"# height factor: 0.01\n{PLAIN}", FULL | {"unit_z": "0.01 mm"},
          times=0.01),

@@ -1,5 +1,6 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -149,6 +150,7 @@ def _measure(path: Path, options) -> Measured:
         notes.append(f"not used of its header: {'; '.join(raw.unread)}")
     if raw.factor not in (None, 1) and not _has_number(options.unit_z):
         notes.append(f"heights multiplied by {raw.factor:g}, as the file says")
+    _refuse_one_unit_for_two(raw, options, path)
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
@@ -226,6 +228,27 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
     if given and stated and length_factor(given, key) != length_factor(stated, key):
         overrides.append(f"{key} {given} from the sidecar, the file says {stated}")
     return given or stated
+
+
+def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> None:
+    """Refuse the key ``unit`` where the file gives x and y a unit that heights do not share.
+
+    It is meant of the heights, most likely, and would change the spacing as well.
+    """
+    if options.unit is None or raw.unit_xy is None or (options.unit_xy and options.unit_z):
+        return
+    lateral = length_factor(raw.unit_xy, f"{path}: unit_xy")
+    if raw.unit_z is not None and length_factor(raw.unit_z, f"{path}: unit_z") == lateral:
+        return
+    given = length_factor(options.unit, f"{path}: unit")
+    of_spacing = raw.layout != "matrix" or (raw.spacing is not None and options.spacing is None)
+    if options.unit_xy is None and of_spacing and not math.isclose(given, lateral):
+        heights = f"heights in {raw.unit_z}" if raw.unit_z else "no unit of heights"
+        raise InputError(
+            f"{path}: the file says x and y in {raw.unit_xy} and {heights}, its sidecar 'unit: "
+            f"{options.unit}' of all; write 'unit_z: {options.unit}' if that is of heights, and "
+            f"'unit_xy: {options.unit}' if the file is wrong"
+        )
 
 
 def _with_factor(unit_z: str, raw: RawScan, options: ScanOptions, path: Path) -> str:
