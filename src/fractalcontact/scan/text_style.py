@@ -172,7 +172,8 @@ def column_names(header: list[str], style: Style) -> tuple[list[str] | None, boo
 def _with_units(line: str, units: list[str], separator: str) -> list[str] | None:
     """Names of a line above one that holds nothing but their units: "X [mm]"."""
     plain = [unit.strip("[]() ") for unit in units]
-    names = [name.strip().strip("\"'") for name in split_cells(line.lstrip("#%!/ "), separator)]
+    text = line.lstrip("#%!/ ").removesuffix(separator)
+    names = [name.strip().strip("\"'") for name in split_cells(text, separator)]
     if len(names) != len(units) or not all(length_unit(unit) for unit in plain if unit):
         return None
     return [f"{name} [{unit}]" if unit else name for name, unit in zip(names, plain, strict=True)]
