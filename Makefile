@@ -13,6 +13,7 @@
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make problems PROBLEMS=5000   so many random contact problems, each state verified
 # make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
+# make fuzz-dialects FILES=5000  so many ways to write a known surface as text, each read right or refused
 # make lint   ruff, snakefmt, annotations and types, changing nothing; make format mends what it can
 # make lock   new pins for every package (needs uv)
 
@@ -29,7 +30,7 @@ export STUDY SCANS
 RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench problems fuzz lint format lock clean
+.PHONY: all study smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench problems fuzz fuzz-dialects lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -96,6 +97,10 @@ problems: $(VENV)/tests-installed
 FILES ?= 5000
 fuzz: $(VENV)/tests-installed
 	$(BIN)/python tests/support/fuzzing.py --files $(FILES) $(FUZZ)
+
+# What failed is kept in results/dialects.
+fuzz-dialects: $(VENV)/tests-installed
+	$(BIN)/python tests/support/dialect_fuzzing.py --files $(FILES) $(FUZZ)
 
 lint: $(VENV)/tests-installed
 	$(BIN)/python -m ruff check .

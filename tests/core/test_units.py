@@ -6,7 +6,7 @@ import time
 import pytest
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.core.units import length_factor, load, quantity
+from fractalcontact.core.units import length_factor, length_unit, load, quantity
 
 
 @pytest.mark.parametrize(
@@ -55,6 +55,40 @@ def test_units_of_length():
     assert length_factor("um", "k") == pytest.approx(1e-3)
     with pytest.raises(InputError):
         length_factor("kN", "k")
+
+
+@pytest.mark.parametrize(
+    ("units", "mm"),
+    [
+        (("mm", "MM", "Millimeter", "millimetres", "millimeters"), 1),
+        (("um", "µm", "\u03bcm", "micron", "Microns", "micrometre"), 1e-3),
+        (("m", "metre", "Meters"), 1e3),
+        (("in", "inch", "Inches"), 25.4),
+        (("ft", "foot", "feet"), 304.8),
+        (("Å", "\u212b", "angstrom"), 1e-7),
+        (("nm",), 1e-6),
+        (("cm",), 10),
+    ],
+)
+def test_lengths_have_many_names(units, mm):
+    for unit in units:
+        assert length_factor(unit, "k") == pytest.approx(mm, rel=1e-12)
+        assert quantity(f"2 {unit}", "length", "k") == pytest.approx(2 * mm, rel=1e-12)
+
+
+@pytest.mark.parametrize("unit", ["px", "point", "pica", "Mm", "yard", "light_year", "mil", "rod"])
+def test_what_only_the_library_calls_a_length_is_refused(unit):
+    for text in (f"1 {unit}", f"0.5 {unit}"):
+        with pytest.raises(InputError, match=r"k: .*'20 mm'"):
+            quantity(text, "length", "k")
+    assert length_unit(unit) is None
+
+
+def test_what_one_count_is_lies_above_zero():
+    assert length_factor("0.1 um", "k") == pytest.approx(1e-4)
+    for unit in ("-1 um", "0 mm"):
+        with pytest.raises(InputError, match=r"k: .*not above zero"):
+            length_factor(unit, "k")
 
 
 def test_an_angle_needs_its_unit():

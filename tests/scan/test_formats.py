@@ -467,7 +467,7 @@ def test_a_content_that_one_format_refuses_is_offered_to_the_others(tmp_path, mo
         formats.read_raw(path, ScanOptions())
     for name in ("rock.csv", "rock.xyz"):
         path = path.rename(tmp_path / name)
-        with pytest.raises(InputError, match="not a text file; damaged, or the wrong extension"):
+        with pytest.raises(InputError, match="not a text file; export it again as text"):
             formats.read_raw(path, ScanOptions())
 
 

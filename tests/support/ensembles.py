@@ -70,6 +70,7 @@ ENSEMBLES: dict[str, tuple] = {
     "exponents of spectra": ((0.3, 0.8), (0.3, 0.5, 0.8, 0.9)),
     # scan
     "spoilt scan files": (44, 300),
+    "files of every dialect": (1, 6),
     "sound scan files": (("npy", "stl", "x3p", "nc"), None),
     "scattered points": (2500, 6000),
     "registered pairs": (4, 20),

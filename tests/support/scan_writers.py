@@ -89,6 +89,15 @@ def _write_cloud_x3p(path, heights, dx, dy):
     return {}
 
 
+def _write_surfer(path, heights, dx, dy):
+    """Surfer's text grid: its ranges go from the first node to the last."""
+    ny, nx = heights.shape
+    ranges = f"0 {dx * (nx - 1):.17g}\n0 {dy * (ny - 1):.17g}\n0 1"
+    values = np.where(np.isfinite(heights), heights, 1.70141e38)
+    np.savetxt(path, values, fmt="%.17g", header=f"DSAA\n{nx} {ny}\n{ranges}", comments="")
+    return {"unit": "mm"}
+
+
 def _write_mesh(path, heights, dx, dy):
     """Triangles between neighbours that are all present; STL repeats the vertices."""
     import trimesh
@@ -191,6 +200,7 @@ WRITERS = {
     ".npz": _write_npz,
     ".csv": _write_csv,
     ".xyz": _write_xyz,
+    ".grd": _write_surfer,
     ".gwyddion.txt": _write_gwyddion_text,
     ".gwy": _write_gwyddion,
     ".x3p": _write_x3p,

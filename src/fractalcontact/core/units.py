@@ -1,5 +1,6 @@
 """Quantities as people write them ("20 GPa", "80 um") to the program's own mm, N and MPa."""
 
+import contextlib
 import math
 import re
 from functools import cache
@@ -22,6 +23,21 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _UNITS = rf"{_WORD}(?:(?:\s*[*/·]\s*|\s+){_WORD})*"
 _QUANTITY = re.compile(rf"\s*{_NUMBER}\s*(?:°|{_UNITS})?\s*")
 _LONGEST = 60  # characters
+#: What an instrument means by a length; the library also knows points, picas and pixels as parts
+#: of an inch, and light years. By symbol, as written, and by name, in any case and number.
+_LENGTH_SYMBOLS = {
+    **{symbol: symbol for symbol in ("pm", "nm", "um", "mm", "cm", "dm", "m", "km", "in", "ft")},
+    **{"µm": "um", "\u03bcm": "um", "Å": "angstrom", "\u212b": "angstrom"},
+    # As programs that know capitals alone write them; a megametre measures no rock.
+    **{"NM": "nm", "UM": "um", "MM": "mm", "CM": "cm"},
+}
+_METRE = re.compile(r"(pico|nano|micro|milli|centi|deci|kilo|)(?:metre|meter)s?", re.IGNORECASE)
+_LENGTH_NAMES = {
+    **{"micron": "micrometer", "microns": "micrometer", "angstrom": "angstrom"},
+    **{"angstroms": "angstrom", "ångström": "angstrom", "ångstrom": "angstrom"},
+    **{"inch": "inch", "inches": "inch", "foot": "foot", "feet": "foot"},
+}
+_KNOWN_LENGTHS = "nm, um, mm, cm, m, inch or foot"
 
 
 class _OutOfRange(InputError):
@@ -61,6 +77,8 @@ def quantity(text: Any, kind: str, where: str) -> float:
         raise InputError(f"{where}: {text!r} has no unit; {wanted}")
     if len(text) > _LONGEST or not _QUANTITY.fullmatch(text):
         raise InputError(f"{where}: {text[:_LONGEST]!r} is not a number with a unit; {wanted}")
+    if kind == "length":
+        text = _with_known_length(text, where, wanted)
     try:
         value = _registry()(text)
     except Exception as error:  # pint raises half a dozen unrelated types for malformed text
@@ -78,6 +96,43 @@ def quantity(text: Any, kind: str, where: str) -> float:
             f"{MOST_INPUT:g} {unit}; {wanted}"
         )
     return magnitude
+
+
+def length_unit(text: str) -> str | None:
+    """Name of a unit of length for the library of units, None if it is none we know.
+
+    Only lengths of the SI and their usual multiples, angstrom, inch and foot: what other units are
+    called may mean another thing, as "point" and "px" do.
+    """
+    if text in _LENGTH_SYMBOLS:
+        return _LENGTH_SYMBOLS[text]
+    if match := _METRE.fullmatch(text):
+        return f"{match[1].lower()}meter"
+    return _LENGTH_NAMES.get(text.lower())
+
+
+def _with_known_length(text: str, where: str, wanted: str) -> str:
+    """A quantity with its unit as the library names it, if that is one word and a length.
+
+    Raises
+    ------
+    InputError
+        If its unit is a length to the library of units alone.
+    """
+    match = re.fullmatch(rf"\s*({_NUMBER})\s*({_WORD})\s*", text)
+    if not match:
+        return text
+    if name := length_unit(match[2]):
+        return f"{match[1]} {name}"
+    is_length = False
+    with contextlib.suppress(Exception):  # whatever else it may be is refused further on
+        is_length = _registry()(f"1 {match[2]}").check("[length]")
+    if is_length:
+        raise InputError(
+            f"{where}: {text!r} is in {match[2]!r}, no unit of length known here; {wanted} "
+            f"({_KNOWN_LENGTHS})"
+        )
+    return text
 
 
 def _article(noun):
@@ -134,7 +189,14 @@ def length_factor(unit: str, where: str) -> float:
     Raises
     ------
     InputError
-        If ``unit`` is no unit of length.
+        If ``unit`` is no unit of length, or a number of them that is not above zero.
     """
     counts = re.match(_NUMBER, unit)
-    return quantity(unit if counts else f"1 {unit}", "length", where)
+    factor = quantity(unit if counts else f"1 {unit}", "length", where)
+    if factor <= 0:
+        raise InputError(
+            f"{where}: {unit!r} is not above zero; write the unit alone, such as 'um', or what one "
+            "count is, such as '0.1 um' (an upper face that was scanned on its back has the key "
+            "'mirror_upper')"
+        )
+    return factor

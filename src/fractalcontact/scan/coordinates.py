@@ -43,7 +43,7 @@ def read_coordinates(files: Mapping[str, Path], unit: str | None) -> dict[str, n
         if unit is None:
             raise InputError(f"{path}: of unknown unit; write 'unit_xy: mm' into the sidecar")
         regular_file(path)
-        values = read_confined(path, ScanOptions(layout="matrix")).values
+        values = read_confined(path, ScanOptions(layout="matrix", axes="none")).values
         line = _one_line(values, _AXES[key])
         if line is None or len(line) < 2 or not np.isfinite(line).all():
             raise InputError(

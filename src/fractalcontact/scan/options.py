@@ -22,6 +22,7 @@ class ScanOptions:
     first_row: str | None = None
     variable: str | None = None
     columns: tuple | None = None
+    axes: str | None = None
     missing: float | None = None
     grid: float | str | None = None
     registration: str | None = None
@@ -35,7 +36,7 @@ PAIR_KEYS = ("registration", "mirror_upper")
 #: Keys that name the files of the coordinates, where x, y and z are three files.
 COORDINATE_KEYS = ("x", "y")
 #: Keys that mean nothing for the other layout, and what is meant by them.
-MATRIX_KEYS = ("spacing", "first_row")
+MATRIX_KEYS = ("spacing", "first_row", "axes")
 POINT_KEYS = ("columns", "grid")
 
 
@@ -63,6 +64,7 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
             _require(isinstance(unit, str), where, key, unit, "a unit of length, such as 'mm'")
             length_factor(unit, f"{where}: {key}")
     _one_of(options, "layout", ("matrix", "points"), where)
+    _one_of(options, "axes", ("none",), where)
     _one_of(options, "first_row", ("bottom", "top"), where)
     _one_of(options, "registration", REGISTRATIONS, where)
     _one_of(options, "mirror_upper", ("x", "y"), where)

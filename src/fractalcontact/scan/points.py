@@ -133,8 +133,12 @@ def _find_levels(coordinate: np.ndarray, tolerance: float) -> tuple[float, float
     if len(first) < 2 or np.any(ordered[last] - ordered[first] > 2 * tolerance):
         return None
     levels = (ordered[first] + ordered[last]) / 2
-    pitch = float(np.median(np.diff(levels)))
-    index = np.round((levels - levels[0]) / pitch)
+    # Coordinates rounded coarsely have a median step that is not their mean one.
+    even = np.linspace(levels[0], levels[-1], len(levels))
+    if np.abs(levels - even).max() <= tolerance:
+        index = np.arange(len(levels), dtype=float)
+    else:
+        index = np.round((levels - levels[0]) / float(np.median(np.diff(levels))))
     if np.any(np.diff(index) < 1):
         return None
     pitch, origin = np.polyfit(index, levels, 1)

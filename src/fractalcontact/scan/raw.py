@@ -1,6 +1,5 @@
 """What every reader of a file format hands over, in the file's own units."""
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -9,12 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.units import length_factor
+from ..core.units import length_unit
 
 LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to or a header promises
 #: A matrix or grid needs at least this many cells along each side to hold any roughness.
 SMALLEST_SIDE = 8
-_UNIT = re.compile(r"[^\W\d_]{1,20}")
 
 
 @dataclass(frozen=True)
@@ -36,6 +34,11 @@ class RawScan:
         Where the first row of a matrix lies; None where the file does not say.
     missing : float or None
         Number the file states for a missing cell.
+    factor : float or None
+        Number that the file says its heights are to be multiplied by, not yet done; None or 1 if
+        they stand as they are.
+    unread : tuple of str
+        What the file says of its units or size that could not be used, in its own words.
     notes : tuple of str
         What a user should know about the reading.
     triangles : (m, 3) int ndarray or None
@@ -50,6 +53,8 @@ class RawScan:
     spacing: tuple[float, float] | None = None
     first_row: str | None = None
     missing: float | None = None
+    factor: float | None = None
+    unread: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     triangles: np.ndarray | None = None
 
@@ -85,10 +90,18 @@ def reading(path: Path | str, kind: str) -> Iterator[None]:
 def stated_unit(text: object) -> str | None:
     """Take the unit of length a file states; None if it states none, or of something else."""
     text = str(text or "").strip()
-    if not _UNIT.fullmatch(text):  # nothing else is handed to the parser of units
-        return None
-    try:
-        length_factor(text, "")
-    except InputError:
-        return None
-    return text
+    return text if length_unit(text) else None
+
+
+def foreign_units(**stated: object) -> tuple[str, ...]:
+    """What a file calls its units where they are no lengths: words for `RawScan.unread`.
+
+    Parameters
+    ----------
+    **stated
+        What the file says by what it says it of, "z" for example.
+    """
+    words = {key: str(text or "").strip()[:20] for key, text in stated.items()}
+    return tuple(
+        f"{key} in {word!r}" for key, word in words.items() if word and not stated_unit(word)
+    )

@@ -1,5 +1,6 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -145,10 +146,16 @@ def _measure(path: Path, options) -> Measured:
     _refuse_idle_keys(raw, options, path)
     overrides: list[str] = []
     notes = list(raw.notes)
+    if raw.unread:
+        notes.append(f"not used of its header: {'; '.join(raw.unread)}")
+    if raw.factor not in (None, 1) and not _has_number(options.unit_z):
+        notes.append(f"heights multiplied by {raw.factor:g}, as the file says")
+    _refuse_one_unit_for_two(raw, options, path)
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
     assert unit_z is not None
+    unit_z = _with_factor(unit_z, raw, options, path)
     missing = _choose("missing", raw.missing, options, overrides)
     if raw.layout == "matrix":
         values = _without_missing(raw.values, missing)
@@ -223,6 +230,52 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
     return given or stated
 
 
+def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> None:
+    """Refuse the key ``unit`` where the file gives x and y a unit that heights do not share.
+
+    It is meant of the heights, most likely, and would change the spacing as well.
+    """
+    if options.unit is None or raw.unit_xy is None or (options.unit_xy and options.unit_z):
+        return
+    lateral = length_factor(raw.unit_xy, f"{path}: unit_xy")
+    if raw.unit_z is not None and length_factor(raw.unit_z, f"{path}: unit_z") == lateral:
+        return
+    given = length_factor(options.unit, f"{path}: unit")
+    of_spacing = raw.layout != "matrix" or (raw.spacing is not None and options.spacing is None)
+    if options.unit_xy is None and of_spacing and not math.isclose(given, lateral):
+        heights = f"heights in {raw.unit_z}" if raw.unit_z else "no unit of heights"
+        raise InputError(
+            f"{path}: the file says x and y in {raw.unit_xy} and {heights}, its sidecar 'unit: "
+            f"{options.unit}' of all; write 'unit_z: {options.unit}' if that is of heights, and "
+            f"'unit_xy: {options.unit}' if the file is wrong"
+        )
+
+
+def _with_factor(unit_z: str, raw: RawScan, options: ScanOptions, path: Path) -> str:
+    """The unit of heights with the number that the file says they are to be multiplied by.
+
+    Raises
+    ------
+    InputError
+        If the sidecar has a unit: it may mean the numbers before or after.
+    """
+    given = options.unit_z or options.unit
+    if raw.factor in (None, 1) or _has_number(given):
+        return unit_z
+    if given is not None and given != raw.unit_z:
+        raise InputError(
+            f"{path}: its header says that heights are to be multiplied by {raw.factor:g}; write "
+            f"that with their unit into the sidecar, 'unit_z: {raw.factor:g} {given}', or "
+            f"'unit_z: 1 {given}' if it is done already"
+        )
+    return f"{raw.factor:.15g} {unit_z}"
+
+
+def _has_number(unit: str | None) -> bool:
+    """Whether a unit is one of counts, "0.1 um"."""
+    return unit is not None and unit[:1] in "0123456789.+-"
+
+
 def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Path) -> None:
     """Ask for everything the file lacks in one message, ready to be copied."""
     stated_spacing = options.spacing if options.spacing is not None else raw.spacing
@@ -233,19 +286,33 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     lacks_unit = unit_z is None or (needs_unit_xy and unit_xy is None)
     if not (lacks_unit or lacks_spacing):
         return
-    what = " and ".join(
-        word for word, lacks in (("unit", lacks_unit), ("spacing", lacks_spacing)) if lacks
-    )
-    lines = []
-    if lacks_unit:
-        lines.append("    unit: mm          # of its lengths; unit_xy and unit_z where they differ")
+    lacking = _lacking_unit(unit_xy, unit_z, needs_unit_xy) if lacks_unit else ()
+    what = " and ".join(filter(None, (*lacking[:1], "spacing" if lacks_spacing else "")))
+    lines = list(lacking[1:])
     if lacks_spacing:
         lines.append("    spacing: 0.1 mm   # between neighbouring cells")
     name, _ = split_file_name(path.name)
     raise InputError(
-        f"{path}: the file states no {what}. Write into {path.with_name(name + '.yaml')}, "
+        f"{path}: the file states no {what}{_said(raw)}. Write into "
+        f"{path.with_name(name + '.yaml')}, "
         "with your own values:\n" + "\n".join(lines)
     )
+
+
+def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
+    """What unit is missing, and the line of a sidecar that states it."""
+    if unit_z is None and unit_xy is not None:
+        return "unit of heights", "    unit_z: um        # of its heights"
+    if unit_z is not None and needs_unit_xy:
+        return "unit of x and y", "    unit_xy: mm       # of x and y"
+    return "unit", "    unit: mm          # of its lengths; unit_xy and unit_z where they differ"
+
+
+def _said(raw: RawScan) -> str:
+    """What the file says all the same, in brackets: it could not be used, or was found out."""
+    said = "; ".join((*(f"it says {line!r}" for line in raw.unread), *raw.notes))
+    usable = " that can be used" if raw.unread else ""
+    return f"{usable} ({said})" if said else ""
 
 
 def _has_units_of_its_own(spacing) -> bool:

@@ -9,7 +9,7 @@ from ...core.errors import InputError
 from ...core.units import length_factor
 from ..format import Format
 from ..options import ScanOptions
-from ..raw import RawScan, reading, stated_unit
+from ..raw import RawScan, foreign_units, reading, stated_unit
 from ..tables import table_to_raw
 from ..variables import MASK, Variable, choose_variable, open_variables
 
@@ -51,7 +51,7 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
         name = choose_variable(variables, options.variable, path)
         values = _values(name, variables)
         axes = [_axis(dimension, variables, path) for dimension in variables[name].dimensions]
-        unit_z = stated_unit(_unit(variables[name]))
+        unit = _unit(variables[name])
     if axes[0].letter == "x" or axes[1].letter == "y":
         values, axes = values.T, axes[::-1]
     for number, axis in enumerate(axes):
@@ -60,7 +60,8 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
     rows, columns = axes
     stated = {
         "reader": _reader(path),
-        "unit_z": unit_z,
+        "unit_z": stated_unit(unit),
+        "unread": foreign_units(z=unit, x=columns.unit, y=rows.unit),
         "notes": (f"variable {name!r}",),
         # The coordinates say where the rows lie, and they ascend by now.
         "first_row": None if rows.step is None else "bottom",

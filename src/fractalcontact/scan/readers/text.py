@@ -2,27 +2,32 @@
 
 import codecs
 import io
-import re
-from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.units import length_factor
 from ..format import Format
+from ..headings import read_statements
 from ..options import ScanOptions
-from ..raw import RawScan
-from ..tables import table_to_raw
+from ..raw import SMALLEST_SIDE, RawScan
+from ..tables import TextLayout, table_to_raw
+from ..text_headers import esri_header, gwyddion_header, refuse_known_programs
+from ..text_style import (
+    COMMENT_MARKS,
+    Style,
+    column_names,
+    counts_agree,
+    find_style,
+    numbers_above,
+    numbers_of,
+    split_cells,
+)
 
-_COMMENT_MARKS = ("#", "%", "//", "!")
-_WORD = re.compile(r"[A-Za-z_]+")
-_NUMBER_WORDS = {"e", "d", "nan", "inf", "infinity", "na", "n", "a", "null", "none", "bad"}
 _EXTRA_MISSING = ["BAD", "bad", "none", "NONE", "---", "--", "-", "*", "?"]
-_NUMBER = r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?"  # for headers: no missing cells there
-_DECIMAL_COMMA = re.compile(r"^[-+]?\d+,\d+([eE][-+]?\d+)?$")
-_SAMPLE = 200  # lines that decide about delimiter and decimal mark
+#: Numbers in front of a table: of rows, of columns, of points.
+_MOST_COUNTS = 3
 _BLOCK = 2**24  # characters read at once
 _PLAIN = b"0123456789+-.,;eE \t\n"
 
@@ -45,26 +50,48 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
         while block := stream.read(_BLOCK) + stream.readline():
             reading.add(block)
     table, style, notes = reading.finish()
-    header = reading.header
-    stated = _gwyddion_header(header, table.shape, str(path)) or _esri_header(header)
-    names = _column_names(header, style.delimiter, style.width)
+    header, where = reading.header, str(path)
+    refuse_known_programs(header, where)
+    stated = gwyddion_header(header, table.shape, where) or esri_header(header, table.shape, where)
     if stated:
         return RawScan(table, "matrix", reader=_reader(), notes=notes, **stated)
-    return table_to_raw(table, names, options, str(path), reader=_reader(), notes=notes)
+    above, header = numbers_above(header, style, where)
+    names, sure, number = column_names(header, style)
+    if sure and number is not None:
+        header = header[:number] + header[number + 1 :]
+    layout = TextLayout(sure, above, reading.breaks)
+    said = read_statements(header, style.decimal)
+    return table_to_raw(table, names, options, where, layout, reader=_reader(), notes=notes, **said)
 
 
 def is_text(path: Path) -> bool:
     """Tell a text file from a binary one by its first bytes."""
     with open(path, "rb") as stream:
         head = stream.read(4096)
-    return head.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" not in head
+    return (
+        head.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" not in head or _wide(head) is not None
+    )
+
+
+def _wide(head: bytes) -> str | None:
+    """UTF-16 without its mark: every other byte of plain text is zero."""
+    if len(head) < 8 or head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return None
+    even, odd = head[0::2], head[1::2]
+    for zeros, others, name in ((odd, even, "utf-16-le"), (even, odd, "utf-16-be")):
+        if zeros.count(0) > 0.8 * len(zeros) and b"\0" not in others:  # signs beyond Latin-1
+            return name
+    return None
 
 
 def _encoding(path: Path) -> str:
     """UTF-16 by its mark; else UTF-8 if all of the file is, else Latin-1."""
     with open(path, "rb") as stream:
-        if stream.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        head = stream.read(64)
+        if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             return "utf-16"
+        if wide := _wide(head[:64]):
+            return wide
         stream.seek(0)
         decoder = codecs.getincrementaldecoder("utf-8")()
         try:
@@ -76,24 +103,17 @@ def _encoding(path: Path) -> str:
     return "utf-8-sig"
 
 
-@dataclass(frozen=True)
-class _Style:
-    """How the lines of numbers are written."""
-
-    delimiter: str  # " " is white space of any length
-    decimal: str
-    width: int  # numbers in a line
-    trailing: bool  # lines end with a delimiter that parts nothing
-
-
 class _Reading:
     """The numbers of a text file, taken up block by block; a block holds whole lines."""
 
     def __init__(self, path: Path):
         self.path = path
         self.header: list[str] = []
-        self.style: _Style | None = None  # that of the first block with numbers
+        self.style: Style | None = None  # that of the first block with numbers
+        self.breaks: list[int] = []  # rows before which something else than numbers stands
         self._parts: list[np.ndarray] = []
+        self._rows = 0  # taken up so far
+        self._counts: list[int] = []  # whole numbers in short lines in front
         self._lines = 0  # before the next block
         self._short: tuple[int, int] | None = None  # number and width of a line that ends too soon
 
@@ -105,46 +125,100 @@ class _Reading:
         if style is None or plain is None:
             self._add_lines(block.split("\n"))
         else:
-            self._parts.append(_parse(plain, style, self.path))
+            self._take(_parse(plain, style, self.path))
         self._lines += block.count("\n")
 
-    def finish(self) -> tuple[np.ndarray, _Style, tuple[str, ...]]:
+    def finish(self) -> tuple[np.ndarray, Style, tuple[str, ...]]:
         """The table (rows, columns), how it is written, and the notes."""
         if self.style is None:
-            raise InputError(f"{self.path}: the file holds no line of numbers")
+            raise InputError(
+                f"{self.path}: the file holds no line of numbers; export the heights as numbers "
+                "alone, without units or words in their lines"
+            )
         notes: tuple[str, ...] = ()
         if self._short:
             notes = (f"the last line ({self._short[0]}) was cut short and is left out",)
-        return np.concatenate(self._parts), self.style, notes
+        table = np.concatenate(self._parts)
+        self.breaks = [row for row in dict.fromkeys(self.breaks) if 0 < row < len(table)]
+        if self._counts and not counts_agree(self._counts, table.shape):
+            raise InputError(
+                f"{self.path}: its first line holds {' '.join(map(str, self._counts))}, which is "
+                f"neither numbers of the table nor its size: {table.shape[0]} lines of "
+                f"{table.shape[1]} numbers follow; export it again, or remove the line"
+            )
+        return table, self.style, notes
+
+    def _take(self, part: np.ndarray) -> None:
+        self._parts.append(part)
+        self._rows += len(part)
 
     def _add_lines(self, lines: list[str]) -> None:
-        data = self._data_lines(lines)
+        data, gaps = self._data_lines(lines)
         if not data:
             return
         if self.style is None:
-            self.style = _find_style([line for _, line in data])
+            self.style = find_style([line for _, line in data], self.path)
+            in_front = self._lines_in_front(data, self.style)
+            gaps = [gap - in_front for gap in gaps]
+        if self.style.delimiter == "\t":
+            cells = self.style.width - 1 + self.style.trailing
+            data = [(n, line) for n, line in data if line.strip() or line.count("\t") == cells]
+        else:
+            data = [(n, line) for n, line in data if line.strip()]
+        self.breaks += [self._rows + gap for gap in gaps]
         if rows := self._whole_rows(data, self.style):
             # Without the delimiter at the end, which is cut off here.
             style = replace(self.style, trailing=False)
-            self._parts.append(_parse("\n".join(rows), style, self.path))
+            self._take(_parse("\n".join(rows), style, self.path))
 
-    def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
-        """Number and text of the lines of numbers; the header is kept, comments are passed over."""
-        data, header = [], set(self.header)
+    def _lines_in_front(self, data: list[tuple[int, str]], style: Style) -> int:
+        """Take counts off the front of the lines; complete a row of coordinates without corner."""
+        taken = 0
+        while data and taken < _MOST_COUNTS:
+            cells = [cell.strip() for cell in split_cells(data[0][1].strip(), style.delimiter)]
+            if len(cells) == 1:  # counts may be parted otherwise than the numbers
+                cells = data[0][1].split()
+            if len(cells) >= min(style.width, _MOST_COUNTS) or not all(map(str.isdecimal, cells)):
+                break
+            self._counts += [int(cell) for cell in cells]
+            del data[0]
+            taken += 1
+        if data and style.width > SMALLEST_SIDE and not style.trailing:
+            number, line = data[0]
+            if len(split_cells(line, style.delimiter)) == style.width - 1:
+                delimiter = style.delimiter
+                data[0] = (number, f"nan{delimiter}{line}")
+        return taken
+
+    def _data_lines(self, lines: list[str]) -> tuple[list[tuple[int, str]], list[int]]:
+        """Number and text of the lines of numbers, and before which of them other lines stand.
+
+        The header is kept, comments are passed over.
+        """
+        data: list[tuple[int, str]] = []
+        gaps, header = [], set(self.header)
         for number, line in enumerate(lines, self._lines + 1):
             line = line.strip(" \r\n\x1a\f")
-            if not line.strip():
+            if not line or not (line.strip() or data):
+                gaps.append(len(data))
                 continue
-            if not (line.startswith(_COMMENT_MARKS) or _has_words(line)):
-                data.append((number, line))
+            numbers = numbers_of(line, in_front=not data and self.style is None)
+            if numbers is not None:
+                data.append((number, numbers))
             elif not data and self.style is None:
                 self.header.append(line)
                 header.add(line)
-            elif not (line.startswith(_COMMENT_MARKS) or line in header):
-                raise InputError(f"{self.path}: line {number} is not numbers: {line[:60]!r}")
-        return data
+            elif line.startswith(COMMENT_MARKS) or line in header:
+                gaps.append(len(data))
+            else:
+                raise InputError(
+                    f"{self.path}: line {number} is not numbers: {line[:60]!r}; remove it, or put "
+                    "'#' in front of a comment; tables under one another belong in files of their "
+                    "own"
+                )
+        return data, gaps
 
-    def _whole_rows(self, data: list[tuple[int, str]], style: _Style) -> list[str]:
+    def _whole_rows(self, data: list[tuple[int, str]], style: Style) -> list[str]:
         """The lines, checked to have the same number of cells; one cut short may be the last."""
         delimiter, width = style.delimiter, style.width
         rows = []
@@ -153,7 +227,9 @@ class _Reading:
                 raise self._wrong_width(*self._short, width)
             if style.trailing:
                 line = line.removesuffix(delimiter)
-            found = len(_split(line, delimiter))
+            if delimiter not in " \t":
+                line = line.replace("\t", " ")
+            found = len(split_cells(line, delimiter))
             if found == width + 1 and line.endswith(delimiter):
                 line, found = line.removesuffix(delimiter), width
             if found > width:
@@ -165,26 +241,20 @@ class _Reading:
         return rows
 
     def _wrong_width(self, number: int, found: int, width: int) -> InputError:
-        return InputError(f"{self.path}: line {number} has {found} values, the others have {width}")
+        return InputError(
+            f"{self.path}: line {number} has {found} values, the others have {width}; mend the "
+            "line, or export the file again with a mark such as nan in each missing cell"
+        )
 
 
-def _find_style(lines: list[str]) -> _Style:
-    """Find delimiter, decimal mark and width from the first lines of numbers."""
-    delimiter, decimal = _sniff(lines[:_SAMPLE])
-    ending = sum(line.endswith(delimiter) for line in lines)
-    trailing = delimiter != " " and ending >= max(1, len(lines) - 1)
-    if trailing:
-        lines = [line.removesuffix(delimiter) for line in lines]
-    widths = Counter(len(_split(line, delimiter)) for line in lines)
-    return _Style(delimiter, decimal, widths.most_common(1)[0][0], trailing)
-
-
-def _parse_plain(block: str, style: _Style) -> bytes | None:
+def _parse_plain(block: str, style: Style) -> bytes | None:
     """The block as it is if it holds nothing but numbers, as many in each line; else None."""
     if not (block.isascii() and block.endswith("\n")):
         return None
     content = block.encode("ascii")
     if content.translate(None, _PLAIN):
+        return None
+    if style.delimiter not in " \t" and b"\t" in content:
         return None
     characters = np.frombuffer(content, dtype=np.uint8)
     ends = np.flatnonzero(characters == ord("\n"))
@@ -202,34 +272,7 @@ def _parse_plain(block: str, style: _Style) -> bytes | None:
     return content if (counts == wanted).all() else None
 
 
-def _has_words(line: str) -> bool:
-    return any(word.lower() not in _NUMBER_WORDS for word in _WORD.findall(line))
-
-
-def _sniff(sample: list[str]) -> tuple[str, str]:
-    """Find delimiter and decimal mark; white space of any length is the delimiter ``" "``."""
-    text = "\n".join(sample)
-    if "\t" in text:
-        delimiter = "\t"
-    elif ";" in text:
-        delimiter = ";"
-    elif "," not in text:
-        delimiter = " "
-    else:
-        # "1,5 2,5" is blanks and decimal commas; "1, 2" and "1.5,2.5" are commas.
-        decimal_commas = re.search(r"\d +[-+]?\d", text) and not re.search(r",\s|\.\d", text)
-        delimiter = " " if decimal_commas else ","
-    if delimiter == ",":
-        return delimiter, "."
-    cells = [cell.strip() for line in sample for cell in _split(line, delimiter)]
-    return delimiter, "," if any(_DECIMAL_COMMA.match(cell) for cell in cells) else "."
-
-
-def _split(line: str, delimiter: str) -> list[str]:
-    return line.split() if delimiter == " " else line.split(delimiter)
-
-
-def _parse(content: str | bytes, style: _Style, path: Path) -> np.ndarray:
+def _parse(content: str | bytes, style: Style, path: Path) -> np.ndarray:
     import pandas as pd
 
     source = io.StringIO(content) if isinstance(content, str) else io.BytesIO(content)
@@ -246,53 +289,11 @@ def _parse(content: str | bytes, style: _Style, path: Path) -> np.ndarray:
             dtype=np.float64,
         )
     except (ValueError, pd.errors.ParserError) as error:
-        raise InputError(f"{path}: cannot be read as numbers ({error})") from error
+        raise InputError(
+            f"{path}: cannot be read as numbers ({error}); export it with one delimiter and "
+            "decimal points, and a mark such as nan in missing cells"
+        ) from error
     return frame.to_numpy()[:, : style.width]
-
-
-def _column_names(header: list[str], delimiter: str, width: int) -> list[str] | None:
-    """Take the last header line with one word a column as the columns' names."""
-    for line in reversed(header):
-        text = line.lstrip("#%!/ ").removesuffix(delimiter)
-        for separator in (delimiter, ",", " "):
-            names = [name.strip().strip("\"'") for name in _split(text, separator)]
-            if len(names) == width:
-                return names
-    return None
-
-
-def _gwyddion_header(header: list[str], shape: tuple[int, int], where: str) -> dict | None:
-    """Size and unit from '# Width: 10.0 µm', '# Height: ...', '# Value units: m'.
-
-    Gwyddion translates the keys, so the order of the lines tells, not their words.
-    """
-    stated = [line.lstrip("# ").partition(":")[2].strip() for line in header if "#" in line]
-    sizes = [m for s in stated if (m := re.fullmatch(rf"({_NUMBER})\s*([^\W\d]+)", s))]
-    if len(sizes) != 2:
-        return None
-    width, height = (float(m[1].replace(",", ".")) * length_factor(m[2], where) for m in sizes)
-    rows, columns = shape
-    unit_z = stated[-1] if re.fullmatch(r"[^\W\d]+", stated[-1]) else None
-    return {
-        "unit_xy": "mm",
-        "unit_z": unit_z,
-        "spacing": (width / columns, height / rows),
-        "first_row": "top",
-    }
-
-
-def _esri_header(header: list[str]) -> dict | None:
-    """Cell size and missing number from the header of an ESRI ASCII grid."""
-    matches = [re.fullmatch(rf"([a-z_]+)\s+({_NUMBER})", line.lower()) for line in header]
-    numbers = {m[1]: float(m[2]) for m in matches if m and "," not in m[2]}
-    if "cellsize" not in numbers:
-        return None
-    cell = numbers["cellsize"]
-    return {
-        "spacing": (cell, cell),
-        "missing": numbers.get("nodata_value"),
-        "first_row": "top",
-    }
 
 
 def _reader() -> str:
@@ -306,5 +307,5 @@ FORMAT = Format(
     endings=(".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz"),
     takes=is_text,
     libraries=("pandas",),
-    refusal="not a text file; damaged, or the wrong extension?",
+    refusal="not a text file; export it again as text, or give it the extension of its format",
 )

@@ -8,7 +8,7 @@ import numpy as np
 from ...core.errors import InputError
 from ..format import Format
 from ..options import ScanOptions
-from ..raw import RawScan, reading, refuse_larger, stated_unit
+from ..raw import RawScan, foreign_units, reading, refuse_larger, stated_unit
 from ..tables import choose_array
 
 PARK_TAG = 50432  # Park Systems keep the heights of their microscopes in tags of their own
@@ -86,7 +86,10 @@ def _refuse_images(page, options: ScanOptions, path: Path) -> None:
 
 def _imagej(file, page) -> dict | None:
     """Pixel size and unit as ImageJ writes them: pixels in a unit of its own description."""
-    unit = stated_unit((file.imagej_metadata or {}).get("unit"))
+    said = (file.imagej_metadata or {}).get("unit")
+    if foreign := foreign_units(x=said):
+        return {"unread": foreign}
+    unit = stated_unit(said)
     pixels = [page.tags.valueof(f"{axis}Resolution") for axis in "XY"]
     if unit is None or None in pixels or 0 in (n for pair in pixels for n in pair):
         return None
