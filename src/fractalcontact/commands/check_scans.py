@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.labels import printable
+from ..core.labels import percent, plain, printable
 from ..domain.measured_map import read_contact_map
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
@@ -154,7 +154,7 @@ def _specimen_row(scan, specimen, quality):
         "specimen": scan.name,
         "faces": str(len(faces)),
         "relief": length_words(relief),
-        "missing": f"{100 * quality['missing_share'].values.max():.2g} %",
+        "missing": percent(quality["missing_share"].values.max()),
         "outl.": str(attrs.get("outlier_count", "-")),
         "tilt": f"{attrs['tilt_degrees']:.1f}°",
         "window (mm)": _pair(window_sides(specimen)[::-1]),
@@ -201,9 +201,6 @@ def _warnings(specimen, quality):
             f"{overlap_words(specimen, quality)}: contact at zero offset rests on errors of the "
             f"scans{remedy}"
         )
-    note = json.loads(attrs.get("registration", "{}")).get("note", "")
-    if "NOTE: " in note:
-        warnings.append(note.partition("NOTE: ")[2])
     return warnings
 
 
@@ -232,7 +229,7 @@ def _map_row(scan, contact):
         **_grid_cells(contact.sizes, attrs),
         "specimen": scan.name,
         "faces": "map",
-        "missing": f"{100 * (1 - float(contact['measured'].mean())):.2g} %",
+        "missing": percent(1 - float(contact["measured"].mean())),
     }
     nominal, share, pressure, force = (
         float(contact[name]) for name in ("nominal_area", "area_share", "nominal_pressure", "force")
@@ -240,14 +237,14 @@ def _map_row(scan, contact):
     series = f", series {attrs['series']}" if attrs["series"] else ""
     stated = (
         f"contact map: {attrs['reader']}, A_0 = {nominal:.4g} mm2 (outline: "
-        f"{json.loads(attrs['outline'])}), {100 * share:.3g} % in contact above "
+        f"{json.loads(attrs['outline'])}), {percent(share)} in contact above "
         f"{attrs['threshold']:g}{series}"
     )
     load = f"F = {force:.4g} N, F/A_0 = {pressure:.4g} MPa"
     lines = [_file_names(scan), stated, load if math.isfinite(pressure) else "no load stated"]
     if contact.sizes["threshold"] > 1:
         shares = ", ".join(
-            f"{100 * part:.3g} % above {at:g}"
+            f"{percent(part)} above {at:g}"
             for at, part in zip(
                 contact["threshold"].values, contact["threshold_area_share"].values, strict=True
             )

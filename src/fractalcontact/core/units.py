@@ -134,7 +134,14 @@ def length_factor(unit: str, where: str) -> float:
     Raises
     ------
     InputError
-        If ``unit`` is no unit of length.
+        If ``unit`` is no unit of length, or a number of them that is not above zero.
     """
     counts = re.match(_NUMBER, unit)
-    return quantity(unit if counts else f"1 {unit}", "length", where)
+    factor = quantity(unit if counts else f"1 {unit}", "length", where)
+    if factor <= 0:
+        raise InputError(
+            f"{where}: {unit!r} is not above zero; write the unit alone, such as 'um', or what one "
+            "count is, such as '0.1 um' (an upper face that was scanned on its back has the key "
+            "'mirror_upper')"
+        )
+    return factor
