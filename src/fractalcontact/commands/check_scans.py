@@ -17,6 +17,8 @@ import numpy as np
 from ..core.errors import InputError
 from ..core.labels import percent, plain, printable
 from ..domain.measured_map import read_contact_map
+from ..mechanics.joint import choose_offsets
+from ..mechanics.states import hardness_of
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import length_words, overlap_words, suspect_words
@@ -25,7 +27,7 @@ from ..study.checks import check_study, read_sidecar, with_coordinates
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
 from ..study.preparation import prepare_specimen
-from ..study.scan_files import list_scans
+from ..study.scan_files import folder_notes, list_scans
 from ..study.sidecar import is_contact_map
 from ..surface.grid import spacing_of
 from ..surface.specimen import STEEP_TILT, window_sides
@@ -53,6 +55,8 @@ LEGEND = (
     "instrument's; a spacing s shows waves from 2 s on."
 )
 INDENT = "    "
+#: Outliers this many reliefs away are hardly spikes of an instrument.
+FAR_OUT = 3.0
 
 
 @dataclass
@@ -132,8 +136,10 @@ def _check(scan, study, schema, source):
     options, own = read_sidecar(scan.sidecar, schema)
     if is_contact_map(options):
         return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
-    settings = resolve_settings(study, scan.name, own, source)
+    pair = scan.upper is not None
+    settings = resolve_settings(study, scan.name, own, source, pair=pair)
     specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
+    _require_solvable(specimen, settings)
     dimension = surface_dimension(
         specimen["lower"].values, spacing_of(specimen), fit_range=settings["surface_range"]
     )
@@ -141,6 +147,13 @@ def _check(scan, study, schema, source):
     doubtful = dimension["no_dimension"].item() or beyond_roll_off(dimension)
     (row.warnings if doubtful else row.lines).append(dimension_words(dimension))
     return row
+
+
+def _require_solvable(specimen, settings):
+    """Refuse what the study would refuse once the specimen is read: its offsets and loads."""
+    every = dict.fromkeys([*settings["directions"], *settings["contact_directions"]])
+    choose_offsets(specimen, settings["offsets"], list(every))
+    hardness_of(settings, specimen)
 
 
 def _specimen_row(scan, specimen, quality):
@@ -188,10 +201,7 @@ def _warnings(specimen, quality):
     attrs = specimen.attrs
     warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
     if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
-        warnings.append(
-            f"{attrs['outlier_count']} outliers are kept; 'outliers: mask' in the sidecar makes "
-            "them missing"
-        )
+        warnings.append(_outlier_words(specimen))
     if attrs["tilt_degrees"] > STEEP_TILT:
         warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
     if "overlap_cells" in quality and quality["overlap_cells"].sel(region="window"):
@@ -202,6 +212,25 @@ def _warnings(specimen, quality):
             f"scans{remedy}"
         )
     return warnings
+
+
+def _outlier_words(specimen):
+    """Outliers that are kept: how many, how far they reach, and what they may be."""
+    count, cells = specimen.attrs["outlier_count"], specimen["outlier"].values
+    heights = [specimen[face].values for face in ("lower", "upper") if face in specimen]
+    highest = max(np.nanmax(abs(z[cells])) for z in heights)
+    rest = np.concatenate([z[~cells & np.isfinite(z)] for z in heights])
+    relief = np.ptp(rest)
+    words = (
+        f"{count} outlier{'s' * (count > 1)} kept, up to {length_words(highest)} from the mean "
+        f"plane where the relief of all other cells is {length_words(relief)}; "
+    )
+    if highest > FAR_OUT * relief:
+        words += (
+            "so far out that they are likely to be marks of missing cells or a misread file: look "
+            "at it, and write 'missing' into the sidecar; "
+        )
+    return words + "'outliers: mask' in the sidecar makes them missing"
 
 
 def _gap_words(specimen):
@@ -266,7 +295,7 @@ def _grid_cells(sizes, attrs):
 
 def _pair(lengths):
     """Two lengths (x, y) in mm."""
-    return " x ".join(f"{float(f'{length:.3g}'):g}" for length in lengths)
+    return " x ".join(plain(length) for length in lengths)
 
 
 def _file_names(scan):
@@ -358,6 +387,7 @@ def _print_table(folder, study, schema, source):
         counts[state] += 1
         _write(table_lines(checked))
     _write(["-" * WIDTH, *_wrapped(LEGEND)])
+    _write([line for note in folder_notes(folder) for line in _wrapped(f"NOTE: {note}")])
     words = ", ".join(f"{n} {state}" for state, n in counts.items())
     _write([f"{printable(folder)}: {words}"])
     return int(counts["refused"] > 0)

@@ -1,6 +1,7 @@
 """What every variable of the atlas says about itself, and how untrusted text is shown."""
 
 import math
+from collections.abc import Iterable
 
 
 def cf_attrs(units: str, long_name: str) -> dict[str, str]:
@@ -35,6 +36,22 @@ def printable(text: object, longest: int | None = None) -> str:
         return text
     half = (longest - 1) // 2
     return f"{text[:half]}…{text[-half:]}"
+
+
+def quoted(text: object, longest: int = 200) -> str:
+    """Untrusted text on one line, whole words up to a length; what is left out shows as "…"."""
+    text = " ".join(printable(text).split())
+    if len(text) <= longest:
+        return text
+    end = text.rfind(" ", longest // 2, longest)
+    return f"{text[: end if end > 0 else longest]} …"
+
+
+def listed(names: Iterable[object], most: int = 15) -> str:
+    """Names in a sentence; of very many the first and how many more there are."""
+    shown = [printable(name, 60) for name in names]
+    more = len(shown) - most
+    return ", ".join(shown[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def percent(fraction: float) -> str:

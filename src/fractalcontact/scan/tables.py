@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.labels import listed
 from .options import ScanOptions
 from .raw import SMALLEST_SIDE, RawScan
 
@@ -29,7 +30,7 @@ def choose_array(names: list[str], wanted: str | None, path: Path) -> str:
         raise InputError(
             f"{path}: holds no 2-D array of real numbers, so no heights; export it again"
         )
-    has = f"it has {', '.join(names)}"
+    has = f"it has {listed(names)}"
     if wanted is not None:
         if wanted not in names:
             raise InputError(
@@ -53,7 +54,7 @@ def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> 
     """Refuse a ``variable`` of the sidecar that is none of the channels."""
     if wanted is not None and wanted not in names:
         raise InputError(
-            f"{path}: no channel {wanted!r} (key 'variable'); it has {', '.join(names)}"
+            f"{path}: no channel {wanted!r} (key 'variable'); it has {listed(names)}"
         )
 
 
@@ -101,7 +102,7 @@ def _named_xyz(names) -> list[int] | None:
 def _column_index(column, names, n_columns: int, where: str) -> int:
     if isinstance(column, str):
         if column not in (names or ()):
-            has = f"its columns are {', '.join(names)}" if names else "it names no columns"
+            has = f"its columns are {listed(names)}" if names else "it names no columns"
             raise InputError(f"{where}: no column {column!r} (key 'columns'); {has}")
         return names.index(column)
     if column >= n_columns:

@@ -76,6 +76,7 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
     if request.window_centre is not None:
         middle = _in_cells(specimen, _pair(request.window_centre, name, "window_centre"))
         wanted = wanted._replace(middle=middle)
+        _require_inside(specimen, request.window_centre, middle)
     shape = tuple(n // multiple * multiple for n in wanted.cells)
     _require_room(specimen, wanted, shape, multiple)
     corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
@@ -136,6 +137,20 @@ def _in_cells(specimen, place) -> tuple[float, ...]:
     return tuple((c - start) / s for c, start, s in zip(place, starts, spacing, strict=True))
 
 
+def _require_inside(specimen, centre, middle) -> None:
+    """Refuse a middle of the window that lies beside the scan."""
+    shape = specimen["valid"].shape
+    if all(-0.5 <= m <= n - 0.5 for m, n in zip(middle, shape, strict=True)):
+        return
+    y, x = specimen.y.values, specimen.x.values
+    y_0, x_0 = _pair(centre, specimen.attrs["name"], "window_centre")
+    raise InputError(
+        f"{specimen.attrs['name']}: key 'window_centre' is x = {x_0:g}, y = {y_0:g} mm, beside the "
+        f"scan, which reaches from x = {x[0]:.4g} to {x[-1]:.4g} and y = {y[0]:.4g} to "
+        f"{y[-1]:.4g} mm; write a place in it"
+    )
+
+
 def _require_room(specimen, wanted: _Wanted, shape, multiple) -> None:
     """Refuse a window that is larger than the scan, or smaller than the resolutions need."""
     name, total = specimen.attrs["name"], specimen["valid"].shape
@@ -161,16 +176,24 @@ def _find_place(specimen, shape, wanted: _Wanted, centre_given: bool):
     free = _free_places(valid, shape)
     if not free.any():
         raise _no_place(specimen, shape)
+    asked = tuple(
+        math.floor(m - (n - 1) / 2 + 0.5) for m, n in zip(wanted.middle, shape, strict=True)
+    )
     first = tuple(
-        min(max(math.floor(m - (n - 1) / 2 + 0.5), 0), total - n)
-        for m, n, total in zip(wanted.middle, shape, valid.shape, strict=True)
+        min(max(start, 0), total - n)
+        for start, n, total in zip(asked, shape, valid.shape, strict=True)
     )
     sliding = free & _reachable_places(specimen, shape, wanted.reach)
     if free[first] and (centre_given or sliding[first] or not sliding.any()):
-        return first, ""
-    corner = _nearest(sliding if sliding.any() else free, shape, wanted.middle)
-    moved = [(c - w) * s for c, w, s in zip(corner, first, spacing, strict=True)]
-    why = "a hole" if not free[first] else "the offsets asked for"
+        corner, why = first, "the edge of the scan"
+    else:
+        corner = _nearest(sliding if sliding.any() else free, shape, wanted.middle)
+        why = "a hole" if not free[first] else "the offsets asked for"
+    if not centre_given:
+        asked = first  # half a cell of rounding is no move
+    if corner == asked:
+        return corner, ""
+    moved = [(c - w) * s for c, w, s in zip(corner, asked, spacing, strict=True)]
     return (
         corner,
         f"window moved by {moved[0]:.4g} mm in y, {moved[1]:.4g} mm in x because of {why}",
