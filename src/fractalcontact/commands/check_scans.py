@@ -26,6 +26,7 @@ from ..roughness.recommended import beyond_roll_off, dimension_words
 from ..study.checks import check_study, read_sidecar, with_coordinates
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
+from ..study.idle_keys import refuse_idle_keys
 from ..study.preparation import prepare_specimen
 from ..study.scan_files import folder_notes, list_scans
 from ..study.sidecar import is_contact_map
@@ -134,10 +135,12 @@ def _check(scan, study, schema, source):
     if scan.name in study.get("embedded", {}):
         raise InputError(f"'{scan.name}' is also an embedded specimen of {source}; rename one")
     options, own = read_sidecar(scan.sidecar, schema)
+    refuse_idle_keys(scan, options, own)
     if is_contact_map(options):
         return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
-    pair = scan.upper is not None
-    settings = resolve_settings(study, scan.name, own, source, pair=pair)
+    settings = resolve_settings(
+        study, scan.name, own, source, pair=scan.upper is not None, sidecar_file=scan.sidecar
+    )
     specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
     _require_solvable(specimen, settings)
     dimension = surface_dimension(

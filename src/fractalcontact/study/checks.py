@@ -9,6 +9,7 @@ from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..scan.options import coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
+from .idle_keys import refuse_idle_keys
 from .scan_files import ScanFiles, list_scans
 from .schema import shortened, validate
 from .sidecar import is_contact_map, read_yaml
@@ -81,6 +82,7 @@ def resolve_study(
     for name, scan in list(scans.items()):
         with _refusing(refused, name):
             sidecars[name] = read_sidecar(scan.sidecar, schema)
+            refuse_idle_keys(scan, *sidecars[name])
             with_coordinates(scans, {name: sidecars[name][0]})
     scans = with_coordinates(
         scans, {name: keys for name, (keys, _) in sidecars.items() if name not in refused}
@@ -92,8 +94,10 @@ def resolve_study(
             if is_contact_map(keys):
                 labels[name] = own.get("label", name)
             else:
-                pair = scans[name].upper is not None
-                settings[name] = resolve_settings(config, name, own, source, pair=pair)
+                scan = scans[name]
+                settings[name] = resolve_settings(
+                    config, name, own, source, pair=scan.upper is not None, sidecar_file=scan.sidecar
+                )
             options[name] = keys
     if refused and not leave_out:
         raise refused[min(refused)]
@@ -245,6 +249,8 @@ def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
         "properties": properties,
     }
     validate(document, sidecar_schema, str(path))
+    if document.get("kind") == "surface":  # what it is without
+        del document["kind"]
     scan = {key: value for key, value in document.items() if key in scan_keys}
     settings = {key: value for key, value in document.items() if key not in scan_keys}
     return scan, settings
