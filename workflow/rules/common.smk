@@ -40,11 +40,9 @@ if workflow.is_main_process and "FRACTALCONTACT_ALONE" not in os.environ:
     AT_WORK = _running.mark()
 
 DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
-# What is wrong with one scan stops only that where the user asks so. Jobs read the workflow too,
-# after the process that began them has decided.
-LEAVE_OUT = not workflow.is_main_process or bool(
-    getattr(workflow.execution_settings, "keep_going", False)
-)
+# What is wrong with one scan stops only that where the user asks so on the command line, which
+# Snakemake itself looks at later. Jobs read the workflow too, after the run has decided.
+LEAVE_OUT = not workflow.is_main_process or bool({"-k", "--keep-going"} & set(sys.argv))
 try:
     STUDY = resolve_study(config, SCHEMA, SOURCE, leave_out=LEAVE_OUT)
     RESULTS, SCAN_FOLDER = f"results/{config['study']}", config.get("scans", "scans")

@@ -25,8 +25,9 @@ FEW_HIDDEN = 0.005
 _BLOCK = 100_000  # points whose neighbours are held at once
 #: A mesh is wound alike if hardly an edge runs the same way in two of its triangles.
 _WOUND_ALIKE = 1e-3
-#: ... and closes a body if hardly an edge has a triangle on one side alone.
-_OPEN_EDGES = 1e-2
+#: ... and closes a body if fewer edges have a triangle on one side alone than this many times the
+#: root of the number of triangles: the rim of a sheet has some three times that.
+_OPEN_EDGES = 0.2
 #: A point lies over another layer if its neighbour in the plane is this many times as far above or
 #: below it as the nearest point in space is away.
 _OTHER_LAYER = 10.0
@@ -113,7 +114,7 @@ def is_closed(triangles: np.ndarray) -> bool:
     keys = np.sort(edges[:, 0].astype(np.int64) * (int(triangles.max()) + 1) + edges[:, 1])
     same = keys[1:] == keys[:-1]
     alone = ~(np.r_[False, same] | np.r_[same, False])
-    return bool(np.count_nonzero(alone) <= _OPEN_EDGES * len(keys))
+    return bool(np.count_nonzero(alone) <= _OPEN_EDGES * np.sqrt(len(triangles)))
 
 
 def downward_share(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:
