@@ -129,6 +129,37 @@ def test_x3p_of_the_first_edition_from_the_north_west(tmp_path):
     assert "checksum of main.xml does not match" in read_scan(path).attrs["warnings"]
 
 
+# --- MATLAB's objects --------------------------------------------------------------------------
+
+
+def element(kind, content):
+    """A data element of a MATLAB file of version 5: type, length, content to whole eight bytes."""
+    return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
+
+
+def string_object(name, system=b"MCOS", class_name=b"string"):
+    """An opaque object, as MATLAB saves a string: no size, and a reference in place of content."""
+    reference = np.array([0xDD000000, 2, 1, 1, 1, 1], "<u4")
+    flags = [element(6, struct.pack("<II", number, 0)) for number in (17, 13)]
+    sizes = element(5, struct.pack("<ii", len(reference), 1))
+    inner = element(14, flags[1] + sizes + element(1, b"") + element(6, reference.tobytes()))
+    names = b"".join(element(1, text) for text in (name, system, class_name))
+    return element(14, flags[0] + names + inner)
+
+
+@pytest.mark.parametrize("class_name", [b"string", b"datetime", b"table"])
+@pytest.mark.parametrize("first", [False, True])
+def test_a_matlab_file_that_also_holds_an_object_is_read(tmp_path, first, class_name):
+    path = tmp_path / "rock.mat"
+    options = write(path, surface(), DX, DY)
+    content, thing = path.read_bytes(), string_object(b"operator", class_name=class_name)
+    path.write_bytes(content[:128] + (thing if first else b"") + content[128:] + thing * (not first))
+    np.testing.assert_array_equal(read_scan(path, options), surface())
+    path.write_bytes(content[:128] + thing)
+    with pytest.raises(InputError, match=r"rock\.mat: holds no 2-D array of real numbers"):
+        read_scan(path, options)
+
+
 # --- netCDF ------------------------------------------------------------------------------------
 
 

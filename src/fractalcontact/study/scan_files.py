@@ -17,7 +17,7 @@ _LEFT_BEHIND = ("~", ".bak", ".orig", ".tmp", ".swp", ".part", ".crdownload")
 _LOCKS = ("~$", "._", ".~lock.")
 #: How others name the faces of a joint: what stands before, the mark, the face, the ending.
 _OTHER_FACE = {"lower": "upper", "bottom": "top"}
-_FACE = re.compile(r"(.+)([_ -]|(?<=[a-z0-9])(?=[A-Z]))(lower|bottom)(\.[^.]+)", re.IGNORECASE)
+_FACE = re.compile(r"(.+)([_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:(lower|bottom))(\.[^.]+)")
 #: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
 LONGEST_NAME = 220
 #: Control characters, invisible and direction marks, undecodable bytes, line separators.
