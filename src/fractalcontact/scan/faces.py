@@ -165,7 +165,7 @@ def _check_surface(heights: np.ndarray, lattice: Lattice, path: Path) -> None:
     """Refuse what cannot be the scan of a rough surface."""
     if min(heights.shape) < SMALLEST_SIDE:
         raise InputError(
-            f"{path}: {heights.shape[0]} x {heights.shape[1]} cells are too few; at least "
+            f"{path}: {heights.shape[1]} x {heights.shape[0]} cells (x, y) are too few; at least "
             f"{SMALLEST_SIDE} x {SMALLEST_SIDE} are needed"
         )
     present = heights[np.isfinite(heights)]

@@ -11,6 +11,7 @@ import xarray as xr
 
 from ..core.directions import DIRECTIONS, axis_and_sign
 from ..core.errors import InputError
+from ..core.labels import percent
 from .grid import spacing_of
 
 #: A side given in mm holds a whole number of cells within this fraction of one.
@@ -83,7 +84,7 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
     notes = [place_note] if place_note else []
     if shape != wanted.cells:
         notes.append(
-            f"{wanted.cells[0]} x {wanted.cells[1]} cells rounded down to {shape[0]} x {shape[1]}, "
+            f"{wanted.cells[1]} x {wanted.cells[0]} cells rounded down to {shape[1]} x {shape[0]}, "
             f"multiples of {multiple}"
         )
     if automatic:
@@ -158,14 +159,14 @@ def _require_room(specimen, wanted: _Wanted, shape, multiple) -> None:
     if any(n > limit for n, limit in zip(shape, total, strict=True)):
         extent = [n * s for n, s in zip(total, spacing_of(specimen), strict=True)]
         raise InputError(
-            f"{name}: key 'window' asks for {sides[0]:.4g} x {sides[1]:.4g} mm (y, x), the scan "
-            f"covers {extent[0]:.4g} x {extent[1]:.4g} mm; write at most "
+            f"{name}: key 'window' asks for {sides[1]:.4g} x {sides[0]:.4g} mm (x, y), the scan "
+            f"covers {extent[1]:.4g} x {extent[0]:.4g} mm; write at most "
             f"'window: {_rounded_down(min(extent)):.6g} mm'"
         )
     if min(shape) < 1:
         raise InputError(
-            f"{name}: a window of {sides[0]:.4g} x {sides[1]:.4g} mm holds {cells[0]} x {cells[1]} "
-            f"cells, fewer than the multiple of {multiple} that the resolutions need; write "
+            f"{name}: a window of {sides[1]:.4g} x {sides[0]:.4g} mm holds {cells[1]} x {cells[0]} "
+            f"cells (x, y), fewer than the multiple of {multiple} that the resolutions need; write "
             "a larger 'window' or fewer resolutions"
         )
 
@@ -196,7 +197,7 @@ def _find_place(specimen, shape, wanted: _Wanted, centre_given: bool):
     moved = [(c - w) * s for c, w, s in zip(corner, asked, spacing, strict=True)]
     return (
         corner,
-        f"window moved by {moved[0]:.4g} mm in y, {moved[1]:.4g} mm in x because of {why}",
+        f"window moved by {moved[1]:.4g} mm in x, {moved[0]:.4g} mm in y because of {why}",
     )
 
 
@@ -290,10 +291,10 @@ def _no_place(specimen, shape) -> InputError:
     scan = json.loads(specimen.attrs["lower_scan"]).get("source", "")
     return InputError(
         f"{specimen.attrs['name']} ({scan}): no hole-free place for a window of "
-        f"{shape[0] * spacing[0]:.4g} x {shape[1] * spacing[1]:.4g} mm: {np.mean(~valid):.1%} of "
-        f"the cells are missing, between x = {x[columns.min()]:.4g} and {x[columns.max()]:.4g} mm "
+        f"{shape[1] * spacing[1]:.4g} x {shape[0] * spacing[0]:.4g} mm (x, y): "
+        f"{percent(float(np.mean(~valid)))} of the cells are missing, between x = {x[columns.min()]:.4g} and {x[columns.max()]:.4g} mm "
         f"and y = {y[rows.min()]:.4g} and {y[rows.max()]:.4g} mm. The largest hole-free square has "
-        f"a side of {side:.6g} mm, centred on y = {centre[0]:.4g}, x = {centre[1]:.4g} mm; write "
+        f"a side of {side:.6g} mm, centred on x = {centre[1]:.4g}, y = {centre[0]:.4g} mm; write "
         f"'window: {side:.6g} mm' or less"
     )
 
