@@ -79,7 +79,10 @@ def test_the_quality_of_a_scan_holds_and_names_them(lines, axis, named):
     z = rough() + 0.05 * named
     place = 0.1 * np.arange(N)
     scan = xr.DataArray(
-        z, dims=("y", "x"), coords={"y": place, "x": place}, attrs={"spacing_x": 0.1, "spacing_y": 0.1}
+        z,
+        dims=("y", "x"),
+        coords={"y": place, "x": place},
+        attrs={"spacing_x": 0.1, "spacing_y": 0.1},
     )
     specimen = make_specimen(scan, **vars(WindowRequest()))
     quality = scan_quality(specimen, [1])

@@ -153,7 +153,9 @@ def test_a_matlab_file_that_also_holds_an_object_is_read(tmp_path, first, class_
     path = tmp_path / "rock.mat"
     options = write(path, surface(), DX, DY)
     content, thing = path.read_bytes(), string_object(b"operator", class_name=class_name)
-    path.write_bytes(content[:128] + (thing if first else b"") + content[128:] + thing * (not first))
+    path.write_bytes(
+        content[:128] + (thing if first else b"") + content[128:] + thing * (not first)
+    )
     np.testing.assert_array_equal(read_scan(path, options), surface())
     path.write_bytes(content[:128] + thing)
     with pytest.raises(InputError, match=r"rock\.mat: holds no 2-D array of real numbers"):

@@ -80,8 +80,12 @@ def test_loads_of_a_sidecar_do_not_blame_the_study(study, tmp_path, key):
         resolve_study(study, SCHEMA, "here.yaml")
     words = str(error.value)
     assert words.startswith(f"{tmp_path / 'rock.yaml'}: loads: ")
-    assert f"lacks '{load}', which here.yaml: defaults.{key} names; add it, or write '{key}'" in words
-    scans(tmp_path, f"loads: [1 kN]\n{key}: {'[3 kN]' if key == 'dilatancy_loads' else '3 kN'}", *ONE)
+    assert (
+        f"lacks '{load}', which here.yaml: defaults.{key} names; add it, or write '{key}'" in words
+    )
+    scans(
+        tmp_path, f"loads: [1 kN]\n{key}: {'[3 kN]' if key == 'dilatancy_loads' else '3 kN'}", *ONE
+    )
     with pytest.raises(InputError, match=rf"rock\.yaml: {key}: '3 kN' is not among the loads"):
         resolve_study(study, SCHEMA, "here.yaml")
 

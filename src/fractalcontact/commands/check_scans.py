@@ -12,8 +12,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 from ..core.errors import InputError
 from ..core.labels import percent, plain, printable
 from ..domain.measured_map import read_contact_map
@@ -31,7 +29,8 @@ from ..study.preparation import prepare_specimen
 from ..study.scan_files import folder_notes, list_scans
 from ..study.sidecar import is_contact_map
 from ..surface.grid import spacing_of
-from ..surface.specimen import STEEP_TILT, window_sides
+from ..surface.specimen import window_sides
+from .scan_words import gap_words, warnings_of_specimen
 
 #: Columns of the table: heading and width.
 COLUMNS = {
@@ -56,8 +55,6 @@ LEGEND = (
     "instrument's; a spacing s shows waves from 2 s on."
 )
 INDENT = "    "
-#: Outliers this many reliefs away are hardly spikes of an instrument.
-FAR_OUT = 3.0
 
 
 @dataclass
@@ -184,10 +181,10 @@ def _specimen_row(scan, specimen, quality):
         if file.get("overrides"):
             lines.append(f"{face} face, the sidecar overrides: {file['overrides']}")
     if len(faces) == 2:
-        lines.append(f"{_gap_words(specimen)}; {overlap_words(specimen, quality)}")
+        lines.append(f"{gap_words(specimen)}; {overlap_words(specimen, quality)}")
     if suspicious := suspect_words(specimen):
         lines.append(f"suspicious: {suspicious}")
-    return Checked(scan.name, cells, lines, _warnings(specimen, quality))
+    return Checked(scan.name, cells, lines, warnings_of_specimen(specimen, quality))
 
 
 def _noise(quality):
@@ -197,61 +194,6 @@ def _noise(quality):
         return length_words(seen)
     limit = quality["noise_limit"].max().item()
     return f"<{length_words(limit)}" if math.isfinite(limit) else "-"
-
-
-def _warnings(specimen, quality):
-    """What a user should look at before a study is run."""
-    attrs = specimen.attrs
-    warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
-    if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
-        warnings.append(_outlier_words(specimen))
-    if attrs["tilt_degrees"] > STEEP_TILT:
-        warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
-    if "overlap_cells" in quality and quality["overlap_cells"].sel(region="window"):
-        filled = attrs["outliers"] == "fill"
-        remedy = "" if filled else "; 'outliers: fill' in the sidecar fills lone and deep ones"
-        warnings.append(
-            f"{overlap_words(specimen, quality)}: contact at zero offset rests on errors of the "
-            f"scans{remedy}"
-        )
-    return warnings
-
-
-def _outlier_words(specimen):
-    """Outliers that are kept: how many, how far they reach, and what they may be."""
-    count, cells = specimen.attrs["outlier_count"], specimen["outlier"].values
-    heights = [specimen[face].values for face in ("lower", "upper") if face in specimen]
-    highest = max(np.nanmax(abs(z[cells])) for z in heights)
-    rest = np.concatenate([z[~cells & np.isfinite(z)] for z in heights])
-    relief = np.ptp(rest)
-    words = (
-        f"{count} outlier{'s' * (count > 1)} kept, up to {length_words(highest)} from the mean "
-        f"plane where the relief of all other cells is {length_words(relief)}; "
-    )
-    if highest > FAR_OUT * relief:
-        words += (
-            "so far out that they are likely to be marks of missing cells or a misread file: look "
-            "at it, and write 'missing' into the sidecar; "
-        )
-    return words + "'outliers: mask' in the sidecar makes them missing"
-
-
-def _gap_words(specimen):
-    """Statistics of the gap, and whether the upper face was moved to the lower one."""
-    gap = (specimen["upper"] - specimen["lower"]).values
-    words = f"gap: mean {length_words(np.nanmean(gap))}, sd {length_words(np.nanstd(gap))}"
-    if "registration" not in specimen.attrs:
-        return words
-    motion = json.loads(specimen.attrs["registration"])
-    words += f"; registration ({motion['mode']}): {motion['note']}"
-    if motion["applied"]:
-        before = motion["gap_sd_before_mm"]
-        spread = "unknown" if before is None else length_words(before)
-        words += (
-            f", shift {motion['shift_x_mm']:.3g}, {motion['shift_y_mm']:.3g} mm (x, y), sd before "
-            f"{spread}"
-        )
-    return words
 
 
 def _map_row(scan, contact):

@@ -48,10 +48,11 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     Dataset
         On `face`: relief and histogram (`edge`, `bin`), `missing_share`, `height_step`, radially
         averaged spectrum. On `face` and `axis`: spectra of profiles, the fractal range by
-        :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`. `range_end` (mm), the shortest wavelength of the fractal
-        range over all of them, with its cause as attribute ``ended_by``; `below_range` on
-        `resolution`. Of two faces, on `region` ("scan", "window"): where they overlap, and their
-        gap. Attribute ``warning``: a sentence, "" if all is well.
+        :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`.
+        `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
+        cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
+        ("scan", "window"): where they overlap, and their gap. Attribute ``warning``: what reading
+        the files and this found, in sentences, "" if all is well.
 
     Notes
     -----

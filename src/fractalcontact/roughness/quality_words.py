@@ -123,10 +123,12 @@ def file_warnings(specimen: xr.Dataset) -> list[str]:
     for face in ("lower", "upper"):
         attrs = json.loads(specimen.attrs.get(f"{face}_scan", "{}"))
         found += [
-            f"{attrs['source']}: {words}" for words in attrs.get("warnings", "").split("\n") if words
+            f"{attrs['source']}: {words}"
+            for words in attrs.get("warnings", "").split("\n")
+            if words
         ]
     note = json.loads(specimen.attrs.get("registration", "{}")).get("note", "")
-    return found + [part for part in note.split("NOTE: ")[1:] if part]
+    return found + [part.removesuffix("; ") for part in note.split("NOTE: ")[1:] if part]
 
 
 def suspect_words(specimen: xr.Dataset) -> str:

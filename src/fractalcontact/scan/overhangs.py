@@ -110,7 +110,9 @@ def layered_share(points: np.ndarray, tree: cKDTree) -> float:
 
 def is_closed(triangles: np.ndarray) -> bool:
     """Whether a mesh (m, 3) is the skin of a body: each edge has a triangle on either side."""
-    edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
+    edges = np.sort(
+        np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    )
     keys = np.sort(edges[:, 0].astype(np.int64) * (int(triangles.max()) + 1) + edges[:, 1])
     same = keys[1:] == keys[:-1]
     alone = ~(np.r_[False, same] | np.r_[same, False])

@@ -110,9 +110,8 @@ def register(
         _refuse_mirror_image(lower, upper, mirrored, where)
         return as_given(
             f"NOTE: the faces do not match (correlation without long waves {match:.2f}, below "
-            f"{POOR_MATCH:g}) and are left as they are; faces of one joint do, unless one is turned "
-            "by more than "
-            f"{LARGEST_ROTATION} degrees",
+            f"{POOR_MATCH:g}) and are left as they are; faces of one joint do, unless one is "
+            f"turned by more than {LARGEST_ROTATION} degrees",
             match,
         )
     moved, motion, how = _moved(lower, upper, motion, mode, regrid)

@@ -53,9 +53,7 @@ def is_table(shape: tuple, dtype: np.dtype) -> bool:
 def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> None:
     """Refuse a ``variable`` of the sidecar that is none of the channels."""
     if wanted is not None and wanted not in names:
-        raise InputError(
-            f"{path}: no channel {wanted!r} (key 'variable'); it has {listed(names)}"
-        )
+        raise InputError(f"{path}: no channel {wanted!r} (key 'variable'); it has {listed(names)}")
 
 
 def table_to_raw(

@@ -65,7 +65,8 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
         Those far outside first.
     """
     present = np.isfinite(heights)
-    total, marks = int(present.sum()), []
+    total = int(present.sum())
+    marks: list[Mark] = []
     while len(marks) < _MOST_MARKS and present.any():
         found = _far_outside(heights, present)
         outside = found is not None

@@ -96,7 +96,12 @@ def resolve_study(
             else:
                 scan = scans[name]
                 settings[name] = resolve_settings(
-                    config, name, own, source, pair=scan.upper is not None, sidecar_file=scan.sidecar
+                    config,
+                    name,
+                    own,
+                    source,
+                    pair=scan.upper is not None,
+                    sidecar_file=scan.sidecar,
                 )
             options[name] = keys
     if refused and not leave_out:

@@ -146,7 +146,6 @@ class _Stated(dict):
                 raise self._not_solved(key, text)
         return chosen
 
-
     def _not_solved(self, key, text):
         """What is wrong where a load is to be drawn that is not solved: the later file of both."""
         if "loads" in self._sidecar and key not in self._sidecar:

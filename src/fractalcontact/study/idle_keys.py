@@ -51,9 +51,15 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
     if scan.upper is not None:
         _refuse(scan, _first(("opposite",), settings), "where both faces were scanned")
     else:
-        _refuse(scan, _first(("registration", "mirror_upper"), keys), "for one face, without an upper one")
+        _refuse(
+            scan,
+            _first(("registration", "mirror_upper"), keys),
+            "for one face, without an upper one",
+        )
     if settings.get("opposite") == "flat":
-        _refuse(scan, _first(_OF_SLIDING, settings), "against a rigid plane, on which nothing slides")
+        _refuse(
+            scan, _first(_OF_SLIDING, settings), "against a rigid plane, on which nothing slides"
+        )
     if {"unit", "unit_xy", "unit_z"} <= set(keys):
         _refuse(scan, "unit", "beside both 'unit_xy' and 'unit_z'")
     if all(path.suffix.lower() in _UNNAMED for path in scan.files):

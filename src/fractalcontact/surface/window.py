@@ -292,8 +292,9 @@ def _no_place(specimen, shape) -> InputError:
     return InputError(
         f"{specimen.attrs['name']} ({scan}): no hole-free place for a window of "
         f"{shape[1] * spacing[1]:.4g} x {shape[0] * spacing[0]:.4g} mm (x, y): "
-        f"{percent(float(np.mean(~valid)))} of the cells are missing, between x = {x[columns.min()]:.4g} and {x[columns.max()]:.4g} mm "
-        f"and y = {y[rows.min()]:.4g} and {y[rows.max()]:.4g} mm. The largest hole-free square has "
+        f"{percent(float(np.mean(~valid)))} of the cells are missing, between "
+        f"x = {x[columns.min()]:.4g} and {x[columns.max()]:.4g} mm and "
+        f"y = {y[rows.min()]:.4g} and {y[rows.max()]:.4g} mm. The largest hole-free square has "
         f"a side of {side:.6g} mm, centred on x = {centre[1]:.4g}, y = {centre[0]:.4g} mm; write "
         f"'window: {side:.6g} mm' or less"
     )

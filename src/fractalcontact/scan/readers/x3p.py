@@ -17,8 +17,8 @@ from ..tables import choose_array
 
 _INDEX = "main.xml"
 _CHANGED = (
-    ": it was changed after it was written, or written with a wrong checksum; it was read as it is, "
-    "so compare it with its source"
+    ": it was changed after it was written, or written with a wrong checksum; it was read as it "
+    "is, so compare it with its source"
 )
 #: Root element of main.xml in ISO 5436-2 of 2000, which R's x3ptools still writes.
 _OLD_ROOT, _ROOT = "ISO5436", "ISO5436_2"
