@@ -44,7 +44,7 @@ FAR = {
 }
 
 
-@pytest.mark.parametrize("tilt", [0.0, 0.5])
+@pytest.mark.parametrize("tilt", [0.0, pytest.param(0.5, marks=pytest.mark.full)])
 @pytest.mark.parametrize("kind", FAR)
 def test_a_number_far_outside_is_refused_with_the_key_that_reads_it(tmp_path, kind, tilt):
     mark, place = FAR[kind]
@@ -93,7 +93,7 @@ AMONG = {
 }
 
 
-@pytest.mark.parametrize("digits", [16, 4])
+@pytest.mark.parametrize("digits", [16, pytest.param(4, marks=pytest.mark.full)])
 @pytest.mark.parametrize("kind", AMONG)
 def test_a_number_that_repeats_among_the_heights_is_warned_of(tmp_path, kind, digits):
     where, mark = AMONG[kind]
@@ -199,7 +199,7 @@ def test_what_is_hardly_a_scan_is_warned_of(tmp_path, kind):
 
 
 @pytest.mark.parametrize("hurst", [0.2, 0.5, 0.9])
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(n, marks=pytest.mark.full) for n in (2, 3))])
 def test_rough_surfaces_are_warned_of_nothing(tmp_path, hurst, seed):
     z = rough(seed, hurst=hurst) + seed * 0.02 * GRID_X
     assert warnings_for(saved(tmp_path / "rock.npy", z)) == ""
@@ -242,7 +242,9 @@ def write_stl(path, points, triangles):
     return path
 
 
-@pytest.mark.parametrize("flat", [1.0, 0.3, 0.1])
+@pytest.mark.parametrize(
+    "flat", [1.0, *(pytest.param(part, marks=pytest.mark.full) for part in (0.3, 0.1))]
+)
 def test_closed_bodies_are_named(tmp_path, flat):
     points, triangles = ball(flat)
     path = write_stl(tmp_path / "boulder.stl", points, triangles)
@@ -269,7 +271,7 @@ def test_two_faces_in_one_file_are_named(tmp_path):
 
 
 @pytest.mark.parametrize("degrees", [40, 50, 60, 75])
-@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("axis", [0, pytest.param(1, marks=pytest.mark.full)])
 def test_steep_matrices_are_judged_level(tmp_path, degrees, axis):
     z = rough() + np.tan(np.radians(degrees)) * (GRID_Y, GRID_X)[axis]
     heights = read_scan(saved(tmp_path / "steep.npy", z), MATRIX)
@@ -316,7 +318,9 @@ def faces(folder, gap, registration="rigid", kind="npy", seed=2):
     return read_faces(*paths, {**MATRIX, "registration": registration})
 
 
-@pytest.mark.parametrize("gap", [-0.2, -1.0, -30.0])
+@pytest.mark.parametrize(
+    "gap", [-0.2, *(pytest.param(gap, marks=pytest.mark.full) for gap in (-1.0, -30.0))]
+)
 def test_faces_in_the_wrong_order_are_named(tmp_path, gap):
     with pytest.raises(InputError, match=r"below the lower one in .* exchange 'lower' and 'upper'"):
         faces(tmp_path, gap, "none")
@@ -326,7 +330,9 @@ def test_faces_in_the_wrong_order_are_named(tmp_path, gap):
         assert '"gap_mean_before_mm": null' in upper.attrs["registration"]
 
 
-@pytest.mark.parametrize("gap", [0.0, -0.005, 0.2, 5.0])
+@pytest.mark.parametrize(
+    "gap", [-0.005, *(pytest.param(gap, marks=pytest.mark.full) for gap in (0.0, 0.2, 5.0))]
+)
 def test_faces_in_order_keep_their_gap(tmp_path, gap):
     for registration in ("rigid", "none"):
         lower, upper = faces(tmp_path, gap, registration)

@@ -95,7 +95,7 @@ def draw_map(
     for axis, letter, side in ((axes.xaxis, "x", sides[1]), (axes.yaxis, "y", sides[0])):
         # On the short side of a strip, labels would lie over each other.
         most = max(1, round(ticks * min(1.0, 1.5 * side / max(sides))))
-        axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10]))
+        axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10], min_n_ticks=min(most, 2)))
         axis.set_label_text(f"${letter}$ ({name})")
     return drawn
 
