@@ -36,7 +36,7 @@ BASE_SECONDS = 8
 PATIENCE = 4
 _MOST_FILES = 64
 #: Characters; sentences of this program are far shorter, whatever they quote.
-_LONGEST_MESSAGE = 2500
+_LONGEST_MESSAGE = 1600
 
 REQUEST_LENGTH = struct.Struct("!I")
 #: How the fork ended, as `os.wait4` gives it; the most memory it had (kB, on macOS bytes); its
