@@ -332,7 +332,8 @@ def _print_table(folder, study, schema, source):
         counts[state] += 1
         _write(table_lines(checked))
     _write(["-" * WIDTH, *_wrapped(LEGEND)])
-    _write([line for note in folder_notes(folder) for line in _wrapped(f"NOTE: {note}")])
+    for note in folder_notes(folder):
+        _write(_wrapped(f"NOTE: {note}"))
     words = ", ".join(f"{n} {state}" for state, n in counts.items())
     _write([f"{printable(folder)}: {words}"])
     return int(counts["refused"] > 0)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.labels import percent
 from . import density as dense
 from . import levelling, overhangs
 from . import points as pts
@@ -255,7 +256,7 @@ def _with_layers(cloud: Cloud, share: float) -> Cloud:
     if share < overhangs.SEVERAL_LAYERS:
         return cloud
     note = (
-        f"{NOTE}{share:.0%} of the points lie far above or below their neighbours in x and y: a "
+        f"{NOTE}{percent(share)} of the points lie far above or below their neighbours in x and y: a "
         "closed body, or two faces or scans in one file; cut out one face, as seen from above"
     )
     return replace(cloud, notes=(*cloud.notes, note))
@@ -267,7 +268,7 @@ def _with_overhang(cloud: Cloud, share: float, what: str) -> Cloud:
     if np.isnan(share):
         notes += ("its triangles are not wound alike, so that overhangs cannot be told",)
     elif share > 0:
-        notes += (f"overhangs: a share of {share:.2g} {what}",)
+        notes += (f"overhangs: {percent(share)} {what}",)
     return replace(cloud, attrs=cloud.attrs | {"overhang_share": share}, notes=notes)
 
 
