@@ -256,8 +256,8 @@ def _with_layers(cloud: Cloud, share: float) -> Cloud:
     if share < overhangs.SEVERAL_LAYERS:
         return cloud
     note = (
-        f"{NOTE}{percent(share)} of the points lie far above or below their neighbours in x and y: a "
-        "closed body, or two faces or scans in one file; cut out one face, as seen from above"
+        f"{NOTE}{percent(share)} of the points lie far above or below their neighbours in x and y: "
+        "a closed body, or two faces or scans in one file; cut out one face, as seen from above"
     )
     return replace(cloud, notes=(*cloud.notes, note))
 
