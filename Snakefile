@@ -32,6 +32,7 @@ rule all:
     input:
         rules.atlas.output,
         collect_everything,
+        expand(rules.refused.output, refused=range(len(REFUSED))),
     # Without it some hundred names are printed.
     message:
         "everything of the study"

@@ -249,3 +249,113 @@ def test_real_scans_are_read_with_the_sidecars_their_readme_asks_for(folder, che
     assert "537 x 388" in out
     assert "5.69 mm    3050 x 2210" in out
     assert "0.515 mm" in out
+
+
+# --- what the study would refuse, and what files hold that is hardly right ---------------------
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"offsets": ["40 mm"]}, "slides the window out of the scan"),
+        pytest.param(
+            {"offsets": ["0.01 mm"]}, "less than half its spacing", marks=pytest.mark.full
+        ),
+        pytest.param({"window": "90 mm"}, "key 'window' asks for", marks=pytest.mark.full),
+        pytest.param(
+            {"window": "12.8 mm", "offsets": "auto"},
+            "cannot slide by even one cell",
+            marks=pytest.mark.full,
+        ),
+        ({"window_centre": ["50 mm", "5 mm"]}, "beside the scan, which reaches from x = 0.1"),
+        pytest.param({"offsets": ["-1 mm"]}, "is negative", marks=pytest.mark.full),
+        pytest.param(
+            {"loads": ["1 kN"]}, "slab.yaml: loads: ['1 kN'] lacks", marks=pytest.mark.full
+        ),
+        pytest.param({"threshold": 5}, "key 'threshold' has no meaning", marks=pytest.mark.full),
+    ],
+)
+def test_what_the_study_refuses_is_refused_here(folder, check, keys, said):
+    write_scan(folder / "slab.npy", surface(), 0.2, sidecar=keys)
+    code, out = check()
+    text = " ".join(out.split())
+    assert code == 1
+    assert said in text
+    assert "slab" in text
+    assert "0 ok, 0 with warnings, 1 refused" in text
+
+
+def test_outliers_are_not_the_only_word_on_a_misread_file(folder, check):
+    z = surface()
+    z[10, 10], z[30, 40] = 500.0, -300.0
+    write_scan(folder / "misread.npy", z, 0.2, sidecar={})
+    z = surface()
+    z[10, 10] += 1.0
+    write_scan(folder / "spiked.npy", z, 0.2, sidecar={})
+    _, out = check()
+    misread, spiked = (" ".join(part.split()) for part in out.split("spiked.npy"))
+    assert (
+        "2 outliers kept, up to 500 mm from the mean plane where the relief of all other" in misread
+    )
+    assert "likely to be marks of missing cells or a misread file" in misread
+    assert "1 outlier kept, up to" in spiked
+    assert "misread" not in spiked
+
+
+def alternating(n):
+    return 0.05 * (-1.0) ** np.arange(n)
+
+
+SUSPICIOUS = {
+    "hold exactly 0, many": lambda z: np.where(np.indices(z.shape).min(axis=0) < 4, 0.0, z),
+    "alternate columns of the lower": lambda z: z + alternating(len(z)),
+    "alternate rows of the lower": lambda z: z + alternating(len(z))[:, np.newaxis],
+    "52 % of the cells are missing": lambda z: np.where(np.arange(len(z)) > 30, np.nan, z),
+    "two tables in one file": lambda z: np.vstack([z, z[::-1] + 3.0]),
+}
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        pytest.param(said, marks=() if i < 2 else pytest.mark.full)
+        for i, said in enumerate(SUSPICIOUS)
+    ],
+)
+def test_what_is_suspicious_about_a_file_is_warned_of(folder, check, said):
+    keys = {"window": "auto", "offsets": "auto"}
+    write_scan(folder / "slab.npy", SUSPICIOUS[said](surface()), 0.2, sidecar=keys)
+    code, out = check()
+    text = " ".join(out.split())
+    assert code == 0
+    assert "WARNING: " in text
+    assert said in text
+
+
+def test_faces_in_the_wrong_order_are_named(folder, check):
+    z = surface()
+    for face, heights in (("lower", z + 0.3), ("upper", z + 0.01 * surface(seed=2))):
+        write_scan(folder / f"joint.{face}.npy", heights, 0.2, sidecar={})
+        (folder / f"joint.{face}.yaml").rename(folder / "joint.yaml")
+    code, out = check()
+    assert code == 0
+    assert "exchange 'lower' and 'upper' in their names" in " ".join(out.split())
+    with (folder / "joint.yaml").open("a") as sidecar:
+        sidecar.write("registration: none\n")
+    code, out = check()
+    assert code == 1
+    assert "REFUSED" in out
+    assert "exchange 'lower' and 'upper' in the names of the files" in " ".join(out.split())
+
+
+def test_what_is_passed_over_and_likely_pairs_stand_below_the_table(folder, check):
+    for name in ("rock_lower", "rock_upper"):
+        write_scan(folder / f"{name}.npy", surface(), 0.2, sidecar={})
+    (folder / "Thumbs.db").write_text("")
+    code, out = check()
+    text = " ".join(out.split())
+    assert code == 0
+    assert "NOTE: " in text
+    assert "passed over, as systems and editors leave such files: Thumbs.db" in text
+    assert "rename them rock.lower.npy and rock.upper.npy" in text
+    assert "2 ok, 0 with warnings, 0 refused" in text

@@ -406,7 +406,7 @@ def test_a_spot_with_far_too_many_points_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(tri, "_MOST_IN_TILE", 1000)
     spot = cloud(3000)
     spot[:1400, :2] = 3.0 + spot[:1400, :2] / 1e4
-    with pytest.raises(InputError, match=r"rock\.npy: 1\d\d\d points lie around x"):
+    with pytest.raises(InputError, match=r"rock\.npy: 1\d\d\d points, more than 1000, lie around"):
         read(tmp_path, spot, grid=0.5)
 
 

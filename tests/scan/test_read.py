@@ -367,7 +367,7 @@ def test_no_unit_shows_the_lines_to_write(tmp_path):
         ({"spacing": [1, 2, 3]}, "a pair"),
         ({"layout": "grid"}, "matrix or points"),
         ({"first_row": "left"}, "bottom or top"),
-        ({"missing": "none"}, "key 'missing'"),
+        ({"missing": "nothing"}, "key 'missing'"),
         ({"columns": [0, 1]}, "key 'columns'"),
         ({"grid": "0.1 mm"}, "key 'grid' has no meaning"),
     ],
@@ -420,7 +420,7 @@ def test_numbers_no_instrument_measures_are_refused_with_the_key_that_may_be_mis
     z = surface()
     z[5, 5] = 1.70141e38  # a mark of missing cells, and no other program's secret
     path = save_npy(tmp_path / "rock.npy", z)
-    with pytest.raises(InputError, match=r"rock\.npy: it holds 1\.70141e\+38 mm.*'missing: "):
+    with pytest.raises(InputError, match=r"rock\.npy: 1 cell .*1\.70141e\+38.*'missing: "):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
     heights = read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": 1.70141e38})
     assert np.isnan(heights.values[5, 5])

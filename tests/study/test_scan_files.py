@@ -9,7 +9,7 @@ import pytest
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.file_names import specimen_name
 from fractalcontact.study.checks import with_coordinates
-from fractalcontact.study.scan_files import find_scans
+from fractalcontact.study.scan_files import find_scans, folder_notes, list_scans
 
 
 def touch(folder, *names):
@@ -203,3 +203,54 @@ def test_files_of_coordinates_belong_to_their_map(tmp_path):
     assert found["slab"].files == (tmp_path / "slab.csv",)
     with pytest.raises(InputError, match=r"x: no file absent\.csv beside it"):
         with_coordinates(scans, {"film": keys | {"x": "absent.csv"}})
+
+
+LEFT = ["rock.npy~", "Thumbs.db", "desktop.ini", "~$table.csv", "rock.npy.bak", "._rock.npy"]
+
+
+@pytest.mark.parametrize("name", LEFT)
+def test_what_systems_and_editors_leave_is_passed_over_with_a_note(tmp_path, name):
+    touch(tmp_path, name, "rock.npy")
+    scans, refused = list_scans(tmp_path)
+    assert (list(scans), refused) == (["rock"], {})
+    if not name.startswith("."):
+        (note,) = folder_notes(tmp_path)
+        assert note.endswith(f"passed over, as systems and editors leave such files: {name}")
+    (tmp_path / name).unlink()
+    assert folder_notes(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "stem"),
+    [
+        ("rock_lower.xyz", "rock_upper.xyz", "rock"),
+        ("my rock-Lower.csv", "my rock-Upper.csv", "my rock"),
+        ("rock_bottom.x3p", "rock_top.x3p", "rock"),
+        ("rockLower.npy", "rockUpper.npy", "rock"),
+    ],
+)
+def test_faces_called_otherwise_are_hinted_at(tmp_path, lower, upper, stem):
+    touch(tmp_path, lower, upper)
+    ending = os.path.splitext(lower)[1]
+    (note,) = folder_notes(tmp_path)
+    assert f"{lower} and {upper} are taken as two specimens" in note
+    assert note.endswith(f"rename them {stem}.lower{ending} and {stem}.upper{ending}")
+    assert len(find_scans(tmp_path)) == 2
+    touch(tmp_path, f"{stem}.yaml")
+    with pytest.raises(InputError, match=rf"are its faces if they are called {stem}\.lower"):
+        find_scans(tmp_path)
+
+
+@pytest.mark.parametrize("names", [("flower.csv", "fupper.csv"), ("a_lower.csv",), ("blower.npy",)])
+def test_names_that_only_end_alike_are_not(tmp_path, names):
+    touch(tmp_path, *names)
+    assert folder_notes(tmp_path) == []
+
+
+@pytest.mark.parametrize("face", ["lower", "upper", "Lower"])
+def test_a_sidecar_of_one_face_is_told_its_name(tmp_path, face):
+    touch(tmp_path, "own.lower.xyz", "own.upper.xyz", f"own.{face}.yaml")
+    scans, refused = list_scans(tmp_path)
+    assert list(scans) == ["own"]
+    (error,) = refused.values()
+    assert str(error).endswith("one sidecar serves both faces of a joint; rename it own.yaml")

@@ -150,7 +150,7 @@ def test_no_hole_free_place_says_where_the_holes_are_and_what_fits():
     with pytest.raises(InputError) as error:
         make_specimen(scan_of(z), window=15.0, name="granite")
     message = str(error.value)
-    for part in ("granite (rock.npy)", "2.6%", "y = 5.25 and 15.25", "'window: 14.5 mm'"):
+    for part in ("granite (rock.npy)", "2.6 %", "y = 5.25 and 15.25", "'window: 14.5 mm'"):
         assert part in message
     # What the message says to write does work.
     specimen = make_specimen(scan_of(z), window=14.5)

@@ -28,6 +28,7 @@ from fractalcontact.study import guards, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
+from fractalcontact.study.scan_files import folder_notes
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.study.size_tasks import size_jobs
 
@@ -39,13 +40,18 @@ if workflow.is_main_process and "FRACTALCONTACT_ALONE" not in os.environ:
     AT_WORK = _running.mark()
 
 DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
+# What is wrong with one scan stops only that where the user asks so on the command line, which
+# Snakemake itself looks at later. Jobs read the workflow too, after the run has decided.
+LEAVE_OUT = not workflow.is_main_process or bool({"-k", "--keep-going"} & set(sys.argv))
 try:
-    STUDY = resolve_study(config, SCHEMA, SOURCE)
+    STUDY = resolve_study(config, SCHEMA, SOURCE, leave_out=LEAVE_OUT)
     RESULTS, SCAN_FOLDER = f"results/{config['study']}", config.get("scans", "scans")
     if workflow.is_main_process:
         if SCAN_FOLDER and not STUDY.scans:
             made_alone = "no scan files there; only what the study itself makes is used"
             logger.warning(f"{SCAN_FOLDER}: {made_alone}")
+        for note in folder_notes(SCAN_FOLDER) if SCAN_FOLDER else ():
+            logger.warning(note)
         guards.refuse_unknown_origin(RESULTS)
         # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
         # files aside, and the user, that specimens may go.
@@ -58,6 +64,8 @@ except InputError as error:
 
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels
 SOLVER = STUDY.solver
+#: What is wrong with scans that are left out; each has a job that says so.
+REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 
 #: Measured contact maps, which have no settings.
 MAPS = {name: SCANS[name] for name in LABELS}
@@ -98,6 +106,7 @@ wildcard_constraints:
     offsets=r"\d+",
     resolutions=r"\d+",
     part=r"\d+",
+    refused=r"\d+",
 
 
 def settings_read_by(stage):

@@ -72,3 +72,15 @@ rule specimen:
         code=code("specimen"),
     script:
         "../scripts/specimen.py"
+
+
+# A scan that the study leaves out, with --keep-going: its job fails and says why, others go on.
+rule refused:
+    output:
+        f"{RESULTS}/refused/{{refused}}.txt",
+    log:
+        f"{RESULTS}/logs/refused/{{refused}}.log",
+    params:
+        reason=lambda wildcards: REFUSED[int(wildcards.refused)],
+    script:
+        "../scripts/refused.py"

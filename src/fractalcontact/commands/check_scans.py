@@ -12,11 +12,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 from ..core.errors import InputError
-from ..core.labels import printable
+from ..core.labels import percent, plain, printable
 from ..domain.measured_map import read_contact_map
+from ..mechanics.joint import choose_offsets
+from ..mechanics.states import hardness_of
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import length_words, overlap_words, suspect_words
@@ -24,11 +24,13 @@ from ..roughness.recommended import beyond_roll_off, dimension_words
 from ..study.checks import check_study, read_sidecar, with_coordinates
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
+from ..study.idle_keys import refuse_idle_keys
 from ..study.preparation import prepare_specimen
-from ..study.scan_files import list_scans
+from ..study.scan_files import folder_notes, list_scans
 from ..study.sidecar import is_contact_map
 from ..surface.grid import spacing_of
-from ..surface.specimen import STEEP_TILT, window_sides
+from ..surface.specimen import window_sides
+from .scan_words import gap_words, warnings_of_specimen
 
 #: Columns of the table: heading and width.
 COLUMNS = {
@@ -130,10 +132,14 @@ def _check(scan, study, schema, source):
     if scan.name in study.get("embedded", {}):
         raise InputError(f"'{scan.name}' is also an embedded specimen of {source}; rename one")
     options, own = read_sidecar(scan.sidecar, schema)
+    refuse_idle_keys(scan, options, own)
     if is_contact_map(options):
         return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
-    settings = resolve_settings(study, scan.name, own, source)
+    settings = resolve_settings(
+        study, scan.name, own, source, pair=scan.upper is not None, sidecar_file=scan.sidecar
+    )
     specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
+    _require_solvable(specimen, settings)
     dimension = surface_dimension(
         specimen["lower"].values, spacing_of(specimen), fit_range=settings["surface_range"]
     )
@@ -141,6 +147,13 @@ def _check(scan, study, schema, source):
     doubtful = dimension["no_dimension"].item() or beyond_roll_off(dimension)
     (row.warnings if doubtful else row.lines).append(dimension_words(dimension))
     return row
+
+
+def _require_solvable(specimen, settings):
+    """Refuse what the study would refuse once the specimen is read: its offsets and loads."""
+    every = dict.fromkeys([*settings["directions"], *settings["contact_directions"]])
+    choose_offsets(specimen, settings["offsets"], list(every))
+    hardness_of(settings, specimen)
 
 
 def _specimen_row(scan, specimen, quality):
@@ -154,7 +167,7 @@ def _specimen_row(scan, specimen, quality):
         "specimen": scan.name,
         "faces": str(len(faces)),
         "relief": length_words(relief),
-        "missing": f"{100 * quality['missing_share'].values.max():.2g} %",
+        "missing": percent(quality["missing_share"].values.max()),
         "outl.": str(attrs.get("outlier_count", "-")),
         "tilt": f"{attrs['tilt_degrees']:.1f}°",
         "window (mm)": _pair(window_sides(specimen)[::-1]),
@@ -168,10 +181,10 @@ def _specimen_row(scan, specimen, quality):
         if file.get("overrides"):
             lines.append(f"{face} face, the sidecar overrides: {file['overrides']}")
     if len(faces) == 2:
-        lines.append(f"{_gap_words(specimen)}; {overlap_words(specimen, quality)}")
+        lines.append(f"{gap_words(specimen)}; {overlap_words(specimen, quality)}")
     if suspicious := suspect_words(specimen):
         lines.append(f"suspicious: {suspicious}")
-    return Checked(scan.name, cells, lines, _warnings(specimen, quality))
+    return Checked(scan.name, cells, lines, warnings_of_specimen(specimen, quality))
 
 
 def _noise(quality):
@@ -183,48 +196,6 @@ def _noise(quality):
     return f"<{length_words(limit)}" if math.isfinite(limit) else "-"
 
 
-def _warnings(specimen, quality):
-    """What a user should look at before a study is run."""
-    attrs = specimen.attrs
-    warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
-    if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
-        warnings.append(
-            f"{attrs['outlier_count']} outliers are kept; 'outliers: mask' in the sidecar makes "
-            "them missing"
-        )
-    if attrs["tilt_degrees"] > STEEP_TILT:
-        warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
-    if "overlap_cells" in quality and quality["overlap_cells"].sel(region="window"):
-        filled = attrs["outliers"] == "fill"
-        remedy = "" if filled else "; 'outliers: fill' in the sidecar fills lone and deep ones"
-        warnings.append(
-            f"{overlap_words(specimen, quality)}: contact at zero offset rests on errors of the "
-            f"scans{remedy}"
-        )
-    note = json.loads(attrs.get("registration", "{}")).get("note", "")
-    if "NOTE: " in note:
-        warnings.append(note.partition("NOTE: ")[2])
-    return warnings
-
-
-def _gap_words(specimen):
-    """Statistics of the gap, and whether the upper face was moved to the lower one."""
-    gap = (specimen["upper"] - specimen["lower"]).values
-    words = f"gap: mean {length_words(np.nanmean(gap))}, sd {length_words(np.nanstd(gap))}"
-    if "registration" not in specimen.attrs:
-        return words
-    motion = json.loads(specimen.attrs["registration"])
-    words += f"; registration ({motion['mode']}): {motion['note']}"
-    if motion["applied"]:
-        before = motion["gap_sd_before_mm"]
-        spread = "unknown" if before is None else length_words(before)
-        words += (
-            f", shift {motion['shift_x_mm']:.3g}, {motion['shift_y_mm']:.3g} mm (x, y), sd before "
-            f"{spread}"
-        )
-    return words
-
-
 def _map_row(scan, contact):
     """Numbers of a measured contact map."""
     attrs = contact.attrs
@@ -232,7 +203,7 @@ def _map_row(scan, contact):
         **_grid_cells(contact.sizes, attrs),
         "specimen": scan.name,
         "faces": "map",
-        "missing": f"{100 * (1 - float(contact['measured'].mean())):.2g} %",
+        "missing": percent(1 - float(contact["measured"].mean())),
     }
     nominal, share, pressure, force = (
         float(contact[name]) for name in ("nominal_area", "area_share", "nominal_pressure", "force")
@@ -240,14 +211,14 @@ def _map_row(scan, contact):
     series = f", series {attrs['series']}" if attrs["series"] else ""
     stated = (
         f"contact map: {attrs['reader']}, A_0 = {nominal:.4g} mm2 (outline: "
-        f"{json.loads(attrs['outline'])}), {100 * share:.3g} % in contact above "
+        f"{json.loads(attrs['outline'])}), {percent(share)} in contact above "
         f"{attrs['threshold']:g}{series}"
     )
     load = f"F = {force:.4g} N, F/A_0 = {pressure:.4g} MPa"
     lines = [_file_names(scan), stated, load if math.isfinite(pressure) else "no load stated"]
     if contact.sizes["threshold"] > 1:
         shares = ", ".join(
-            f"{100 * part:.3g} % above {at:g}"
+            f"{percent(part)} above {at:g}"
             for at, part in zip(
                 contact["threshold"].values, contact["threshold_area_share"].values, strict=True
             )
@@ -269,7 +240,7 @@ def _grid_cells(sizes, attrs):
 
 def _pair(lengths):
     """Two lengths (x, y) in mm."""
-    return " x ".join(f"{float(f'{length:.3g}'):g}" for length in lengths)
+    return " x ".join(plain(length) for length in lengths)
 
 
 def _file_names(scan):
@@ -361,6 +332,8 @@ def _print_table(folder, study, schema, source):
         counts[state] += 1
         _write(table_lines(checked))
     _write(["-" * WIDTH, *_wrapped(LEGEND)])
+    for note in folder_notes(folder):
+        _write(_wrapped(f"NOTE: {note}"))
     words = ", ".join(f"{n} {state}" for state, n in counts.items())
     _write([f"{printable(folder)}: {words}"])
     return int(counts["refused"] > 0)

@@ -1,5 +1,8 @@
 """What every variable of the atlas says about itself, and how untrusted text is shown."""
 
+import math
+from collections.abc import Iterable
+
 
 def cf_attrs(units: str, long_name: str) -> dict[str, str]:
     """Attributes of a variable, named as the CF conventions have them.
@@ -33,3 +36,38 @@ def printable(text: object, longest: int | None = None) -> str:
         return text
     half = (longest - 1) // 2
     return f"{text[:half]}…{text[-half:]}"
+
+
+def quoted(text: object, longest: int = 200) -> str:
+    """Untrusted text on one line, whole words up to a length; what is left out shows as "…"."""
+    text = " ".join(printable(text).split())
+    if len(text) <= longest:
+        return text
+    end = text.rfind(" ", longest // 2, longest)
+    return f"{text[: end if end > 0 else longest]} …"
+
+
+def listed(names: Iterable[object], most: int = 15) -> str:
+    """Names in a sentence; of very many the first and how many more there are."""
+    shown = [printable(name, 60) for name in names]
+    more = len(shown) - most
+    return ", ".join(shown[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def percent(fraction: float) -> str:
+    """A fraction in per cent as a person writes it: 0.05 %, 3.2 %, 62 %, 99.4 %, 100 %."""
+    value = 100 * float(fraction)
+    if value == 0 or abs(value) >= 99.995:
+        return f"{value:.0f} %"
+    if abs(value) < 0.005:
+        return "<0.01 %" if value > 0 else f"{value:.0e} %"
+    near = min(abs(value), abs(100 - value))
+    return f"{value:.{2 if near < 0.95 else 1 if near < 9.5 else 0}f} %"
+
+
+def plain(value: float, digits: int = 3) -> str:
+    """A number to so many digits without powers of ten where a person would write none."""
+    text = f"{float(value):.{digits}g}"
+    if "e" in text and 1e-6 <= abs(value) < 1e9:
+        text = f"{float(text):.{max(0, digits - 1 - math.floor(math.log10(abs(float(text)))))}f}"
+    return text

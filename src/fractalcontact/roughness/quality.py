@@ -16,7 +16,8 @@ from ..surface.grid import spacing_of
 from ..surface.specimen import cell_side, window_slices
 from ..surface.suspect import overlap_statistics
 from .fractal_range import FractalRange, find_fractal_range
-from .quality_words import AXES, interval_words
+from .quality_words import AXES, file_warnings, interval_words
+from .scan_lines import ALTERNATION, alternations, scan_line_warnings
 from .spectra import STRIPS, profile_spectra, radial_spectrum
 
 #: Fractions of the cells below a height, in percent.
@@ -46,11 +47,12 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     -------
     Dataset
         On `face`: relief and histogram (`edge`, `bin`), `missing_share`, `height_step`, radially
-        averaged spectrum. On `face` and `axis`: spectra of profiles and the fractal range by
-        :mod:`roughness.fractal_range`. `range_end` (mm), the shortest wavelength of the fractal
-        range over all of them, with its cause as attribute ``ended_by``; `below_range` on
-        `resolution`. Of two faces, on `region` ("scan", "window"): where they overlap, and their
-        gap. Attribute ``warning``: a sentence, "" if all is well.
+        averaged spectrum. On `face` and `axis`: spectra of profiles, the fractal range by
+        :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`.
+        `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
+        cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
+        ("scan", "window"): where they overlap, and their gap. Attribute ``warning``: what reading
+        the files and this found, in sentences, "" if all is well.
 
     Notes
     -----
@@ -69,6 +71,7 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         {
             **_relief(heights),
             **labelled(_POINTS, points),
+            **labelled(ALTERNATION, alternations(heights)),
             **_profile_spectra(heights, spacing),
             **_radial_spectra(heights, spacing),
         },
@@ -80,7 +83,8 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     end = _range_end(result, side)
     result = result.assign(_compared_with_range(end, np.array(resolutions), side))
     result.attrs = {"ended_by": end.cause}
-    result.attrs["warning"] = _warning(result)
+    warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
+    result.attrs["warning"] = "; ".join(filter(None, warnings))
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result
 

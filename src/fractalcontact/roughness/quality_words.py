@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import INTERVAL
+from ..core.labels import percent, plain
 from .fractal_range import NO_POWER_LAW
 from .spectra import STRIPS
 
@@ -15,26 +16,30 @@ AXES = ("x", "y")
 UNEQUAL = 2.0
 #: Below this exponent 1 + 2H no rock is known, and spikes and noise look alike.
 FLATTEST = 1.5
+#: Lengths from here on, mm, are said in metres.
+_METRES = 1e4
 
 
 def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> str:
     """A scalar length with its 95 % interval, if it has one: three digits, in mm or what suits."""
     value, low, high = (values[name + ending].item() for ending in INTERVAL)
     unit, size = (unit, 1.0) if unit == "mm" else height_unit(value)
-    interval = f" [{low / size:.3g}, {high / size:.3g}]" if math.isfinite(low) else ""
-    return f"{value / size:.3g}{interval} {unit}"
+    interval = f" [{plain(low / size)}, {plain(high / size)}]" if math.isfinite(low) else ""
+    return f"{plain(value / size)}{interval} {unit}"
 
 
 def length_words(length: float) -> str:
-    """A length in mm in the unit that suits it: three digits."""
-    unit, size = height_unit(length)
-    return f"{float(length) / size:.3g} {unit}"
+    """A length in mm in the unit that suits it: three digits, no power of ten."""
+    unit, size = height_unit(abs(length))
+    return f"{plain(float(length) / size)} {unit}"
 
 
 def height_unit(height: float) -> tuple[str, float]:
     """Unit that suits a height in mm: its name, and how many mm it is."""
-    units = (("mm", 1.0), ("µm", 1e-3), ("nm", 1e-6))
-    return next((unit for unit in units if height >= 0.1 * unit[1]), units[-1])
+    units = (("mm", 1.0), ("µm", 1e-3), ("nm", 1e-6), ("pm", 1e-9), ("fm", 1e-12))
+    if height >= _METRES:
+        return "m", 1e3
+    return next((unit for unit in units if height >= 0.1 * unit[1] or height == 0), units[2])
 
 
 def noise_words(quality: xr.Dataset, face: str) -> str:
@@ -106,6 +111,26 @@ def range_words(quality: xr.Dataset, face: str) -> str:
     return "; ".join(words)
 
 
+def file_warnings(specimen: xr.Dataset) -> list[str]:
+    """What reading the files of a specimen found that its user should act on, a sentence each.
+
+    Parameters
+    ----------
+    specimen : Dataset
+        From `surface.specimen.make_specimen`.
+    """
+    found = []
+    for face in ("lower", "upper"):
+        attrs = json.loads(specimen.attrs.get(f"{face}_scan", "{}"))
+        found += [
+            f"{attrs['source']}: {words}"
+            for words in attrs.get("warnings", "").split("\n")
+            if words
+        ]
+    note = json.loads(specimen.attrs.get("registration", "{}")).get("note", "")
+    return found + [part.removesuffix("; ") for part in note.split("NOTE: ")[1:] if part]
+
+
 def suspect_words(specimen: xr.Dataset) -> str:
     """Lone spikes and cells far from any point, counted; "" if there are none.
 
@@ -140,6 +165,6 @@ def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
     count = int(window["overlap_cells"])
     return (
         f"the faces overlap as scanned in {count} cell{'s' * (count > 1)} of the window "
-        f"({100 * float(window['overlap_fraction']):.2g} %, up to "
+        f"({percent(float(window['overlap_fraction']))}, up to "
         f"{length_words(float(window['overlap_depth']))} deep; {elsewhere})"
     )

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.labels import percent
 from . import density as dense
 from . import levelling, overhangs
 from . import points as pts
-from .measured import Measured
+from .measured import NOTE, Measured
 from .raw import SMALLEST_SIDE
 from .surface_motion import Motion
 from .triangles import interpolate_mesh, interpolate_points, places_across
@@ -19,6 +20,8 @@ _OVERHANG_OF_POINTS = (
     "of the points lies beneath others and is kept, being so small",
     "of the points lies beneath others and is left out, as an instrument above would not see it",
 )
+#: From this share of points that lie over another one on they are no repeats by chance.
+_MANY_STACKED = 0.05
 
 
 @dataclass(frozen=True)
@@ -182,7 +185,10 @@ def _merge(scan: Measured) -> Cloud:
         notes.append(f"{repeats.duplicated} points are there twice; each counts once")
     if repeats.stacked:
         what = "averaged" if mesh is None else "upright parts of the mesh"
-        notes.append(f"{repeats.stacked} points share x and y with one of another height: {what}")
+        note = f"{repeats.stacked} points share x and y with one of another height: {what}"
+        if mesh is None and repeats.stacked > _MANY_STACKED * len(points):
+            note = f"{NOTE}{note}; two faces or scans in one file? Cut them apart"
+        notes.append(note)
     return Cloud(scan.path, points, lattice, None, mesh, attrs, tuple(notes))
 
 
@@ -228,6 +234,7 @@ def _look_beneath(cloud: Cloud) -> Cloud:
     points = cloud.points[np.isfinite(cloud.points[:, 2])]
     tree = dense.plane_tree(points)
     if cloud.mesh is None:
+        cloud = _with_layers(cloud, overhangs.layered_share(points, tree))
         share, hidden = overhangs.find_hidden(points, tree)
         cloud = _with_overhang(cloud, share, _OVERHANG_OF_POINTS[hidden is not None])
         if hidden is not None:
@@ -244,19 +251,36 @@ def _look_beneath(cloud: Cloud) -> Cloud:
     return replace(cloud, points=points, density=density, notes=notes)
 
 
+def _with_layers(cloud: Cloud, share: float) -> Cloud:
+    """The cloud with a note if it has several layers."""
+    if share < overhangs.SEVERAL_LAYERS:
+        return cloud
+    note = (
+        f"{NOTE}{percent(share)} of the points lie far above or below their neighbours in x and y: "
+        "a closed body, or two faces or scans in one file; cut out one face, as seen from above"
+    )
+    return replace(cloud, notes=(*cloud.notes, note))
+
+
 def _with_overhang(cloud: Cloud, share: float, what: str) -> Cloud:
     """The cloud with its share of overhangs, noted if there are any."""
     notes = cloud.notes
     if np.isnan(share):
         notes += ("its triangles are not wound alike, so that overhangs cannot be told",)
     elif share > 0:
-        notes += (f"overhangs: a share of {share:.2g} {what}",)
+        notes += (f"overhangs: {percent(share)} {what}",)
     return replace(cloud, attrs=cloud.attrs | {"overhang_share": share}, notes=notes)
 
 
 def _with_overhang_of_mesh(cloud: Cloud, mesh: Mesh) -> Cloud:
     down, against = overhangs.downward_share(mesh.vertices, mesh.triangles)
     cloud = _with_overhang(cloud, against, "of the mesh faces down; its top-most part is used")
+    if overhangs.is_closed(mesh.triangles):
+        note = (
+            f"{NOTE}the mesh is a closed body, such as a boulder, of which the top-most part was "
+            "read up to its outline; cut out the face itself"
+        )
+        cloud = replace(cloud, notes=(*cloud.notes, note))
     if down <= 0.5:
         return cloud
     note = "most triangles are wound to face down; heights are taken to point up all the same"

@@ -10,7 +10,8 @@ import xarray as xr
 from ..core.errors import InputError
 from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
 from .density import far_from_points, points_per_cell
-from .measured import Measured
+from .doubtful import doubts, refuse_coordinates
+from .measured import NOTE, Measured, warnings_of
 from .pairs import MIRRORS, register
 from .plausible import check_relief, check_spacing
 from .points import Lattice, covering_lattice
@@ -55,14 +56,9 @@ def grid_pair(
     Raises
     ------
     InputError
-        If one is a matrix and the other is not, two matrices have different spacings, or as
-        `pairs.register`.
+        If two matrices have different spacings, or as `pairs.register`.
     """
-    if (lower.layout == "matrix") != (upper.layout == "matrix"):
-        raise InputError(
-            f"{lower.path} is a {lower.layout} scan and {upper.path} is a {upper.layout} scan; "
-            "export both faces in the same way"
-        )
+    assert (lower.layout == "matrix") == (upper.layout == "matrix")  # `read_faces` refused others
     where = f"{lower.path} and {upper.path}"
     if mirror_upper is not None:
         upper = _turned_over(upper, mirror_upper)
@@ -136,10 +132,13 @@ def _label(heights, lattice, scan: Measured, gridding: str, cloud=None) -> xr.Da
     """Check the heights and give them coordinates, units and provenance."""
     _check_surface(heights, lattice, scan.path)
     provenance = dict(scan.provenance)
+    found = [f"{NOTE}{doubt}" for doubt in doubts(heights)]
     if cloud is not None:
         provenance |= cloud.attrs
         provenance["points_per_cell"] = points_per_cell(cloud.points, heights, lattice)
-        provenance["notes"] = "; ".join(filter(None, (provenance["notes"], *cloud.notes)))
+        found = [*cloud.notes, *found]
+    provenance["notes"] = "; ".join(filter(None, (provenance["notes"], *found)))
+    provenance["warnings"] = "\n".join(filter(None, (provenance["warnings"], warnings_of(found))))
     x = lattice.x0 + lattice.dx * np.arange(lattice.nx)
     y = lattice.y0 + lattice.dy * np.arange(lattice.ny)
     return xr.DataArray(
@@ -166,7 +165,7 @@ def _check_surface(heights: np.ndarray, lattice: Lattice, path: Path) -> None:
     """Refuse what cannot be the scan of a rough surface."""
     if min(heights.shape) < SMALLEST_SIDE:
         raise InputError(
-            f"{path}: {heights.shape[0]} x {heights.shape[1]} cells are too few; at least "
+            f"{path}: {heights.shape[1]} x {heights.shape[0]} cells (x, y) are too few; at least "
             f"{SMALLEST_SIDE} x {SMALLEST_SIDE} are needed"
         )
     present = heights[np.isfinite(heights)]
@@ -177,7 +176,8 @@ def _check_surface(heights: np.ndarray, lattice: Lattice, path: Path) -> None:
             f"{path}: a constant surface: every height is {present[0]:g} mm, so this is no scan"
         )
     check_spacing((lattice.dx, lattice.dy), path)
-    check_relief(present, max(lattice.dx * lattice.nx, lattice.dy * lattice.ny), path)
+    refuse_coordinates(heights, path)
+    check_relief(heights, (lattice.dx, lattice.dy), path)
 
 
 def _differing_grid(z_l: xr.DataArray, z_u: xr.DataArray) -> str | None:

@@ -1,9 +1,18 @@
 """A scan measured in mm, before it is on a grid."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+#: Begins a note that a user should act on: it is also among the ``warnings``.
+NOTE = "NOTE: "
+
+
+def warnings_of(notes: Iterable[str]) -> str:
+    """Those of the notes that a user should act on, one a line."""
+    return "\n".join(note.removeprefix(NOTE) for note in notes if note.startswith(NOTE))
 
 
 @dataclass(frozen=True)

@@ -23,12 +23,14 @@ class ScanOptions:
     variable: str | None = None
     columns: tuple | None = None
     axes: str | None = None
-    missing: float | None = None
+    missing: float | tuple | str | None = None
     grid: float | str | None = None
     registration: str | None = None
     mirror_upper: str | None = None
 
 
+#: What the key `missing` says where every number is a height, however it looks.
+NO_MARK = "none"
 #: How the upper face of a pair may be brought to the lower one.
 REGISTRATIONS = ("rigid", "translation", "none")
 #: Keys that say how two faces lie to each other.
@@ -71,7 +73,16 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
     if (variable := options.get("variable")) is not None:
         _require(isinstance(variable, str), where, "variable", variable, "the name of an array")
     if (missing := options.get("missing")) is not None:
-        _require(_is_number(missing), where, "missing", missing, "a number, such as -9999")
+        if isinstance(missing, list | tuple):
+            options["missing"] = missing = tuple(missing)
+        each = missing if isinstance(missing, tuple) else (missing,)
+        _require(
+            missing == NO_MARK or (len(each) > 0 and all(_is_number(mark) for mark in each)),
+            where,
+            "missing",
+            missing,
+            "a number, such as -9999, a list of numbers, or 'none'",
+        )
     if (columns := options.get("columns")) is not None:
         options["columns"] = _columns(columns, where)
     if isinstance(options.get("spacing"), list):

@@ -25,6 +25,14 @@ FEW_HIDDEN = 0.005
 _BLOCK = 100_000  # points whose neighbours are held at once
 #: A mesh is wound alike if hardly an edge runs the same way in two of its triangles.
 _WOUND_ALIKE = 1e-3
+#: ... and closes a body if fewer edges have a triangle on one side alone than this many times the
+#: root of the number of triangles: the rim of a sheet has some three times that.
+_OPEN_EDGES = 0.2
+#: A point lies over another layer if its neighbour in the plane is this many times as far above or
+#: below it as the nearest point in space is away.
+_OTHER_LAYER = 10.0
+#: From this share on a cloud has several layers: by chance one point in some thousand does so.
+SEVERAL_LAYERS = 0.1
 
 
 def find_hidden(points: np.ndarray, tree: cKDTree) -> tuple[float, np.ndarray | None]:
@@ -79,6 +87,36 @@ def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -
         gap = np.fmax(np.nanmax(np.diff(angles), axis=1, initial=0), across_the_back)
         hidden[start + may_be] = gap < _WIDEST_GAP
     return hidden
+
+
+def layered_share(points: np.ndarray, tree: cKDTree) -> float:
+    """Share of the points whose neighbour in the plane belongs to another layer.
+
+    Half of them in a closed body or two faces in one file: no surface over x and y.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Finite, no two at the same x, y.
+    tree : cKDTree
+        Of their x, y.
+    """
+    sample = sample_points(points)
+    distances, neighbours = tree.query(sample[:, :2], k=min(_NEIGHBOURS + 1, len(points)))
+    rise = np.abs(points[neighbours[:, 1:], 2] - sample[:, 2:])
+    nearest = np.hypot(distances[:, 1:], rise).min(axis=1)
+    return float((rise[:, 0] > _OTHER_LAYER * nearest).mean())
+
+
+def is_closed(triangles: np.ndarray) -> bool:
+    """Whether a mesh (m, 3) is the skin of a body: each edge has a triangle on either side."""
+    edges = np.sort(
+        np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    )
+    keys = np.sort(edges[:, 0].astype(np.int64) * (int(triangles.max()) + 1) + edges[:, 1])
+    same = keys[1:] == keys[:-1]
+    alone = ~(np.r_[False, same] | np.r_[same, False])
+    return bool(np.count_nonzero(alone) <= _OPEN_EDGES * np.sqrt(len(triangles)))
 
 
 def downward_share(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
+from ..core.labels import percent, plain
 from ..core.mean_plane import without_mean_plane
 from .face_match import LARGEST_ROTATION, for_comparison, mirror_images
 from .raw import SMALLEST_SIDE
@@ -22,6 +23,9 @@ SMALLEST_GAIN = 0.01
 #: together: faces that have nothing to do with each other reach 0.5. The granite pair, a joint
 #: that does not close quite, reaches 0.83.
 POOR_MATCH, GOOD_MATCH = 0.5, 0.7
+#: From this fraction of the cells on where the upper face lies below the lower one, their order is
+#: questioned: an error of the mean gap of two rough faces that touch leaves half of them.
+MOSTLY_BELOW = 0.9
 #: Fraction of the cells that touch or overlap where faces are set down: not a scan's one spike.
 _TOUCHING = 0.01
 #: A cloud is moved, gridded and matched again until no further tilt of this size is found: one of
@@ -90,11 +94,13 @@ def register(
         share no area.
     """
     before = gap_statistics(lower, upper)
-    if mirrored:  # the height it was turned over at means nothing
+    below = "" if mirrored else _upside_down(lower, upper, before, mode, where)
+    if mirrored or below:  # the height it was given at means nothing
         before["gap_mean"] = None
 
     def as_given(note: str, match: float | None = None) -> tuple[xr.DataArray, xr.DataArray]:
-        return _finished(lower, upper, _record(mode, None, match, before, before, note), where)
+        record = _record(mode, None, match, before, before, note + below)
+        return _finished(lower, upper, record, where)
 
     if mode == "none":
         return as_given("not moved, as the sidecar asks")
@@ -103,9 +109,9 @@ def register(
     if match < POOR_MATCH:
         _refuse_mirror_image(lower, upper, mirrored, where)
         return as_given(
-            f"NOTE: the faces do not match (correlation without long waves {match:.2f}) and are "
-            "left as they are; faces of one joint do, unless one is turned by more than "
-            f"{LARGEST_ROTATION} degrees",
+            f"NOTE: the faces do not match (correlation without long waves {match:.2f}, below "
+            f"{POOR_MATCH:g}) and are left as they are; faces of one joint do, unless one is "
+            f"turned by more than {LARGEST_ROTATION} degrees",
             match,
         )
     moved, motion, how = _moved(lower, upper, motion, mode, regrid)
@@ -125,7 +131,35 @@ def register(
     if not found["converged"]:
         note += "; NOTE: the search had not come to rest"
     moved.attrs = upper.attrs
-    return _finished(lower, moved, _record(mode, motion, match, before, after, note), where)
+    return _finished(lower, moved, _record(mode, motion, match, before, after, note + below), where)
+
+
+def _upside_down(lower, upper, before: dict, mode: str, where: str) -> str:
+    """Name faces of which the upper one lies below the lower one nearly everywhere.
+
+    In one coordinate frame they are in the wrong order. Scanned each in a frame of its own, their
+    heights may have no common zero either.
+    """
+    gap = None if before["gap_mean"] is None else _common_gap(lower, upper)
+    if gap is None:
+        return ""
+    fraction = float((gap[np.isfinite(gap)] < 0).mean())
+    if fraction < MOSTLY_BELOW:
+        return ""
+    found = (
+        f"the upper face lies below the lower one in {percent(fraction)} of the cells, by "
+        f"{plain(-before['gap_mean'])} mm on average"
+    )
+    if mode == "none":
+        raise InputError(
+            f"{where}: {found}, so they are in the wrong order, or not in the one frame that "
+            "'registration: none' says they are in; exchange 'lower' and 'upper' in the names of "
+            "the files, or remove that key"
+        )
+    return (
+        f"; NOTE: as given {found}: if the files are in the wrong order, exchange 'lower' and "
+        "'upper' in their names, if their heights merely have no common zero, nothing is wrong"
+    )
 
 
 def gap_statistics(lower: xr.DataArray, upper: xr.DataArray) -> dict:

@@ -6,11 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.mean_plane import without_mean_plane
 
 LARGEST_FIELD = 1e4  # mm: no profilometer sees 10 m
 SMALLEST_FIELD = 1e-6  # mm: nor less than 1 nm
 SMALLEST_SPACING = 1e-7  # mm: an atom
 LARGEST_ASPECT = 100  # of the two spacings of a cell
+#: Degrees of tilt beyond which heights over x and y are no picture of a face any more.
+STEEPEST = 80.0
 
 
 def check_spacing(spacing: tuple[float, float], path: Path) -> None:
@@ -34,7 +37,8 @@ def check_spacing(spacing: tuple[float, float], path: Path) -> None:
         reason = "a spacing is a length above zero; write it in the sidecar, 'spacing: 0.1 mm'"
     elif min(spacing) < SMALLEST_SPACING:
         reason = (
-            f"{min(spacing):.3g} mm is less than an atom, so the unit or the spacing is wrong; "
+            f"{min(spacing):.3g} mm is less than an atom ({SMALLEST_SPACING:g} mm), so the unit or "
+            "the spacing is wrong; "
             "write the right one in the sidecar, 'unit_xy: um' or 'spacing: 0.5 um'"
         )
     elif max(spacing) > LARGEST_ASPECT * min(spacing):
@@ -47,15 +51,17 @@ def check_spacing(spacing: tuple[float, float], path: Path) -> None:
     raise InputError(f"{cells}: {reason}")
 
 
-def check_relief(heights: np.ndarray, field: float, path: Path) -> None:
+def check_relief(heights: np.ndarray, spacing: tuple[float, float], path: Path) -> None:
     """Refuse a field too large or too small, or a relief higher than the field is wide.
+
+    The relief is that above the mean plane: a steep mounting makes no unit wrong.
 
     Parameters
     ----------
-    heights : ndarray
-        In mm, those that are present.
-    field : float
-        Longer side in mm.
+    heights : (ny, nx) ndarray
+        In mm, NaN where missing.
+    spacing : (float, float)
+        dx, dy in mm.
     path : Path
 
     Raises
@@ -63,10 +69,30 @@ def check_relief(heights: np.ndarray, field: float, path: Path) -> None:
     InputError
         With what to write in the sidecar.
     """
-    low, high = np.percentile(heights, [1, 99])  # a few spikes do not make a unit wrong
-    if not SMALLEST_FIELD <= field <= LARGEST_FIELD or high - low > field:
+    field = max(n * step for n, step in zip(heights.shape[::-1], spacing, strict=True))
+    remedy = (
+        "its unit or spacing is wrong; write the right ones in the sidecar, 'unit: um' (or "
+        "'unit_xy' and 'unit_z') and, for a matrix, 'spacing: 0.5 um'"
+    )
+    if not SMALLEST_FIELD <= field <= LARGEST_FIELD:
         raise InputError(
-            f"{path}: a field of {field:.4g} mm with a relief of {high - low:.4g} mm is not "
-            f"plausible: its unit or spacing is wrong; write the right ones in the sidecar, "
-            "'unit: um' (or 'unit_xy' and 'unit_z') and, for a matrix, 'spacing: 0.5 um'"
+            f"{path}: a field of {field:.4g} mm is not plausible (from {SMALLEST_FIELD:g} to "
+            f"{LARGEST_FIELD:g} mm are): {remedy}"
+        )
+    levelled = without_mean_plane(heights)
+    if not np.isfinite(levelled).any():  # one line of cells alone
+        levelled = heights
+    present = np.isfinite(levelled)
+    low, high = np.percentile(levelled[present], [1, 99])  # a few spikes do not make a unit wrong
+    if high - low > field:
+        raise InputError(
+            f"{path}: a field of {field:.4g} mm with a relief of {high - low:.4g} mm above its "
+            f"mean plane, more than the field is wide, is not plausible: {remedy}"
+        )
+    low, high = np.percentile((heights - levelled)[present], [1, 99])
+    if (rise := math.degrees(math.atan2(high - low, field))) > STEEPEST:
+        raise InputError(
+            f"{path}: the mean plane rises by {high - low:.4g} mm over a field of {field:.4g} mm, "
+            f"{rise:.0f} degrees, where at most {STEEPEST:g} are read: turn the scan level, or "
+            f"{remedy}"
         )

@@ -181,11 +181,12 @@ def covering_lattice(points: np.ndarray, spacing: float, where: str) -> Lattice:
             f"{where}: the points span no area of at least one grid spacing ({spacing:.4g} mm); "
             "set a finer key 'grid'"
         )
-    if count.prod() > min(MOST_CELLS, max(_FEW_CELLS, CELLS_PER_POINT * len(points))):
+    most = min(MOST_CELLS, max(_FEW_CELLS, CELLS_PER_POINT * len(points)))
+    if count.prod() > most:
         raise InputError(
             f"{where}: a grid of {spacing:.4g} mm over {high[0] - low[0]:.4g} x "
-            f"{high[1] - low[1]:.4g} mm has too many cells; remove stray points or set a coarser "
-            "key 'grid'"
+            f"{high[1] - low[1]:.4g} mm has {count.prod():.3g} cells, more than the {most:.3g} "
+            f"allowed for {len(points)} points; remove stray points or set a coarser key 'grid'"
         )
     x0, y0 = map(float, first * spacing)
     return Lattice(x0, y0, spacing, spacing, int(count[0]), int(count[1]))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -13,9 +14,10 @@ from ..core.units import length_factor
 from .confined import read_confined
 from .faces import grid_one, grid_pair
 from .files import is_unchanged, regular_file, sha256
-from .measured import Measured
+from .measured import NOTE, Measured, warnings_of
 from .options import (
     MATRIX_KEYS,
+    NO_MARK,
     PAIR_KEYS,
     POINT_KEYS,
     ScanOptions,
@@ -26,6 +28,7 @@ from .options import (
 from .plausible import check_spacing
 from .points import single_precision_note
 from .raw import RawScan
+from .undeclared import refuse_or_warn
 
 __all__ = ["read_faces", "read_matrix", "read_scan"]
 
@@ -89,16 +92,18 @@ def read_faces(
         As `read_scan`; also if the two grids differ, a mirror image of the upper face matches
         instead of the face, or the faces share no area.
     """
-    pair = parse_options(options, str(lower_path))
+    given = parse_options(options, str(lower_path))
     if upper_path is None:
         for key in PAIR_KEYS:
-            if getattr(pair, key) is not None:
+            if getattr(given, key) is not None:
                 raise InputError(
                     f"{lower_path}: key '{key}' needs two faces, here is one; remove it"
                 )
         return read_scan(lower_path, options), None
-    lower, upper = (_measure(Path(path), options) for path in (lower_path, upper_path))
-    return grid_pair(lower, upper, pair.registration or "rigid", pair.mirror_upper)
+    files = [_read(Path(path), given) for path in (lower_path, upper_path)]
+    _require_one_layout(*files)
+    lower, upper = (_in_mm(file, given) for file in files)
+    return grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
 
 
 def read_matrix(
@@ -125,16 +130,28 @@ def read_matrix(
     InputError
         As `read_scan`, but for numbers that cannot be heights; also if the file holds points.
     """
-    measured = _measure(Path(path), options)
+    measured = _measure(Path(path), options, are_heights=False)
     if measured.layout != "matrix":
         raise InputError(f"{path}: holds points, a matrix is needed; 'layout: matrix' if it is one")
     assert measured.spacing is not None  # a matrix has one
     return measured.values, measured.spacing, measured.provenance
 
 
-def _measure(path: Path, options) -> Measured:
+class _File(NamedTuple):
+    """What a file holds, in its own units."""
+
+    path: Path
+    raw: RawScan
+    checksum: str
+
+
+def _measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
     """Read a file and convert it to mm, with what the sidecar says."""
-    options = parse_options(options, str(path))
+    given = parse_options(options, str(path))
+    return _in_mm(_read(path, given), given, are_heights=are_heights)
+
+
+def _read(path: Path, options: ScanOptions) -> _File:
     before = regular_file(path)
     raw = read_confined(path, options)
     checksum = sha256(path)
@@ -143,6 +160,24 @@ def _measure(path: Path, options) -> Measured:
             f"{path}: the file changed while it was read; wait until the copy or export has "
             "finished, then run again"
         )
+    return _File(path, raw, checksum)
+
+
+def _require_one_layout(lower: _File, upper: _File) -> None:
+    """Refuse a matrix beside points before either asks for keys that the other has no use for."""
+    if (lower.raw.layout == "matrix") != (upper.raw.layout == "matrix"):
+        matrix, cloud = (lower, upper) if lower.raw.layout == "matrix" else (upper, lower)
+        what = "a mesh" if cloud.raw.layout == "mesh" else "points x, y, z"
+        raise InputError(
+            f"{matrix.path} is a matrix of heights and {cloud.path} holds {what}; two faces are "
+            f"read alike, so export {matrix.path.name} as points x, y, z too (or both as matrices "
+            "of one spacing)"
+        )
+
+
+def _in_mm(file: _File, options: ScanOptions, *, are_heights: bool = True) -> Measured:
+    """What a file holds converted to mm, with what the sidecar says."""
+    path, raw = file.path, file.raw
     _refuse_idle_keys(raw, options, path)
     overrides: list[str] = []
     notes = list(raw.notes)
@@ -157,9 +192,13 @@ def _measure(path: Path, options) -> Measured:
     assert unit_z is not None
     unit_z = _with_factor(unit_z, raw, options, path)
     missing = _choose("missing", raw.missing, options, overrides)
-    if raw.layout == "matrix":
-        values = _without_missing(raw.values, missing)
-        values *= length_factor(unit_z, f"{path}: unit_z")
+    is_matrix = raw.layout == "matrix"
+    heights = _without_missing(raw.values if is_matrix else raw.values[:, 2], missing)
+    if are_heights and missing != NO_MARK and (doubt := refuse_or_warn(heights, path)):
+        notes.append(f"{NOTE}{doubt}")
+    heights *= length_factor(unit_z, f"{path}: unit_z")
+    if is_matrix:
+        values = heights
         if _choose("first_row", raw.first_row, options, overrides) == "top":
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
@@ -167,10 +206,8 @@ def _measure(path: Path, options) -> Measured:
         if note := single_precision_note(raw.values):
             notes.append(note)
         assert unit_xy is not None  # points were required to have one
-        values = raw.values.copy()
-        values[:, 2] = _without_missing(raw.values[:, 2], missing)
+        values = np.column_stack([raw.values[:, :2], heights])
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
-        values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
         spacing = None
     _refuse_enormous(values, path)
     grid = options.grid
@@ -178,11 +215,12 @@ def _measure(path: Path, options) -> Measured:
         grid = length_mm(grid, unit_xy, f"{path}: key 'grid'")
     provenance = {
         "source": path.name,
-        "sha256": checksum,
+        "sha256": file.checksum,
         "reader": raw.reader,
         "file_unit": unit_z if unit_xy in (None, unit_z) else f"x, y {unit_xy}; z {unit_z}",
         "layout": raw.layout,
         "notes": "; ".join(notes),
+        "warnings": warnings_of(notes),
         "overrides": "; ".join(overrides),
     }
     return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles)
@@ -341,10 +379,11 @@ def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple
     return stated
 
 
-def _without_missing(values: np.ndarray, missing: float | None) -> np.ndarray:
-    """A copy, in file units, with the missing number and infinities as NaN."""
+def _without_missing(values: np.ndarray, missing: float | tuple | str | None) -> np.ndarray:
+    """A copy, in file units, with the missing numbers and infinities as NaN."""
     absent = ~np.isfinite(values)
-    if missing is not None:
-        # Markers such as 3.4e38 come back from text and float32 not quite the same.
-        absent |= np.isclose(values, missing, rtol=1e-6, atol=0)
+    if missing is not None and not isinstance(missing, str):
+        for mark in missing if isinstance(missing, tuple) else (missing,):
+            # Markers such as 3.4e38 come back from text and float32 not quite the same.
+            absent |= np.isclose(values, mark, rtol=1e-6, atol=0)
     return np.where(absent, np.nan, values)

@@ -35,7 +35,8 @@ BASE_SECONDS = 8
 #: A machine shared with others, or a slow disc, may take so many times longer by the clock.
 PATIENCE = 4
 _MOST_FILES = 64
-_LONGEST_MESSAGE = 800  # characters
+#: Characters; sentences of this program are far shorter, whatever they quote.
+_LONGEST_MESSAGE = 1600
 
 REQUEST_LENGTH = struct.Struct("!I")
 #: How the fork ended, as `os.wait4` gives it; the most memory it had (kB, on macOS bytes); its

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.labels import listed
 from ..core.units import length_factor
 from .column_names import has_record_names, named_axes, numbers_columns, parse_name
 from .options import ScanOptions
@@ -54,7 +55,7 @@ def choose_array(names: list[str], wanted: str | None, path: Path) -> str:
         raise InputError(
             f"{path}: holds no 2-D array of real numbers, so no heights; export it again"
         )
-    has = f"it has {', '.join(names)}"
+    has = f"it has {listed(names)}"
     if wanted is not None:
         if wanted not in names:
             raise InputError(
@@ -77,9 +78,7 @@ def is_table(shape: tuple, dtype: np.dtype) -> bool:
 def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> None:
     """Refuse a ``variable`` of the sidecar that is none of the channels."""
     if wanted is not None and wanted not in names:
-        raise InputError(
-            f"{path}: no channel {wanted!r} (key 'variable'); it has {', '.join(names)}"
-        )
+        raise InputError(f"{path}: no channel {wanted!r} (key 'variable'); it has {listed(names)}")
 
 
 @dataclass(frozen=True)
@@ -372,7 +371,7 @@ def _refuse_repeated(points: np.ndarray, breaks: Sequence[int], where: str) -> N
 def _column_index(column, names, n_columns: int, where: str) -> int:
     if isinstance(column, str):
         if column not in (names or ()):
-            has = f"its columns are {', '.join(names)}" if names else "it names no columns"
+            has = f"its columns are {listed(names)}" if names else "it names no columns"
             raise InputError(f"{where}: no column {column!r} (key 'columns'); {has}")
         return names.index(column)
     if column >= n_columns:

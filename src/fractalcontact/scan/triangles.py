@@ -74,7 +74,8 @@ def interpolate_points(
         part = _part(lattice, rows, columns)
         if len(near) > _MOST_IN_TILE:
             raise InputError(
-                f"{where}: {len(near)} points lie around x = {part.x0:.6g}, y = {part.y0:.6g} mm, "
+                f"{where}: {len(near)} points, more than {_MOST_IN_TILE}, lie around "
+                f"x = {part.x0:.6g}, y = {part.y0:.6g} mm, "
                 "far more densely than the others or than the grid; thin them out, or set a finer "
                 "key 'grid'"
             )

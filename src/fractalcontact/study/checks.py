@@ -1,14 +1,16 @@
 """Checks of a study before anything runs: its configuration, sidecars, names and scan files."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..scan.options import coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
-from .scan_files import ScanFiles, find_scans
+from .idle_keys import refuse_idle_keys
+from .scan_files import ScanFiles, list_scans
 from .schema import shortened, validate
 from .sidecar import is_contact_map, read_yaml
 
@@ -32,6 +34,9 @@ class Study:
         By measured contact map, which have no settings.
     solver : dict
         :func:`study.configuration.solver_settings`.
+    refused : dict of str to InputError
+        What is wrong with scans that were left out, by specimen or file name; empty where the first
+        such thing was raised.
     """
 
     scans: dict[str, ScanFiles]
@@ -39,9 +44,12 @@ class Study:
     options: dict[str, dict]
     labels: dict[str, str]
     solver: dict
+    refused: dict[str, InputError] = field(default_factory=dict)
 
 
-def resolve_study(config: Mapping, schema: Mapping, source: str) -> Study:
+def resolve_study(
+    config: Mapping, schema: Mapping, source: str, *, leave_out: bool = False
+) -> Study:
     """Check a study with its scan files and sidecars, and work out all settings.
 
     Parameters
@@ -52,6 +60,8 @@ def resolve_study(config: Mapping, schema: Mapping, source: str) -> Study:
         config/schema/study.schema.yaml.
     source : str
         The file the study came from, for errors.
+    leave_out : bool, optional
+        Leave out scans with whose files, sidecars or settings something is wrong.
 
     Raises
     ------
@@ -60,27 +70,55 @@ def resolve_study(config: Mapping, schema: Mapping, source: str) -> Study:
     """
     check_study(config, schema, source)
     folder = config.get("scans", "scans")
-    scans = find_scans(folder) if folder else {}
+    scans, refused = list_scans(folder) if folder else ({}, {})
     check_names(scans, config, folder, source)
     embedded = config.get("embedded", {})
-    unknown = sorted(set(config.get("specimens", {})) - set(scans) - set(embedded))
+    unknown = sorted(set(config.get("specimens", {})) - {*scans, *embedded, *refused})
     if unknown:
         raise InputError(
             f"{source}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
         )
+    sidecars = {}
+    for name, scan in list(scans.items()):
+        with _refusing(refused, name):
+            sidecars[name] = read_sidecar(scan.sidecar, schema)
+            refuse_idle_keys(scan, *sidecars[name])
+            with_coordinates(scans, {name: sidecars[name][0]})
+    scans = with_coordinates(
+        scans, {name: keys for name, (keys, _) in sidecars.items() if name not in refused}
+    )
     settings, options, labels = {}, {}, {}
-    sidecars = {name: read_sidecar(scan.sidecar, schema) for name, scan in scans.items()}
-    scans = with_coordinates(scans, {name: keys for name, (keys, _) in sidecars.items()})
-    for name in scans:
-        options[name], own = sidecars[name]
-        if is_contact_map(options[name]):
-            labels[name] = own.get("label", name)
-        else:
-            pair = scans[name].upper is not None
-            settings[name] = resolve_settings(config, name, own, source, pair=pair)
+    for name in sorted(scans.keys() - refused.keys()):
+        with _refusing(refused, name):
+            keys, own = sidecars[name]
+            if is_contact_map(keys):
+                labels[name] = own.get("label", name)
+            else:
+                scan = scans[name]
+                settings[name] = resolve_settings(
+                    config,
+                    name,
+                    own,
+                    source,
+                    pair=scan.upper is not None,
+                    sidecar_file=scan.sidecar,
+                )
+            options[name] = keys
+    if refused and not leave_out:
+        raise refused[min(refused)]
+    scans = {name: scan for name, scan in scans.items() if name in options}
     for name in embedded:
         settings[name] = resolve_settings(config, name, {}, source)
-    return Study(scans, settings, options, labels, solver_settings(config, source))
+    return Study(scans, settings, options, labels, solver_settings(config, source), refused)
+
+
+@contextmanager
+def _refusing(refused: dict[str, InputError], name: str) -> Iterator[None]:
+    """Keep what is wrong with one scan, beside the others."""
+    try:
+        yield
+    except InputError as error:
+        refused.setdefault(name, error)
 
 
 def with_coordinates(
@@ -216,6 +254,8 @@ def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
         "properties": properties,
     }
     validate(document, sidecar_schema, str(path))
+    if document.get("kind") == "surface":  # what it is without
+        del document["kind"]
     scan = {key: value for key, value in document.items() if key in scan_keys}
     settings = {key: value for key, value in document.items() if key not in scan_keys}
     return scan, settings

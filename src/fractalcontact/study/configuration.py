@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 
 from ..core.errors import InputError
 from ..core.tolerance import tolerance
@@ -20,7 +21,13 @@ FULL_RTOL = 1e-6
 
 
 def resolve_settings(
-    config: Mapping, name: str | None, sidecar: Mapping, source: str, *, pair: bool = False
+    config: Mapping,
+    name: str | None,
+    sidecar: Mapping,
+    source: str,
+    *,
+    pair: bool = False,
+    sidecar_file: Path | None = None,
 ) -> dict:
     """Settings of one specimen: the defaults, then the study's own for it, then its sidecar's.
 
@@ -36,6 +43,8 @@ def resolve_settings(
         For errors.
     pair : bool, optional
         Whether both faces were scanned: then ``opposite`` has nothing to say.
+    sidecar_file : Path, optional
+        Of these settings, for errors.
 
     Returns
     -------
@@ -53,7 +62,7 @@ def resolve_settings(
                 f"{source}: missing key '{key}', which the specimen {name} needs (contact maps say "
                 "'kind: contact-map' in their sidecar)"
             )
-    stated = _Stated(config, name, sidecar, source)
+    stated = _Stated(config, name, sidecar, source, sidecar_file)
     loads = stated.loads("loads")
     opposite = "match" if pair else stated.get("opposite", "match")
     flat = opposite == "flat"
@@ -98,9 +107,10 @@ def resolve_settings(
 class _Stated(dict):
     """Settings of one specimen as they are written: defaults, the study's own, its sidecar's."""
 
-    def __init__(self, config, name, sidecar, source):
+    def __init__(self, config, name, sidecar, source, sidecar_file=None):
         self._study, self._sidecar = config.get("specimens", {}).get(name, {}), sidecar
         self._name, self._source = name, source
+        self._sidecar_name = sidecar_file or f"sidecar of {name}"
         super().__init__({**config["defaults"], **self._study, **sidecar})
         for key in ("material", "loads", "resolutions"):
             if key not in self:
@@ -109,7 +119,7 @@ class _Stated(dict):
     def where(self, key):
         """Where a setting stands, for errors."""
         if key in self._sidecar:
-            return f"sidecar of {self._name}: {key}"
+            return f"{self._sidecar_name}: {key}"
         place = f"specimens.{self._name}" if key in self._study else "defaults"
         return f"{self._source}: {place}.{key}"
 
@@ -133,10 +143,17 @@ class _Stated(dict):
         chosen = [load(text, self.where(key)) for text in named]
         for pair, text in zip(chosen, named, strict=True):
             if pair not in loads:
-                raise InputError(
-                    f"{self.where(key)}: {text!r} is not among the loads {self['loads']}"
-                )
+                raise self._not_solved(key, text)
         return chosen
+
+    def _not_solved(self, key, text):
+        """What is wrong where a load is to be drawn that is not solved: the later file of both."""
+        if "loads" in self._sidecar and key not in self._sidecar:
+            return InputError(
+                f"{self.where('loads')}: {self['loads']} lacks {text!r}, which {self.where(key)} "
+                f"names; add it, or write '{key}' here too"
+            )
+        return InputError(f"{self.where(key)}: {text!r} is not among the loads {self['loads']}")
 
 
 def _refuse_contradictions(settings, where):
@@ -145,7 +162,8 @@ def _refuse_contradictions(settings, where):
         if direction not in settings["directions"]:
             raise InputError(
                 f"{where('contact_directions')}: {direction} is not among the directions "
-                f"{settings['directions']}; add it there, the rigid dilatancy is needed too"
+                f"{settings['directions']} of {where('directions')}; add it there, the rigid "
+                "dilatancy is needed too"
             )
     for offset in settings["offsets"] or ():
         if offset < 0:

@@ -1,13 +1,23 @@
 """Which files of a folder make which specimen: by their names alone, nothing is opened."""
 
+import re
 import unicodedata
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..core.errors import InputError
-from ..core.file_names import specimen_name, split_file_name
+from ..core.file_names import SIDECAR_SUFFIXES, specimen_name, split_file_name
+from ..core.labels import printable
 
 _IGNORED = ("README", "LICENSE")
+#: Files that systems and editors leave in a folder, by name, ending or beginning, in lower case.
+_LEFT_BY_SYSTEMS = ("thumbs.db", "desktop.ini", "icon\r", "ehthumbs.db")
+_LEFT_BEHIND = ("~", ".bak", ".orig", ".tmp", ".swp", ".part", ".crdownload")
+_LOCKS = ("~$", "._", ".~lock.")
+#: How others name the faces of a joint: what stands before, the mark, the face, the ending.
+_OTHER_FACE = {"lower": "upper", "bottom": "top"}
+_FACE = re.compile(r"(.+)([_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:(lower|bottom))(\.[^.]+)")
 #: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
 LONGEST_NAME = 220
 #: Control characters, invisible and direction marks, undecodable bytes, line separators.
@@ -51,7 +61,8 @@ def find_scans(folder: Path | str) -> dict[str, ScanFiles]:
     """List the specimens of a folder.
 
     ``NAME.ext`` is one face, ``NAME.lower.ext`` and ``NAME.upper.ext`` are two, ``NAME.yaml`` is
-    the sidecar of either. Hidden files, README*, LICENSE* and sub-folders are passed over.
+    the sidecar of either. Hidden files, README*, LICENSE*, sub-folders and what systems and editors
+    leave behind are passed over: :func:`folder_notes` says so.
 
     Parameters
     ----------
@@ -106,6 +117,8 @@ def list_scans(folder: Path | str) -> tuple[dict[str, ScanFiles], dict[str, Inpu
     for path in sorted(folder.iterdir()):
         if path.name.startswith(".") or path.name.upper().startswith(_IGNORED):
             continue
+        if _is_left_behind(path.name):
+            continue
         if path.is_dir():
             if _is_named_like_a_scan(path):
                 refused[path.name] = InputError(
@@ -132,6 +145,58 @@ def list_scans(folder: Path | str) -> tuple[dict[str, ScanFiles], dict[str, Inpu
         except InputError as error:
             refused[name] = error
     return scans, refused
+
+
+def folder_notes(folder: Path | str) -> list[str]:
+    """What a user should know of the names in a folder: files passed over, pairs that are none.
+
+    Parameters
+    ----------
+    folder : path-like
+
+    Returns
+    -------
+    list of str
+        A sentence each.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        return []
+    names = sorted(path.name for path in folder.iterdir() if path.is_file())
+    left = [name for name in names if _is_left_behind(name)]
+    notes = []
+    if left:
+        some = ", ".join(map(printable, left))
+        notes.append(f"{folder}: passed over, as systems and editors leave such files: {some}")
+    notes += [
+        f"{folder}: {printable(lower)} and {printable(upper)} are taken as two specimens of one "
+        f"face each; if they are the faces of one joint, rename them {printable(new_lower)} and "
+        f"{printable(new_upper)}"
+        for lower, upper, new_lower, new_upper in _likely_pairs(names)
+    ]
+    return notes
+
+
+def _is_left_behind(name: str) -> bool:
+    name = name.lower()
+    return name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
+
+
+def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
+    """Two files called as faces of one joint, but not as this program has it; how they should be.
+
+    Such as ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and ``rock-top.x3p``.
+    """
+    known = {name.lower(): name for name in names}
+    for name in names:
+        match = _FACE.fullmatch(name)
+        if match is None or Path(name).suffix.lower() in SIDECAR_SUFFIXES:
+            continue
+        before, mark, face, ending = match.groups()
+        other_face = _OTHER_FACE.get(face.lower())
+        other = known.get(f"{before}{mark}{other_face}{ending}".lower())
+        if other_face and other:
+            yield name, other, f"{before}.lower{ending}", f"{before}.upper{ending}"
 
 
 def _is_named_like_a_scan(folder: Path) -> bool:
@@ -199,8 +264,18 @@ def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
 
 
 def _without_scan(sidecar: Path) -> InputError:
+    stem, _, face = sidecar.stem.rpartition(".")
+    if stem and face.lower() in ("lower", "upper"):
+        return InputError(
+            f"{sidecar}: one sidecar serves both faces of a joint; rename it {stem}.yaml"
+        )
     folders = [path.name for path in sidecar.parent.glob("*/") if path.stem == sidecar.stem]
     hint = f"; {folders[0]} is a folder, which is not looked into" if folders else ""
+    names = sorted(path.name for path in sidecar.parent.iterdir())
+    for lower, upper, new_lower, new_upper in _likely_pairs(names):
+        if new_lower == f"{sidecar.stem}.lower{Path(lower).suffix}":
+            hint = f"; {lower} and {upper} are its faces if they are called {new_lower} and "
+            hint += new_upper
     return InputError(
         f"{sidecar}: this sidecar has no scan; put {sidecar.stem}.<ext> (or "
         f"{sidecar.stem}.lower.<ext> and {sidecar.stem}.upper.<ext>) beside it, or remove it{hint}"

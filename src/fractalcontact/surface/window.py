@@ -11,6 +11,7 @@ import xarray as xr
 
 from ..core.directions import DIRECTIONS, axis_and_sign
 from ..core.errors import InputError
+from ..core.labels import percent
 from .grid import spacing_of
 
 #: A side given in mm holds a whole number of cells within this fraction of one.
@@ -76,13 +77,14 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
     if request.window_centre is not None:
         middle = _in_cells(specimen, _pair(request.window_centre, name, "window_centre"))
         wanted = wanted._replace(middle=middle)
+        _require_inside(specimen, request.window_centre, middle)
     shape = tuple(n // multiple * multiple for n in wanted.cells)
     _require_room(specimen, wanted, shape, multiple)
     corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
     notes = [place_note] if place_note else []
     if shape != wanted.cells:
         notes.append(
-            f"{wanted.cells[0]} x {wanted.cells[1]} cells rounded down to {shape[0]} x {shape[1]}, "
+            f"{wanted.cells[1]} x {wanted.cells[0]} cells rounded down to {shape[1]} x {shape[0]}, "
             f"multiples of {multiple}"
         )
     if automatic:
@@ -136,6 +138,20 @@ def _in_cells(specimen, place) -> tuple[float, ...]:
     return tuple((c - start) / s for c, start, s in zip(place, starts, spacing, strict=True))
 
 
+def _require_inside(specimen, centre, middle) -> None:
+    """Refuse a middle of the window that lies beside the scan."""
+    shape = specimen["valid"].shape
+    if all(-0.5 <= m <= n - 0.5 for m, n in zip(middle, shape, strict=True)):
+        return
+    y, x = specimen.y.values, specimen.x.values
+    y_0, x_0 = _pair(centre, specimen.attrs["name"], "window_centre")
+    raise InputError(
+        f"{specimen.attrs['name']}: key 'window_centre' is x = {x_0:g}, y = {y_0:g} mm, beside the "
+        f"scan, which reaches from x = {x[0]:.4g} to {x[-1]:.4g} and y = {y[0]:.4g} to "
+        f"{y[-1]:.4g} mm; write a place in it"
+    )
+
+
 def _require_room(specimen, wanted: _Wanted, shape, multiple) -> None:
     """Refuse a window that is larger than the scan, or smaller than the resolutions need."""
     name, total = specimen.attrs["name"], specimen["valid"].shape
@@ -143,14 +159,14 @@ def _require_room(specimen, wanted: _Wanted, shape, multiple) -> None:
     if any(n > limit for n, limit in zip(shape, total, strict=True)):
         extent = [n * s for n, s in zip(total, spacing_of(specimen), strict=True)]
         raise InputError(
-            f"{name}: key 'window' asks for {sides[0]:.4g} x {sides[1]:.4g} mm (y, x), the scan "
-            f"covers {extent[0]:.4g} x {extent[1]:.4g} mm; write at most "
+            f"{name}: key 'window' asks for {sides[1]:.4g} x {sides[0]:.4g} mm (x, y), the scan "
+            f"covers {extent[1]:.4g} x {extent[0]:.4g} mm; write at most "
             f"'window: {_rounded_down(min(extent)):.6g} mm'"
         )
     if min(shape) < 1:
         raise InputError(
-            f"{name}: a window of {sides[0]:.4g} x {sides[1]:.4g} mm holds {cells[0]} x {cells[1]} "
-            f"cells, fewer than the multiple of {multiple} that the resolutions need; write "
+            f"{name}: a window of {sides[1]:.4g} x {sides[0]:.4g} mm holds {cells[1]} x {cells[0]} "
+            f"cells (x, y), fewer than the multiple of {multiple} that the resolutions need; write "
             "a larger 'window' or fewer resolutions"
         )
 
@@ -161,19 +177,27 @@ def _find_place(specimen, shape, wanted: _Wanted, centre_given: bool):
     free = _free_places(valid, shape)
     if not free.any():
         raise _no_place(specimen, shape)
+    asked = tuple(
+        math.floor(m - (n - 1) / 2 + 0.5) for m, n in zip(wanted.middle, shape, strict=True)
+    )
     first = tuple(
-        min(max(math.floor(m - (n - 1) / 2 + 0.5), 0), total - n)
-        for m, n, total in zip(wanted.middle, shape, valid.shape, strict=True)
+        min(max(start, 0), total - n)
+        for start, n, total in zip(asked, shape, valid.shape, strict=True)
     )
     sliding = free & _reachable_places(specimen, shape, wanted.reach)
     if free[first] and (centre_given or sliding[first] or not sliding.any()):
-        return first, ""
-    corner = _nearest(sliding if sliding.any() else free, shape, wanted.middle)
-    moved = [(c - w) * s for c, w, s in zip(corner, first, spacing, strict=True)]
-    why = "a hole" if not free[first] else "the offsets asked for"
+        corner, why = first, "the edge of the scan"
+    else:
+        corner = _nearest(sliding if sliding.any() else free, shape, wanted.middle)
+        why = "a hole" if not free[first] else "the offsets asked for"
+    if not centre_given:
+        asked = first  # half a cell of rounding is no move
+    if corner == asked:
+        return corner, ""
+    moved = [(c - w) * s for c, w, s in zip(corner, asked, spacing, strict=True)]
     return (
         corner,
-        f"window moved by {moved[0]:.4g} mm in y, {moved[1]:.4g} mm in x because of {why}",
+        f"window moved by {moved[1]:.4g} mm in x, {moved[0]:.4g} mm in y because of {why}",
     )
 
 
@@ -267,10 +291,11 @@ def _no_place(specimen, shape) -> InputError:
     scan = json.loads(specimen.attrs["lower_scan"]).get("source", "")
     return InputError(
         f"{specimen.attrs['name']} ({scan}): no hole-free place for a window of "
-        f"{shape[0] * spacing[0]:.4g} x {shape[1] * spacing[1]:.4g} mm: {np.mean(~valid):.1%} of "
-        f"the cells are missing, between x = {x[columns.min()]:.4g} and {x[columns.max()]:.4g} mm "
-        f"and y = {y[rows.min()]:.4g} and {y[rows.max()]:.4g} mm. The largest hole-free square has "
-        f"a side of {side:.6g} mm, centred on y = {centre[0]:.4g}, x = {centre[1]:.4g} mm; write "
+        f"{shape[1] * spacing[1]:.4g} x {shape[0] * spacing[0]:.4g} mm (x, y): "
+        f"{percent(float(np.mean(~valid)))} of the cells are missing, between "
+        f"x = {x[columns.min()]:.4g} and {x[columns.max()]:.4g} mm and "
+        f"y = {y[rows.min()]:.4g} and {y[rows.max()]:.4g} mm. The largest hole-free square has "
+        f"a side of {side:.6g} mm, centred on x = {centre[1]:.4g}, y = {centre[0]:.4g} mm; write "
         f"'window: {side:.6g} mm' or less"
     )
 

@@ -92,8 +92,10 @@ def draw_map(
     extent = (0, sides[1] / size, 0, sides[0] / size)
     axes.set_facecolor(MISSING)
     drawn = axes.imshow(image, extent=extent, interpolation=interpolation, **options)
-    for axis, letter in ((axes.xaxis, "x"), (axes.yaxis, "y")):
-        axis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 5, 10]))
+    for axis, letter, side in ((axes.xaxis, "x", sides[1]), (axes.yaxis, "y", sides[0])):
+        # On the short side of a strip, labels would lie over each other.
+        most = max(1, round(ticks * min(1.0, 1.5 * side / max(sides))))
+        axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10], min_n_ticks=min(most, 2)))
         axis.set_label_text(f"${letter}$ ({name})")
     return drawn
 

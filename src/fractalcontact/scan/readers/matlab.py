@@ -45,19 +45,37 @@ def _read_7_3(path: Path, wanted: str | None):
 
 def _read_old(path: Path, wanted: str | None):
     import scipy
-    from scipy.io import loadmat, whosmat
+    from scipy.io import loadmat
 
-    tables = {
-        name: shape
-        for name, shape, kind in whosmat(path, appendmat=False)
-        if kind in _NUMERIC and len(shape) == 2 and min(shape) > 1
-    }
+    tables = _tables(path)
     name = choose_array(list(tables), wanted, path)
     refuse_larger(math.prod(tables[name]) * 8, path)
     values = loadmat(path, appendmat=False, variable_names=[name])[name]
     if values.dtype.kind not in "fiu":
         raise InputError(f"{path}: matrix {name!r} is {values.dtype}; heights are real numbers")
     return name, values.astype(np.float64), f"scipy {scipy.__version__} / mat"
+
+
+def _tables(path: Path) -> dict[str, tuple]:
+    """Shapes of the 2-D matrices of numbers, by name."""
+    from scipy.io import loadmat, whosmat
+
+    try:
+        headers = whosmat(path, appendmat=False)
+    except TypeError:
+        # It fails over objects, such as MATLAB's strings, which have no shape (scipy 1.17);
+        # loadmat passes them over. They are never opened.
+        loaded = loadmat(path, appendmat=False)
+        headers = [
+            (name, values.shape, "double")
+            for name, values in loaded.items()
+            if isinstance(values, np.ndarray) and values.dtype.kind in "fiu"
+        ]
+    return {
+        name: shape
+        for name, shape, kind in headers
+        if kind in _NUMERIC and len(shape) == 2 and min(shape) > 1
+    }
 
 
 FORMAT = Format(read_mat, endings=(".mat",), libraries=("scipy.io", "h5py"))

@@ -10,11 +10,16 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..format import Format
+from ..measured import NOTE
 from ..options import ScanOptions
 from ..raw import RawScan, reading
 from ..tables import choose_array
 
 _INDEX = "main.xml"
+_CHANGED = (
+    ": it was changed after it was written, or written with a wrong checksum; it was read as it "
+    "is, so compare it with its source"
+)
 #: Root element of main.xml in ISO 5436-2 of 2000, which R's x3ptools still writes.
 _OLD_ROOT, _ROOT = "ISO5436", "ISO5436_2"
 
@@ -28,19 +33,21 @@ def read_x3p(path: Path, options: ScanOptions) -> RawScan:
     Raises
     ------
     InputError
-        If the file is damaged or does not match its checksums, holds a profile, or has several
-        layers of which key ``variable`` names none.
+        If the file is damaged, holds a profile, or has several layers of which key ``variable``
+        names none. That it does not match the checksums it states is a warning.
     """
     import x3pio
 
     with reading(path, "X3P file"):
-        source, origin = _open(path)
+        source, origin, notes = _open(path)
         try:
             file = x3pio.read(source)
         except x3pio.X3pChecksumError as error:
-            raise InputError(
-                f"{path}: {error}: it was changed or damaged after it was written; get it again"
-            ) from error
+            # The archive's own checksums hold, or nothing could be unpacked.
+            notes = (*notes, f"{NOTE}{error}{_CHANGED}")
+            if not isinstance(source, str):
+                source.seek(0)
+            file = x3pio.read(source, verify=False)
         if isinstance(file, x3pio.Profile):
             raise InputError(f"{path}: holds a profile (FeatureType PRF); a surface is needed")
         names = [f"layer {number}" for number in range(1, len(file.layers) + 1)]
@@ -50,7 +57,7 @@ def read_x3p(path: Path, options: ScanOptions) -> RawScan:
         "reader": f"x3pio {x3pio.__version__} / x3p",
         "unit_xy": "m",
         "unit_z": "m",
-        "notes": (f"{name} of {len(names)}",) if len(names) > 1 else (),
+        "notes": (*notes, *([f"{name} of {len(names)}"] if len(names) > 1 else [])),
     }
     if isinstance(file, x3pio.PointCloud) or not layer.is_regular_grid:
         return RawScan(layer.points().reshape(-1, 3), "points", **stated)
@@ -58,7 +65,7 @@ def read_x3p(path: Path, options: ScanOptions) -> RawScan:
 
 
 def _open(path: Path):
-    """What x3pio is to read, and where the first row lies ("NW", ...; "" where not stated).
+    """What x3pio is to read, where the first row lies ("NW", ...; "" where not stated), and notes.
 
     x3pio knows no files of the standard's first edition. Their root element is renamed in memory.
     """
@@ -76,8 +83,8 @@ def _open(path: Path):
         root = ElementTree.fromstring(index)
         origin = (root.findtext("Record1/Axes/Origin") or "").strip()
         if root.tag != _OLD_ROOT:
-            return str(path), origin
-        _verify_index(archive, PurePosixPath(found[0]).parent, index, root, path)
+            return str(path), origin, ()
+        notes = _verify_index(archive, PurePosixPath(found[0]).parent, index, root)
         root.tag = _ROOT
         repacked = io.BytesIO()
         with zipfile.ZipFile(repacked, "w") as copy:
@@ -85,18 +92,16 @@ def _open(path: Path):
             for name in set(archive.namelist()) - {found[0]} - _checksum_files(found[0], root):
                 copy.writestr(name, archive.read(name))
     repacked.seek(0)
-    return repacked, origin
+    return repacked, origin, notes
 
 
-def _verify_index(archive, folder, index: bytes, root, path: Path) -> None:
-    """Check the index against its checksum, which no longer holds once the root is renamed."""
+def _verify_index(archive, folder, index: bytes, root) -> tuple[str, ...]:
+    """Compare the index with its checksum, which no longer holds once the root is renamed."""
     for name in _checksum_files(str(folder / _INDEX), root) & set(archive.namelist()):
         stated = archive.read(name).decode("ascii", errors="replace").split()
         if stated and stated[0].lower() != hashlib.md5(index, usedforsecurity=False).hexdigest():
-            raise InputError(
-                f"{path}: the MD5 checksum of {_INDEX} does not match: it was changed or damaged "
-                "after it was written; get it again"
-            )
+            return (f"{NOTE}the MD5 checksum of {_INDEX} does not match{_CHANGED}",)
+    return ()
 
 
 def _checksum_files(index_name: str, root) -> set[str]:

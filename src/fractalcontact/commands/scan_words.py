@@ -1,0 +1,67 @@
+"""Sentences on a specimen that was read: its gap, and what its user should look at."""
+
+import json
+
+import numpy as np
+import xarray as xr
+
+from ..roughness.quality_words import length_words, overlap_words
+from ..surface.specimen import STEEP_TILT
+
+#: Outliers this many reliefs away are hardly spikes of an instrument.
+FAR_OUT = 3.0
+
+
+def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]:
+    """What a user should look at before a study is run."""
+    attrs = specimen.attrs
+    warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
+    if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
+        warnings.append(_outlier_words(specimen))
+    if attrs["tilt_degrees"] > STEEP_TILT:
+        warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
+    if "overlap_cells" in quality and quality["overlap_cells"].sel(region="window"):
+        filled = attrs["outliers"] == "fill"
+        remedy = "" if filled else "; 'outliers: fill' in the sidecar fills lone and deep ones"
+        warnings.append(
+            f"{overlap_words(specimen, quality)}: contact at zero offset rests on errors of the "
+            f"scans{remedy}"
+        )
+    return warnings
+
+
+def _outlier_words(specimen):
+    """Outliers that are kept: how many, how far they reach, and what they may be."""
+    count, cells = specimen.attrs["outlier_count"], specimen["outlier"].values
+    heights = [specimen[face].values for face in ("lower", "upper") if face in specimen]
+    highest = max(np.nanmax(abs(z[cells])) for z in heights)
+    rest = np.concatenate([z[~cells & np.isfinite(z)] for z in heights])
+    relief = np.ptp(rest)
+    words = (
+        f"{count} outlier{'s' * (count > 1)} kept, up to {length_words(highest)} from the mean "
+        f"plane where the relief of all other cells is {length_words(relief)}; "
+    )
+    if highest > FAR_OUT * relief:
+        words += (
+            "so far out that they are likely to be marks of missing cells or a misread file: look "
+            "at it, and write 'missing' into the sidecar; "
+        )
+    return words + "'outliers: mask' in the sidecar makes them missing"
+
+
+def gap_words(specimen: xr.Dataset) -> str:
+    """Statistics of the gap, and whether the upper face was moved to the lower one."""
+    gap = (specimen["upper"] - specimen["lower"]).values
+    words = f"gap: mean {length_words(np.nanmean(gap))}, sd {length_words(np.nanstd(gap))}"
+    if "registration" not in specimen.attrs:
+        return words
+    motion = json.loads(specimen.attrs["registration"])
+    words += f"; registration ({motion['mode']}): {motion['note']}"
+    if motion["applied"]:
+        before = motion["gap_sd_before_mm"]
+        spread = "unknown" if before is None else length_words(before)
+        words += (
+            f", shift {motion['shift_x_mm']:.3g}, {motion['shift_y_mm']:.3g} mm (x, y), sd before "
+            f"{spread}"
+        )
+    return words

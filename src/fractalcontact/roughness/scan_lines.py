@@ -1,0 +1,100 @@
+"""Alternation of scan lines: every other column or row of a line scanner shifted or sheared.
+
+A scanner that measures to and fro has two kinds of line. Where they disagree, a spectrum across the
+lines has a peak at its shortest wave of two spacings, which no rough surface has.
+"""
+
+import math
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+
+from .quality_words import AXES, length_words
+
+#: Nodes of a stretch across the lines; even, so that all begin with the same kind.
+STRETCH = 32
+#: Orders below that of the alternation beside which its power is held: the taper smears it over the
+#: next two.
+_BESIDE = range(STRETCH // 2 - 6, STRETCH // 2 - 2)
+#: How often chance may show an alternation where lines are shifted at random, each as a whole.
+_BY_CHANCE = 1e-4
+
+
+def line_alternation(heights: np.ndarray) -> tuple[float, float]:
+    """How far alternate columns differ: the difference, and the noise beside it.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        mm, NaN where missing; transposed for alternate rows.
+
+    Returns
+    -------
+    difference : float
+        Root mean square difference of neighbouring columns that alternation makes, mm: twice its
+        amplitude. NaN where chance may make it, or no stretch of `STRETCH` nodes is complete.
+    noise : float
+        Standard deviation of independent heights with the power of the waves beside it, mm.
+
+    Notes
+    -----
+    Stretches are tapered (Hann). Their power at order n/2, less that at the orders beside it, is
+    the square of the amplitude; the spectrum of a rough surface falls there, so that it is not
+    overestimated. Columns that are shifted at random are alike in all rows, so that only stretches
+    count: the ratio of the powers must exceed the quantile of F with one degree of freedom for each
+    and two for each order beside it.
+    """
+    ny, nx = heights.shape
+    count = nx // STRETCH
+    if count == 0:
+        return math.nan, math.nan
+    parts = heights[:, : count * STRETCH].reshape(ny, count, STRETCH)
+    complete = np.isfinite(parts).all(axis=2)
+    stretches = int(complete.any(axis=0).sum())
+    if stretches == 0:
+        return math.nan, math.nan
+    chosen = parts[complete]
+    chosen = chosen - chosen.mean(axis=1, keepdims=True)
+    taper = np.hanning(STRETCH + 1)[:-1]
+    power = np.mean(np.abs(np.fft.rfft(chosen * taper, axis=1)) ** 2, axis=0)
+    beside = float(power[list(_BESIDE)].mean())
+    alternating = float(power[-1])
+    noise = math.sqrt(beside / np.sum(taper**2))
+    freedom = (stretches, 2 * len(_BESIDE) * stretches)
+    if not alternating > stats.f.isf(_BY_CHANCE, *freedom) * beside:
+        return math.nan, noise
+    return 2 * math.sqrt(alternating - beside) / float(taper.sum()), noise
+
+
+#: Variables of the quality of a scan: dimensions, unit, long name.
+ALTERNATION = {
+    "alternation": (
+        ("face", "axis"),
+        "mm",
+        "difference of alternate scan lines, neighbours along the axis; missing if none is seen",
+    ),
+    "alternation_noise": (("face", "axis"), "mm", "noise of the nodes beside that difference"),
+}
+
+
+def alternations(heights: list[np.ndarray]) -> dict[str, np.ndarray]:
+    """Values of `ALTERNATION` for the faces of a scan, along x and along y."""
+    found = np.array([[line_alternation(z), line_alternation(z.T)] for z in heights])
+    return dict(zip(ALTERNATION, np.moveaxis(found, -1, 0), strict=True))
+
+
+def scan_line_warnings(quality: xr.Dataset) -> list[str]:
+    """Alternations that exceed the noise, a sentence each."""
+    found = []
+    for face in quality["face"].values:
+        for axis, line in zip(AXES, ("columns", "rows"), strict=True):
+            one = quality.sel(face=face, axis=axis)
+            difference, noise = one["alternation"].item(), one["alternation_noise"].item()
+            if difference > noise:
+                found.append(
+                    f"alternate {line} of the {face} face differ by {length_words(difference)}, "
+                    f"more than the noise of {length_words(noise)}: a scanner whose ways to and "
+                    "fro disagree; correct it in the instrument's program"
+                )
+    return found

@@ -1,0 +1,202 @@
+"""Numbers that mark missing cells without the file saying so: -9999, 1e20, zeros around the rim."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.errors import InputError
+
+#: A number is far outside if it is so many quartile distances of the others away from the nearest
+#: of them: the extremes of any relief, level or tilted, lie within a few of each other.
+_FAR = 10.0
+#: ... and it stands in so many cells; a single one is a spike, unless it is a usual mark.
+_FEWEST = 3
+_USUAL = (-9999.0, -99999.0, -999999.0, 9999.0, 99999.0, -999.0, -32768.0, -32767.0, 32767.0)
+#: A number among the others is suspected if it stands in so many cells, and in so many times as
+#: many as the next: heights of instruments repeat, but none so much more than all others.
+_REPEATED, _DOMINANT = 30, 10.0
+#: Cells looked at for that: a fixed draw, so that a large scan costs no more than a small one.
+_SAMPLE = 500_000
+#: Fewer different heights are those of a made surface of a few levels.
+_FEWEST_LEVELS = 16
+#: So many marks are looked for.
+_MOST_MARKS = 4
+#: A mark comes back from text and single precision not quite the same.
+_SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A number that is likely to mark missing cells.
+
+    Attributes
+    ----------
+    value : float
+        In the file's own unit.
+    cells : int
+        That hold it.
+    share : float
+        Of all cells that hold a number.
+    outside : bool
+        Whether it lies far outside the others; else it is among them and repeats.
+    low, high : float
+        The others.
+    """
+
+    value: float
+    cells: int
+    share: float
+    outside: bool
+    low: float
+    high: float
+
+
+def find_marks(heights: np.ndarray) -> list[Mark]:
+    """Numbers that are likely to mark missing cells.
+
+    Parameters
+    ----------
+    heights : ndarray
+        A matrix, or the heights of points (n,), in the file's unit; NaN where missing.
+
+    Returns
+    -------
+    list of Mark
+        Those far outside first.
+    """
+    present = np.isfinite(heights)
+    total = int(present.sum())
+    marks: list[Mark] = []
+    while len(marks) < _MOST_MARKS and present.any():
+        found = _far_outside(heights, present)
+        outside = found is not None
+        if found is None:
+            found = _repeated(heights, present)
+        if found is None:
+            break
+        alike = present & np.isclose(heights, found, rtol=_SAME, atol=0)
+        present &= ~alike
+        cells = int(alike.sum())
+        if not present.any():
+            break
+        low, high = float(heights[present].min()), float(heights[present].max())
+        marks.append(Mark(found, cells, cells / total, outside, low, high))
+    return marks
+
+
+def refuse_or_warn(heights: np.ndarray, path: object) -> str:
+    """Refuse heights far outside the others; a sentence on a number that repeats among them.
+
+    Parameters
+    ----------
+    heights : ndarray
+        As for `find_marks`.
+    path : path-like
+        The file, for errors.
+
+    Returns
+    -------
+    str
+        "" if nothing is suspected.
+
+    Raises
+    ------
+    InputError
+        With the key to write.
+    """
+    marks = find_marks(heights)
+    far = [mark for mark in marks if mark.outside]
+    every = ", ".join(number(mark.value) for mark in marks)
+    key = f"missing: {every}" if len(marks) == 1 else f"missing: [{every}]"
+    remedy = f"write '{key}' into the sidecar, or 'missing: none' if these are heights"
+    if far:
+        parts = "; ".join(
+            f"{_cells(mark)} {number(mark.value)}, far outside all others "
+            f"({number(mark.low)} to {number(mark.high)})"
+            for mark in far
+        )
+        raise InputError(f"{path}: {parts}: probably a mark for missing cells; {remedy}")
+    if marks:
+        parts = " and ".join(f"{_cells(mark)} exactly {number(mark.value)}" for mark in marks)
+        return (
+            f"{parts}, many times as often as any other height: probably cells without a "
+            f"measurement, or heights cut off there; {remedy}"
+        )
+    return ""
+
+
+def number(value: float) -> str:
+    """A number as a person writes it: whole numbers whole, others to seven digits."""
+    if value == round(value) and abs(value) < 1e15:
+        return str(round(value))
+    return f"{value:.7g}"
+
+
+def _cells(mark: Mark) -> str:
+    percent = 100 * mark.share
+    part = f" ({percent:.1f} %)" if 0.05 <= percent < 99.95 else ""
+    many = "1 cell" if mark.cells == 1 else f"{mark.cells} cells"
+    return f"{many}{part} hold{'s' * (mark.cells == 1)}"
+
+
+def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
+    """The lowest or the highest number, if it is far from all others and repeats."""
+    z = heights[present]
+    for extreme, sign in ((float(z.min()), 1), (float(z.max()), -1)):
+        alike = np.isclose(z, extreme, rtol=_SAME, atol=0)
+        others = z[~alike]
+        if others.size < _FEWEST or (alike.sum() < _FEWEST and not _is_usual(extreme)):
+            continue
+        gap = sign * (float(others.min() if sign > 0 else others.max()) - extreme)
+        drawn = _drawn(others)
+        low, high = np.percentile(drawn, [25, 75])
+        # Another mark among the others may be in a quarter of the cells: then its turn comes first.
+        if high > low and gap > _FAR * (high - low) and np.unique(drawn).size >= _FEWEST_LEVELS:
+            return extreme
+    return None
+
+
+def _is_usual(value: float) -> bool:
+    return value in _USUAL or abs(value) >= 1e19
+
+
+def _repeated(heights: np.ndarray, present: np.ndarray) -> float | None:
+    """A number that repeats many times as often as any other, or alone fills whole blocks."""
+    drawn = _drawn(heights[present])
+    found = _dominant(drawn)
+    if found is None and heights.ndim == 2:
+        found = _dominant(heights[_flat(heights) & present], fewest=_REPEATED // 3)
+        if found is not None and np.unique(drawn).size < _FEWEST_LEVELS:
+            return None
+    return found
+
+
+def _dominant(values: np.ndarray, fewest: int = _REPEATED) -> float | None:
+    """The value that stands there far more often than the next, None if there is no such."""
+    if values.size == 0:
+        return None
+    levels, counts = np.unique(values, return_counts=True)
+    first = int(np.argmax(counts))
+    most = int(counts[first])
+    next_most = int(np.delete(counts, first).max(initial=0))
+    few_levels = fewest == _REPEATED and levels.size < _FEWEST_LEVELS
+    return None if few_levels or most < max(fewest, _DOMINANT * next_most) else float(levels[first])
+
+
+def _flat(heights: np.ndarray) -> np.ndarray:
+    """Cells that are equal to all their eight neighbours."""
+    flat = np.zeros(heights.shape, bool)
+    if min(heights.shape) < 3:
+        return flat
+    along = heights[:, 1:] == heights[:, :-1]
+    three = along[:, 1:] & along[:, :-1]
+    down = (heights[1:] == heights[:-1])[:, 1:-1]
+    flat[1:-1, 1:-1] = three[1:-1] & three[:-2] & three[2:] & down[1:] & down[:-1]
+    return flat
+
+
+def _drawn(values: np.ndarray) -> np.ndarray:
+    """So many of the values, drawn once and for all."""
+    if values.size <= _SAMPLE:
+        return values
+    return values[np.random.default_rng(0).integers(0, values.size, _SAMPLE)]
