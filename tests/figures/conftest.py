@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from chain import read, stages_of
 
 from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.experiments.delta_g import estimator_bias
@@ -13,17 +14,13 @@ from fractalcontact.experiments.size_states import solve_task
 from fractalcontact.experiments.size_strength import size_strength
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
+from fractalcontact.study.configuration import resolve_settings, window_arguments
 from fractalcontact.study.size_tasks import size_tasks
-from fractalcontact.study.stages import (
-    EXPERIMENT,
-    STAGES,
-)
+from fractalcontact.study.stages import EXPERIMENT, STAGES
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
-SOLVER = solver_settings({}, "tiny")
 AREA_SLOPE = {
     "dimension": 2.2,
     "nodes": 64,

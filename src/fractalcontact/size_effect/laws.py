@@ -34,7 +34,7 @@ _OVER_LOADS = {
         "exponent of corrected A_r/A_0 against b",
     ),
 }
-#: Of them, what is left of the whole when the bulk's part is taken away: none below 0 means anything.
+#: Of them, what the bulk's part leaves of the whole: below 0 it means nothing.
 _OF_INTERFACE = ("interface_closure", "interface_compliance")
 
 

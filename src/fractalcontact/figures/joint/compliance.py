@@ -21,7 +21,7 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
-from ..kit.empty import say_empty
+from ..kit.empty import TOO_FULL, say_empty
 from ..kit.verdicts import verdict_words
 from ..kit.words import TOWARDS, force_label, opening, place, pressure_label, short
 
@@ -29,12 +29,6 @@ TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against
 SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "closure", "statements")
 ORDER = 70
-
-#: Why a panel stays empty.
-FULL = (
-    "contact so full, or faces so flush, that what the interface gives cannot be told from what "
-    "the blocks beside it give"
-)
 
 #: What the paper says of the stages of sliding (:mod:`statements.judge`).
 STAGES = ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again")
@@ -185,12 +179,12 @@ def _draw_closures(closed, compliance, table):
             ls="none",
         )
     if not np.isfinite(table["interface_compliance_mm_per_MPa"]).any():
-        say_empty(compliance, FULL)
+        say_empty(compliance, TOO_FULL)
     closures = table["interface_closure_mm"].dropna()
     if (closures != 0).any():
         closed.set_ylim(bottom=min(0, closures.min()))
     elif closures.empty:
-        say_empty(closed, FULL)
+        say_empty(closed, TOO_FULL)
     closed.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
     compliance.set_yscale("log")
     compliance.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)")

@@ -10,6 +10,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
+#: Why there is nothing of the interface to draw.
+TOO_FULL = (
+    "contact so full, or faces so flush, that what the interface gives cannot be told from what "
+    "the blocks beside it give"
+)
 #: Of the words in an empty panel.
 _MARK = "nothing-to-draw"
 #: Ends of a logarithmic axis that nothing is drawn on.
