@@ -9,6 +9,7 @@ import textwrap
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
+from matplotlib.ticker import NullLocator
 
 #: Why there is nothing of the interface to draw.
 TOO_FULL = (
@@ -39,6 +40,7 @@ def say_empty(axes: Axes, reason: str) -> None:
         ha="center",
         va="center",
         color="0.35",
+        bbox={"color": "white"},
         gid=_MARK,
     )
 
@@ -59,8 +61,17 @@ def settle_empty_axes(figure: FigureBase) -> None:
             if not (0 < low < high and np.isfinite(high)):
                 set_ends = axes.set_xlim if axis is axes.xaxis else axes.set_ylim
                 set_ends(*_ENDS)
+                _without_ticks(axes, axis.axis_name)
         if empty and axes.get_visible() and not any(t.get_gid() == _MARK for t in axes.texts):
             say_empty(axes, _NOTHING)
+
+
+def _without_ticks(axes, name):
+    """No numbers on an axis that has none, nor on its second one."""
+    for panel in (axes, *axes.child_axes):
+        axis = getattr(panel, f"{name}axis")
+        axis.set_major_locator(NullLocator())
+        axis.set_minor_locator(NullLocator())
 
 
 def _without_values(axis) -> bool:

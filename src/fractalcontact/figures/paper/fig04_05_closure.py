@@ -134,6 +134,8 @@ def _draw_closure(axes, curves, drawn, direction, area):
     if np.isfinite(closures).any():
         # Flush faces have closures of 0 alone.
         axes.set_xlim(0, 1.05 * limit if limit > 0 else None)
+        if 0 < limit < 1e-3:  # long numbers would stand one over the other
+            axes.ticklabel_format(axis="x", scilimits=(0, 0))
     else:
         say_empty(axes, TOO_FULL)
     axes.set_ylim(0, 1.05 * float(curves["normal_force"][-1]) / size)
