@@ -7,8 +7,8 @@ from pathlib import Path
 LEAST = 2000
 #: Megabytes of the program and its libraries, of which the reader process has as many.
 _PROGRAM = 700
-#: Bytes of memory for each byte of a file of numbers in plain text or as they are: 12 million points
-#: x, y, z (315 MB as text, 288 MB as binary numbers) take 2 to 3 GB.
+#: Bytes of memory for each byte of a file of plain numbers: 12 million points
+#: x, y, z (315 MB as text, 288 MB as they are) take some 2 GB, those of a scattered cloud more.
 _PLAIN = 8
 #: Bytes of memory for each byte of any other file: heights in two bytes, or packed to one.
 _PACKED = 60
