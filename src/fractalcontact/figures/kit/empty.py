@@ -8,7 +8,8 @@ import textwrap
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import FigureBase
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 #: Why there is nothing of the interface to draw.
@@ -45,14 +46,14 @@ def say_empty(axes: Axes, reason: str) -> None:
     )
 
 
-def settle_empty_axes(figure: FigureBase) -> None:
+def settle_empty_axes(figure: Figure) -> None:
     """Give logarithmic axes that hold no positive value ends, and their panels words.
 
     To be called once everything is drawn: matplotlib has no ticks for such an axis, and raises.
 
     Parameters
     ----------
-    figure : matplotlib.figure.FigureBase
+    figure : matplotlib.figure.Figure
     """
     for axes in figure.axes:
         empty = [axis for axis in (axes.xaxis, axes.yaxis) if _without_values(axis)]
@@ -69,7 +70,7 @@ def settle_empty_axes(figure: FigureBase) -> None:
 def _without_ticks(axes, name):
     """No numbers on an axis that has none, nor on its second one."""
     for panel in (axes, *axes.child_axes):
-        axis = getattr(panel, f"{name}axis")
+        axis: Axis = getattr(panel, f"{name}axis")
         axis.set_major_locator(NullLocator())
         axis.set_minor_locator(NullLocator())
 
