@@ -136,7 +136,7 @@ def add_squares(
 
 
 @njit(cache=True)
-def pairs_in_block(block, nx, length):
+def pairs_in_block(block: int, nx: int, length: int) -> tuple[int, int]:
     """First start of a pair of cells `length` apart whose middle lies in the block, and the end.
 
     A kernel, of whole numbers alone.
