@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
+from ...core.strips import stacked
 from ..format import Format
 from ..headings import read_statements
 from ..options import ScanOptions
@@ -138,7 +139,7 @@ class _Reading:
         notes: tuple[str, ...] = ()
         if self._short:
             notes = (f"the last line ({self._short[0]}) was cut short and is left out",)
-        table = np.concatenate(self._parts)
+        table = stacked(self._parts)
         self.breaks = [row for row in dict.fromkeys(self.breaks) if 0 < row < len(table)]
         if self._counts and not counts_agree(self._counts, table.shape):
             raise InputError(
