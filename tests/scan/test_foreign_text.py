@@ -230,7 +230,12 @@ def test_no_row_of_a_tilted_surface_is_taken_for_coordinates(tmp_path, tilt, rou
     heights = tilt[0] * np.arange(30) + tilt[1] * np.arange(20)[:, None] + roughness * rough
     path = tmp_path / "rock.npy"
     np.save(path, heights)
-    assert read_scan(path, {"unit": "mm", "spacing": 1}).shape == (20, 30)
+    options = {"unit": "mm", "spacing": 1}
+    if roughness == 0 and 0 in tilt:  # nothing but one axis, and no surface
+        with pytest.raises(InputError, match="these are coordinates or a bare slope"):
+            read_scan(path, options)
+    else:
+        assert read_scan(path, options).shape == (20, 30)
 
 
 def test_axes_of_an_array_are_found_whatever_the_format(tmp_path):

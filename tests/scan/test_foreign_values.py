@@ -177,10 +177,6 @@ DOUBTFUL = {
         np.where(np.arange(N)[:, None] >= 22, np.nan, rough()),
         "54 % of the cells are missing",
     ),
-    "two tables under each other": (
-        np.vstack([rough(1), rough(2) + 3.0]),
-        "rows 48 and 49 differ",
-    ),
     "two tables beside each other": (
         np.hstack([rough(1), rough(2) - 2.0]),
         "columns 48 and 49 differ",
