@@ -27,8 +27,10 @@ function overLoads(point, background = true) {
   return series;
 }
 
+/** The states themselves, B below A where they meet. */
 function dotsOf(point) {
   return shownStates()
+    .reverse()
     .filter((who) => state[who].states.solved(state[who].place))
     .map((who) => ({ ...point(state[who].states, state[who].place), who }));
 }
@@ -59,6 +61,16 @@ function dimensionPoint(key) {
     const words = `Δσ = ${determined ? short(y, 3) : "undetermined"} [${short(low, 3)}, ${short(high, 3)}] under ${forceWords(x)}`;
     return { x, y, low: determined ? low : NaN, high: determined ? high : NaN, hollow: !determined, words };
   };
+}
+
+function dimensionSeries() {
+  return shownStates().flatMap((who) =>
+    [["domains/delta_sigma", who, "circle"], ["scaling/delta_sigma_area", `${who} dashed`, "square"]].map(([key, style, marker]) => ({
+      points: pointsAlong(who, "normal_force", state[who].place, dimensionPoint(key)),
+      style,
+      marker,
+    }))
+  );
 }
 
 function elasticPoint(states, place) {
@@ -110,13 +122,10 @@ const PLOTS = {
   dimension: () => ({
     x: { label: "normal force F (N)", log: true },
     y: { label: "Δσ of the contact domain (1)", from: 0, to: 2 },
-    series: shownStates().flatMap((who) => [
-      { points: pointsAlong(who, "normal_force", state[who].place, dimensionPoint("domains/delta_sigma")), style: who },
-      { points: pointsAlong(who, "normal_force", state[who].place, dimensionPoint("scaling/delta_sigma_area")), style: `${who} dashed`, marker: "square" },
-    ]),
+    series: dimensionSeries(),
     dots: dotsOf(dimensionPoint("domains/delta_sigma")),
     key: [...keyOfStates(), ["plain circle", "box counting"], ["plain square", "area over spacings"], ["hollow", "undetermined"]],
-    empty: unsolved(),
+    empty: unsolved() || (dimensionSeries().some(({ points }) => points.some(({ y }) => Number.isFinite(y))) ? "" : "no Δσ under any load"),
   }),
   dilatancy: () => {
     const { states, place } = state.a;

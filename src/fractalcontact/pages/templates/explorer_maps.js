@@ -1,10 +1,13 @@
-// Maps of the contact, the pressure or the gap of one state, one pixel a node, on a canvas.
-// Colours are Okabe and Ito's, which colour-blind readers distinguish.
+// Maps of the contact, the pressure or the gap of one state on a canvas. Marked nodes are hatched
+// over their colour, so that one sees both. Colours are Okabe and Ito's.
 const INK = { contact: [0, 0, 0], free: [255, 255, 255], missing: [205, 205, 205] };
 const MARKS = {
-  overlap: { free: [240, 228, 66], contact: [213, 94, 0], words: "faces overlap as scanned" },
-  suspect: { free: [140, 205, 240], contact: [0, 114, 178], words: "otherwise suspicious cell" },
+  overlap: { colour: [213, 94, 0], rising: true, words: "faces overlap here as scanned" },
+  suspect: { colour: [204, 121, 167], rising: false, words: "otherwise suspicious cell" },
 };
+// Pixels of a node's side where nodes are marked, up to so many pixels of the map's side.
+const HATCHED = 3;
+const LARGEST_HATCHED = 2000;
 const DECADES_OF_PRESSURE = 3;
 
 /** All that a map needs of a state: nodes by row from the South, column from the West. */
@@ -30,28 +33,39 @@ function markOf(map, row, column) {
 
 function drawMap(canvas, map, colours) {
   const { rows, columns } = map;
-  canvas.width = columns;
-  canvas.height = rows;
+  const marked = Object.values(map.marks).some(Boolean);
+  const size = marked && Math.max(rows, columns) * HATCHED <= LARGEST_HATCHED ? HATCHED : 1;
+  canvas.width = columns * size;
+  canvas.height = rows * size;
   const context = canvas.getContext("2d");
-  const image = context.createImageData(columns, rows);
+  const image = context.createImageData(canvas.width, canvas.height);
+  const pixels = new Uint32Array(image.data.buffer);
   const colour = map.values ? valueColour(map, colours) : () => null;
   for (let row = 0; row < rows; row++)
     for (let column = 0; column < columns; column++) {
-      const i = 4 * ((rows - 1 - row) * columns + column);
-      image.data.set(nodeColour(map, row, column, colour), i);
-      image.data[i + 3] = 255;
+      const start = (rows - 1 - row) * size * canvas.width + column * size;
+      const own = packedColour(nodeColour(map, row, column, colour));
+      const kind = marked && map.domain ? markOf(map, row, column) : "";
+      const mark = kind ? packedColour(MARKS[kind].colour) : own;
+      for (let i = 0; i < size; i++)
+        for (let j = 0; j < size; j++) {
+          const hatched = kind && (size === 1 || (MARKS[kind].rising ? i + j === size - 1 : i === j));
+          pixels[start + i * canvas.width + j] = hatched ? mark : own;
+        }
     }
   context.putImageData(image, 0, 0);
+  canvas.classList.toggle("fine", canvas.width > canvas.clientWidth * devicePixelRatio);
+}
+
+/** A colour as the four bytes of a pixel: every machine that has a browser is little-endian. */
+function packedColour([red, green, blue]) {
+  return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
 }
 
 function nodeColour(map, row, column, colour) {
   if (!map.domain) return INK.missing;
   const touching = map.domain.at(row, column);
-  const mark = markOf(map, row, column);
-  const own = map.values ? colour(map.values[row * map.columns + column], touching) : null;
-  if (!mark) return own || (touching ? INK.contact : INK.free);
-  const marked = MARKS[mark][touching ? "contact" : "free"];
-  return own ? own.map((part, i) => (part + 2 * marked[i]) / 3) : marked;
+  return colour(map.values && map.values[row * map.columns + column], touching) || (touching ? INK.contact : INK.free);
 }
 
 /** Colour of a pressure, on a logarithmic scale of three decades, or of a gap, on a linear one. */
@@ -73,10 +87,11 @@ function mixed(colours, part) {
 /** Entries below a map: what its colours mean. */
 function mapLegend(map, colours) {
   const entries = [];
-  const swatch = (colour, words) => {
+  const swatch = (colour, words, hatched) => {
     const entry = document.createElement("span");
     const box = document.createElement("i");
-    box.style.background = `rgb(${colour.join(" ")})`;
+    const ink = `rgb(${colour.join(" ")})`;
+    box.style.background = hatched ? `repeating-linear-gradient(${hatched}, ${ink} 0 2px, #fff 2px 5px)` : ink;
     entry.append(box, words);
     entries.push(entry);
   };
@@ -84,11 +99,7 @@ function mapLegend(map, colours) {
   if (map.values) entries.push(colourBar(map, colours));
   if (map.field !== "pressure" || !map.values) swatch(INK.contact, "in contact");
   if (map.field !== "gap" || !map.values) swatch(INK.free, "free");
-  for (const [kind, bits] of Object.entries(map.marks))
-    if (bits) {
-      swatch(MARKS[kind].free, MARKS[kind].words);
-      swatch(MARKS[kind].contact, "the same, in contact");
-    }
+  for (const [kind, bits] of Object.entries(map.marks)) if (bits) swatch(MARKS[kind].colour, MARKS[kind].words, MARKS[kind].rising ? "135deg" : "45deg");
   return entries;
 }
 

@@ -151,7 +151,7 @@ function drawMark(parent, marker, x, y, size, style) {
 /** The state itself on its curve: a circle for A, a diamond for B. */
 function drawDot(drawing, { x, y, who }, across, up) {
   if (!across.shows(x) || !up.shows(y)) return;
-  const mark = drawMark(drawing, who === "b" ? "diamond" : "circle", across.at(x), up.at(y), who === "b" ? 8 : 6.5, `dot ${who}`);
+  const mark = drawMark(drawing, who === "b" ? "diamond" : "circle", across.at(x), up.at(y), who === "b" ? 9 : 6, `dot ${who}`);
   mark.setAttribute("data-x", x);
   mark.setAttribute("data-y", y);
 }
