@@ -38,7 +38,8 @@ _SYMBOL = re.compile(
     rf"\b({'|'.join(_GREEK)}|[A-Za-z])_((?:{'|'.join(_GREEK)}|[a-z]{{1,3}}|[A-Z]|\d)\b)"
 )
 _ALONE = re.compile(r"(?<![\w;&])(alpha|beta|kappa|sigma|delta)(?=\*|\b)(?!-)")
-_POWER = re.compile(r"\b(mm|cm|m)([23])\b")
+_UNIT = re.compile(r"\b(mm|cm|m)([23])\b")
+_POWER = re.compile(r"\^(-?\([^()]*\)|-?[\w.]*\w)")
 
 
 class Caption(NamedTuple):
@@ -117,7 +118,8 @@ def symbols(text: object) -> Markup:
     safe = str(escape(text))
     safe = _SYMBOL.sub(_lowered, safe)
     safe = _ALONE.sub(lambda found: _GREEK[found[1]], safe)
-    return Markup(_POWER.sub(lambda found: found[1] + "²³"["23".index(found[2])], safe))  # noqa: S704
+    safe = _UNIT.sub(lambda found: found[1] + "²³"["23".index(found[2])], safe)
+    return Markup(_POWER.sub(lambda found: f"<sup>{found[1]}</sup>", safe))  # noqa: S704
 
 
 def _lowered(found):

@@ -7,6 +7,7 @@ import csv
 import datetime
 import io
 import json
+import re
 import zipfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -32,7 +33,7 @@ from .matrix import Row, matrix_of, of_study
 from .summary import Specimen, summarised, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
-from .words import duration, percent, short, with_unit
+from .words import duration, measured, percent, short, with_unit
 
 #: Digits of the numbers in tables: more than any of them has.
 _FORMAT = "%.8g"
@@ -121,10 +122,12 @@ def _head(place, atlas):
         "atlas_path": _as_typed(place.atlas),
         "has_explorer": (place.folder / EXPLORER).is_file(),
         "short": short,
+        "measured": measured,
         "with_unit": with_unit,
         "percent": percent,
         "symbols": symbols,
         "estimate": _estimate,
+        "in_paper": _in_paper,
     }
 
 
@@ -133,14 +136,21 @@ def _as_typed(path):
     return "/".join(("results", path.parent.name, path.name))
 
 
-def _estimate(found, digits=3):
+def _estimate(found):
     """A number with its interval in words, as figures print it."""
     if found.value is None:
         return short(None)
     if not found.determined:
         return "undetermined"
-    ends = f" [{short(found.low, digits)}, {short(found.high, digits)}]"
-    return short(found.value, digits) + (ends if found.low is not None else "")
+    ends = f" [{measured(found.low)}, {measured(found.high)}]" if found.low is not None else ""
+    return measured(found.value) + ends
+
+
+def _in_paper(figures):
+    """Where a statement stands in the paper: "Figs. 4, 5" or "sect. 7"."""
+    if figures.startswith("sect"):
+        return figures
+    return f"Figs. {figures}" if len(re.findall(r"\d+", figures)) > 1 else f"Fig. {figures}"
 
 
 def _work(benchmarks: Path) -> tuple[float, int]:

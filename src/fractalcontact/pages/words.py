@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 #: Below and above these a number has an exponent.
 _PLAIN = (1e-4, 1e6)
 #: Smaller units of lengths: from where on, its name, how many mm it is.
@@ -15,13 +13,28 @@ MISSING = "–"
 
 
 def short(value: float | None, digits: int = 3) -> str:
-    """Some digits of a number; a dash where it is missing."""
+    """Some digits of a number, without zeros at its end; a dash where it is missing."""
+    return _number(value, digits, "-")
+
+
+def measured(value: float | None, digits: int = 3) -> str:
+    """Some digits of a number, all of them: 2.20; a dash where it is missing."""
+    return _number(value, digits, "k")
+
+
+def _number(value, digits, trim):
     if value is None or not math.isfinite(value):
         return MISSING
     rounded = float(f"{value:.{digits}g}")
-    if rounded == 0 or _PLAIN[0] <= abs(rounded) < _PLAIN[1]:
-        return np.format_float_positional(rounded, trim="-").replace("-", "−")
-    return f"{value:.{digits - 1}e}".replace("-", "−")
+    if rounded == 0:
+        return "0"
+    if _PLAIN[0] <= abs(rounded) < _PLAIN[1]:
+        places = max(digits - 1 - math.floor(math.log10(abs(rounded))), 0)
+        text = f"{rounded:.{places}f}"
+        text = text.rstrip("0").rstrip(".") if trim == "-" and "." in text else text
+    else:
+        text = f"{value:.{digits - 1}e}"
+    return text.replace("-", "−")
 
 
 def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
@@ -31,7 +44,8 @@ def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
     for least, name, size in _SCALED.get(unit, ()):
         if abs(value) >= least:
             return f"{short(value / size, digits)} {name}"
-    return short(value, digits) if unit == "1" else f"{short(value, digits)} {unit}"
+    number = short(value, digits)
+    return number if unit == "1" else f"{number} {unit.replace('mm2', 'mm²')}"
 
 
 def percent(fraction: float | None, digits: int = 2) -> str:
