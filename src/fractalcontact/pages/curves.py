@@ -1,0 +1,79 @@
+"""Curves against pressure, at the offset of the contact maps, to lay over those of others."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from .chosen import Chosen, finite
+
+#: Columns of the file, which the page of another study reads.
+COLUMNS = (
+    "study",
+    "specimen",
+    "label",
+    "direction",
+    "offset_mm",
+    "quantity",
+    "unit",
+    "nominal_pressure_MPa",
+    "value",
+    "low",
+    "high",
+)
+
+
+def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
+    """Curves of specimens, one row a point; points that were not solved are left out.
+
+    Interface closure, tangent stiffness and corrected area with the total error of this surface,
+    both Delta_sigma with their intervals.
+
+    Parameters
+    ----------
+    study : str
+    chosen : list of Chosen
+    """
+    rows: list[dict[str, Any]] = []
+    for one in chosen:
+        start = {
+            "study": study,
+            "specimen": one.name,
+            "label": one.label,
+            "direction": one.direction,
+            "offset_mm": one.offset,
+        }
+        for quantity, unit, values, low, high in _quantities(one):
+            rows += [
+                start
+                | {
+                    "quantity": quantity,
+                    "unit": unit,
+                    "nominal_pressure_MPa": float(one.pressures[i]),
+                    "value": float(values[i]),
+                    "low": finite(low[i]),
+                    "high": finite(high[i]),
+                }
+                for i in np.flatnonzero(np.isfinite(values))
+            ]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _quantities(one):
+    """Name, unit, values and ends of each curve over the loads."""
+    closure = one.values("closure", "interface_closure", "interface_stiffness")
+    area = one.values("closure", "area_corrected_share", "area_share", "nodes")
+    budget = one.stage("error_budget").sel(normal_force=one.forces, method="nearest")
+    share = area["area_corrected_share"].values
+    of_values = (
+        ("interface closure", "mm", closure["interface_closure"].values, "closure"),
+        ("tangent stiffness", "MPa/mm", closure["interface_stiffness"].values, "stiffness"),
+        ("real contact area A_r/A_0", "1", share, "area_corrected"),
+    )
+    for words, unit, values, name in of_values:
+        error = abs(values) * budget["relative_total"].sel(quantity=name).values
+        yield words, unit, values, values - error, values + error
+    for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
+        found = one.values(stage, *(f"delta_sigma{end}" for end in ("", "_low", "_high")))
+        values = [found[f"delta_sigma{end}"].values for end in ("", "_low", "_high")]
+        yield f"Delta_sigma {words}", "1", *values
