@@ -156,7 +156,7 @@ def summarised(chosen: Chosen) -> Specimen:
     surface = chosen.stage("surface_dimension")
     curve = chosen.values("closure")
     why = str(curve["hyperbola_reason"].item()) or str(curve["closure_law_reason"].item())
-    dimension = [float(surface[f'recommended_{end}']) for end in ('value', 'low', 'high')]
+    dimension = [float(surface[f"recommended_{end}"]) for end in ("value", "low", "high")]
     return Specimen(
         name=chosen.name,
         label=chosen.label,
@@ -165,9 +165,7 @@ def summarised(chosen: Chosen) -> Specimen:
         offset=chosen.offset,
         window=(side_x, side_y),
         spacing=max(spacing_of(specimen)),
-        delta_g=Estimate.between(
-            *dimension, str(surface["no_dimension"].item()), _DIMENSION
-        ),
+        delta_g=Estimate.between(*dimension, str(surface["no_dimension"].item()), _DIMENSION),
         estimator=str(surface["recommended"].item()).replace("_", " "),
         rms_slope=finite(chosen.values("area", "rms_slope")["rms_slope"]),
         k_ni=Estimate.of(curve, "hyperbola_k_ni", why),

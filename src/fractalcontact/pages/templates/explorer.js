@@ -141,7 +141,7 @@ async function showMap(who) {
   const what = map.values ? field : "contact domain";
   const size = states.raw.window.shape.map((n, i) => short(n * states.raw.window.spacing[i], 3));
   canvas.setAttribute("aria-label", map.domain ? `Map of the ${what}, ${size[1]} mm East by ${size[0]} mm North` : "This state was not solved");
-  panel.querySelector(".legend").replaceChildren(...mapLegend(map, COLOURS));
+  panel.querySelector(".colour-key").replaceChildren(...mapLegend(map, COLOURS));
   showStored(panel, states, field, map);
   const at = state[who].node;
   if (at && at.row < map.rows && at.column < map.columns) readNode(who, at.row, at.column);
@@ -168,14 +168,17 @@ function showStored(panel, states, field, map) {
 
 function listenToMap(who, panel) {
   const canvas = panel.querySelector("canvas");
-  canvas.addEventListener("pointermove", (event) => {
+  const read = (event) => {
     const { map } = state[who];
     const box = canvas.getBoundingClientRect();
     const column = Math.floor(((event.clientX - box.left) / box.width) * map.columns);
     const row = map.rows - 1 - Math.floor(((event.clientY - box.top) / box.height) * map.rows);
     readNode(who, within(row, map.rows), within(column, map.columns));
-  });
-  canvas.addEventListener("pointerleave", () => leaveNode(who));
+  };
+  canvas.addEventListener("pointermove", read);
+  canvas.addEventListener("pointerdown", read);
+  // A finger that is lifted leaves what it read.
+  canvas.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && leaveNode(who));
   canvas.addEventListener("keydown", (event) => {
     const { map, node } = state[who];
     const step = event.shiftKey ? 10 : 1;
@@ -245,8 +248,7 @@ function valueRow(key, { units, meaning }) {
 
 /** A value with its interval or error, or why there is none. */
 function valueWords(key, { states, place }, value) {
-  if (!states.solved(place)) return "not solved";
-  if (!Number.isFinite(value)) return states.reason(key, place) || "–";
+  if (!Number.isFinite(value)) return states.solved(place) ? states.reason(key, place) || "–" : "not solved";
   const [low, high] = ["_low", "_high"].map((end) => states.at(key + end, place));
   if (Number.isFinite(low) && Number.isFinite(high)) {
     const words = `[${short(low, 3)}, ${short(high, 3)}]`;
@@ -254,7 +256,8 @@ function valueWords(key, { states, place }, value) {
   }
   const [total, solver] = [states.total(key, place), states.at(`${key}_error`, place)];
   const error = Number.isFinite(total) ? total : solver;
-  return error > 0 ? `${short(value)} ± ${short(error, 2)}` : short(value);
+  const words = error > 0 ? `${short(value)} ± ${short(error, 2)}` : short(value);
+  return states.ofFinest(key, place) ? `${words} at the finest spacing` : words;
 }
 
 function showCode() {
