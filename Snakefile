@@ -16,6 +16,7 @@ include: "workflow/rules/size_effect.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/atlas.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/explorer.smk"
 include: "workflow/rules/pages.smk"
 include: "workflow/rules/accuracy.smk"
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-import xarray as xr
-from declared import Declared
+from made_stages import scan, stages_of
 
 from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.experiments.delta_g import estimator_bias
@@ -12,24 +11,11 @@ from fractalcontact.experiments.roll_off import roll_off_effect
 from fractalcontact.experiments.size_effect_test import size_effect_test
 from fractalcontact.experiments.size_states import solve_task
 from fractalcontact.experiments.size_strength import size_strength
-from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.atlas import join_stages
-from fractalcontact.stages.specimen import specimen_stages
-from fractalcontact.stages.states import state_stages
-from fractalcontact.stages.strength import strength_stages
-from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
+from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.size_tasks import size_tasks
-from fractalcontact.study.stages import (
-    CONTACT,
-    EXPERIMENT,
-    SOLVER_READ,
-    STAGES,
-    read_by,
-    solver_read_by,
-)
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.study.stages import EXPERIMENT, STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -125,12 +111,6 @@ ROLL_OFF = {
 }
 
 
-def _scan(heights):
-    coordinates = [SPACING * (np.arange(n) + 0.5) for n in heights.shape]
-    attrs = {"spacing_x": SPACING, "spacing_y": SPACING, "source": "made", "sha256": "0" * 64}
-    return xr.DataArray(heights, dims=("y", "x"), coords=coordinates, attrs=attrs)
-
-
 def _scans():
     """Lower and upper face by specimen."""
 
@@ -142,9 +122,9 @@ def _scans():
     lower[:20, :12] = np.nan
     upper[-3:, -30:] = np.nan
     return {
-        "sliding": (_scan(surface(96, 3)), None),
-        "flat": (_scan(surface(48, 4)), None),
-        "pair": (_scan(lower), _scan(upper)),
+        "sliding": (scan(surface(96, 3), SPACING), None),
+        "flat": (scan(surface(48, 4), SPACING), None),
+        "pair": (scan(lower, SPACING), scan(upper, SPACING)),
     }
 
 
@@ -154,52 +134,13 @@ def atlas_file(tmp_path_factory):
     parts = {stage: {} for stage in STAGES}
     settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
     for name, faces in _scans().items():
-        for stage, dataset in _stages_of(name, faces, settings[name]).items():
+        for stage, dataset in stages_of(name, faces, settings[name], SOLVER).items():
             parts[stage][name] = dataset
     for stage, dataset in _experiments().items():
         parts[stage]["surfaces"] = dataset
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
     join_stages(parts, path, {"study": STUDY, "settings": settings})
     return path
-
-
-def _stages_of(name, faces, settings):
-    """All stages of a specimen, as the jobs of a study compute them."""
-    of_specimen = read(STAGES["specimens"].function, settings)
-    specimen = make_specimen(*faces, name=name, **window_arguments(of_specimen))
-    known = specimen_stages(specimen, of_specimen)
-    states = joint_states(
-        specimen,
-        known["joints"],
-        settings["contact_directions"],
-        slice(None),
-        read(CONTACT, settings),
-        settings["resolutions"],
-        solver_read(CONTACT),
-    )
-    for stage, of_stage in (
-        ("window_states", window_stages),
-        ("closure", state_stages),
-        ("windows", strength_stages),
-    ):
-        before = {need: known[need] for need in STAGES[stage].needs}
-        parts = {"parts": [states]} if stage == "closure" else {}
-        known |= of_stage(**before, **parts, **given(STAGES[stage].function, settings))
-    return known
-
-
-def read(function, settings):
-    """What a rule hands over: the settings that the function declares; others are refused."""
-    return Declared(read_by(function, settings))
-
-
-def solver_read(function):
-    return Declared(solver_read_by(function, SOLVER))
-
-
-def given(function, settings):
-    solver = {"solver": solver_read(function)} if function in SOLVER_READ else {}
-    return {"settings": read(function, settings), **solver}
 
 
 def _experiments():

@@ -4,10 +4,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
+from ..core.labels import printable
+from ..study.atlas import read_atlas
+from ..study.stages import STAGES
 from .packed_states import packed_states
 from .templating import write_page
 
@@ -15,6 +17,8 @@ from .templating import write_page
 COLOUR_MAP = "cividis"
 #: Steps of the colour map that the page gets; it interpolates between them.
 COLOURS = 33
+#: Letters of a specimen's label that are shown.
+LONGEST_LABEL = 100
 #: Stages that the page shows.
 NEEDS = (
     "specimens",
@@ -28,13 +32,13 @@ NEEDS = (
 )
 
 
-def write_explorer(atlas: xr.DataTree, path: Path | str) -> None:
+def write_explorer(atlas_path: Path | str, path: Path | str) -> None:
     """Write the page on all contact states of a study: one file that needs no other.
 
     Parameters
     ----------
-    atlas : xr.DataTree
-        From :func:`study.atlas.read_atlas`, with the stages :data:`NEEDS`.
+    atlas_path : path-like
+        Atlas of the study.
     path : path-like
         ``explorer.html`` beside the atlas and the result page, to which it links.
 
@@ -43,6 +47,7 @@ def write_explorer(atlas: xr.DataTree, path: Path | str) -> None:
     OutputError
         If the disk is full or the folder cannot be written to.
     """
+    atlas = read_atlas(atlas_path, without=STAGES.keys() - set(NEEDS))
     specimens = list(_specimens(atlas))
     values = {
         "title": f"Explorer of the study {atlas.attrs['study']}",
@@ -62,7 +67,7 @@ def _specimens(atlas) -> Iterator[dict[str, Any]]:
     groups = atlas["closure"].children if "closure" in atlas.children else ()
     for name in groups:
         attrs = atlas[f"specimens/{name}"].attrs
-        label = str(attrs.get("label") or name)
+        label = printable(attrs.get("label") or name, LONGEST_LABEL)
         yield {"name": name, "label": label, "states": packed_states(atlas, name)}
 
 

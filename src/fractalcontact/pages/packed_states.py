@@ -1,8 +1,8 @@
-"""Contact states of a specimen as text: numbers, contact domains and fields for the explorer's page.
+"""Contact states of a specimen as text: numbers, contact domains and fields for the explorer.
 
 Numbers are float64, contact domains bits, pressures float32: what the page shows is what the atlas
-holds. The gap alone is rounded, to a thousandth of the largest. All is little-endian, deflated, and in
-base64.
+holds. The gap alone is rounded, to a thousandth of the largest. All is little-endian, deflated,
+and in base64.
 """
 
 import base64
@@ -306,7 +306,7 @@ def _pressures(values):
 
 
 def _gaps(values):
-    """Steps of each gap less those of the node before it in the row: smooth fields deflate better."""
+    """Steps of each gap less those of the node West of it: smooth fields deflate better."""
     step = float(np.nanmax(values)) / GAP_STEPS or 1.0
     missing = ~np.isfinite(values)
     steps = np.where(missing, GAP_STEPS + 1, np.rint(np.clip(values, 0, None) / step))
