@@ -85,4 +85,8 @@ def _of_value(quantity, error):
     """An error as a fraction of its value; of a dimension as it is."""
     if error is None or quantity.unit == "1":
         return with_unit(error, quantity.unit, 2)
-    return percent(abs(error / quantity.value), 2) if quantity.value else with_unit(error, quantity.unit)
+    return (
+        percent(abs(error / quantity.value), 2)
+        if quantity.value
+        else with_unit(error, quantity.unit)
+    )

@@ -1,4 +1,4 @@
-"""Names of the files of the result page, for the workflow, which imports nothing heavy to know them."""
+"""Names of the files of the result page: known to the workflow, which imports nothing heavy."""
 
 #: In the folder of the results of a study.
 INDEX, EXPLORER = "index.html", "explorer.html"

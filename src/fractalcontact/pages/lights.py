@@ -65,7 +65,7 @@ def _scan(chosen):
     )
     found = [text for text in (quality, "" if _is_pair(chosen) else load) if text]
     if not found:
-        reason = "all resolutions lie within the fractal range, no suspicious cell carries much load"
+        reason = "all resolutions lie within the fractal range, suspicious cells carry little load"
         return Light("scan", "Scan", GOOD, reason)
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
     below = chosen.stage("quality")["below_range"].values
@@ -101,9 +101,7 @@ def _grid(chosen):
     key, title = "grid", "Converged in the grid"
     accuracy = solver_settings(configuration_of(chosen.atlas)["study"], "study")["accuracy"]
     # All states, at full cost, says nothing of the grid: the usual accuracy is then compared.
-    asked = (
-        accuracy["closure"] if accuracy else share(ACCURACY["closure"], "closure")
-    )
+    asked = accuracy["closure"] if accuracy else share(ACCURACY["closure"], "closure")
     budget = chosen.stage("error_budget").sel(quantity="closure")
     here = budget.sel(normal_force=chosen.forces[chosen.map_load], method="nearest")
     error = float(here["relative_error"].sel(source="numerical"))

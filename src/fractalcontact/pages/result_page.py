@@ -205,7 +205,11 @@ def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
 def _pictures(rows: Iterable[Row], place: Place) -> set[tuple[str, str]]:
     """Specimens and figures that statements are shown by, those whose picture is there."""
     shown = {(name, cell.figure) for row in rows for name, cell in row.cells.items()}
-    return {(name, figure) for name, figure in shown if (place.figures / name / f"{figure}.png").is_file()}
+    return {
+        (name, figure)
+        for name, figure in shown
+        if (place.figures / name / f"{figure}.png").is_file()
+    }
 
 
 def _specimen_values(
