@@ -3,6 +3,7 @@
 # make dry-run  says what would be done
 # make keep-going   one bad scan does not keep the others from their figures
 # make slurm    the same on a cluster
+# make report   the result page alone, and what it is made of
 # make verify   every result against its checksum
 # make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
@@ -30,11 +31,14 @@ export STUDY SCANS
 RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser bench problems fuzz lint format lock clean
+.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser bench problems fuzz lint format lock clean
 all: study
 
 study: $(VENV)/installed
 	@$(RUN) $(OPTIONS) $(TARGET)
+
+report: $(VENV)/installed
+	@$(RUN) $(OPTIONS) pages
 
 keep-going: $(VENV)/installed
 	@$(RUN) $(OPTIONS) --keep-going $(TARGET)

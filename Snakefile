@@ -17,6 +17,7 @@ include: "workflow/rules/experiments.smk"
 include: "workflow/rules/atlas.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/explorer.smk"
+include: "workflow/rules/pages.smk"
 include: "workflow/rules/accuracy.smk"
 
 
@@ -32,8 +33,6 @@ rule all:
     default_target: True
     input:
         rules.atlas.output,
-        # Measured contact maps alone have no states.
-        rules.explorer.output if SPECIMENS else [],
         collect_everything,
     # Without it some hundred names are printed.
     message:

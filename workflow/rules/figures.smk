@@ -143,9 +143,18 @@ def figures_of_specimens(opposite, specimens):
     )
 
 
+def all_figure_files():
+    """Every file of the figures of a study."""
+    study = list(rules.study_figures.output) if STUDY_FIGURES else []
+    return [
+        *study,
+        *figures_of_specimens("match", SLIDING),
+        *figures_of_specimens("flat", FLAT),
+    ]
+
+
 def collect_everything(wildcards):
     """Every file of the study: what was removed, or damaged and so removed, is made again."""
-    study = list(rules.study_figures.output) if STUDY_FIGURES else []
     stages = [
         *expand(list(STAGE_FILES.values()), specimen=SPECIMENS),
         *expand(list(SLIDING_FILES.values()), specimen=SLIDING),
@@ -156,9 +165,4 @@ def collect_everything(wildcards):
         *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
     ]
-    return [
-        *stages,
-        *study,
-        *figures_of_specimens("match", SLIDING),
-        *figures_of_specimens("flat", FLAT),
-    ]
+    return [*stages, *all_figure_files(), *RESULT_PAGE]

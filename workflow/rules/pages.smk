@@ -1,16 +1,23 @@
-# The result page: an index with a page a specimen, tables beside it, and the explorer.
+# The result page: an index, a page a specimen and tables beside them.
+from fractalcontact.pages import files as page_files
 
-PAGES = [f"{RESULTS}/{name}" for name in result_page.FILES]
-SPECIMEN_PAGES = expand(f"{RESULTS}/pages/{{specimen}}.html", specimen=SPECIMENS)
+# Measured contact maps alone have no states to explore.
+EXPLORER = list(rules.explorer.output) if SPECIMENS else []
+RESULT_PAGE = [
+    *(f"{RESULTS}/{name}" for name in page_files.FILES),
+    *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
+    *EXPLORER,
+]
 
 
 rule result_page:
     input:
-        atlas=rules.atlas.output[0],
-        figures=lambda wildcards: all_figure_files(),
+        rules.atlas.output[0],
+        lambda wildcards: all_figure_files(),
+        # The index links to it where it is there.
+        EXPLORER,
     output:
-        *PAGES,
-        *SPECIMEN_PAGES,
+        [path for path in RESULT_PAGE if path not in EXPLORER],
     log:
         f"{RESULTS}/logs/result_page.log",
     benchmark:
@@ -22,14 +29,14 @@ rule result_page:
         runtime=10,
     params:
         code=code("result_page"),
+        templates=sources.digest(PACKAGE.glob("pages/templates/*"), root=workflow.basedir),
     script:
         "../scripts/result_page.py"
 
 
-# `make report`: the pages alone, and what they are made of.
-rule report:
+# `make report`: the pages, and what they are made of.
+rule pages:
     input:
-        PAGES,
-        SPECIMEN_PAGES,
+        lambda wildcards: RESULT_PAGE,
     message:
         "the result page of the study"

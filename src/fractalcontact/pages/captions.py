@@ -1,7 +1,7 @@
 """Captions taken apart: what a figure finds for its heading, two sentences, the rest folded away.
 
-A caption of :mod:`figures` opens with what it is after and of what; then it says what is drawn, then
-what is found. Nothing is written anew here.
+A caption of :mod:`figures` opens with what it is after and of what; then it says what is drawn,
+then what is found. Nothing is written anew here.
 """
 
 import re
@@ -37,6 +37,8 @@ _GREEK = {
 _SYMBOL = re.compile(
     rf"\b({'|'.join(_GREEK)}|[A-Za-z])_((?:{'|'.join(_GREEK)}|[a-z]{{1,3}}|[A-Z]|\d)\b)"
 )
+#: h'_rms, after escaping.
+_PRIME = re.compile(r"\bh(?:&#39;|')_(\w+)")
 _ALONE = re.compile(r"(?<![\w;&])(alpha|beta|kappa|sigma|delta)(?=\*|\b)(?!-)")
 _UNIT = re.compile(r"\b(mm|cm|m)([23])\b")
 _POWER = re.compile(r"\^(-?\([^()]*\)|-?[\w.]*\w)")
@@ -102,9 +104,9 @@ def _in_words(sentence):
 
 
 def without_opening(text: str) -> str:
-    """A sentence without "After Fig. 5 of ... (1999):", its first letter a capital."""
+    """A sentence without "After Fig. 5 of ... (1999):"; it begins with a capital or a symbol."""
     text = _OPENING.sub("", text, count=1)
-    return text[:1].upper() + text[1:]
+    return text if re.match(r"\w+_|(?:kappa|beta)\b", text) else text[:1].upper() + text[1:]
 
 
 def symbols(text: object) -> Markup:
@@ -117,6 +119,7 @@ def symbols(text: object) -> Markup:
     """
     safe = str(escape(text))
     safe = _SYMBOL.sub(_lowered, safe)
+    safe = _PRIME.sub(r"h′<sub>\1</sub>", safe)
     safe = _ALONE.sub(lambda found: _GREEK[found[1]], safe)
     safe = _UNIT.sub(lambda found: found[1] + "²³"["23".index(found[2])], safe)
     return Markup(_POWER.sub(lambda found: f"<sup>{found[1]}</sup>", safe))

@@ -65,19 +65,17 @@ class Chosen:
     @cached_property
     def offset(self) -> float:
         """Offset of the contact maps, mm."""
-        return chosen_offset(
-            self.settings["map_offset"], self.atlas[f"closure/{self.name}"]["offset"].values
-        )
+        return chosen_offset(self.settings["map_offset"], self.stage("closure")["offset"].values)
 
     @cached_property
     def forces(self) -> np.ndarray:
         """Loads of the study, N, ascending."""
-        return self.atlas[f"closure/{self.name}"]["normal_force"].values
+        return self.stage("closure")["normal_force"].values
 
     @cached_property
     def pressures(self) -> np.ndarray:
         """Their nominal pressures, MPa."""
-        return self.atlas[f"closure/{self.name}"]["nominal_pressure"].values
+        return self.stage("closure")["nominal_pressure"].values
 
     @cached_property
     def map_load(self) -> int:

@@ -65,9 +65,7 @@ def _scan(chosen):
     )
     found = [text for text in (quality, "" if _is_pair(chosen) else load) if text]
     if not found:
-        reason = (
-            "all resolutions lie within the fractal range, no suspicious cell carries much load"
-        )
+        reason = "all resolutions lie within the fractal range, suspicious cells carry little load"
         return Light("scan", "Scan", GOOD, reason)
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
     below = chosen.stage("quality")["below_range"].values

@@ -168,7 +168,7 @@ def _numbers_of_title(title):
 
 @cache
 def _names_in(module: str) -> frozenset[str]:
-    """Words in quotation marks in a figure's module and in the helpers beside it that it imports."""
+    """Words in quotation marks in a figure's module and in helpers beside it that it imports."""
     path = FOLDER.parent / f"{module}.py"
     text = path.read_text(encoding="utf-8")
     helpers = re.findall(r"^from \.(_\w+) import", text, re.MULTILINE)

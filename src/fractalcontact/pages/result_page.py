@@ -28,6 +28,7 @@ from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .chosen import STAGES, Chosen, configuration_of, specimens_of
 from .curves import curves_table
+from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
 from .lights import warnings_of
 from .matrix import Row, matrix_of, of_study
 from .summary import Specimen, summarised, summary_table
@@ -37,9 +38,6 @@ from .words import duration, measured, percent, short, with_unit
 
 #: Digits of the numbers in tables: more than any of them has.
 _FORMAT = "%.8g"
-#: Files beside the index that it links to, and what they are.
-SUMMARY, CURVES, TABLES, CONFIGURATION = "summary.csv", "curves.csv", "tables.zip", "study.yaml"
-EXPLORER = "explorer.html"
 #: Time that all members of an archive have, so that the same tables are the same archive.
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Letters of a label in a table.
@@ -57,19 +55,19 @@ class Place:
         Folder of the figures.
     benchmarks : pathlib.Path
         Folder of the times of jobs; may be missing.
-    page : pathlib.Path
-        The index; all others are made beside it.
+    folder : pathlib.Path
+        Where the pages go: they name figures, atlas and explorer as what stands there.
     """
 
     atlas: Path
     figures: Path
     benchmarks: Path
-    page: Path
+    folder: Path
 
-    @property
-    def folder(self) -> Path:
-        """Folder of the index."""
-        return self.page.parent
+    @classmethod
+    def of(cls, results: Path) -> "Place":
+        """The folder of the results of a study."""
+        return cls(results / "atlas.nc", results / "figures", results / "benchmarks", results)
 
 
 def write_result_page(place: Place) -> list[str]:
@@ -97,11 +95,11 @@ def write_result_page(place: Place) -> list[str]:
     rows = matrix_of(atlas, [one.name for one in chosen])
     for one, specimen in zip(chosen, specimens, strict=True):
         values = _specimen_values(place, one, specimen, rows)
-        path = place.folder / "pages" / f"{one.name}.html"
+        path = place.folder / SPECIMEN_PAGE.format(specimen=one.name)
         write_page(path, "specimen.html", head | values)
     reliefs = {one.name: relief_thumbnail(one.stage("specimens")) for one in chosen}
     values = _index_values(place, atlas, specimens, rows, curves) | {"reliefs": reliefs}
-    write_page(place.page, "index.html", head | values)
+    write_page(place.folder / INDEX, "index.html", head | values)
     return [one.name for one in chosen]
 
 

@@ -1,5 +1,6 @@
 """The summary of a study: what each specimen is and does, one row a specimen and pressure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,7 @@ from .lights import Light, lights_of
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
 #: Dimensions are determined as figures have it: 0 and 2 need no interval.
-_DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
+DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
 
 
 @dataclass(frozen=True)
@@ -43,13 +44,12 @@ class Estimate:
     @classmethod
     def of(cls, found: xr.Dataset, name: str, note: str = "", **kind: Any) -> "Estimate":
         """Variable ``name`` of a dataset with its ends; ``kind`` is handed to `determined`."""
-        return cls.between(*(float(found[name + end]) for end in ("", "_low", "_high")), note, kind)
+        return cls.between([float(found[name + end]) for end in ("", "_low", "_high")], note, kind)
 
     @classmethod
-    def between(
-        cls, value: float, low: float, high: float, note: str, kind: dict[str, Any]
-    ) -> "Estimate":
-        """From a value and its ends, NaN where missing."""
+    def between(cls, ends: Sequence[float], note: str, kind: dict[str, Any]) -> "Estimate":
+        """From a value and the ends of its interval, NaN where missing."""
+        value, low, high = ends
         says = determined(value, low, high, **kind)
         return cls(finite(value), finite(low), finite(high), says, note)
 
@@ -165,7 +165,7 @@ def summarised(chosen: Chosen) -> Specimen:
         offset=chosen.offset,
         window=(side_x, side_y),
         spacing=max(spacing_of(specimen)),
-        delta_g=Estimate.between(*dimension, str(surface["no_dimension"].item()), _DIMENSION),
+        delta_g=Estimate.between(dimension, str(surface["no_dimension"].item()), DIMENSION),
         estimator=str(surface["recommended"].item()).replace("_", " "),
         rms_slope=finite(chosen.values("area", "rms_slope")["rms_slope"]),
         k_ni=Estimate.of(curve, "hyperbola_k_ni", why),
@@ -196,7 +196,7 @@ def _dimension(chosen, stage, state):
     names += ["reason"] if "reason" in chosen.stage(stage) else []
     found = chosen.values(stage, *names).isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
-    return Estimate.of(found, "delta_sigma", note, **_DIMENSION)
+    return Estimate.of(found, "delta_sigma", note, **DIMENSION)
 
 
 def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:

@@ -37,7 +37,7 @@ function drawMap(canvas, map, colours) {
   const size = marked && Math.max(rows, columns) * HATCHED <= LARGEST_HATCHED ? HATCHED : 1;
   canvas.width = columns * size;
   canvas.height = rows * size;
-  const context = canvas.getContext("2d");
+  const context = canvas.getContext("2d", { willReadFrequently: true }); // drawn pixel by pixel
   const image = context.createImageData(canvas.width, canvas.height);
   const pixels = new Uint32Array(image.data.buffer);
   const colour = map.values ? valueColour(map, colours) : () => null;

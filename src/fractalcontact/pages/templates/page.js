@@ -108,7 +108,7 @@ function label(value) {
   return String(Number(value.toPrecision(3)));
 }
 
-function marker(kind, x, y, colour) {
+function marker(kind, x, y, colour, full = true) {
   const shapes = {
     circle: () => make("circle", { cx: x, cy: y, r: 4.5 }),
     square: () => make("rect", { x: x - 4, y: y - 4, width: 8, height: 8 }),
@@ -116,7 +116,8 @@ function marker(kind, x, y, colour) {
     diamond: () => make("path", { d: `M${x} ${y - 6}l5.5 6l-5.5 6l-5.5-6z` }),
   };
   const shape = shapes[kind]();
-  shape.setAttribute("fill", colour);
+  shape.setAttribute("fill", full ? colour : "#ffffff");
+  shape.setAttribute("stroke", colour);
   return shape;
 }
 
@@ -164,7 +165,7 @@ function draw() {
   svg.append(make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom, fill: "none", stroke: "#1b1b1b" }));
   svg.append(make("text", { x: (left + width - right) / 2, y: height - 12, "text-anchor": "middle" }, "nominal pressure (MPa)"));
   const middle = (top + height - bottom) / 2;
-  svg.append(make("text", { x: 18, y: middle, "text-anchor": "middle", transform: `rotate(-90 18 ${middle})` }, `${quantity.replace("Delta_sigma", "Δσ")} (${unit})`));
+  svg.append(make("text", { x: 18, y: middle, "text-anchor": "middle", transform: `rotate(-90 18 ${middle})` }, `${quantity.replace("Delta_sigma", "Δσ")}${unit === "mm2/mm2" ? "" : ` (${unit})`}`));
   [...curves].forEach(([name, points], i) => {
     const { colour, dash, mark } = style(i);
     const drawn = points.filter((row) => row.nominal_pressure_MPa > 0);
@@ -175,8 +176,8 @@ function draw() {
       if (row.low !== null && row.high !== null) {
         svg.append(make("line", { x1: at, x2: at, y1: y(clamp(row.low)), y2: y(clamp(row.high)), stroke: colour, "stroke-width": 1.2 }));
       }
-      const shape = marker(mark, at, y(row.value), colour);
-      shape.append(make("title", {}, `${name}: ${label(row.value)} ${unit === "1" ? "" : unit} at ${label(row.nominal_pressure_MPa)} MPa`));
+      const shape = marker(mark, at, y(row.value), colour, String(row.resolved).toLowerCase() !== "false");
+      shape.append(make("title", {}, `${name}: ${label(row.value)} ${/^(1|mm2.mm2)$/.test(unit) ? "" : unit} at ${label(row.nominal_pressure_MPa)} MPa`));
       svg.append(shape);
     }
     const key = make("svg", { viewBox: "0 0 52 18", "aria-hidden": "true" });
