@@ -1,4 +1,4 @@
-"""The explorer in a real browser: it shows the atlas's numbers, and each control does what it says."""
+"""The explorer in a real browser: it shows the atlas's numbers, each control does what it says."""
 
 import time
 
@@ -27,7 +27,10 @@ PIXELS = """who => {
   const data = canvas.getContext("2d").getImageData(0, 0, width, height).data;
   const rows = [];
   for (let y = height - 1; y >= 0; y--)
-    rows.push(Array.from({ length: width }, (_, x) => [0, 1, 2].map((i) => data[4 * (y * width + x) + i])));
+    rows.push(Array.from({ length: width }, (_, x) => {
+      const i = 4 * (y * width + x);
+      return [data[i], data[i + 1], data[i + 2]];
+    }));
   return rows;
 }"""
 
@@ -104,7 +107,7 @@ class Explorer:
 
 
 def state_of(atlas, name, place):
-    """Values of one state in the atlas, by what the page calls them; and the state's coordinates."""
+    """Values of a state in the atlas, by what the page calls them; and the state's coordinates."""
     curves = atlas[f"closure/{name}"].to_dataset()
     where = {
         dimension: curves[dimension].values[index]
@@ -127,7 +130,12 @@ def state_of(atlas, name, place):
 def number_in(words):
     """The first number of words such as "0.3601 ± 2.6 × 10⁻⁸"."""
     raised = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-    text = words.replace("−", "-").split(" ± ")[0].split(" [")[0].removesuffix(" at the finest spacing")
+    text = (
+        words.replace("−", "-")
+        .split(" ± ")[0]
+        .split(" [")[0]
+        .removesuffix(" at the finest spacing")
+    )
     mantissa, _, power = text.partition(" × 10")
     return float(mantissa) * 10.0 ** int(power.translate(raised) or 0)
 
@@ -193,9 +201,7 @@ def test_a_hundred_random_states_show_the_numbers_and_maps_of_the_atlas(open_pag
     assert 0 < unsolved < 60
 
 
-def test_what_was_not_solved_is_grey_and_the_nearest_solved_state_is_one_step_away(
-    open_page, atlas
-):
+def test_what_was_not_solved_is_grey_and_the_nearest_solved_state_a_step_away(open_page, atlas):
     name = next(n for n in specimens_of(atlas) if not atlas[f"closure/{n}"]["solved"].all())
     solved = atlas[f"closure/{name}"]["solved"].transpose(*DIMENSIONS).values
     place = tuple(int(i) for i in np.argwhere(~solved.astype(bool))[0])
@@ -358,6 +364,23 @@ def test_pressure_and_gap_are_the_atlas_s_and_said_to_be_missing_elsewhere(open_
         assert explorer.panel().locator(".stored").is_hidden()
 
 
+def test_the_zoom_keeps_the_node_in_sight(open_page):
+    with open_page("explorer.html") as page:
+        explorer = Explorer(page)
+        canvas, frame = explorer.panel().locator("canvas"), explorer.panel().locator(".canvas")
+        canvas.focus()
+        for _ in range(5):
+            page.keyboard.press("Shift+ArrowLeft")
+        before, words = canvas.bounding_box(), explorer.panel().locator(".node").text_content()
+        page.locator("#view label", has_text="4×").click()
+        after, sight = canvas.bounding_box(), frame.bounding_box()
+        assert after["width"] == pytest.approx(4 * before["width"], rel=0.05)
+        cursor = explorer.panel().locator(".cursor").bounding_box()
+        assert sight["x"] - 9 <= cursor["x"] <= sight["x"] + sight["width"]
+        assert sight["y"] - 9 <= cursor["y"] <= sight["y"] + sight["height"]
+        assert explorer.panel().locator(".node").text_content() == words
+
+
 def test_overlaps_are_marked(open_page, atlas, shots):
     pairs = [
         n for n in specimens_of(atlas) if atlas[f"specimens/{n}"].attrs["opposite"] == "scanned"
@@ -395,7 +418,7 @@ def test_fits_a_phone_and_takes_a_finger(open_page, shots):
         width = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
         assert width[0] <= width[1]
         small = page.evaluate(
-            """() => [...document.querySelectorAll("button, select, .choice label, input[type=range]")]
+            """() => [...document.querySelectorAll("button, select, .choice label, .slider input")]
               .filter((one) => one.offsetParent && one.getBoundingClientRect().height < 43.9)
               .map((one) => one.outerHTML)"""
         )

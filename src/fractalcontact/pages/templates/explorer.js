@@ -136,7 +136,7 @@ async function showMap(who) {
   const panel = panels[who];
   const canvas = panel.querySelector("canvas");
   drawMap(canvas, map, COLOURS);
-  canvas.parentElement.style.aspectRatio = `${map.columns * states.raw.window.spacing[1]} / ${map.rows * states.raw.window.spacing[0]}`;
+  canvas.closest(".canvas").style.aspectRatio = `${map.columns * states.raw.window.spacing[1]} / ${map.rows * states.raw.window.spacing[0]}`;
   canvas.classList.toggle("unsolved", !map.domain);
   const what = map.values ? field : "contact domain";
   const size = states.raw.window.shape.map((n, i) => short(n * states.raw.window.spacing[i], 3));
@@ -210,6 +210,19 @@ function leaveNode(who) {
   panels[who].querySelector(".node").textContent = `${size[1]} mm East by ${size[0]} mm North; point at a node to read it`;
 }
 
+/** Maps at one or four times their size; the middle, or the node that was read, stays in sight. */
+function zoom() {
+  const factor = Number(document.querySelector("input[name=zoom]:checked").value);
+  for (const who of ["a", "b"]) {
+    const frame = panels[who].querySelector(".canvas");
+    frame.classList.toggle("zoomed", factor > 1);
+    const { map, node } = state[who];
+    const [across, up] = node ? [(node.column + 0.5) / map.columns, 1 - (node.row + 0.5) / map.rows] : [0.5, 0.5];
+    frame.scrollLeft = across * frame.scrollWidth - frame.clientWidth / 2;
+    frame.scrollTop = up * frame.scrollHeight - frame.clientHeight / 2;
+  }
+}
+
 // --- values, the lines of Python, the link
 
 function showValues() {
@@ -255,8 +268,9 @@ function valueWords(key, { states, place }, value) {
     return high - low > 1 ? `undetermined ${words}` : `${short(value)} ${words}`;
   }
   const [total, solver] = [states.total(key, place), states.at(`${key}_error`, place)];
-  const error = Number.isFinite(total) ? total : solver;
-  const words = error > 0 ? `${short(value)} ± ${short(error, 2)}` : short(value);
+  let words = short(value);
+  if (total > 0) words += ` ± ${short(total, 2)}`;
+  else if (solver > 0) words += ` ± ${short(solver, 2)} (solver)`;
   return states.ofFinest(key, place) ? `${words} at the finest spacing` : words;
 }
 
@@ -352,6 +366,7 @@ async function start() {
   document.querySelectorAll("input[name=field]").forEach((input) => input.addEventListener("change", show));
   byId("copy").addEventListener("click", copyLink);
   byId("view").addEventListener("submit", (event) => event.preventDefault());
+  document.querySelectorAll("input[name=zoom]").forEach((input) => input.addEventListener("change", zoom));
   window.addEventListener("hashchange", restore);
   new ResizeObserver(() => state.a && showCurves()).observe(document.querySelector(".plots"));
   await restore();
