@@ -9,6 +9,10 @@ if not workflow.configfiles:
     configfile: "config/paper.yaml"
 
 
+# What `snakemake --report` begins with.
+report: "workflow/report/start.rst"
+
+
 include: "workflow/rules/common.smk"
 include: "workflow/rules/specimens.smk"
 include: "workflow/rules/contact.smk"

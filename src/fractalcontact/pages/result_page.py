@@ -234,7 +234,6 @@ def _specimen_values(
     return {
         "specimen": specimen,
         "label": printable(chosen.label),
-        "warnings": warnings,
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "bars": bars_of(specimen),
         "statements": [(row, row.cells[chosen.name]) for row in rows if chosen.name in row.cells],

@@ -9,6 +9,7 @@ import xarray as xr
 
 from ..core.determined import determined
 from ..domain.box_dimension import WIDEST
+from ..mechanics.overlap import DECISIVE
 from ..statements.sliding import Plateaus
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
@@ -94,9 +95,15 @@ class AtLoad:
     nominal_pressure: float
     of_maps: bool
     contact_nodes: float | None
+    suspect_share: float | None
     quantities: dict[str, Quantity]
     delta_sigma_boxes: Estimate
     delta_sigma_areas: Estimate
+
+    @property
+    def decided_by_scan(self) -> bool:
+        """Whether suspicious cells of the scans carry most of the load: its numbers are theirs."""
+        return self.suspect_share is not None and self.suspect_share > DECISIVE
 
 
 @dataclass(frozen=True)
@@ -184,6 +191,7 @@ def _at_load(chosen, curve, number):
         nominal_pressure=float(chosen.pressures[number]),
         of_maps=number == chosen.map_load,
         contact_nodes=finite(curve["nodes"].isel(state)),
+        suspect_share=finite(curve["suspect_load_share"].isel(state)),
         quantities=quantities_at(chosen, number),
         delta_sigma_boxes=_dimension(chosen, "domains", state),
         delta_sigma_areas=_dimension(chosen, "scaling", state),
@@ -285,6 +293,7 @@ def _of_load(load):
         "nominal_pressure_MPa": load.nominal_pressure,
         "load_of_maps": load.of_maps,
         "contact_nodes": load.contact_nodes,
+        "suspect_load_share": load.suspect_share,
     }
     for name, quantity in load.quantities.items():
         if name == "delta_sigma":  # stands below, with its interval
