@@ -288,7 +288,7 @@ function showCode() {
   ].join("\n");
 }
 
-/** A state for a link; "~" stands in no encoded name. */
+/** A state for a link. */
 function stateWords({ states, place }) {
   const { raw } = states;
   return [
@@ -310,9 +310,11 @@ function showLink() {
   byId("link").value = location.href;
 }
 
-/** State of words such as "twin~W~0.3~1000~1"; what is missing or unknown is that of the maps. */
+/** State of words such as "twin~W~0.3~1000~1" or "twin"; what is missing is that of the maps. */
 async function stateOf(words, fallback) {
-  const [name, direction, offset, force, resolution] = (words || "").split("~");
+  const parts = (words || "").split("~");
+  const [direction, offset, force, resolution] = parts.length > 4 ? parts.splice(-4) : [];
+  const name = parts.join("~");
   const i = INDEX.specimens.findIndex((one) => one.name === name);
   if (i < 0 && fallback) return { ...fallback, place: { ...fallback.place }, node: null };
   const number = Math.max(0, i);
@@ -328,7 +330,7 @@ async function stateOf(words, fallback) {
 
 async function restore() {
   const view = new URLSearchParams(location.hash.slice(1));
-  state.a = await stateOf(view.get("a"));
+  state.a = await stateOf(view.get("a") || view.get("specimen"));
   state.b = await stateOf(view.get("b"), state.a);
   byId("compare").checked = view.has("b");
   byId("logarithmic").checked = view.get("log") === "1";
