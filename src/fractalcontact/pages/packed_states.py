@@ -71,6 +71,8 @@ BOUNDS = ("_low", "_high", "_error")
 BOUNDS_OF_AREA = {"_low": "delta_sigma_low", "_high": "delta_sigma_high"}
 #: Why a number of a state is missing, by the quantity it is about.
 REASONS = (("domains", "reason"),)
+#: Of the texts: half the time that 9 takes, for a page larger by a fortieth.
+COMPRESSION = 5
 #: Steps that the largest gap of a specimen has; the code after the last stands for a missing gap.
 GAP_STEPS = 1000
 #: Gaps that a page may hold of one specimen; of a larger window only those under the map load.
@@ -90,7 +92,7 @@ def packed_bits(cells: np.ndarray) -> str:
 
 
 def _text(data: bytes) -> str:
-    return base64.b64encode(zlib.compress(data, 9)).decode("ascii")
+    return base64.b64encode(zlib.compress(data, COMPRESSION)).decode("ascii")
 
 
 @dataclass

@@ -136,12 +136,12 @@ async function showMap(who) {
   const panel = panels[who];
   const canvas = panel.querySelector("canvas");
   drawMap(canvas, map, COLOURS);
-  canvas.parentElement.style.aspectRatio = `${map.columns * states.raw.window.spacing[1]} / ${map.rows * states.raw.window.spacing[0]}`;
+  canvas.closest(".canvas").style.aspectRatio = `${map.columns * states.raw.window.spacing[1]} / ${map.rows * states.raw.window.spacing[0]}`;
   canvas.classList.toggle("unsolved", !map.domain);
   const what = map.values ? field : "contact domain";
   const size = states.raw.window.shape.map((n, i) => short(n * states.raw.window.spacing[i], 3));
   canvas.setAttribute("aria-label", map.domain ? `Map of the ${what}, ${size[1]} mm East by ${size[0]} mm North` : "This state was not solved");
-  panel.querySelector(".legend").replaceChildren(...mapLegend(map, COLOURS));
+  panel.querySelector(".colour-key").replaceChildren(...mapLegend(map, COLOURS));
   showStored(panel, states, field, map);
   const at = state[who].node;
   if (at && at.row < map.rows && at.column < map.columns) readNode(who, at.row, at.column);
@@ -168,14 +168,17 @@ function showStored(panel, states, field, map) {
 
 function listenToMap(who, panel) {
   const canvas = panel.querySelector("canvas");
-  canvas.addEventListener("pointermove", (event) => {
+  const read = (event) => {
     const { map } = state[who];
     const box = canvas.getBoundingClientRect();
     const column = Math.floor(((event.clientX - box.left) / box.width) * map.columns);
     const row = map.rows - 1 - Math.floor(((event.clientY - box.top) / box.height) * map.rows);
     readNode(who, within(row, map.rows), within(column, map.columns));
-  });
-  canvas.addEventListener("pointerleave", () => leaveNode(who));
+  };
+  canvas.addEventListener("pointermove", read);
+  canvas.addEventListener("pointerdown", read);
+  // A finger that is lifted leaves what it read.
+  canvas.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && leaveNode(who));
   canvas.addEventListener("keydown", (event) => {
     const { map, node } = state[who];
     const step = event.shiftKey ? 10 : 1;
@@ -205,6 +208,19 @@ function leaveNode(who) {
   const { raw } = state[who].states;
   const size = raw.window.shape.map((n, i) => short(n * raw.window.spacing[i], 3));
   panels[who].querySelector(".node").textContent = `${size[1]} mm East by ${size[0]} mm North; point at a node to read it`;
+}
+
+/** Maps at one or four times their size; the middle, or the node that was read, stays in sight. */
+function zoom() {
+  const factor = Number(document.querySelector("input[name=zoom]:checked").value);
+  for (const who of ["a", "b"]) {
+    const frame = panels[who].querySelector(".canvas");
+    frame.classList.toggle("zoomed", factor > 1);
+    const { map, node } = state[who];
+    const [across, up] = node ? [(node.column + 0.5) / map.columns, 1 - (node.row + 0.5) / map.rows] : [0.5, 0.5];
+    frame.scrollLeft = across * frame.scrollWidth - frame.clientWidth / 2;
+    frame.scrollTop = up * frame.scrollHeight - frame.clientHeight / 2;
+  }
 }
 
 // --- values, the lines of Python, the link
@@ -245,16 +261,17 @@ function valueRow(key, { units, meaning }) {
 
 /** A value with its interval or error, or why there is none. */
 function valueWords(key, { states, place }, value) {
-  if (!states.solved(place)) return "not solved";
-  if (!Number.isFinite(value)) return states.reason(key, place) || "–";
+  if (!Number.isFinite(value)) return states.solved(place) ? states.reason(key, place) || "–" : "not solved";
   const [low, high] = ["_low", "_high"].map((end) => states.at(key + end, place));
   if (Number.isFinite(low) && Number.isFinite(high)) {
     const words = `[${short(low, 3)}, ${short(high, 3)}]`;
     return high - low > 1 ? `undetermined ${words}` : `${short(value)} ${words}`;
   }
   const [total, solver] = [states.total(key, place), states.at(`${key}_error`, place)];
-  const error = Number.isFinite(total) ? total : solver;
-  return error > 0 ? `${short(value)} ± ${short(error, 2)}` : short(value);
+  let words = short(value);
+  if (total > 0) words += ` ± ${short(total, 2)}`;
+  else if (solver > 0) words += ` ± ${short(solver, 2)} (solver)`;
+  return states.ofFinest(key, place) ? `${words} at the finest spacing` : words;
 }
 
 function showCode() {
@@ -271,7 +288,7 @@ function showCode() {
   ].join("\n");
 }
 
-/** A state for a link; "~" stands in no encoded name. */
+/** A state for a link. */
 function stateWords({ states, place }) {
   const { raw } = states;
   return [
@@ -293,9 +310,11 @@ function showLink() {
   byId("link").value = location.href;
 }
 
-/** State of words such as "twin~W~0.3~1000~1"; what is missing or unknown is that of the maps. */
+/** State of words such as "twin~W~0.3~1000~1" or "twin"; what is missing is that of the maps. */
 async function stateOf(words, fallback) {
-  const [name, direction, offset, force, resolution] = (words || "").split("~");
+  const parts = (words || "").split("~");
+  const [direction, offset, force, resolution] = parts.length > 4 ? parts.splice(-4) : [];
+  const name = parts.join("~");
   const i = INDEX.specimens.findIndex((one) => one.name === name);
   if (i < 0 && fallback) return { ...fallback, place: { ...fallback.place }, node: null };
   const number = Math.max(0, i);
@@ -311,7 +330,7 @@ async function stateOf(words, fallback) {
 
 async function restore() {
   const view = new URLSearchParams(location.hash.slice(1));
-  state.a = await stateOf(view.get("a"));
+  state.a = await stateOf(view.get("a") || view.get("specimen"));
   state.b = await stateOf(view.get("b"), state.a);
   byId("compare").checked = view.has("b");
   byId("logarithmic").checked = view.get("log") === "1";
@@ -349,6 +368,7 @@ async function start() {
   document.querySelectorAll("input[name=field]").forEach((input) => input.addEventListener("change", show));
   byId("copy").addEventListener("click", copyLink);
   byId("view").addEventListener("submit", (event) => event.preventDefault());
+  document.querySelectorAll("input[name=zoom]").forEach((input) => input.addEventListener("change", zoom));
   window.addEventListener("hashchange", restore);
   new ResizeObserver(() => state.a && showCurves()).observe(document.querySelector(".plots"));
   await restore();

@@ -72,6 +72,11 @@ class States {
     const index = entry.dims.reduce((sum, dimension, i) => sum * entry.shape[i] + place[dimension], 0);
     return reasons.words[reasons.places[index]];
   }
+  /** Whether a number of a state at a coarser spacing is that of the finest: dilatancy has no other. */
+  ofFinest(key, place) {
+    const { stage } = this.raw.arrays[key];
+    return stage === "dilatancy" && this.raw.resolution[place.resolution] !== Math.min(...this.raw.resolution);
+  }
   /** Error of all sources, where the error budget has one. */
   total(key, place) {
     const where = this.raw.totals;
