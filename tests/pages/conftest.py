@@ -49,8 +49,8 @@ def results(tmp_path_factory):
         made = stages_of(name, faces, settings[name], solver_settings({}, "tiny"))
         for stage, dataset in made.items():
             parts[stage][name] = dataset
-    folder = tmp_path_factory.mktemp("results") / "tiny"
-    folder.mkdir()
+    folder = tmp_path_factory.mktemp("project") / "results/tiny"
+    folder.mkdir(parents=True)
     join_stages(parts, folder / "atlas.nc", {"study": STUDY, "settings": settings})
     for name in scans:
         figures = folder / "figures" / name

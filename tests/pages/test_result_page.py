@@ -13,6 +13,7 @@ import pytest
 import yaml
 from page_study import HOSTILE, STUDY
 
+from fractalcontact.pages.cards import redrawn
 from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.lights import lights_of
@@ -239,6 +240,22 @@ def test_lights_follow_what_the_stages_say(atlas):
     assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "good"
 
 
+@pytest.mark.parametrize(("figure", "specimen"), [("statements", "pair"), ("study_statements", "")])
+def test_the_lines_on_the_page_draw_the_figure_again(
+    results, pages, tmp_path, monkeypatch, figure, specimen
+):
+    code = redrawn(figure, specimen, "results/tiny/atlas.nc")
+    if specimen:
+        assert code in "".join(pages[results / f"pages/{specimen}.html"].texts)
+    (tmp_path / "results").symlink_to(results.parent)
+    monkeypatch.chdir(tmp_path)
+    values = {}
+    exec(code, values)
+    assert (tmp_path / f"{figure}.pdf").read_bytes().startswith(b"%PDF")
+    assert len(values["drawing"].data) > 0
+    values["atlas"].close()
+
+
 def test_tables_and_configuration_can_be_used_again(results):
     assert yaml.safe_load((results / "study.yaml").read_text(encoding="utf-8")) == STUDY
     with zipfile.ZipFile(results / "tables.zip") as archive:
@@ -249,6 +266,7 @@ def test_tables_and_configuration_can_be_used_again(results):
     assert set(names) == figures | {"summary.csv", "curves.csv"}
 
 
+@pytest.mark.full
 def test_the_same_results_are_the_same_pages(results, tmp_path):
     shutil.copytree(results, tmp_path / "tiny", copy_function=shutil.copy2)
     write_result_page(Place.of(tmp_path / "tiny"))
@@ -258,6 +276,7 @@ def test_the_same_results_are_the_same_pages(results, tmp_path):
             assert again.read_bytes() == path.read_bytes(), path.name
 
 
+@pytest.mark.full
 def test_a_page_without_pictures_has_none(results, tmp_path):
     """One that was removed, or is drawn later: what is there is shown, and nothing is promised."""
     shutil.copytree(results, tmp_path / "tiny")

@@ -15,11 +15,11 @@ STUDY = {
         "material": "rock",
         "contact_directions": ["W"],
         "directions": ["W", "E"],
-        "loads": ["1 MPa", "5 MPa", "12.5 MPa", "25 MPa"],
+        "loads": ["1 MPa", "12.5 MPa", "25 MPa"],
         "dilatancy_loads": ["1 MPa", "25 MPa"],
         "map_load": "12.5 MPa",
         "resolutions": [1, 2],
-        "window": "4.8 mm",
+        "window": "3.2 mm",
     },
     "specimens": {
         "pair": {"offsets": ["0 mm", "0.2 mm", "0.6 mm"], "label": HOSTILE},

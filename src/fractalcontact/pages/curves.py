@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from ..core.determined import determined
+from ..core.labels import printable
 from .chosen import Chosen, finite
 from .summary import DIMENSION
 
@@ -46,7 +47,7 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
         start = {
             "study": study,
             "specimen": one.name,
-            "label": one.label,
+            "label": printable(one.label),
             "direction": one.direction,
             "offset_mm": one.offset,
         }

@@ -8,6 +8,7 @@ import pandas as pd
 import xarray as xr
 
 from ..core.determined import determined
+from ..core.labels import printable
 from ..domain.box_dimension import WIDEST
 from ..mechanics.overlap import DECISIVE
 from ..statements.sliding import Plateaus
@@ -166,7 +167,7 @@ def summarised(chosen: Chosen) -> Specimen:
     dimension = [float(surface[f"recommended_{end}"]) for end in ("value", "low", "high")]
     return Specimen(
         name=chosen.name,
-        label=chosen.label,
+        label=printable(chosen.label),
         opposite=str(specimen.attrs["opposite"]),
         direction=chosen.direction,
         offset=chosen.offset,
