@@ -20,7 +20,7 @@ from fractalcontact.pages.lights import lights_of
 from fractalcontact.pages.matrix import figure_of_statement, matrix_of, numbers_of
 from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.statements.judge import all_statements
-from fractalcontact.study.atlas import read_atlas
+from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.figure_list import figures_of
 
 NAMES = ("flat.1", "pair")
@@ -240,7 +240,14 @@ def test_lights_follow_what_the_stages_say(atlas):
     assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "good"
 
 
-@pytest.mark.parametrize(("figure", "specimen"), [("statements", "pair"), ("study_statements", "")])
+@pytest.mark.parametrize(
+    ("figure", "specimen"),
+    [
+        ("statements", "pair"),
+        pytest.param("study_statements", "", marks=pytest.mark.full),
+        pytest.param("fig04_05_closure", "flat.1", marks=pytest.mark.full),
+    ],
+)
 def test_the_lines_on_the_page_draw_the_figure_again(
     results, pages, tmp_path, monkeypatch, figure, specimen
 ):
@@ -274,6 +281,18 @@ def test_the_same_results_are_the_same_pages(results, tmp_path):
         if path.is_file():
             again = tmp_path / "tiny" / path.relative_to(results)
             assert again.read_bytes() == path.read_bytes(), path.name
+
+
+def test_a_study_without_specimens_has_a_page(tmp_path):
+    """One of synthetic surfaces or of measured maps alone."""
+    write_atlas(
+        {}, tmp_path / "atlas.nc", study="none", configuration={"study": {}, "settings": {}}
+    )
+    assert write_result_page(Place.of(tmp_path)) == []
+    text = "".join(Parsed(tmp_path / "index.html").texts)
+    assert "Study none" in text
+    assert "Specimens" not in text
+    assert list(pd.read_csv(tmp_path / "summary.csv").columns) == ["study", "specimen"]
 
 
 @pytest.mark.full
