@@ -13,11 +13,19 @@ import pytest
 import yaml
 from page_study import HOSTILE, STUDY
 
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.cards import redrawn
 from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.lights import lights_of
-from fractalcontact.pages.matrix import figure_of_statement, matrix_of, numbers_of
+from fractalcontact.pages.matrix import (
+    counted,
+    figure_of_statement,
+    matrix_of,
+    numbers_of,
+    of_study,
+)
 from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.statements.judge import all_statements
 from fractalcontact.study.atlas import read_atlas, write_atlas
@@ -204,7 +212,17 @@ def test_verdicts_are_those_of_the_atlas(results, atlas, pages):
             assert f"statement-{statement}" in pages[results / f"pages/{name}.html"].ids
             assert f"{name}--{statement}" in pages[results / "index.html"].ids
             asked += 1
-    assert asked == sum(len(row.cells) for row in rows)
+    assert asked == sum(len(row.cells) for row in rows) == sum(counted(rows).values())
+
+
+def test_verdicts_are_counted_as_the_figure_of_the_study_counts_them(results, atlas, pages):
+    """Its caption says the same, in the same words."""
+    with print_style():
+        caption = drawer_of("study_statements")(atlas, ["flat.1", "pair"]).caption
+    counts = counted([*matrix_of(atlas, ["flat.1", "pair"]), *of_study(atlas)])
+    words = ", ".join(f"{verdict} {count}" for verdict, count in counts.items())
+    assert f": {words}" in caption
+    assert words in "".join(pages[results / "index.html"].texts)
 
 
 def test_every_statement_leads_to_a_figure_that_its_specimen_has():
