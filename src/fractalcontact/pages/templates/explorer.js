@@ -210,14 +210,16 @@ function leaveNode(who) {
   panels[who].querySelector(".node").textContent = `${size[1]} mm East by ${size[0]} mm North; point at a node to read it`;
 }
 
-/** Maps at one or four times their size; the middle, or the node that was read, stays in sight. */
+/** Maps at one or four times their size, with the node that was read, or some contact, in sight. */
 function zoom() {
   const factor = Number(document.querySelector("input[name=zoom]:checked").value);
   for (const who of ["a", "b"]) {
     const frame = panels[who].querySelector(".canvas");
     frame.classList.toggle("zoomed", factor > 1);
-    const { map, node } = state[who];
-    const [across, up] = node ? [(node.column + 0.5) / map.columns, 1 - (node.row + 0.5) / map.rows] : [0.5, 0.5];
+    const { map } = state[who];
+    if (!map) continue;
+    const node = state[who].node || contactNearMiddle(map);
+    const [across, up] = [(node.column + 0.5) / map.columns, 1 - (node.row + 0.5) / map.rows];
     frame.scrollLeft = across * frame.scrollWidth - frame.clientWidth / 2;
     frame.scrollTop = up * frame.scrollHeight - frame.clientHeight / 2;
   }

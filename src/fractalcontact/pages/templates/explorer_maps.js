@@ -140,3 +140,15 @@ function nodeWords(map, row, column) {
   if (mark) words.push(MARKS[mark].words);
   return words.join(", ");
 }
+
+/** The node in contact nearest to the middle; the middle if there is none. */
+function contactNearMiddle(map) {
+  const middle = { row: map.rows >> 1, column: map.columns >> 1 };
+  let [best, least] = [middle, Infinity];
+  for (let row = 0; map.domain && row < map.rows; row++)
+    for (let column = 0; column < map.columns; column++) {
+      const distance = Math.hypot(row - middle.row, column - middle.column);
+      if (distance < least && map.domain.at(row, column)) [best, least] = [{ row, column }, distance];
+    }
+  return best;
+}
