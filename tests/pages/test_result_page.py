@@ -13,14 +13,22 @@ import pytest
 import yaml
 from page_study import HOSTILE, STUDY
 
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.cards import redrawn
 from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.lights import lights_of
-from fractalcontact.pages.matrix import figure_of_statement, matrix_of, numbers_of
+from fractalcontact.pages.matrix import (
+    counted,
+    figure_of_statement,
+    matrix_of,
+    numbers_of,
+    of_study,
+)
 from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.statements.judge import all_statements
-from fractalcontact.study.atlas import read_atlas
+from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.figure_list import figures_of
 
 NAMES = ("flat.1", "pair")
@@ -204,7 +212,17 @@ def test_verdicts_are_those_of_the_atlas(results, atlas, pages):
             assert f"statement-{statement}" in pages[results / f"pages/{name}.html"].ids
             assert f"{name}--{statement}" in pages[results / "index.html"].ids
             asked += 1
-    assert asked == sum(len(row.cells) for row in rows)
+    assert asked == sum(len(row.cells) for row in rows) == sum(counted(rows).values())
+
+
+def test_verdicts_are_counted_as_the_figure_of_the_study_counts_them(results, atlas, pages):
+    """Its caption says the same, in the same words."""
+    with print_style():
+        caption = drawer_of("study_statements")(atlas, ["flat.1", "pair"]).caption
+    counts = counted([*matrix_of(atlas, ["flat.1", "pair"]), *of_study(atlas)])
+    words = ", ".join(f"{verdict} {count}" for verdict, count in counts.items())
+    assert f": {words}" in caption
+    assert words in "".join(pages[results / "index.html"].texts)
 
 
 def test_every_statement_leads_to_a_figure_that_its_specimen_has():
@@ -240,7 +258,14 @@ def test_lights_follow_what_the_stages_say(atlas):
     assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "good"
 
 
-@pytest.mark.parametrize(("figure", "specimen"), [("statements", "pair"), ("study_statements", "")])
+@pytest.mark.parametrize(
+    ("figure", "specimen"),
+    [
+        ("statements", "pair"),
+        pytest.param("study_statements", "", marks=pytest.mark.full),
+        pytest.param("fig04_05_closure", "flat.1", marks=pytest.mark.full),
+    ],
+)
 def test_the_lines_on_the_page_draw_the_figure_again(
     results, pages, tmp_path, monkeypatch, figure, specimen
 ):
@@ -274,6 +299,18 @@ def test_the_same_results_are_the_same_pages(results, tmp_path):
         if path.is_file():
             again = tmp_path / "tiny" / path.relative_to(results)
             assert again.read_bytes() == path.read_bytes(), path.name
+
+
+def test_a_study_without_specimens_has_a_page(tmp_path):
+    """One of synthetic surfaces or of measured maps alone."""
+    write_atlas(
+        {}, tmp_path / "atlas.nc", study="none", configuration={"study": {}, "settings": {}}
+    )
+    assert write_result_page(Place.of(tmp_path)) == []
+    text = "".join(Parsed(tmp_path / "index.html").texts)
+    assert "Study none" in text
+    assert "Specimens" not in text
+    assert list(pd.read_csv(tmp_path / "summary.csv").columns) == ["study", "specimen"]
 
 
 @pytest.mark.full

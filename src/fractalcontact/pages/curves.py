@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 
 from ..core.determined import determined
-from ..core.labels import printable
 from .chosen import Chosen, finite
 from .summary import DIMENSION
+from .words import in_table
 
 #: Of dimensions: an area has one of its own.
 DIMENSION_UNIT = "1"
@@ -47,7 +47,7 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
         start = {
             "study": study,
             "specimen": one.name,
-            "label": printable(one.label),
+            "label": in_table(one.label),
             "direction": one.direction,
             "offset_mm": one.offset,
         }

@@ -8,7 +8,6 @@ import pandas as pd
 import xarray as xr
 
 from ..core.determined import determined
-from ..core.labels import printable
 from ..domain.box_dimension import WIDEST
 from ..mechanics.overlap import DECISIVE
 from ..statements.sliding import Plateaus
@@ -16,6 +15,7 @@ from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
 from .lights import Light, lights_of
+from .words import in_table
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -167,7 +167,7 @@ def summarised(chosen: Chosen) -> Specimen:
     dimension = [float(surface[f"recommended_{end}"]) for end in ("value", "low", "high")]
     return Specimen(
         name=chosen.name,
-        label=printable(chosen.label),
+        label=chosen.label,
         opposite=str(specimen.attrs["opposite"]),
         direction=chosen.direction,
         offset=chosen.offset,
@@ -263,13 +263,13 @@ def summary_table(study: str, specimens: list[Specimen]) -> pd.DataFrame:
     for one in specimens:
         start = {"study": study} | _of_specimen(one)
         rows += [start | _of_load(load) for load in one.loads]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows) if rows else pd.DataFrame(columns=["study", "specimen"])
 
 
 def _of_specimen(one):
     row = {
         "specimen": one.name,
-        "label": one.label,
+        "label": in_table(one.label),
         "opposite": one.opposite,
         "direction": one.direction,
         "offset_mm": one.offset,
