@@ -3,10 +3,12 @@
 # make dry-run  says what would be done
 # make keep-going   one bad scan does not keep the others from their figures
 # make slurm    the same on a cluster
+# make report   the result page alone, and what it is made of
 # make verify   every result against its checksum
 # make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
+# make test-browser   the pages in Debian's chromium, which it installs where it may
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make cost   where the time of the study went
@@ -30,11 +32,14 @@ export STUDY SCANS
 RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all bench problems fuzz fuzz-dialects lint format lock clean
+.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser bench problems fuzz fuzz-dialects lint format lock clean
 all: study
 
 study: $(VENV)/installed
 	@$(RUN) $(OPTIONS) $(TARGET)
+
+report: $(VENV)/installed
+	@$(RUN) $(OPTIONS) pages
 
 keep-going: $(VENV)/installed
 	@$(RUN) $(OPTIONS) --keep-going $(TARGET)
@@ -85,6 +90,11 @@ test: $(VENV)/tests-installed
 test-all: $(VENV)/tests-installed
 	TESTS=all $(PYTEST)
 
+# The pages of a small study, headless: screenshots, sizes and times go to results/browser.
+test-browser: $(VENV)/browser-installed
+	@chromium=$$(sh tests/support/chromium.sh) && \
+	  CHROMIUM=$$chromium $(BIN)/python -m pytest tests/browser && cat results/browser/report.txt
+
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
@@ -131,6 +141,10 @@ $(VENV)/tests-installed: requirements-test.lock $(VENV)/installed
 	$(PIP) install --require-hashes --compile -r requirements-test.lock
 	@touch $@
 
+$(VENV)/browser-installed: requirements-browser.lock $(VENV)/tests-installed
+	$(PIP) install --require-hashes --compile -r requirements-browser.lock
+	@touch $@
+
 $(VENV)/slurm-installed: $(VENV)/installed
 	$(PIP) install snakemake-executor-plugin-slurm==2.8.0
 	@touch $@
@@ -140,10 +154,11 @@ $(VENV)/peers-installed: pyproject.toml $(VENV)/installed
 	$(PIP) install --no-build-isolation -e '.[peers]'
 	@touch $@
 
-COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet pyproject.toml
+COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet
 lock:
-	$(COMPILE) --extra install -o requirements.lock
-	$(COMPILE) --extra install --extra test -c requirements.lock -o requirements-test.lock
+	$(COMPILE) pyproject.toml --extra install -o requirements.lock
+	$(COMPILE) pyproject.toml --extra install --extra test -c requirements.lock -o requirements-test.lock
+	$(COMPILE) --group browser -c requirements-test.lock -o requirements-browser.lock
 
 # Kills, damaged and replaced files, full disks, threads and forks: nothing may be wrong silently.
 faults: $(VENV)/tests-installed

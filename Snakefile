@@ -9,6 +9,10 @@ if not workflow.configfiles:
     configfile: "config/paper.yaml"
 
 
+# What `snakemake --report` begins with.
+report: "workflow/report/start.rst"
+
+
 include: "workflow/rules/common.smk"
 include: "workflow/rules/specimens.smk"
 include: "workflow/rules/contact.smk"
@@ -16,6 +20,8 @@ include: "workflow/rules/size_effect.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/atlas.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/explorer.smk"
+include: "workflow/rules/pages.smk"
 include: "workflow/rules/accuracy.smk"
 
 

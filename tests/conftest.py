@@ -1,11 +1,16 @@
-"""Two suites: ``make test`` leaves out what is marked ``full``, ``make test-all`` nothing."""
+"""Two suites: ``make test`` leaves out what is marked ``full``, ``make test-all`` does not.
+
+What is marked ``browser`` is for ``make test-browser`` alone, which says where the browser is.
+"""
+
+import os
 
 import pytest
 from ensembles import EVERYTHING
 from xdist.scheduler import LoadScopeScheduling
 
 #: Folders whose files share costly fixtures: one process runs all of such a folder.
-SHARING = ("tests/figures", "tests/workflow")
+SHARING = ("tests/browser", "tests/figures", "tests/workflow")
 
 
 class ByFile(LoadScopeScheduling):
@@ -23,7 +28,8 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_collection_modifyitems(config, items):
-    if not EVERYTHING:
-        full = [item for item in items if item.get_closest_marker("full")]
-        config.hook.pytest_deselected(items=full)
-        items[:] = [item for item in items if not item.get_closest_marker("full")]
+    left_out = [] if EVERYTHING else ["full"]
+    left_out += [] if os.environ.get("CHROMIUM") else ["browser"]
+    for mark in left_out:
+        config.hook.pytest_deselected(items=[i for i in items if i.get_closest_marker(mark)])
+        items[:] = [item for item in items if not item.get_closest_marker(mark)]

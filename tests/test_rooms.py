@@ -18,7 +18,7 @@ FLOORS = (
     ("contact", "roughness", "scan"),
     ("domain", "mechanics", "methods", "study"),
     ("size_effect", "experiments", "accuracy", "statements", "commands"),
-    ("figures", "stages"),
+    ("figures", "pages", "stages"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 #: Who uses the package from outside.

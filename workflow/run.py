@@ -67,6 +67,7 @@ def main():
         status = _run([*_command(options, name), *passed], options)
         if status == 0:
             _name_leftovers(results)
+            _name_page(results)
     except (InputError, OSError) as error:  # a result, the guard or a folder that cannot be used
         sys.exit(f"error: {error}")
     if status:
@@ -236,6 +237,13 @@ def _name_leftovers(results):
             "remove those you do not need",
             file=sys.stderr,
         )
+
+
+def _name_page(results):
+    """The last line of a run: where the results can be looked at, if these are the last ones."""
+    page, atlas = results / "index.html", results / "atlas.nc"
+    if page.is_file() and page.stat().st_mtime >= atlas.stat().st_mtime:
+        print(f"the results: {page.resolve().as_uri()}", flush=True)
 
 
 if __name__ == "__main__":

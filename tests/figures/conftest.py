@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-import xarray as xr
-from chain import read, stages_of
+from made_stages import scan, stages_of
 
 from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.experiments.delta_g import estimator_bias
@@ -14,10 +13,9 @@ from fractalcontact.experiments.size_states import solve_task
 from fractalcontact.experiments.size_strength import size_strength
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.configuration import resolve_settings, window_arguments
+from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.study.size_tasks import size_tasks
 from fractalcontact.study.stages import EXPERIMENT, STAGES
-from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -112,12 +110,6 @@ ROLL_OFF = {
 }
 
 
-def _scan(heights):
-    coordinates = [SPACING * (np.arange(n) + 0.5) for n in heights.shape]
-    attrs = {"spacing_x": SPACING, "spacing_y": SPACING, "source": "made", "sha256": "0" * 64}
-    return xr.DataArray(heights, dims=("y", "x"), coords=coordinates, attrs=attrs)
-
-
 def _scans():
     """Lower and upper face by specimen."""
 
@@ -129,9 +121,9 @@ def _scans():
     lower[:20, :12] = np.nan
     upper[-3:, -30:] = np.nan
     return {
-        "sliding": (_scan(surface(96, 3)), None),
-        "flat": (_scan(surface(48, 4)), None),
-        "pair": (_scan(lower), _scan(upper)),
+        "sliding": (scan(surface(96, 3), SPACING), None),
+        "flat": (scan(surface(48, 4), SPACING), None),
+        "pair": (scan(lower, SPACING), scan(upper, SPACING)),
     }
 
 
@@ -141,19 +133,13 @@ def atlas_file(tmp_path_factory):
     parts = {stage: {} for stage in STAGES}
     settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
     for name, faces in _scans().items():
-        for stage, dataset in _stages_of(name, faces, settings[name]).items():
+        for stage, dataset in stages_of(name, faces, settings[name], SOLVER).items():
             parts[stage][name] = dataset
     for stage, dataset in _experiments().items():
         parts[stage]["surfaces"] = dataset
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
     join_stages(parts, path, {"study": STUDY, "settings": settings})
     return path
-
-
-def _stages_of(name, faces, settings):
-    """All stages of a specimen, as the jobs of a study compute them."""
-    arguments = window_arguments(read(STAGES["specimens"].function, settings))
-    return stages_of(make_specimen(*faces, name=name, **arguments), settings)
 
 
 def _experiments():

@@ -176,9 +176,18 @@ def figures_of_specimens(opposite, specimens):
     )
 
 
+def all_figure_files():
+    """Every file of the figures of a study."""
+    study = list(rules.study_figures.output) if STUDY_FIGURES else []
+    return [
+        *study,
+        *figures_of_specimens("match", SLIDING),
+        *figures_of_specimens("flat", FLAT),
+    ]
+
+
 def collect_everything(wildcards):
     """Every file of the study: what was removed, or damaged and so removed, is made again."""
-    study = list(rules.study_figures.output) if STUDY_FIGURES else []
     stages = [
         *expand(list(STAGE_FILES.values()), specimen=SPECIMENS),
         *expand(list(SLIDING_FILES.values()), specimen=SLIDING),
@@ -190,9 +199,4 @@ def collect_everything(wildcards):
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
         *rules.all_drawn.output,
     ]
-    return [
-        *stages,
-        *study,
-        *figures_of_specimens("match", SLIDING),
-        *figures_of_specimens("flat", FLAT),
-    ]
+    return [*stages, *all_figure_files(), *RESULT_PAGE]

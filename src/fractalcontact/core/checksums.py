@@ -20,7 +20,7 @@ from .errors import InputError
 
 FOLDER, ENDING = "checksums", ".sha256"
 #: Of the files that jobs make: nothing else in the folder of a study is ours.
-RESULT_ENDINGS = (".csv", ".nc", ".npy", ".png", ".svg", ".txt", ".yaml")
+RESULT_ENDINGS = (".csv", ".html", ".nc", ".npy", ".png", ".svg", ".txt", ".yaml", ".zip")
 #: Of these, those that later jobs read.
 _READ = (".nc", ".npy")
 MANIFEST = "manifest.sha256"

@@ -40,12 +40,8 @@ def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarra
     window = window_slices(specimen)
     if "suspect_lower" not in specimen:
         return np.zeros([part.stop - part.start for part in window], dtype=bool)
-    slid = list(window)
-    if direction != "none":
-        axis, sign = axis_and_sign(direction)
-        part = slid["yx".index(axis)]
-        slid["yx".index(axis)] = slice(part.start + sign * cells, part.stop + sign * cells)
-    suspicious = specimen["suspect_lower"].values[tuple(slid)].astype(bool)
+    slid = slid_window(window, direction, cells)
+    suspicious = specimen["suspect_lower"].values[slid].astype(bool)
     opposite = {"match": "suspect_lower", "scanned": "suspect_upper"}
     if specimen.attrs["opposite"] in opposite:
         other = specimen[opposite[specimen.attrs["opposite"]]].values
@@ -53,6 +49,48 @@ def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarra
     if cells == 0:
         suspicious = suspicious | specimen["overlap"].values[window].astype(bool)
     return suspicious
+
+
+def overlapping_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
+    """Overlap at nodes of the composite topography of the window at an offset.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+        From :func:`surface.specimen.make_specimen`.
+    direction : {"E", "N", "W", "S", "none"}
+    cells : int
+        Offset in cells of the scan.
+
+    Returns
+    -------
+    (ny, nx) bool ndarray
+        Where the cell of either face lies in the overlap of the faces as scanned and registered.
+    """
+    window = window_slices(specimen)
+    overlap = specimen["overlap"].values.astype(bool)
+    return overlap[slid_window(window, direction, cells)] | overlap[window]
+
+
+def slid_window(window: tuple[slice, slice], direction: str, cells: int) -> tuple[slice, slice]:
+    """Rows and columns of the lower face below the window at an offset.
+
+    Parameters
+    ----------
+    window : tuple of slice
+        Rows and columns of the upper block.
+    direction : {"E", "N", "W", "S", "none"}
+    cells : int
+        Offset in cells of the scan.
+    """
+    if direction == "none":
+        return window
+    axis, sign = axis_and_sign(direction)
+    rows, columns = (
+        slice(part.start + sign * cells, part.stop + sign * cells) if axis == name else part
+        for name, part in zip("yx", window, strict=True)
+    )
+    return rows, columns
 
 
 def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:

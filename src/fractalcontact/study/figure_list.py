@@ -14,6 +14,8 @@ with the constant's name and holds literals alone,
     Its place among the others of the same subjects.
 ``KEY``
     Of the study and of accuracy alone: the key of the configuration that asks for it.
+``SECTION``
+    Of the result page, where the stages it reads do not say it; may be left out.
 
 The constants are read without importing the module, which would bring matplotlib and xarray into
 every process that reads the workflow.
@@ -36,7 +38,7 @@ _ASKED_FOR = (STUDY, ACCURACY)
 
 #: A constant and its value, which may go on in indented lines and end in a closing bracket.
 _CONSTANT = re.compile(
-    r"^(TITLE|SUBJECT|NEEDS|ORDER|KEY) = (.*\n(?:(?:[ \t]+.*|[)\]}].*)\n)*)", re.MULTILINE
+    r"^(TITLE|SUBJECT|NEEDS|ORDER|KEY|SECTION) = (.*\n(?:(?:[ \t]+.*|[)\]}].*)\n)*)", re.MULTILINE
 )
 
 
@@ -58,6 +60,8 @@ class Figure:
     order : float
     key : str
         Of the configuration; empty where no key asks for it.
+    section : str
+        Of the result page; empty where its stages say it.
     """
 
     name: str
@@ -67,6 +71,7 @@ class Figure:
     needs: tuple[str, ...]
     order: float
     key: str = ""
+    section: str = ""
 
 
 def read_figure(path: Path | str) -> Figure:

@@ -17,6 +17,7 @@ TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
 ORDER = 160
+SECTION = "size effect"
 
 #: Loads in panel (a).
 _MOST_LOADS = 5

@@ -16,6 +16,7 @@ TITLE = "Fig. 13: eq. 6 extrapolated to other sizes, load by load"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
 ORDER = 200
+SECTION = "size effect"
 
 #: Loads drawn.
 _MOST_LOADS = 6

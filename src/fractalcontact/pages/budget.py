@@ -1,0 +1,92 @@
+"""One error bar a quantity, split by source."""
+
+from dataclasses import dataclass
+
+from .summary import Quantity, Specimen
+from .words import percent, with_unit
+
+#: Sources of the total of this surface, in the order of the bar; the rest belong to the population.
+OF_SURFACE = ("solver", "numerical", "estimator")
+OF_POPULATION = (*OF_SURFACE, "counting", "window", "registration")
+
+
+@dataclass(frozen=True)
+class Part:
+    """A source of an error.
+
+    Attributes
+    ----------
+    source : str
+    words : str
+        Its half-width, or why it has none.
+    share : float
+        Of the squares of those that make the total, in per cent of the bar.
+    counted : bool
+        Whether it is in the total of this surface.
+    """
+
+    source: str
+    words: str
+    share: float
+    counted: bool
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A quantity, its totals in words, and its sources."""
+
+    name: str
+    meaning: str
+    value: str
+    surface: str
+    population: str
+    parts: list[Part]
+
+
+def bars_of(specimen: Specimen) -> list[Bar]:
+    """Error bars of a specimen under the load of its contact maps."""
+    return [_bar(quantity) for quantity in specimen.of_maps.quantities.values()]
+
+
+def _bar(quantity: Quantity) -> Bar:
+    known = {
+        source: error or 0.0
+        for source, error in quantity.sources.items()
+        if source in OF_SURFACE and error is not None
+    }
+    squares = sum(error**2 for error in known.values())
+    parts = [
+        Part(
+            source=source,
+            words=_words(quantity, source),
+            share=100 * known[source] ** 2 / squares if squares and source in known else 0.0,
+            counted=source in OF_SURFACE,
+        )
+        for source in quantity.sources
+    ]
+    return Bar(
+        name=quantity.name,
+        meaning=quantity.meaning,
+        value=with_unit(quantity.value, quantity.unit),
+        surface=_of_value(quantity, quantity.errors["surface"]),
+        population=_of_value(quantity, quantity.errors["population"]),
+        parts=parts,
+    )
+
+
+def _words(quantity, source):
+    error = quantity.sources[source]
+    if error is not None and not (error == 0 and quantity.reasons[source]):
+        return _of_value(quantity, error)
+    return quantity.reasons[source] or "not known"
+
+
+def _of_value(quantity, error):
+    """An error as a fraction of its value; of a dimension as it is."""
+    if error is None or quantity.unit == "1":
+        return with_unit(error, quantity.unit, 2)
+    return (
+        percent(abs(error / quantity.value), 2)
+        if quantity.value
+        else with_unit(error, quantity.unit)
+    )

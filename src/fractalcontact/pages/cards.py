@@ -1,0 +1,169 @@
+"""Cards of figures: heading, caption, numbers, files, and the lines that draw one again."""
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import quote
+
+from markupsafe import Markup
+
+from ..study.figure_list import Figure, all_figures
+from ..study.stages import JOINT, SPECIMEN, STAGES
+from .captions import symbols, take_apart, without_opening
+
+#: Sections of a specimen's page, in order, by name and title.
+SECTIONS = {
+    "scan": "Scan",
+    "joint": "Joint",
+    "closure": "Closure",
+    "dilatancy": "Dilatancy and strength",
+    "domains": "Contact domains",
+    "size effect": "Size effect",
+    "trust": "How far to trust it",
+}
+#: What a figure reads puts it into a section: the first of these that it needs any stage of.
+_BY_STAGE = (
+    ("trust", ("choices", "error_budget")),
+    ("size effect", ("windows", "window_states", "size_test")),
+    ("domains", ("domains", "domain_measures", "scaling")),
+    ("dilatancy", ("dilatancy", "strength")),
+    ("scan", ("quality", "surface_dimension")),
+    ("closure", ("closure", "area")),
+    ("joint", ("joints",)),
+)
+#: Files of a figure that a page offers, those that are there, and their names on it.
+FILES = {"png": "PNG", "svg": "SVG", "pdf": "PDF", "csv": "CSV"}
+_PNG = b"\x89PNG\r\n\x1a\n"
+
+
+@dataclass(frozen=True)
+class Card:
+    """What a page shows of a figure; addresses are relative to the page."""
+
+    name: str
+    title: str
+    heading: Markup
+    text: list[Markup]
+    numbers: list[Markup]
+    image: str
+    width: int
+    height: int
+    files: dict[str, str]
+    code: str
+
+
+def section_of(figure: Figure) -> str:
+    """Section of a specimen's page that a figure belongs to."""
+    if figure.section:
+        return figure.section
+    return next((name for name, stages in _BY_STAGE if set(stages) & set(figure.needs)), "trust")
+
+
+def cards_of(
+    names: Sequence[str],
+    folder: Path,
+    address: str,
+    *,
+    atlas: str,
+    specimen: str = "",
+    label: str = "",
+    warnings: Sequence[str] = (),
+) -> list[Card]:
+    """Cards of the figures that are there.
+
+    Parameters
+    ----------
+    names : sequence of str
+    folder : pathlib.Path
+        With their files.
+    address : str
+        Of that folder, relative to the page.
+    atlas : str
+        Path of the atlas, as a user would type it.
+    specimen, label : str, optional
+        Of which they are; of a whole study neither.
+    warnings : sequence of str, optional
+        Those that the page states, so that no card does.
+    """
+    found = []
+    for name in names:
+        picture, caption = folder / f"{name}.png", folder / f"{name}.txt"
+        if not (picture.is_file() and caption.is_file()):
+            continue
+        parts = take_apart(caption.read_text(encoding="utf-8"), label, warnings)
+        width, height = png_size(picture)
+        title = all_figures()[name].title
+        start = f"{quote(address)}/{quote(name)}"
+        found.append(
+            Card(
+                name=name,
+                title=title,
+                heading=symbols(without_opening(parts.finding) or title),
+                text=[symbols(sentence) for sentence in parts.text],
+                numbers=[symbols(sentence) for sentence in parts.rest],
+                image=f"{start}.png",
+                width=width,
+                height=height,
+                files={
+                    words: f"{start}.{ending}"
+                    for ending, words in FILES.items()
+                    if (folder / f"{name}.{ending}").is_file()
+                },
+                code=redrawn(name, specimen, atlas),
+            )
+        )
+    return found
+
+
+def redrawn(name: str, specimen: str, atlas: str) -> str:
+    """Lines of Python that read what a figure shows with xarray, and draw it again.
+
+    Parameters
+    ----------
+    name : str
+        Of the figure.
+    specimen : str
+        Empty for a figure of a study.
+    atlas : str
+        Path of the atlas.
+    """
+    stages = all_figures()[name].needs
+    subject = repr(specimen)
+    if not specimen:
+        # A study of synthetic surfaces, or of measured maps, alone has no specimens to list.
+        of_specimens = any(STAGES[stage].grain in (SPECIMEN, JOINT) for stage in stages)
+        subject = "sorted(atlas['specimens'].children)" if of_specimens else "[]"
+    read = [
+        f"{stage} = atlas['{stage}/{specimen}']" if specimen else f"{stage} = atlas['{stage}']"
+        for stage in stages
+    ]
+    return "\n".join(
+        [
+            "import xarray as xr",
+            "from fractalcontact.figures.draw import drawer_of",
+            "",
+            f"atlas = xr.open_datatree({atlas!r})",
+            *read,
+            "",
+            f"drawing = drawer_of({name!r})(atlas, {subject})",
+            f"drawing.figure.savefig({name + '.pdf'!r})",
+            "drawing.data  # the numbers, a table",
+        ]
+    )
+
+
+def png_size(path: Path) -> tuple[int, int]:
+    """Width and height of a PNG file in pixels, so that a page keeps its place before it loads.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    with open(path, "rb") as file:
+        head = file.read(24)
+    if len(head) < 24 or not head.startswith(_PNG):
+        raise ValueError(f"{path}: no PNG file")
+    width, height = struct.unpack(">II", head[16:24])
+    return width, height

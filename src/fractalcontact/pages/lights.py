@@ -1,0 +1,116 @@
+"""Four lights of a specimen: scan, fit of the faces, nodes in contact, convergence in the grid.
+
+Each repeats what a stage of the atlas says; the limits are those that the stages use.
+"""
+
+import math
+from dataclasses import dataclass
+
+from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
+from ..core.units import share
+from ..roughness.quality_words import overlap_words
+from ..statements.findings import NEARLY
+from ..study.configuration import ACCURACY, solver_settings
+from .chosen import Chosen, configuration_of
+
+GOOD, PARTLY, POOR, NOT_ASKED = "good", "in part", "poor", "not asked"
+#: A sign for each, so that no colour is needed.
+SIGNS = {GOOD: "●", PARTLY: "◐", POOR: "○", NOT_ASKED: "–"}
+
+
+@dataclass(frozen=True)
+class Light:
+    """One light.
+
+    Attributes
+    ----------
+    key, title : str
+        Its name in the summary, and on the page.
+    word : str
+        :data:`GOOD`, :data:`PARTLY`, :data:`POOR` or :data:`NOT_ASKED`.
+    reason : str
+        What decided it.
+    """
+
+    key: str
+    title: str
+    word: str
+    reason: str
+
+    @property
+    def sign(self) -> str:
+        """Its sign."""
+        return SIGNS[self.word]
+
+
+def lights_of(chosen: Chosen) -> list[Light]:
+    """The four lights of a specimen."""
+    return [_scan(chosen), _faces(chosen), _nodes(chosen), _grid(chosen)]
+
+
+def warnings_of(chosen: Chosen) -> list[str]:
+    """What the stages warn of, each once: the scan, and the load on suspicious cells."""
+    found = (chosen.stage(stage).attrs.get("warning", "") for stage in ("quality", "closure"))
+    return [str(warning) for warning in found if warning]
+
+
+def _is_pair(chosen):
+    return int(chosen.stage("specimens").attrs["faces"]) == 2
+
+
+def _scan(chosen):
+    """Of one face, what suspicious cells carry belongs to its scan."""
+    quality, load = (
+        str(chosen.stage(stage).attrs.get("warning", "")) for stage in ("quality", "closure")
+    )
+    found = [text for text in (quality, "" if _is_pair(chosen) else load) if text]
+    if not found:
+        reason = "all resolutions lie within the fractal range, suspicious cells carry little load"
+        return Light("scan", "Scan", GOOD, reason)
+    # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
+    below = chosen.stage("quality")["below_range"].values
+    word = POOR if below.all() or (load and not _is_pair(chosen)) else PARTLY
+    return Light("scan", "Scan", word, "; ".join(found))
+
+
+def _faces(chosen):
+    key, title = "faces", "Fit of the faces"
+    if not _is_pair(chosen):
+        return Light(key, title, NOT_ASKED, "one face was scanned: there is nothing to fit")
+    overlap = overlap_words(chosen.stage("specimens"), chosen.stage("quality"))
+    load = str(chosen.stage("closure").attrs.get("warning", ""))
+    if load:
+        return Light(key, title, POOR, f"{load}; {overlap}")
+    touching = chosen.stage("quality").sel(region="window")["overlap_cells"].item()
+    return Light(key, title, PARTLY if touching else GOOD, overlap)
+
+
+def _nodes(chosen):
+    nodes = chosen.values("closure", "nodes")["nodes"].isel(normal_force=chosen.map_load).item()
+    # A state that was not solved has none: the comparison is then false, as it should be.
+    word = GOOD if nodes >= CORRECTED_NODES else PARTLY if nodes >= RESOLVED_NODES else POOR
+    reason = (
+        f"{nodes:.0f} nodes in contact under the load of the maps; from {RESOLVED_NODES} on a "
+        f"state is fitted, from {CORRECTED_NODES} on its area is corrected"
+    )
+    return Light("nodes", "Enough nodes", word, reason)
+
+
+def _grid(chosen):
+    """Numerical error of the closure beside what the study asks for."""
+    key, title = "grid", "Converged in the grid"
+    accuracy = solver_settings(configuration_of(chosen.atlas)["study"], "study")["accuracy"]
+    # All states, at full cost, says nothing of the grid: the usual accuracy is then compared.
+    asked = accuracy["closure"] if accuracy else share(ACCURACY["closure"], "closure")
+    budget = chosen.stage("error_budget").sel(quantity="closure")
+    here = budget.sel(normal_force=chosen.forces[chosen.map_load], method="nearest")
+    error = float(here["relative_error"].sel(source="numerical"))
+    if math.isnan(error):
+        why = str(here["reason"].sel(source="numerical").item()) or "no finer grid was solved"
+        return Light(key, title, NOT_ASKED, why)
+    word = GOOD if error <= asked else PARTLY if error <= NEARLY else POOR
+    reason = (
+        f"numerical error of the closure {100 * error:.2g} % under the load of the maps, asked "
+        f"{100 * asked:.2g} %, of use up to {100 * NEARLY:.0f} %"
+    )
+    return Light(key, title, word, reason)

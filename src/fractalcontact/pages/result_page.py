@@ -1,0 +1,275 @@
+"""The result page of a study: an index, a page a specimen, the summary, the curves and the tables.
+
+All of it is static, links to nothing outside the folder of results, and opens from the disk.
+"""
+
+import csv
+import datetime
+import io
+import json
+import re
+import zipfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+import yaml
+
+from ..core.atomic import atomic_write
+from ..core.labels import printable
+from ..study.atlas import read_atlas
+from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
+from ..study.stages import STAGES as ALL_STAGES
+from .budget import bars_of
+from .captions import symbols
+from .cards import SECTIONS, cards_of, section_of
+from .chosen import STAGES, Chosen, configuration_of, specimens_of
+from .curves import curves_table
+from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
+from .lights import warnings_of
+from .matrix import Row, counted, matrix_of, of_study
+from .summary import Specimen, summarised, summary_table
+from .templating import write_page
+from .thumbnails import relief_thumbnail
+from .words import duration, measured, percent, short, with_unit
+
+#: Digits of the numbers in tables: more than any of them has.
+_FORMAT = "%.8g"
+#: Time that all members of an archive have, so that the same tables are the same archive.
+_ZIP_TIME = (1980, 1, 1, 0, 0, 0)
+#: Letters of a label in a table.
+_LONGEST = 120
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the files of a study are.
+
+    Attributes
+    ----------
+    atlas : pathlib.Path
+    figures : pathlib.Path
+        Folder of the figures.
+    benchmarks : pathlib.Path
+        Folder of the times of jobs; may be missing.
+    folder : pathlib.Path
+        Where the pages go: they name figures, atlas and explorer as what stands there.
+    """
+
+    atlas: Path
+    figures: Path
+    benchmarks: Path
+    folder: Path
+
+    @classmethod
+    def of(cls, results: Path) -> "Place":
+        """The folder of the results of a study."""
+        return cls(results / "atlas.nc", results / "figures", results / "benchmarks", results)
+
+
+def write_result_page(place: Place) -> list[str]:
+    """Write the pages of a study, and its summary, curves, tables and configuration beside them.
+
+    Parameters
+    ----------
+    place : Place
+
+    Returns
+    -------
+    list of str
+        Specimens that have a page, ``pages/NAME.html``.
+    """
+    atlas = read_atlas(place.atlas, without=ALL_STAGES.keys() - set(STAGES))
+    chosen = [Chosen(atlas, name) for name in specimens_of(atlas)]
+    specimens = [summarised(one) for one in chosen]
+    study = str(atlas.attrs["study"])
+    curves = curves_table(study, chosen)
+    _write_table(place.folder / SUMMARY, summary_table(study, specimens))
+    _write_table(place.folder / CURVES, curves)
+    _write_configuration(place.folder / CONFIGURATION, atlas)
+    _write_tables(place)
+    head = _head(place, atlas)
+    rows = matrix_of(atlas, [one.name for one in chosen])
+    for one, specimen in zip(chosen, specimens, strict=True):
+        values = _specimen_values(place, one, specimen, rows)
+        path = place.folder / SPECIMEN_PAGE.format(specimen=one.name)
+        write_page(path, "specimen.html", head | values)
+    reliefs = {one.name: relief_thumbnail(one.stage("specimens")) for one in chosen}
+    values = _index_values(place, atlas, specimens, rows, curves) | {"reliefs": reliefs}
+    write_page(place.folder / INDEX, "index.html", head | values)
+    return [one.name for one in chosen]
+
+
+# -- what all pages have ---------------------------------------------------------------------------
+
+
+def _head(place, atlas):
+    """Study, date, versions, duration; the functions that put numbers into words."""
+    seconds, jobs = _work(place.benchmarks)
+    made = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
+    return {
+        "study": printable(atlas.attrs["study"]),
+        "date": f"{made:%Y-%m-%d %H:%M} UTC",
+        "versions": json.loads(atlas.attrs["versions"]),
+        "versions_differ": json.loads(atlas.attrs.get("versions_differ", "{}")),
+        "work": f"{duration(seconds)} of work in {jobs} jobs" if jobs else "",
+        "atlas_size": f"{place.atlas.stat().st_size / 1e6:.0f} MB",
+        "atlas_path": _as_typed(place.atlas),
+        "has_explorer": (place.folder / EXPLORER).is_file(),
+        "short": short,
+        "measured": measured,
+        "with_unit": with_unit,
+        "percent": percent,
+        "symbols": symbols,
+        "estimate": _estimate,
+        "in_paper": _in_paper,
+    }
+
+
+def _as_typed(path):
+    """Path of a result as a user would type it in the folder of the project."""
+    return "/".join(("results", path.parent.name, path.name))
+
+
+def _estimate(found):
+    """A number with its interval in words, as figures print it."""
+    if found.value is None:
+        return short(None)
+    if not found.determined:
+        return "undetermined"
+    ends = f" [{measured(found.low)}, {measured(found.high)}]" if found.low is not None else ""
+    return measured(found.value) + ends
+
+
+def _in_paper(figures):
+    """Where a statement stands in the paper: "Figs. 4, 5" or "sect. 7"."""
+    if figures.startswith("sect"):
+        return figures
+    return f"Figs. {figures}" if len(re.findall(r"\d+", figures)) > 1 else f"Fig. {figures}"
+
+
+def _work(benchmarks: Path) -> tuple[float, int]:
+    """Seconds that the jobs of a study took in all, and how many there were.
+
+    Only an extra: what is not there, or cannot be read, counts nothing.
+    """
+    seconds, jobs = 0.0, 0
+    for path in sorted(benchmarks.rglob("*.tsv")):
+        with open(path, encoding="utf-8", newline="") as file:
+            for row in csv.DictReader(file, delimiter="\t"):
+                seconds, jobs = seconds + float(row["s"]), jobs + 1
+    return seconds, jobs
+
+
+# -- the pages -------------------------------------------------------------------------------------
+
+
+def _index_values(
+    place: Place,
+    atlas: xr.DataTree,
+    specimens: list[Specimen],
+    rows: list[Row],
+    curves: pd.DataFrame,
+) -> dict[str, Any]:
+    own = [name for name, figure in all_figures().items() if figure.subject == STUDY]
+    together = of_study(atlas)
+    return {
+        "specimens": specimens,
+        "longest": _LONGEST,
+        "matrix": rows,
+        "verdicts": counted([*rows, *together]),
+        "together": together,
+        "maps": _maps(atlas),
+        "cards": cards_of(own, place.figures, "figures", atlas=_as_typed(place.atlas)),
+        "curves": _records(curves),
+        "pictures": _pictures(rows, place),
+    }
+
+
+def _maps(atlas):
+    """Labels of the measured contact maps."""
+    if "contact_maps" not in atlas.children:
+        return []
+    return [
+        printable(group.attrs.get("label", name), _LONGEST)
+        for name, group in sorted(atlas["contact_maps"].children.items())
+    ]
+
+
+def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Rows of a table for a script; missing numbers are None."""
+    return table.astype(object).where(table.notna(), None).to_dict("records")
+
+
+def _pictures(rows: Iterable[Row], place: Place) -> set[tuple[str, str]]:
+    """Specimens and figures that statements are shown by, those whose picture is there."""
+    shown = {(name, cell.figure) for row in rows for name, cell in row.cells.items()}
+    return {
+        (name, figure)
+        for name, figure in shown
+        if (place.figures / name / f"{figure}.png").is_file()
+    }
+
+
+def _specimen_values(
+    place: Place, chosen: Chosen, specimen: Specimen, rows: list[Row]
+) -> dict[str, Any]:
+    figures = all_figures()
+    names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
+    warnings = warnings_of(chosen)
+    cards = cards_of(
+        names,
+        place.figures / chosen.name,
+        f"../figures/{chosen.name}",
+        atlas=_as_typed(place.atlas),
+        specimen=chosen.name,
+        label=chosen.label,
+        warnings=warnings,
+    )
+    sections = [
+        (name, title, [card for card in cards if section_of(figures[card.name]) == name])
+        for name, title in SECTIONS.items()
+    ]
+    return {
+        "specimen": specimen,
+        "label": printable(chosen.label),
+        "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
+        "bars": bars_of(specimen),
+        "statements": [(row, row.cells[chosen.name]) for row in rows if chosen.name in row.cells],
+        "drawn": {card.name for card in cards},
+    }
+
+
+# -- the files beside them -------------------------------------------------------------------------
+
+
+def _write_table(path: Path, table: pd.DataFrame) -> None:
+    text = table.to_csv(index=False, float_format=_FORMAT, lineterminator="\n")
+    with atomic_write(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def _write_configuration(path: Path, atlas: xr.DataTree) -> None:
+    """The study as its user wrote it, without comments: ready to be run again."""
+    stated: Mapping[str, Any] = configuration_of(atlas)["study"]
+    text = yaml.safe_dump(dict(stated), sort_keys=False, allow_unicode=True)
+    with atomic_write(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def _write_tables(place: Place) -> None:
+    """All numbers drawn in figures, with the summary and the curves, in one archive."""
+    members = [(place.folder / name, name) for name in (SUMMARY, CURVES)]
+    for path in sorted(place.figures.rglob("*.csv")):
+        members.append((path, f"figures/{path.relative_to(place.figures).as_posix()}"))
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path, name in members:
+            member = zipfile.ZipInfo(name, _ZIP_TIME)
+            member.external_attr = 0o644 << 16  # who unpacks it may read it
+            archive.writestr(member, path.read_bytes(), zipfile.ZIP_DEFLATED)
+    with atomic_write(place.folder / TABLES) as temporary:
+        temporary.write_bytes(stream.getvalue())

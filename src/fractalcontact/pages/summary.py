@@ -1,0 +1,315 @@
+"""The summary of a study: what each specimen is and does, one row a specimen and pressure."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from ..core.determined import determined
+from ..domain.box_dimension import WIDEST
+from ..mechanics.overlap import DECISIVE
+from ..statements.sliding import Plateaus
+from ..surface.grid import spacing_of
+from ..surface.specimen import window_sides
+from .chosen import Chosen, finite
+from .lights import Light, lights_of
+from .words import in_table
+
+#: Errors of a quantity as a property of this surface, and of that which the window is cut from.
+TOTALS = {"surface": "total", "population": "total_of_population"}
+#: Dimensions are determined as figures have it: 0 and 2 need no interval.
+DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its 95 % interval.
+
+    Attributes
+    ----------
+    value, low, high : float or None
+        None where missing.
+    determined : bool
+        Whether the interval says something, as figures decide it.
+    note : str
+        Why it is missing, or what to know of it.
+    """
+
+    value: float | None
+    low: float | None
+    high: float | None
+    determined: bool
+    note: str = ""
+
+    @classmethod
+    def of(cls, found: xr.Dataset, name: str, note: str = "", **kind: Any) -> "Estimate":
+        """Variable ``name`` of a dataset with its ends; ``kind`` is handed to `determined`."""
+        return cls.between([float(found[name + end]) for end in ("", "_low", "_high")], note, kind)
+
+    @classmethod
+    def between(cls, ends: Sequence[float], note: str, kind: dict[str, Any]) -> "Estimate":
+        """From a value and the ends of its interval, NaN where missing."""
+        value, low, high = ends
+        says = determined(value, low, high, **kind)
+        return cls(finite(value), finite(low), finite(high), says, note)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of the error budget under one load.
+
+    Attributes
+    ----------
+    name : str
+        As the budget has it.
+    meaning, unit : str
+    value : float or None
+    errors : dict of str to float or None
+        Half-widths at 95 %, in the unit: of this surface, of its population.
+    sources : dict of str to float or None
+        By source.
+    reasons : dict of str to str
+        Why a source has none.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    value: float | None
+    errors: dict[str, float | None]
+    sources: dict[str, float | None]
+    reasons: dict[str, str]
+
+    def relative(self, which: str = "surface") -> float | None:
+        """An error as a fraction of the value."""
+        error = self.errors[which]
+        return None if error is None or not self.value else abs(error / self.value)
+
+
+@dataclass(frozen=True)
+class AtLoad:
+    """What is quoted of a specimen under one load."""
+
+    normal_force: float
+    nominal_pressure: float
+    of_maps: bool
+    contact_nodes: float | None
+    suspect_share: float | None
+    quantities: dict[str, Quantity]
+    delta_sigma_boxes: Estimate
+    delta_sigma_areas: Estimate
+
+    @property
+    def decided_by_scan(self) -> bool:
+        """Whether suspicious cells of the scans carry most of the load: its numbers are theirs."""
+        return self.suspect_share is not None and self.suspect_share > DECISIVE
+
+
+@dataclass(frozen=True)
+class Dilatancy:
+    """Rigid dilatancy over the second half of the offsets.
+
+    Attributes
+    ----------
+    kind : str
+        "level", "rising", "falling"; "none" of what does not slide.
+    level : float or None
+        Its mean, mm.
+    slope : float or None
+        mm/mm.
+    """
+
+    kind: str
+    level: float | None = None
+    slope: float | None = None
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One row of the table of specimens: lengths in mm."""
+
+    name: str
+    label: str
+    opposite: str
+    direction: str
+    offset: float
+    window: tuple[float, float]
+    spacing: float
+    delta_g: Estimate
+    estimator: str
+    rms_slope: float | None
+    k_ni: Estimate
+    closure_law: str
+    dilatancy: Dilatancy
+    loads: list[AtLoad]
+    lights: list[Light]
+
+    @property
+    def of_maps(self) -> AtLoad:
+        """The load of the contact maps."""
+        return next(load for load in self.loads if load.of_maps)
+
+
+def summarised(chosen: Chosen) -> Specimen:
+    """The row of a specimen.
+
+    Parameters
+    ----------
+    chosen : Chosen
+    """
+    specimen = chosen.stage("specimens")
+    side_y, side_x = window_sides(specimen)
+    surface = chosen.stage("surface_dimension")
+    curve = chosen.values("closure")
+    why = str(curve["hyperbola_reason"].item()) or str(curve["closure_law_reason"].item())
+    dimension = [float(surface[f"recommended_{end}"]) for end in ("value", "low", "high")]
+    return Specimen(
+        name=chosen.name,
+        label=chosen.label,
+        opposite=str(specimen.attrs["opposite"]),
+        direction=chosen.direction,
+        offset=chosen.offset,
+        window=(side_x, side_y),
+        spacing=max(spacing_of(specimen)),
+        delta_g=Estimate.between(dimension, str(surface["no_dimension"].item()), DIMENSION),
+        estimator=str(surface["recommended"].item()).replace("_", " "),
+        rms_slope=finite(chosen.values("area", "rms_slope")["rms_slope"]),
+        k_ni=Estimate.of(curve, "hyperbola_k_ni", why),
+        closure_law=str(curve["closure_law"].item()),
+        dilatancy=dilatancy_of(chosen),
+        loads=[_at_load(chosen, curve, number) for number in chosen.loads],
+        lights=lights_of(chosen),
+    )
+
+
+def _at_load(chosen, curve, number):
+    """What stands in the table under the load of this number."""
+    state = {"normal_force": number}
+    return AtLoad(
+        normal_force=float(chosen.forces[number]),
+        nominal_pressure=float(chosen.pressures[number]),
+        of_maps=number == chosen.map_load,
+        contact_nodes=finite(curve["nodes"].isel(state)),
+        suspect_share=finite(curve["suspect_load_share"].isel(state)),
+        quantities=quantities_at(chosen, number),
+        delta_sigma_boxes=_dimension(chosen, "domains", state),
+        delta_sigma_areas=_dimension(chosen, "scaling", state),
+    )
+
+
+def _dimension(chosen, stage, state):
+    """Delta_sigma of a stage, with why there is none where the stage says it."""
+    names = ["delta_sigma", "delta_sigma_low", "delta_sigma_high"]
+    names += ["reason"] if "reason" in chosen.stage(stage) else []
+    found = chosen.values(stage, *names).isel(state)
+    note = str(found["reason"].item()) if "reason" in found else ""
+    return Estimate.of(found, "delta_sigma", note, **DIMENSION)
+
+
+def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
+    """Quantities of the error budget under the load of this number.
+
+    Parameters
+    ----------
+    chosen : Chosen
+    number : int
+        Among the loads of the study.
+    """
+    budget = chosen.stage("error_budget")
+    force = chosen.forces[number]
+    budget = budget.sel(normal_force=force, method="nearest")
+    sources = [str(source) for source in budget["source"].values]
+    found = {}
+    for name in map(str, budget["quantity"].values):
+        one = budget.sel(quantity=name)
+        found[name] = Quantity(
+            name=name,
+            meaning=str(one["meaning"].item()),
+            unit=str(one["unit"].item()),
+            value=finite(one["published"]),
+            errors={which: finite(one[total]) for which, total in TOTALS.items()},
+            sources={source: finite(one["error"].sel(source=source)) for source in sources},
+            reasons={source: str(one["reason"].sel(source=source).item()) for source in sources},
+        )
+    return found
+
+
+def dilatancy_of(chosen: Chosen) -> Dilatancy:
+    """Level or slope of the rigid dilatancy, flat where the statements call it so."""
+    joints = chosen.stage("joints")
+    plateaus = Plateaus.of(joints)
+    if chosen.direction not in plateaus.directions:
+        return Dilatancy("none")
+    number = plateaus.directions.index(chosen.direction)
+    v = joints["rigid_offset"].values
+    second = v[v >= v[-1] / 2]
+    mean, change = float(plateaus.mean[number]), float(plateaus.change[number])
+    slope = change * mean / float(second[-1] - second[0])
+    kind = "level" if plateaus.flat[number] else "rising" if slope > 0 else "falling"
+    return Dilatancy(kind, mean, slope)
+
+
+def summary_table(study: str, specimens: list[Specimen]) -> pd.DataFrame:
+    """The summary as a table, one row a specimen and pressure; units end the names of its columns.
+
+    Parameters
+    ----------
+    study : str
+    specimens : list of Specimen
+    """
+    rows = []
+    for one in specimens:
+        start = {"study": study} | _of_specimen(one)
+        rows += [start | _of_load(load) for load in one.loads]
+    return pd.DataFrame(rows) if rows else pd.DataFrame(columns=["study", "specimen"])
+
+
+def _of_specimen(one):
+    row = {
+        "specimen": one.name,
+        "label": in_table(one.label),
+        "opposite": one.opposite,
+        "direction": one.direction,
+        "offset_mm": one.offset,
+        "window_x_mm": one.window[0],
+        "window_y_mm": one.window[1],
+        "spacing_mm": one.spacing,
+        **_columns("delta_g", one.delta_g),
+        "delta_g_estimator": one.estimator,
+        "rms_slope": one.rms_slope,
+        **_columns("k_ni_MPa_per_mm", one.k_ni),
+        "closure_law": one.closure_law,
+        "dilatancy": one.dilatancy.kind,
+        "dilatancy_level_mm": one.dilatancy.level,
+        "dilatancy_slope": one.dilatancy.slope,
+    }
+    return row | {f"light_{light.key}": light.word for light in one.lights}
+
+
+def _of_load(load):
+    row = {
+        "normal_force_N": load.normal_force,
+        "nominal_pressure_MPa": load.nominal_pressure,
+        "load_of_maps": load.of_maps,
+        "contact_nodes": load.contact_nodes,
+        "suspect_load_share": load.suspect_share,
+    }
+    for name, quantity in load.quantities.items():
+        if name == "delta_sigma":  # stands below, with its interval
+            continue
+        unit = quantity.unit.replace("/", "_per_")
+        row[f"{name}_{unit}"] = quantity.value
+        row |= {f"{name}_error_{which}_{unit}": error for which, error in quantity.errors.items()}
+    row |= _columns("delta_sigma_boxes", load.delta_sigma_boxes)
+    return row | _columns("delta_sigma_areas", load.delta_sigma_areas)
+
+
+def _columns(name, found):
+    return {
+        name: found.value,
+        f"{name}_low": found.low,
+        f"{name}_high": found.high,
+        f"{name}_determined": found.determined,
+    }

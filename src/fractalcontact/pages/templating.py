@@ -1,0 +1,64 @@
+"""Templates of the pages: one environment, in which every text is escaped."""
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from ..core.atomic import atomic_write
+from ..core.labels import printable
+
+TEMPLATES = Path(__file__).parent / "templates"
+#: What ends a script, opens a comment, or ends a line of JavaScript alone, as JSON may hold it.
+_IN_SCRIPT = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028"}
+_IN_SCRIPT |= {"\u2029": "\\u2029"}
+
+
+@cache
+def environment() -> Environment:
+    """The one environment: labels and names are untrusted input, so nothing is taken as HTML."""
+    made = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters["data"] = script_data
+    made.filters["printable"] = printable
+    return made
+
+
+def script_data(value: Any) -> Markup:
+    """A value as JSON that may stand inside a ``script`` element.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite: JSON has none, missing is ``null``.
+    """
+    text = json.dumps(value, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+    for sign, escaped in _IN_SCRIPT.items():
+        text = text.replace(sign, escaped)
+    return Markup(text)
+
+
+def inlined(name: str) -> Markup:
+    """Text of a style sheet or script of the templates, to stand inside its element."""
+    return Markup((TEMPLATES / name).read_text(encoding="utf-8"))
+
+
+def render(template: str, values: Mapping[str, Any]) -> str:
+    """HTML of a template with these values."""
+    return environment().get_template(template).render(inlined=inlined, **values)
+
+
+def write_page(path: Path | str, template: str, values: Mapping[str, Any]) -> None:
+    """Write the HTML of a template, whole or not at all."""
+    text = render(template, values)
+    with atomic_write(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

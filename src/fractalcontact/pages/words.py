@@ -1,0 +1,73 @@
+"""Numbers in words, as the pages print them."""
+
+import math
+
+from ..core.labels import printable
+
+#: Below and above these a number has an exponent.
+_PLAIN = (1e-4, 1e6)
+#: Smaller units of lengths: from where on, its name, how many mm it is.
+_LENGTHS = ((1.0, "mm", 1.0), (1e-3, "µm", 1e-3), (0.0, "nm", 1e-6))
+_STIFFNESS = ((1e3, "GPa/mm", 1e3), (0.0, "MPa/mm", 1.0))
+_FORCES = ((1e6, "MN", 1e6), (1e3, "kN", 1e3), (0.0, "N", 1.0))
+_SCALED = {"mm": _LENGTHS, "MPa/mm": _STIFFNESS, "N": _FORCES}
+MISSING = "–"
+
+
+def short(value: float | None, digits: int = 3) -> str:
+    """Some digits of a number, without zeros at its end; a dash where it is missing."""
+    return _number(value, digits, "-")
+
+
+def measured(value: float | None, digits: int = 3) -> str:
+    """Some digits of a number, all of them: 2.20; a dash where it is missing."""
+    return _number(value, digits, "k")
+
+
+def _number(value, digits, trim):
+    if value is None or not math.isfinite(value):
+        return MISSING
+    rounded = float(f"{value:.{digits}g}")
+    if rounded == 0:
+        return "0"
+    if _PLAIN[0] <= abs(rounded) < _PLAIN[1]:
+        places = max(digits - 1 - math.floor(math.log10(abs(rounded))), 0)
+        text = f"{rounded:.{places}f}"
+        text = text.rstrip("0").rstrip(".") if trim == "-" and "." in text else text
+    else:
+        text = f"{value:.{digits - 1}e}"
+    return text.replace("-", "−")
+
+
+def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
+    """A number in the unit that suits it: 12.3 µm for 0.0123 mm."""
+    if value is None or not math.isfinite(value):
+        return MISSING
+    for least, name, size in _SCALED.get(unit, ()):
+        if abs(value) >= least:
+            return f"{short(value / size, digits)} {name}"
+    number = short(value, digits)
+    return number if unit == "1" else f"{number} {unit.replace('mm2', 'mm²')}"
+
+
+def percent(fraction: float | None, digits: int = 2) -> str:
+    """A fraction in per cent."""
+    if fraction is None or not math.isfinite(fraction):
+        return MISSING
+    return f"{short(100 * fraction, digits)} %"
+
+
+def in_table(text: str) -> str:
+    """Untrusted text on one line, which no spreadsheet takes for a formula."""
+    shown = printable(text)
+    return f"'{shown}" if shown.lstrip()[:1] in tuple("=+-@") else shown
+
+
+def duration(seconds: float) -> str:
+    """Seconds as "47 s", "3 min 12 s" or "2 h 5 min"."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"

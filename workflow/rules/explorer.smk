@@ -1,0 +1,28 @@
+# The explorer: every contact state of the study on one page.
+
+
+rule explorer:
+    input:
+        rules.atlas.output[0],
+    output:
+        f"{RESULTS}/explorer.html",
+    log:
+        f"{RESULTS}/logs/explorer.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/explorer.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=3000,
+        runtime=10,
+    params:
+        code=code("explorer"),
+        templates=sources.digest(
+            [
+                *PACKAGE.glob("pages/templates/explorer*"),
+                *PACKAGE.glob("pages/templates/page.*"),
+            ],
+            root=workflow.basedir,
+        ),
+    script:
+        "../scripts/explorer.py"

@@ -1,0 +1,42 @@
+# The result page: an index, a page a specimen and tables beside them.
+from fractalcontact.pages import files as page_files
+
+# Measured contact maps alone have no states to explore.
+EXPLORER = list(rules.explorer.output) if SPECIMENS else []
+RESULT_PAGE = [
+    *(f"{RESULTS}/{name}" for name in page_files.FILES),
+    *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
+    *EXPLORER,
+]
+
+
+rule result_page:
+    input:
+        rules.atlas.output[0],
+        lambda wildcards: all_figure_files(),
+        # The index links to it where it is there.
+        EXPLORER,
+    output:
+        [path for path in RESULT_PAGE if path not in EXPLORER],
+    log:
+        f"{RESULTS}/logs/result_page.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/result_page.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    params:
+        code=code("result_page"),
+        templates=sources.digest(PACKAGE.glob("pages/templates/*"), root=workflow.basedir),
+    script:
+        "../scripts/result_page.py"
+
+
+# `make report`: the pages, and what they are made of.
+rule pages:
+    input:
+        lambda wildcards: RESULT_PAGE,
+    message:
+        "the result page of the study"
