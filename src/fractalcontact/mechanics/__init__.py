@@ -59,6 +59,7 @@ __getattr__, __dir__, __all__ = exports(
         "load_steps": ".sweep",
         "load_warning": ".overlap",
         "map_states": ".states",
+        "overlapping_nodes": ".overlap",
         "peak": ".strength",
         "persson_area": ".theory",
         "prefractal": ".joint",
@@ -76,6 +77,7 @@ __getattr__, __dir__, __all__ = exports(
         "strength_with_error": ".strength",
         "subgrid_states": ".subgrid",
         "summit": ".subgrid",
+        "suspect_nodes": ".overlap",
         "with_pressure": ".states",
     },
 )

@@ -5,8 +5,14 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "ACCURACY": ".configuration",
         "ARMS": ".size_tasks",
+        "FOLDER": ".figure_list",
+        "Figure": ".figure_list",
+        "JOINT": ".figure_list",
+        "SPECIMEN": ".figure_list",
         "STAGES": ".atlas",
+        "STUDY": ".figure_list",
         "SizeTask": ".size_tasks",
         "accuracy_figures_of": ".figure_list",
         "all_figures": ".figure_list",
