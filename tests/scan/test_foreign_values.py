@@ -7,7 +7,7 @@ import pytest
 from scan_writers import nodes
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.core.labels import listed, percent, plain, quoted
+from fractalcontact.core.labels import listed, on_one_line, percent, plain
 from fractalcontact.core.units import length_factor
 from fractalcontact.scan.read import read_faces, read_scan
 from fractalcontact.scan.undeclared import find_marks
@@ -361,9 +361,9 @@ def test_numbers_are_those_a_person_reads():
 
 def test_quotes_end_at_words_and_lists_say_how_many_more():
     text = "one two three " * 40
-    short = quoted(text, 50)
+    short = on_one_line(text, 50)
     assert len(short) <= 52
     assert short.endswith((" one …", " two …", " three …"))
-    assert quoted("short") == "short"
+    assert on_one_line("short") == "short"
     assert listed(["a", "b"]) == "a, b"
     assert listed(range(100), most=3) == "0, 1, 2 and 97 more"

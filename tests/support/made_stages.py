@@ -57,7 +57,7 @@ def read(function, settings):
 
 
 def _given(function, settings, solver):
-    read = {"settings": read(function, settings)}
+    given = {"settings": read(function, settings)}
     if function in SOLVER_READ:
-        read["solver"] = Declared(solver_read_by(function, solver))
-    return read
+        given["solver"] = Declared(solver_read_by(function, solver))
+    return given

@@ -54,6 +54,7 @@ __getattr__, __dir__, __all__ = exports(
         "modules_of": ".modules",
         "njit": ".kernel_cache",
         "number": ".arguments",
+        "on_one_line": ".labels",
         "padded": ".arrays",
         "pair": ".arguments",
         "percent": ".labels",

@@ -38,7 +38,7 @@ def printable(text: object, longest: int | None = None) -> str:
     return f"{text[:half]}…{text[-half:]}"
 
 
-def quoted(text: object, longest: int = 200) -> str:
+def on_one_line(text: object, longest: int = 200) -> str:
     """Untrusted text on one line, whole words up to a length; what is left out shows as "…"."""
     text = " ".join(printable(text).split())
     if len(text) <= longest:

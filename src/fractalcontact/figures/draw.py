@@ -12,8 +12,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..core.errors import InputError, OutputError
-from ..study.atlas import STAGES, read_atlas
+from ..study.atlas import read_atlas
 from ..study.figure_list import all_figures
+from ..study.stages import STAGES
 from .kit.drawing import Drawing, garbage_collection_paused, print_style, save
 from .kit.undrawn import undrawn
 

@@ -21,7 +21,8 @@ import yaml
 from ..core.atomic import atomic_write
 from ..core.labels import printable
 from ..study.atlas import read_atlas
-from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
+from ..study.figure_list import STUDY, all_figures
+from ..study.stages import JOINT, SPECIMEN
 from ..study.stages import STAGES as ALL_STAGES
 from .budget import bars_of
 from .captions import symbols

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.labels import quoted
+from ..core.labels import on_one_line
 from ..core.units import length_unit
 
 LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to or a header promises
@@ -85,7 +85,7 @@ def reading(path: Path | str, kind: str) -> Iterator[None]:
         raise
     except Exception as error:  # libraries raise anything over a file that was made to break them
         first = [*f"{error}".strip().splitlines(), ""][0]
-        reason = quoted(f"{type(error).__name__}: {first}")
+        reason = on_one_line(f"{type(error).__name__}: {first}")
         raise InputError(f"{path}: not a readable {kind} ({reason}); export it again") from error
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.labels import quoted
+from ...core.labels import on_one_line
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, stated_unit
@@ -63,7 +63,7 @@ def read_instrument(path: Path, options: ScanOptions) -> RawScan:
         except InputError:
             raise
         except Exception as error:  # a damaged file makes these readers raise anything
-            reasons.append(f"as {format_name}: {type(error).__name__}: {quoted(error)}")
+            reasons.append(f"as {format_name}: {type(error).__name__}: {on_one_line(error)}")
     raise InputError(
         f"{path}: damaged, or not what its extension says ({'; '.join(reasons)}); export it again, "
         "or export x, y, z as text"
