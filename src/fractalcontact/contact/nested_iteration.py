@@ -53,7 +53,7 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
     if clearance.size > KEPT_CELLS:
         forget_preconditioner(coarse_space)
     pressure = solution.pressure.reshape(coarse_space.shape) / 2
-    pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.influence())
+    pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.near_influence(4))
     return np.minimum(pressure, problem.cap).ravel()
 
 
@@ -104,7 +104,7 @@ def prolong(pressure: np.ndarray, clearance: np.ndarray, influence: np.ndarray) 
         On the coarse grid, no less than zero; m = (n + 1) // 2.
     clearance : (ny, nx) ndarray
         Opening at first touch on the fine grid.
-    influence : (ny, nx) ndarray
+    influence : (4, 4) or larger ndarray
         Displacement of nodes so far from one of unit pressure, in the unit of the clearance.
 
     Returns
@@ -141,7 +141,8 @@ def redistribute(
     ValueError
         If these are not on one grid of at least four nodes each way.
     """
-    if not before.shape == change.shape == gap.shape == influence.shape or min(gap.shape) < 4:
+    one = before.shape == change.shape == gap.shape
+    if not one or min(gap.shape) < 4 or min(influence.shape) < 4:
         shapes = ", ".join(str(values.shape) for values in (before, change, gap, influence))
         raise ValueError(f"shapes {shapes}: expected one grid of 4 x 4 nodes or more")
     # A cell's nodes and those of the eight around it lie in six rows and columns.

@@ -9,7 +9,7 @@ __getattr__, __dir__, __all__ = exports(
         "RIGID_PLATE_SELF_TERMS": ".halfspace",
         "WIDTH": ".simd",
         "load": ".simd",
-        "love_displacement": ".halfspace",
+        "love_displacement": ".influence",
         "rectangle_mean_displacement": ".halfspace",
         "store": ".simd",
     },
