@@ -30,6 +30,9 @@ class Problem:
         Which of the two.
     cap : float
         Largest pressure, or infinity.
+    nodes : (n,) int32 ndarray or None
+        Numbers of the cells that may touch, ascending, where the problem is restricted to these:
+        whatever is on nodes is then on them alone. None where it is on the whole window.
     """
 
     space: HalfSpace
@@ -37,6 +40,7 @@ class Problem:
     load: float
     by_force: bool
     cap: float = np.inf
+    nodes: np.ndarray | None = None
 
     def first_touch(self) -> np.ndarray:
         """The given force on the nodes that touch first, where nothing better is known.

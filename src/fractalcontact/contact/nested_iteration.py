@@ -161,8 +161,8 @@ def _redistribute(before, change, gap, influence):
     A cell sees what others have become.
     """
     ny, nx = gap.shape
-    own, around = _influence_on(influence)
-    maps = _redistributions(own)
+    own, around = influence_on(influence)
+    maps = redistributions(own)
     known, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
     for top in range(0, ny, 2):
         for side in range(0, nx, 2):
@@ -184,14 +184,14 @@ def _redistribute(before, change, gap, influence):
             for a in range(4):
                 for b in range(4):
                     opening[a] -= own[a, b] * known[b]
-            _equalise_gaps(maps, opening, total, mask, pressure)
+            equalise_gaps(maps, opening, total, mask, pressure)
             for a in range(4):
                 if mask & (1 << a):
                     change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - known[a]
 
 
 @njit(cache=True)
-def _influence_on(influence):
+def influence_on(influence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of the four nodes of a cell on each other, and on each of those six by six about it.
 
     The second leaves out what they have on each other.
@@ -209,7 +209,7 @@ def _influence_on(influence):
 
 
 @njit(cache=True)
-def _redistributions(own):
+def redistributions(own: np.ndarray) -> np.ndarray:
     """For each set of a cell's nodes, given by its bits, how a sum is distributed: (16, 4, 5).
 
     Of gaps g and a sum S pressures p = -M g + c S leave even gaps: own p + g is the same for all,
@@ -228,7 +228,9 @@ def _redistributions(own):
 
 
 @njit(cache=True)
-def _equalise_gaps(maps, gap, total, mask, pressure):
+def equalise_gaps(
+    maps: np.ndarray, gap: np.ndarray, total: float, mask: int, pressure: np.ndarray
+) -> None:
     """Pressures of a given sum on the nodes of a ``mask`` that leave even gaps where positive.
 
     Those in tension are dropped, the strongest first, until there is none. Only by how much gaps

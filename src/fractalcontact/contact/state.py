@@ -1,5 +1,6 @@
 """A state of contact: pressures, displacements, gaps, and what follows from them."""
 
+import copy
 import dataclasses
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ from ..elastic.halfspace import HalfSpace
 from .effort import SOLVING
 from .kkt import nodes_between_bounds
 from .projected_cg import Operator, stiffness
+from .topography import Topography
 
 # Largest relative error of the stiffness.
 STIFFNESS_ERROR = 1e-6
@@ -90,12 +92,130 @@ class ContactState:
         NotConverged
             If it is not known to :data:`STIFFNESS_ERROR`.
         """
-        active = nodes_between_bounds(self.pressure.ravel(), self.hardness)
         with SOLVING.counted(0):
-            value, error = stiffness(Operator(self.space), active)
+            value, error = stiffness(*self._operator_on_active())
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         return value * self.space.modulus * self.space.cell
+
+    def _operator_on_active(self):
+        """An operator, and the nodes strictly between the bounds."""
+        return Operator(self.space), nodes_between_bounds(self.pressure.ravel(), self.hardness)
+
+    def without_before(self) -> "ContactState":
+        """The same state without those that it was extrapolated from.
+
+        Returns
+        -------
+        ContactState
+        """
+        state = copy.copy(self)
+        vars(state)["_before"] = None
+        return state
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The nodes of a state that could touch: all others have a gap, whatever the pressures.
+
+    Attributes
+    ----------
+    nodes : (n,) int32 ndarray
+        Numbers of their cells, ascending.
+    pressure, displacement, clearance : (n,) ndarray
+        MPa and mm; the clearance is that of first touch.
+    topography : Topography
+        That it is a state of.
+    """
+
+    nodes: np.ndarray
+    pressure: np.ndarray
+    displacement: np.ndarray
+    clearance: np.ndarray
+    topography: Topography
+
+
+class CandidateState(ContactState):
+    """A state that was solved and verified on candidates for contact alone (`candidates`).
+
+    Displacement and gap of the whole window are computed when they are asked for.
+
+    Parameters
+    ----------
+    pressure : (ny, nx) ndarray
+        MPa.
+    closure, force, residual, iterations, space, hardness
+        As `ContactState` has them.
+    before : ContactState or None
+        The state it was solved from.
+    candidates : Candidates
+    """
+
+    _candidates: Candidates
+
+    def __init__(
+        self,
+        pressure: np.ndarray,
+        *,
+        closure: float,
+        force: float,
+        residual: float,
+        iterations: int,
+        space: HalfSpace,
+        hardness: float,
+        before: ContactState | None,
+        candidates: Candidates,
+    ):
+        vars(self).update(
+            pressure=pressure,
+            closure=closure,
+            force=force,
+            residual=residual,
+            iterations=iterations,
+            space=space,
+            hardness=hardness,
+            _before=before,
+            _candidates=candidates,
+        )
+
+    @computed_once
+    def displacement(self) -> np.ndarray:  # type: ignore[override]
+        """Elastic displacement u = K p of the composite surface, mm, (ny, nx)."""
+        return self.space.displacement(self.pressure)
+
+    @computed_once
+    def gap(self) -> np.ndarray:  # type: ignore[override]
+        """Remaining opening, mm, (ny, nx).
+
+        Raises
+        ------
+        ValueError
+            If the topography that was solved has been changed since.
+        """
+        known = self._candidates
+        if not np.array_equal(known.topography.clearance_at(known.nodes), known.clearance):
+            raise ValueError("the composite topography of this state has been changed since")
+        return self.displacement + known.topography.clearance() - self.closure
+
+    @property
+    def area(self) -> float:
+        """A_r = N s^2, mm2."""
+        return float(np.count_nonzero(self._candidates.pressure)) * self.space.cell_area
+
+    @property
+    def ambiguous(self) -> int:
+        """As of any state: all others than candidates are further away than the tolerance."""
+        known, tolerance = self._candidates, self.residual * self.closure
+        weakest = tolerance * self.space.modulus / self.space.cell
+        touching = known.pressure > 0
+        gap = known.displacement + known.clearance - self.closure
+        weak = touching & (known.pressure <= weakest)
+        return int(np.count_nonzero(weak | (~touching & (gap <= tolerance))))
+
+    def _operator_on_active(self):
+        between = nodes_between_bounds(self._candidates.pressure, self.hardness)
+        nodes = self._candidates.nodes[between]
+        return Operator(self.space, nodes), np.arange(nodes.size, dtype=np.int32)
 
 
 def unloaded_state(space: HalfSpace, clearance: np.ndarray) -> ContactState:
