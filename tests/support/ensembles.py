@@ -19,6 +19,7 @@ ENSEMBLES: dict[str, tuple] = {
     "warm start side": (20, 40),
     # contact
     "candidate problems": (20, 300),
+    "random energies": (10, 60),
     "candidate problem side": (80, 200),
     # accuracy
     "random problems": (50, 300),

@@ -10,7 +10,7 @@ from ..core.errors import NotConverged
 from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from .effort import SOLVING
-from .kkt import nodes_between_bounds
+from .kkt import frank_wolfe_gap, nodes_between_bounds
 from .projected_cg import Operator, stiffness
 from .topography import Topography
 
@@ -80,6 +80,25 @@ class ContactState:
         weak = self.in_contact & (self.pressure <= weakest)
         near = ~self.in_contact & (self.gap <= tolerance)
         return int(np.count_nonzero(weak) + np.count_nonzero(near))
+
+    @computed_once
+    def energy_error(self) -> float:
+        """Bound on the energy above its minimum at the same force, as a fraction of the energy.
+
+        The energy E = sum (u / 2 + c) p s^2, elastic and of closing the clearance c, is least for
+        the exact state among all pressures of its force within the bounds, whether the force or the
+        closure was given. The bound is the Frank-Wolfe gap (`kkt.frank_wolfe_gap`); the elastic
+        energy of the error of the pressure is no more than that either. 0 without a force.
+        """
+        pressure, displacement, gap = (values.ravel() for values in self._on_nodes())
+        # What it would be to undo the displacement and close the gap from there: c = g - u + w.
+        energy = float(pressure @ (gap - displacement / 2)) + self.closure * float(pressure.sum())
+        bound = frank_wolfe_gap(pressure, gap, self.hardness)
+        return bound / energy if energy > 0 else 0.0
+
+    def _on_nodes(self):
+        """Pressure, displacement and gap of all nodes that may carry pressure."""
+        return self.pressure, self.displacement, self.gap
 
     @computed_once
     def stiffness(self) -> float:
@@ -206,11 +225,16 @@ class CandidateState(ContactState):
     def ambiguous(self) -> int:
         """As of any state: all others than candidates are further away than the tolerance."""
         known, tolerance = self._candidates, self.residual * self.closure
+        _, _, gap = self._on_nodes()
         weakest = tolerance * self.space.modulus / self.space.cell
         touching = known.pressure > 0
-        gap = known.displacement + known.clearance - self.closure
         weak = touching & (known.pressure <= weakest)
         return int(np.count_nonzero(weak | (~touching & (gap <= tolerance))))
+
+    def _on_nodes(self):
+        known = self._candidates
+        gap = known.displacement + known.clearance - self.closure
+        return known.pressure, known.displacement, gap
 
     def _operator_on_active(self):
         between = nodes_between_bounds(self._candidates.pressure, self.hardness)
