@@ -217,6 +217,11 @@ class CandidateState(ContactState):
         return self.displacement + known.topography.clearance() - self.closure
 
     @property
+    def candidates(self) -> int:
+        """How many nodes could touch."""
+        return self._candidates.nodes.size
+
+    @property
     def area(self) -> float:
         """A_r = N s^2, mm2."""
         return float(np.count_nonzero(self._candidates.pressure)) * self.space.cell_area
