@@ -9,8 +9,8 @@ from fractalcontact.accuracy.random_problems import random_problem, violation
 from fractalcontact.surface.synthesis import self_affine
 
 #: alpha of a flat square punch of N x N cells, F = E* L w / alpha: shape factors of MIRCO, a public
-#: code. That for 3 is 0.96138923791... here, from two dense solves of the nine equations; the table as
-#: we have it has two digits exchanged (0.96138923871...).
+#: code. That for 3 is 0.96138923791... here, from two dense solves of the nine equations; the
+#: table as we have it has two digits exchanged (0.96138923871...).
 SHAPE_FACTORS = {
     1: 1.1221997046783601,
     2: 1.0068605251532488,

@@ -51,8 +51,8 @@ class Method:
     kernels : tuple of str
         The influence kernels of `HalfSpace` that it knows; any if none is named.
     windows : str
-        Windows that it knows: ``"any"``, or ``"dyadic"`` for squares of 32, 64, 128 ... square cells
-        a side.
+        Windows that it knows: ``"any"``, or ``"dyadic"`` for squares of 32, 64, 128 ... square
+        cells a side.
     holes : bool
         Whether it would take a cell without a height for one that never touches, which is another
         problem than the package's.
