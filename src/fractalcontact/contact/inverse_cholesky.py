@@ -66,11 +66,10 @@ class InverseCholesky:
         self._shifts = block_shifts(space)
         self._neighbourhood = neighbourhood
         self._offsets, self._widths = _block_grid(*space.shape, self._shifts)
-        nodes = np.empty(0, np.int32)
-        slot = np.zeros(space.shape[0] * space.shape[1], np.int32)
-        representative = np.zeros(self._offsets[-1], np.int32)
         # All that belongs to one set, in one place: it changes as a whole, or not at all.
-        self._known = representative, nodes, slot, _empty_factor(0)
+        representative, slot, *_ = self._empty_window()
+        self._known = representative, np.empty(0, np.int32), slot, _empty_factor(0)
+        self._spare: tuple[np.ndarray, ...] | None = None
 
     @property
     def size(self) -> int:
@@ -87,21 +86,19 @@ class InverseCholesky:
         """
         nx = self._shape[1]
         representative, *old = self._known
-        # Of the pages of a new array of zeros only those that are written to take memory and time,
-        # which a few nodes in a large window rely on. So all numbers are kept plus one.
-        slot = np.zeros(old[1].size, np.int32)
+        # Arrays of the window's size are empty again after use: a few nodes in a large window are
+        # not to wait for them. If an update is interrupted they are made anew.
+        new, slot, level, affected = self._spare or self._empty_window()
+        self._spare = None
         slot[nodes] = np.arange(1, nodes.size + 1, dtype=np.int32)
-        new = np.zeros(self._offsets[-1], np.int32)
-        level = np.zeros(old[1].size, np.int8)
         _represent(nodes, nx, self._shifts, self._offsets, self._widths, new, level)
         blocks = new, self._offsets, self._widths, level
-        affected = np.zeros(new.size, bool)
+        changed = np.empty(0, np.int64)
         if old[0].size:
             different = symmetric_difference(old[0], nodes)
             changed = _changed(different, representative, blocks, self._shifts, nx)
-            _mark_affected(
-                changed, representative, blocks, self._shifts, self._neighbourhood, nx, affected
-            )
+        where = self._shifts, self._neighbourhood, nx
+        _mark_affected(changed, representative, blocks, *where, affected, True)
         factor = _empty_factor(nodes.size)
         before, known = tuple(old), (*blocks, affected)
         grid = self._shifts, self._neighbourhood, nx, (self.influence, *self._sides)
@@ -110,7 +107,25 @@ class InverseCholesky:
             nodes.size,
             smallest=CHUNK,
         )
-        self._known = blocks[0], nodes, slot, factor
+        _mark_affected(changed, representative, blocks, *where, affected, False)
+        level[nodes] = 0
+        self._known = new, nodes, slot, factor
+        _clear(old[0], nx, self._shifts, self._offsets, self._widths, representative, old[1])
+        self._spare = representative, old[1], level, affected
+
+    def _empty_window(self):
+        """Representatives, slots, levels and affected blocks, of no node.
+
+        Numbers are kept plus one: of the pages of an array of zeros only those that are written to
+        take memory.
+        """
+        cells, blocks = self._shape[0] * self._shape[1], self._offsets[-1]
+        return (
+            np.zeros(blocks, np.int32),
+            np.zeros(cells, np.int32),
+            np.zeros(cells, np.int8),
+            np.zeros(blocks, bool),
+        )
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """U U' residual, both (n,) float32 on the contact set.
@@ -172,6 +187,16 @@ def _represent(nodes, nx, shifts, offsets, widths, representative, level):
 
 
 @njit(cache=True)
+def _clear(nodes, nx, shifts, offsets, widths, representative, slot):
+    """Undo what `_represent` did, and the slots."""
+    for node in nodes:
+        slot[node] = 0
+        for k in range(shifts.shape[0]):
+            y, x = (node // nx) >> shifts[k, 0], (node % nx) >> shifts[k, 1]
+            representative[offsets[k] + y * widths[k, 1] + x] = 0
+
+
+@njit(cache=True)
 def _changed(different, before, blocks, shifts, nx):
     """Blocks of all levels, ascending, with another representative: they hold a different node."""
     representative, offsets, widths, _ = blocks
@@ -196,7 +221,7 @@ def _changed(different, before, blocks, shifts, nx):
 
 
 @njit(cache=True)
-def _mark_affected(changed, before, blocks, shifts, neighbourhood, nx, affected):
+def _mark_affected(changed, before, blocks, shifts, neighbourhood, nx, affected, value):
     """For every level, the blocks whose nodes may be conditioned otherwise than ``before``."""
     representative, offsets, widths, _ = blocks
     reach = neighbourhood.size - 1
@@ -205,19 +230,19 @@ def _mark_affected(changed, before, blocks, shifts, neighbourhood, nx, affected)
         while block >= offsets[k + 1]:
             k += 1
         y, x = divmod(block - offsets[k], widths[k, 1])
-        _mark(affected, offsets[k], widths[k], y, x, reach)
+        _mark(affected, offsets[k], widths[k], y, x, reach, value)
         # Both have come to, or lost, precedence on the level below.
         for node in (before[block] - 1, representative[block] - 1):
             if k > 0 and node >= 0:
                 y, x = (node // nx) >> shifts[k - 1, 0], (node % nx) >> shifts[k - 1, 1]
-                _mark(affected, offsets[k - 1], widths[k - 1], y, x, reach)
+                _mark(affected, offsets[k - 1], widths[k - 1], y, x, reach, value)
 
 
 @njit(cache=True)
-def _mark(affected, offset, width, y, x, reach):
+def _mark(affected, offset, width, y, x, reach, value):
     for by in range(max(y - reach, 0), min(y + reach + 1, width[0])):
         for bx in range(max(x - reach, 0), min(x + reach + 1, width[1])):
-            affected[offset + by * width[1] + bx] = True
+            affected[offset + by * width[1] + bx] = value
 
 
 @njit(cache=True, nogil=True)

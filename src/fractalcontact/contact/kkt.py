@@ -175,11 +175,12 @@ def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, cap: float) -> float:
     Notes
     -----
     E(p) = p.K p / 2 + p.c is convex with gradient v = K p + c. So for the pressure p* of least
-    energy among those of the same sum F and the same bounds, E(p) - E(p*) <= v.(p - p*) <= G, the
-    largest v.(p - q) over all such q: the Frank-Wolfe gap (M. Frank and P. Wolfe, Naval Res.
-    Logist. Quart. 3 (1956) 95; M. Jaggi, Proc. 30th Int. Conf. Mach. Learn. (2013) 427). Without a
-    cap the best q puts F on the node of least v, and G = sum p_i (v_i - min v); with a cap H it puts H on
-    each of the F / H nodes of least v. A constant in v, such as the closure, changes nothing.
+    energy among those of the same sum F and the same bounds, E(p) - E(p*) <= v.(p - p*) <= G,
+    the largest v.(p - q) over all such q: the Frank-Wolfe gap (M. Frank and P. Wolfe, Naval
+    Res. Logist. Quart. 3 (1956) 95; M. Jaggi, Proc. 30th Int. Conf. Mach. Learn. (2013) 427).
+    Without a cap the best q puts F on the node of least v, and G = sum p_i (v_i - min v); with
+    a cap H it puts H on each of the F / H nodes of least v. A constant in v, such as the
+    closure, changes nothing.
     """
     loaded = pressure > 0
     if not loaded.any():

@@ -66,7 +66,10 @@ class Operator:
 
     def precondition(self, active: np.ndarray, *, fresh: bool) -> None:
         """Make `inverse` that on a contact set, as `Preconditioner.update`."""
-        self.inverse.update(active if self.nodes is None else self.nodes[active], fresh=fresh)
+        if self.nodes is None:
+            self.inverse.update(active, fresh=fresh)
+        else:
+            self.inverse.update(self.nodes[active], fresh=fresh, scattered=True)
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Displacement of all nodes, (n,), in the precision of the pressure, (n,)."""
