@@ -86,7 +86,7 @@ class Topography:
         """
         height = self.height(level)
         if cells is None:
-            return np.flatnonzero(self.clearance(level) < clearance).astype(np.int32)
+            return _all_below(height.ravel(), self.highest, clearance)
         return _children_below(cells, height, self.highest, clearance)
 
 
@@ -120,6 +120,21 @@ def _restrict_maximum(height):
         if nx % 2:
             coarse[y, nx // 2] = max(above[nx - 1], below[nx - 1])
     return coarse
+
+
+@njit(cache=True)
+def _all_below(height, highest, clearance):
+    """All nodes that lie less than a clearance below the highest."""
+    n = 0
+    for value in height:
+        n += highest - float(value) < clearance
+    nodes = np.empty(n, np.int32)
+    n = 0
+    for i in range(height.size):
+        if highest - float(height[i]) < clearance:
+            nodes[n] = i
+            n += 1
+    return nodes
 
 
 @njit(cache=True)
