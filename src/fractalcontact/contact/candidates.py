@@ -48,10 +48,11 @@ GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.25, 1.1
 #: application takes so many times less.
 STEP_GAIN = 2.0
 #: Where more of the nodes than this are candidates it is not asked what the operator would take.
-MOST_CANDIDATES = 0.25
-#: A batch of the operator takes as long as a convolution for so many (nodes times their log2):
-#: measured from 512 x 512 to 2048 x 2048, in single precision.
-BATCH = 330.0
+MOST_CANDIDATES = 0.15
+#: A batch of the operator takes as long as a convolution for so many (nodes times their log2), and
+#: solves on candidates take some more applications: measured from 512 x 512 to 2048 x 2048, at 1 to
+#: 5 % in contact.
+BATCH = 900.0
 
 
 @dataclass(frozen=True)

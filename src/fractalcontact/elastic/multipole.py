@@ -19,15 +19,14 @@ from .simd import WIDTH, load, store
 
 #: Cells along a smallest block.
 LEAF = 8
-#: Blocks no further apart than this are neighbours, which are not interpolated between.
-SEPARATION = 2
-#: How far apart blocks of one level can be whose parents are neighbours.
-REACH = 2 * SEPARATION + 1
-SPAN = 2 * REACH + 1
-#: Chebyshev nodes along a block, by precision, and the error to which they interpolate the
-#: influence of a cell, as a fraction of the mean between two blocks as near as any.
-ORDER = {np.dtype(np.float32): 8, np.dtype(np.float64): 12}
-ERROR = {np.dtype(np.float32): 2e-7, np.dtype(np.float64): 2e-11}
+_SINGLE, _DOUBLE = np.dtype(np.float32), np.dtype(np.float64)
+#: By precision: blocks no further apart than this are neighbours, which are not interpolated
+#: between; Chebyshev nodes along a block; and the error to which they interpolate the influence of
+#: one cell on another, as a fraction, between two blocks as near as any. Of the displacement under
+#: many cells it is a hundredth of that, in single precision less than what rounding leaves.
+SEPARATION = {_SINGLE: 1, _DOUBLE: 2}
+ORDER = {_SINGLE: 8, _DOUBLE: 12}
+ERROR = {_SINGLE: 2e-5, _DOUBLE: 2e-11}
 #: Cells may be so much longer than wide: blocks are neighbours by number, not by distance.
 MOST_STRETCHED = 1.25
 #: Pairs of blocks with the same relative position that are worked on together.
@@ -56,10 +55,6 @@ class MultipoleLevels:
         On every level.
     parents : list of (n, 2) int32 ndarray
         On every level but the last, of each block: its parent, and which of its four quarters.
-    batches : list of (m, 1 + 2 TOGETHER) int32 ndarray
-        On every level: relative position, targets and sources.
-    chunks : list of ndarray
-        On every level, where in them the chunks of targets begin.
     """
 
     def __init__(self, shape: tuple[int, int], nodes: np.ndarray):
@@ -71,15 +66,13 @@ class MultipoleLevels:
         index.ravel()[at] = np.arange(1, at.size + 1)
         self.place = (index[y // LEAF, x // LEAF] - 1).astype(np.int64) * LEAF**2
         self.place += y % LEAF * LEAF + x % LEAF
-        self.blocks, self.parents, self.batches, self.chunks = [], [], [], []
-        level = 0
+        self.blocks, self.parents, self._grids = [], [], []
+        self._pairs: dict[int, list] = {}
         while True:
             rows, columns = np.divmod(at, grid[1])
             self.blocks.append(at.size)
-            batches, chunks = _pairs(rows, columns, index, level == 0)
-            self.batches.append(batches)
-            self.chunks.append(chunks)
-            if max(grid) <= REACH + 1:
+            self._grids.append((rows, columns, index))
+            if max(grid) <= 2 * _reach(min(SEPARATION.values())) - 2:
                 return
             grid = tuple(-(-n // 2) for n in grid)
             index = np.zeros(grid, np.int32)
@@ -90,12 +83,30 @@ class MultipoleLevels:
             self.parents.append(
                 np.stack([index[rows // 2, columns // 2] - 1, quarter], axis=1).astype(np.int32)
             )
-            level += 1
+
+    def pairs(self, separation: int) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Pairs of blocks that act on each other, for every level.
+
+        Parameters
+        ----------
+        separation : int
+
+        Returns
+        -------
+        list of (batches, chunks)
+            Batches (m, 1 + 2 TOGETHER): relative position, targets and sources; and where in them
+            the chunks of targets begin.
+        """
+        if separation not in self._pairs:
+            self._pairs[separation] = [
+                _pairs(*grid, level == 0, separation) for level, grid in enumerate(self._grids)
+            ]
+        return self._pairs[separation]
 
     @property
     def work(self) -> int:
-        """Batches of all levels, which take nearly all the time of an application."""
-        return sum(len(batches) for batches in self.batches)
+        """Batches of all levels, which take nearly all the time of a search's application."""
+        return sum(len(batches) for batches, _ in self.pairs(SEPARATION[_SINGLE]))
 
 
 class MultipoleOperator:
@@ -163,7 +174,7 @@ class MultipoleOperator:
 
     def _translate(self, k, side, sources, loaded, images):
         """Images of the blocks of a level under the others that act on them there."""
-        chunks, batches = self._levels.chunks[k], self._levels.batches[k]
+        batches, chunks = self._levels.pairs(SEPARATION[self._dtype])[k]
         threads.in_parts(
             lambda start, stop: _translate(
                 *(chunks[start], chunks[stop], batches, self._matrices[k], side**2),
@@ -172,6 +183,11 @@ class MultipoleOperator:
             len(chunks) - 1,
             smallest=1,
         )
+
+
+def _reach(separation):
+    """How far apart blocks of one level can be whose parents are neighbours."""
+    return 2 * separation + 1
 
 
 def _padded(numbers):
@@ -225,11 +241,12 @@ def _matrices(space, levels, dtype):
 def _level_matrices(space, level, dtype):
     """(relative position, source, target) flattened; targets padded."""
     own = _chebyshev(level, ORDER[dtype])
-    side = own.size
-    matrices = np.zeros((SPAN, SPAN, side**2, _padded(side**2)), dtype)
-    for oy in range(REACH + 1):
-        for ox in range(REACH + 1):
-            if level > 0 and max(oy, ox) <= SEPARATION:
+    side, separation = own.size, SEPARATION[dtype]
+    reach = _reach(separation)
+    matrices = np.zeros((2 * reach + 1, 2 * reach + 1, side**2, _padded(side**2)), dtype)
+    for oy in range(reach + 1):
+        for ox in range(reach + 1):
+            if level > 0 and max(oy, ox) <= separation:
                 continue
             y = np.abs(own[:, None] - own[None, :] - oy * LEAF * 2**level)
             x = np.abs(own[:, None] - own[None, :] - ox * LEAF * 2**level)
@@ -239,7 +256,7 @@ def _level_matrices(space, level, dtype):
             block = _influence(space, y.ravel(), x.ravel()).reshape(side, side, side, side)
             for sy, sx in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
                 flipped = block[::sy, ::sx, ::sy, ::sx].reshape(side**2, side**2)
-                matrices[REACH + sy * oy, REACH + sx * ox, :, : side**2] = flipped
+                matrices[reach + sy * oy, reach + sx * ox, :, : side**2] = flipped
     return matrices.ravel()
 
 
@@ -250,27 +267,29 @@ def _influence(space, y, x):
     return values
 
 
-def _pairs(rows, columns, index, lowest):
+def _pairs(rows, columns, index, lowest, separation):
     """Batches of pairs of blocks, (m, 1 + 2 TOGETHER), and where their chunks begin."""
-    n = _fill_pairs(rows, columns, index, lowest, np.empty((0, 1 + 2 * TOGETHER), np.int32))
-    batches = np.empty((n[-1], 1 + 2 * TOGETHER), np.int32)
-    return batches, _fill_pairs(rows, columns, index, lowest, batches)
+    none = np.empty((0, 1 + 2 * TOGETHER), np.int32)
+    chunks = _fill_pairs(rows, columns, index, lowest, separation, none)
+    batches = np.empty((chunks[-1], 1 + 2 * TOGETHER), np.int32)
+    return batches, _fill_pairs(rows, columns, index, lowest, separation, batches)
 
 
 @njit(cache=True)
-def _fill_pairs(rows, columns, index, lowest, batches):
+def _fill_pairs(rows, columns, index, lowest, separation, batches):
     """Fill the batches if there is room; in any case, return where the chunks begin.
 
-    Sources are blocks as near as `REACH` whose parents are neighbours; but neighbours themselves
+    Sources are blocks within the reach whose parents are neighbours; but neighbours themselves
     only on the lowest level. Places that remain in a batch are given to a block that is not there.
     """
-    total = rows.size
+    total, reach = rows.size, 2 * separation + 1
+    span = 2 * reach + 1
     chunks = np.zeros((total + CHUNK - 1) // CHUNK + 1, np.int64)
     m = 0
     for chunk in range(chunks.size - 1):
-        for offset in range(SPAN * SPAN):
-            oy, ox = offset // SPAN - REACH, offset % SPAN - REACH
-            if not lowest and max(abs(oy), abs(ox)) <= SEPARATION:
+        for offset in range(span * span):
+            oy, ox = offset // span - reach, offset % span - reach
+            if not lowest and max(abs(oy), abs(ox)) <= separation:
                 continue
             filled = TOGETHER
             for target in range(chunk * CHUNK, min((chunk + 1) * CHUNK, total)):
@@ -279,7 +298,7 @@ def _fill_pairs(rows, columns, index, lowest, batches):
                     continue
                 away = max(abs(rows[target] // 2 - y // 2), abs(columns[target] // 2 - x // 2))
                 source = index[y, x] - 1
-                if source < 0 or away > SEPARATION:
+                if source < 0 or away > separation:
                     continue
                 if filled == TOGETHER:
                     m, filled = m + 1, 0
