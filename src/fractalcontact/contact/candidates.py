@@ -41,9 +41,9 @@ LEAST_RTOL = 1e-8
 #: not touch within the tolerance are among them.
 MARGIN = 1.01
 #: The bound on the closure under a given force is that of the coarser grid, increased by the margin
-#: and by so many times what it increased by to there (on the coarsest, by a fraction). Or it is that
-#: of another load in proportion to the force, which rises faster than the closure, or of a solution
-#: beyond the bound, times a factor.
+#: and by so many times what it increased by to there (on the coarsest, by a fraction). Or it is
+#: that of another load in proportion to the force, which rises faster than the closure, or of a
+#: solution beyond the bound, times a factor.
 GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.02, 1.1
 #: A load step on the whole window has help from coarser grids: it is restricted only if an
 #: application takes so many times less.

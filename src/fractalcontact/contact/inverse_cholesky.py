@@ -38,6 +38,10 @@ LEAST_CONDITIONAL_VARIANCE = np.float32(1e-3)
 #: Further away than so many cells a node is displaced as by a point load: no table is needed. On
 #: cells more than `MOST_STRETCHED` times as long as wide that is not far.
 TABLE_SIDE, MOST_STRETCHED = 512, 16
+#: Where the nodes on all levels are more than this fraction of the window's cells, whole arrays are
+#: made anew rather than emptied at the places of these nodes alone; or, the nodes being those that
+#: changed, compared as a whole.
+MADE_ANEW, COMPARED = 0.1, 0.02
 
 
 class InverseCholesky:
@@ -96,22 +100,32 @@ class InverseCholesky:
         changed = np.empty(0, np.int64)
         if old[0].size:
             different = symmetric_difference(old[0], nodes)
-            changed = _changed(different, representative, blocks, self._shifts, nx)
+            if self._dense(different.size, COMPARED):
+                changed = np.flatnonzero(representative != new)
+            else:
+                changed = _changed(different, representative, blocks, self._shifts, nx)
         where = self._shifts, self._neighbourhood, nx
         _mark_affected(changed, representative, blocks, *where, affected, True)
         factor = _empty_factor(nodes.size)
         before, known = tuple(old), (*blocks, affected)
-        grid = self._shifts, self._neighbourhood, nx, (self.influence, *self._sides)
+        whole = self.influence.shape == self._shape
+        grid = *where, (self.influence, *self._sides, whole)
         threads.in_parts(
             lambda start, stop: _factorise(start, stop, nodes, slot, known, grid, before, factor),
             nodes.size,
             smallest=CHUNK,
         )
+        self._known = new, nodes, slot, factor
+        if self._dense(max(nodes.size, old[0].size), MADE_ANEW):
+            return
         _mark_affected(changed, representative, blocks, *where, affected, False)
         level[nodes] = 0
-        self._known = new, nodes, slot, factor
         _clear(old[0], nx, self._shifts, self._offsets, self._widths, representative, old[1])
         self._spare = representative, old[1], level, affected
+
+    def _dense(self, nodes, fraction):
+        """Whether so many nodes are, on all levels, more than a fraction of the window's cells."""
+        return nodes * len(self._shifts) > fraction * self._shape[0] * self._shape[1]
 
     def _empty_window(self):
         """Representatives, slots, levels and affected blocks, of no node.
@@ -321,6 +335,17 @@ def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
             node = nodes[neighbours[i, a]]
             ys[a, lane], xs[a, lane], present[a, lane] = node // nx, node % nx, 1
         ys[n, lane], xs[n, lane], present[n, lane] = nodes[i] // nx, nodes[i] % nx, 1
+    table = influence[0]
+    # In most windows no two nodes are further apart than the table reaches.
+    if influence[3]:
+        for a in range(n + 1):
+            for b in range(a):
+                here = a * side + b * WIDTH
+                for lane in range(WIDTH):
+                    distance = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
+                    both = present[a, lane] * present[b, lane]
+                    lower[here + lane] = both * table[distance]
+        return n
     for a in range(n + 1):
         for b in range(a):
             here = a * side + b * WIDTH
@@ -334,7 +359,7 @@ def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
 @njit(cache=True)
 def _influence(influence, y, x):
     """From the table, or of a point load."""
-    table, dy, dx = influence
+    table, dy, dx, _ = influence
     if y < table.shape[0] and x < table.shape[1]:
         return table[y, x]
     return np.float32(1 / np.pi) / np.sqrt((y * dy) ** 2 + (x * dx) ** 2)
