@@ -172,6 +172,8 @@ class HalfSpace:
     def near_influence(self, side: int) -> np.ndarray:
         """The same up to a distance of ``side`` cells each way, or as far as the window reaches.
 
+        Made once and kept; read only.
+
         Parameters
         ----------
         side : int
@@ -180,7 +182,15 @@ class HalfSpace:
         -------
         (my, mx) ndarray
         """
-        return self._table((min(side, self.shape[0]), min(side, self.shape[1])))
+        if side not in self._near:
+            near = self._table((min(side, self.shape[0]), min(side, self.shape[1])))
+            near.flags.writeable = False
+            self._near.setdefault(side, near)
+        return self._near[side]
+
+    @computed_once
+    def _near(self):
+        return {}
 
     def influence_at(self, y: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The same at any distances, none of them zero, (n,), counted in cells."""
