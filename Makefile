@@ -152,6 +152,8 @@ $(VENV)/slurm-installed: $(VENV)/installed
 # Not locked: nothing of the study depends on them, and pip leaves what is pinned as it is.
 $(VENV)/peers-installed: pyproject.toml $(VENV)/installed
 	$(PIP) install --no-build-isolation -e '.[peers]'
+	@CMAKE_ARGS="-DASPHER_NATIVE=ON -DASPHER_USE_FFTW=ON" $(PIP) install 'aspher==0.1.3' \
+	  || echo "ASPHER is left out: it does not build here (it takes cmake, a C++ compiler, Eigen and FFTW)"
 	@touch $@
 
 COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet

@@ -106,7 +106,8 @@ def _try(solver, references, tolerance):
             return {"tolerance": None, "note": f"too far off at {tolerance:.2g}: {errors[-1]:.2g}"}
         work.append(solver.applications())
         coarse.append(solver.coarse_applications())
-    return {"tolerance": tolerance, "note": "", "error": max(errors), **_work(work, coarse)}
+    row = {"tolerance": tolerance, "note": "", "error": max(errors), "path": solver.path()}
+    return row | _work(work, coarse)
 
 
 def _work(work, coarse):

@@ -9,12 +9,14 @@ The tables of a run replace those of the last one in its ``--output``.
 
 Every solver runs in this process on the same test problem, in turn, each at the loosest tolerance
 that brings its force within 1e-6 of a reference solved to 1e-12, at every load of a sweep with the
-same one; ours also at its default tolerance, or a tighter one where that leaves a larger error. The
-first problem of each size is measured with every solver, and over a sweep of 16 loads with ours and
-the fastest of the peers; the others with these two, one load. What is set up once for a grid
-(kernel, transform plans) is not timed, for anybody; ours keeps nothing of the solve before. Peers
-are taken in where they are installed: ``pip install ContactMechanics tamaas``. Ours uses as many
-threads as OMP_NUM_THREADS says, or as there are cores; the peers' packages have one.
+same one (what misses it, or says itself that it failed, has no time); ours also at its default
+tolerance, or a tighter one where that leaves a larger error. The first problem of each size is
+measured with every solver, and over a sweep of 16 loads with ours and the fastest of the peers; the
+others with these two, one load. What is set up once for a grid (kernel, transform plans) is not
+timed, for anybody; ours keeps nothing of the solve before. Peers are taken in where they are
+installed: ``make bench PEERS=1``; ASPHER where it builds, and its set-up cannot be told from its
+solve. ``path`` says by counters which way each call went. Ours uses as many threads as
+OMP_NUM_THREADS says, or as there are cores; the peers' packages have one.
 """
 
 import argparse

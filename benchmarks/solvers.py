@@ -17,6 +17,7 @@ import numpy as np
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.accuracy.speed import load_of
 from fractalcontact.contact.preconditioner import forget_preconditioner
+from fractalcontact.contact.state import CandidateState
 from fractalcontact.methods.peers import Failed as PeerFailed
 from fractalcontact.methods.registry import METHODS, installed_peers
 
@@ -52,6 +53,10 @@ class Solver:
         """Convolutions of the last call on coarser grids, as fractions of a full one by area."""
         return 0.0
 
+    def path(self):
+        """Which way the last call went: proof that a row times what its name says."""
+        return ""
+
 
 class Ours(Solver):
     """`fractalcontact.solve_contact`."""
@@ -77,6 +82,7 @@ class Ours(Solver):
             state = self._solve(load, start, tolerance)
         # Its own count, or what was seen of it if that should be more.
         self.work = max(state.iterations, self.calls["full"])
+        self.state = state
         return Answer(state.force, state.closure, state)
 
     def _solve(self, load, start, tolerance):
@@ -92,6 +98,14 @@ class Ours(Solver):
     def coarse_applications(self):
         """Convolutions of the last call on coarser grids, as fractions of a full one by area."""
         return self.calls["coarse"]
+
+    def path(self):
+        """Whether on candidates for contact, and how many, or on the whole window."""
+        kept = "grid kept between solves"
+        if isinstance(self.state, CandidateState):
+            candidates = self.state.candidates
+            return f"multipole between {candidates} candidates, {self.work} applications; {kept}"
+        return f"convolution of the window, {self.work} applications; {kept}"
 
 
 class AtDefault(Ours):
@@ -178,9 +192,13 @@ class PublicCode(Solver):
         """Zero-padded convolutions of the last call."""
         return self.code.applications
 
+    def path(self):
+        """As the code counts it itself."""
+        return self.code.path
 
-#: The fastest of the peers.
-FASTEST_PEER = "ContactMechanics dual"
+
+#: The fastest of the peers, under dense and under light contact.
+FASTEST_PEERS = ("ContactMechanics dual", "ASPHER active set")
 
 
 def solvers_for(problem, *, methods, peers_wanted, every):
@@ -207,6 +225,8 @@ def solvers_for(problem, *, methods, peers_wanted, every):
     chosen += [
         PublicCode(problem, peer)
         for name, peer in installed_peers().items()
-        if (peers_wanted is None or name in peers_wanted) and (every or name == FASTEST_PEER)
+        if (peers_wanted is None or name in peers_wanted)
+        and (every or name in FASTEST_PEERS)
+        and peer.takes(problem.space)
     ]
     return [solver for solver in chosen if solver.carries(problem)]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.contact import full_approximation
+from fractalcontact.contact import candidates, full_approximation
 from fractalcontact.contact.kkt import Problem
 from fractalcontact.contact.nested_iteration import prolong_constant, redistribute, restrict_sum
 from fractalcontact.surface.synthesis import self_affine
@@ -83,6 +83,8 @@ def test_states_are_those_of_cold_starts(on_small_grids, monkeypatch, control, h
 @pytest.mark.parametrize("control", CONTROLS)
 def test_applications_are_saved_on_large_grids(monkeypatch, control):
     n = full_approximation.LEAST_FINE_SIDE
+    # On candidates for contact there is no such scheme.
+    monkeypatch.setattr(candidates, "LEAST_SIDE", n)
     height, space = rough((n, n), seed=1)
     depth = np.ptp(height)
     loads = [{"closure": share * depth} for share in (0.16, 0.18, 0.20)]

@@ -7,9 +7,9 @@ from fractalcontact.elastic.convolution import THREADED_CELLS
 from fractalcontact.elastic.halfspace import (
     RIGID_PLATE_SELF_TERMS,
     HalfSpace,
-    love_displacement,
     rectangle_mean_displacement,
 )
+from fractalcontact.elastic.influence import love_displacement
 
 # shape, (dy, dx): square, odd, prime, strips, not square cells, one row, one node
 GRIDS = [

@@ -13,7 +13,7 @@ from fractalcontact.experiments.size_states import solve_task
 from fractalcontact.experiments.size_strength import size_strength
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.configuration import resolve_settings
+from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.size_tasks import size_tasks
 from fractalcontact.study.stages import EXPERIMENT, STAGES
 from fractalcontact.surface.synthesis import self_affine
@@ -133,7 +133,9 @@ def atlas_file(tmp_path_factory):
     parts = {stage: {} for stage in STAGES}
     settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
     for name, faces in _scans().items():
-        for stage, dataset in stages_of(name, faces, settings[name], SOLVER).items():
+        for stage, dataset in stages_of(
+            name, faces, settings[name], solver_settings({}, "tiny")
+        ).items():
             parts[stage][name] = dataset
     for stage, dataset in _experiments().items():
         parts[stage]["surfaces"] = dataset

@@ -14,8 +14,13 @@ from fractalcontact.methods.common import NotOffered
 from fractalcontact.methods.registry import installed_peers
 
 PEERS = installed_peers()
-CCG = "ContactMechanics ccg"
+CCG, ASPHER = "ContactMechanics ccg", "ASPHER active set"
 needs_peers = pytest.mark.skipif(not PEERS, reason="the peers extra is not installed")
+needs_ccg = pytest.mark.skipif(CCG not in PEERS, reason="the peers extra is not installed")
+needs_aspher = pytest.mark.skipif(
+    ASPHER not in PEERS,
+    reason="ASPHER is not installed: it is built with cmake, a C++ compiler, Eigen and FFTW",
+)
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +43,7 @@ def test_a_peer_finds_the_same_state(problem, name):
     assert state.area == pytest.approx(reference.state.area)
 
 
-@needs_peers
+@needs_ccg
 @pytest.mark.parametrize(
     ("shape", "spacing"),
     [((20, 31), (0.1, 0.1)), ((12, 17), (5.0, 0.1)), ((1, 40), (0.1, 0.1)), ((1, 1), (0.1, 0.2))],
@@ -57,7 +62,7 @@ def test_a_peer_has_our_operator(shape, spacing):
     assert found == exact
 
 
-@needs_peers
+@needs_ccg
 @pytest.mark.parametrize("load", ["force", "hardness", "force and hardness"])
 def test_constrained_gradients_take_a_force_and_a_hardness(problem, load):
     reference = problem.single
@@ -91,7 +96,27 @@ def test_a_peer_says_what_it_was_not_made_for(problem, name):
         PEERS[name](holed, problem.space, **load)
 
 
-@needs_peers
+@needs_aspher
+@pytest.mark.parametrize("shape", [(16, 16), (32, 64), (48, 48)])
+def test_aspher_takes_dyadic_squares_only(shape):
+    space = HalfSpace(shape, (1.0, 1.0), 1.0)
+    with pytest.raises(NotOffered, match="takes square windows"):
+        PEERS[ASPHER](np.zeros(shape), space, force=1.0)
+
+
+@needs_aspher
+@pytest.mark.parametrize("name", [name for name in PEERS if name.startswith("ASPHER")])
+def test_aspher_says_which_way_it_went(problem, name):
+    code = PEERS[name].set_up(problem.height, problem.space)
+    assert code.path == ""
+    pressure = code.solve(peers.Load(force=problem.single.force), 1e-8)
+    assert code.closure(pressure) == pytest.approx(problem.closure, rel=1e-4)
+    assert ("(active)" in code.path) == (name == ASPHER)
+    assert "finest:32" in code.path
+    assert code.applications > 0
+
+
+@needs_ccg
 def test_a_penetrating_node_that_ccg_does_not_see():
     """Seen in the atlas: the iteration that first sees the second node ends as converged."""
     problem = hard_problem("spike", 5)

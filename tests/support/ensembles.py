@@ -17,6 +17,10 @@ ENSEMBLES: dict[str, tuple] = {
     "dropping side": (20, 40),
     "method problems": ((0, 2), (1, 5)),
     "warm start side": (20, 40),
+    # contact
+    "candidate problems": (20, 300),
+    "random energies": (10, 60),
+    "candidate problem side": (80, 200),
     # accuracy
     "random problems": (50, 300),
     "random problem side": (100, 400),

@@ -7,7 +7,8 @@ import numpy as np
 from scipy.signal import fftconvolve
 
 from ..contact.state import ContactState
-from ..elastic.halfspace import HalfSpace, love_displacement
+from ..elastic.halfspace import HalfSpace
+from ..elastic.influence import love_displacement
 from ..surface.synthesis import self_affine
 
 #: What a problem's topography is.

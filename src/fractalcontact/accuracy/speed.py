@@ -173,6 +173,8 @@ def _ladders(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> Iterator[l
             steps = [np.nan] if method.direct else tolerances
             yield _of_solver(name, method, problem, steps)
     for name, peer in installed_peers().items():
+        if not peer.takes(problem.space):
+            continue
         yield _of_peer(name, peer, problem, tolerances)
     height, space, closure = problem.height, problem.space, problem.closure
     for name, model in MODELS.items():

@@ -108,9 +108,10 @@ class ActiveSetMethod:
     """
 
     def __init__(self, problem: Problem, rtol: float, operator: Operator | None = None):
-        _check_on_grid(problem.clearance, "clearance", problem.space)
-        self.problem, self.rtol = problem, rtol
-        self.operator = Operator(problem.space) if operator is None else operator
+        if operator is None:
+            operator = Operator(problem.space, problem.nodes)
+        _check_on_nodes(problem.clearance, "clearance", operator)
+        self.problem, self.rtol, self.operator = problem, rtol, operator
 
     def solve(
         self, pressure: np.ndarray, displacement: np.ndarray | None = None, *, at_least: int = 0
@@ -137,9 +138,9 @@ class ActiveSetMethod:
             If the start is not one of the grid.
         """
         problem, operator, rtol = self.problem, self.operator, self.rtol
-        _check_on_grid(pressure, "pressure", problem.space)
+        _check_on_nodes(pressure, "pressure", operator)
         if displacement is not None:
-            _check_on_grid(displacement, "displacement", problem.space)
+            _check_on_nodes(displacement, "displacement", operator)
         # A displacement comes with states of this half-space at other loads. A start without one is
         # prolonged from a coarser grid, and its set nearly right, or from another half-space.
         predictions = 0 if displacement is None or operator.inverse.small else SET_PREDICTIONS
@@ -165,7 +166,7 @@ class ActiveSetMethod:
                 kkt = without_entering(kkt, iterate.pressure, problem.cap)
             single_step = may_end and single_step_left
             linear_solve = self._linear_solve(kkt, iterate.closure, exact, single_step)
-            operator.inverse.update(kkt.active, fresh=iteration == 0)
+            operator.precondition(kkt.active, fresh=iteration == 0)
             reduction = _reduction(linear_solve, previous_active, kkt.active)
             self._step(iterate, kkt, linear_solve, reduction, predict=iteration < predictions)
             previous_active = kkt.active
@@ -224,7 +225,7 @@ class ActiveSetMethod:
         leaving = equations.at_zero | equations.at_cap
         if predict and 0 < np.count_nonzero(leaving) <= MOST_LEFT_OUT * leaving.size:
             working = working.without(leaving, np.where(equations.at_zero[leaving], 0.0, cap))
-            self.operator.inverse.update(working.active, fresh=False)
+            self.operator.precondition(working.active, fresh=False)
             equations, change, scale = self._preconditioned_step(iterate, working, clipped)
         if linear_solve is not LinearSolve.SINGLE_STEP:
             equations.apply_step(working.fixed, change)
@@ -265,11 +266,11 @@ def _reduction(linear_solve, previous_active, active):
     return min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
 
 
-def _check_on_grid(values, name, space):
-    """Refuse what are not as many numbers as the grid has nodes."""
-    nodes = space.shape[0] * space.shape[1]
-    if values.shape != (nodes,) or values.dtype != _FLOAT64:
-        raise ValueError(f"{name} {values.shape} of {values.dtype}: expected {(nodes,)} of float64")
+def _check_on_nodes(values, name, operator):
+    """Refuse what are not as many numbers as there are nodes."""
+    nodes = (operator.size,)
+    if values.shape != nodes or values.dtype != _FLOAT64:
+        raise ValueError(f"{name} {values.shape} of {values.dtype}: expected {nodes} of float64")
 
 
 @njit(cache=True)

@@ -52,10 +52,10 @@ class CoarseCorrection:
         # A load on a coarse cell is a pressure 1/step^2 of it there, on cells step times as wide.
         self._factor = np.float32(1 / step)
         near = np.zeros((2, 2))
-        known = self._coarse.influence()[:2, :2]
+        known = self._coarse.near_influence(2)
         near[: known.shape[0], : known.shape[1]] = known
         self._near = (near * self._factor).astype(np.float32)
-        self._own = np.float32(space.influence()[0, 0])
+        self._own = np.float32(space.near_influence(1)[0, 0])
         self._counts = _basis_counts(self._coarse, max(space.shape))
         self._basis = _basis_functions(self._coarse, self._counts)
         self._extents = _extents(self._basis.reshape(-1, *self._coarse.shape))

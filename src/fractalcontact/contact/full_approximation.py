@@ -85,7 +85,7 @@ def _changed_pressure(problem, pressure, gap, closure):
     if solution.pressure.size > KEPT_CELLS:
         forget_preconditioner(space)
     change = _in_proportion(before, coarse_before, solution.pressure.reshape(space.shape))
-    pressure = redistribute(before, change, gap, problem.space.influence())
+    pressure = redistribute(before, change, gap, problem.space.near_influence(4))
     return np.minimum(pressure, problem.cap).ravel()
 
 

@@ -18,7 +18,7 @@ from ..core import threads
 from ..core.kernel_cache import njit
 from ..elastic.halfspace import HalfSpace
 from ..elastic.simd import WIDTH, load, store
-from .node_sets import check_on_set
+from .node_sets import check_on_set, symmetric_difference
 
 #: Neighbourhood sizes: blocks along a row in which preceding nodes condition a node, so far to each
 #: side of its own, in the rows 0, 1, 2 from it. A larger one saves hardly an application and costs
@@ -35,6 +35,13 @@ CHUNK = 512
 #: cells, and falls slowly as they become longer than wide (0.1 where 1e8 times). A guard against a
 #: pivot that rounding in single precision would make zero or negative: its root is divided by.
 LEAST_CONDITIONAL_VARIANCE = np.float32(1e-3)
+#: Further away than so many cells a node is displaced as by a point load: no table is needed. On
+#: cells more than `MOST_STRETCHED` times as long as wide that is not far.
+TABLE_SIDE, MOST_STRETCHED = 512, 16
+#: Where the nodes on all levels are more than this fraction of the window's cells, whole arrays are
+#: made anew rather than emptied at the places of these nodes alone; or, the nodes being those that
+#: changed, compared as a whole.
+MADE_ANEW, COMPARED = 0.1, 0.02
 
 
 class InverseCholesky:
@@ -50,20 +57,23 @@ class InverseCholesky:
     ----------
     size : int
         Nodes of the set.
-    influence : (ny, nx) float32 ndarray
-        That of the half-space.
+    influence : (my, mx) float32 ndarray
+        That of the half-space, near by.
     """
 
     def __init__(self, space: HalfSpace, neighbourhood: np.ndarray):
         self._shape = space.shape
-        self.influence = space.influence().astype(np.float32)
+        dy, dx = (side / space.cell for side in space.spacing)
+        side = TABLE_SIDE if max(dy / dx, dx / dy) <= MOST_STRETCHED else max(space.shape)
+        self.influence = space.near_influence(side).astype(np.float32)
+        self._sides = np.float32(dy), np.float32(dx)
         self._shifts = block_shifts(space)
         self._neighbourhood = neighbourhood
-        nodes = np.empty(0, np.int32)
-        slot = np.full(space.shape[0] * space.shape[1], -1, np.int32)
-        representative = _representatives(nodes, *space.shape, self._shifts)[0]
+        self._offsets, self._widths = _block_grid(*space.shape, self._shifts)
         # All that belongs to one set, in one place: it changes as a whole, or not at all.
-        self._known = representative, nodes, slot, _empty_factor(0)
+        representative, slot, *_ = self._empty_window()
+        self._known = representative, np.empty(0, np.int32), slot, _empty_factor(0)
+        self._spare: tuple[np.ndarray, ...] | None = None
 
     @property
     def size(self) -> int:
@@ -80,25 +90,56 @@ class InverseCholesky:
         """
         nx = self._shape[1]
         representative, *old = self._known
-        slot = np.full(old[1].size, -1, np.int32)
-        slot[nodes] = np.arange(nodes.size, dtype=np.int32)
-        blocks = _representatives(nodes, *self._shape, self._shifts)
+        # Arrays of the window's size are empty again after use: a few nodes in a large window are
+        # not to wait for them. If an update is interrupted they are made anew.
+        new, slot, level, affected = self._spare or self._empty_window()
+        self._spare = None
+        slot[nodes] = np.arange(1, nodes.size + 1, dtype=np.int32)
+        _represent(nodes, nx, self._shifts, self._offsets, self._widths, new, level)
+        blocks = new, self._offsets, self._widths, level
+        changed = np.empty(0, np.int64)
         if old[0].size:
-            changed = np.flatnonzero(representative != blocks[0])
-            affected = _affected(
-                changed, representative, blocks, self._shifts, self._neighbourhood, nx
-            )
-        else:
-            affected = np.ones(blocks[0].size, bool)
+            different = symmetric_difference(old[0], nodes)
+            if self._dense(different.size, COMPARED):
+                changed = np.flatnonzero(representative != new)
+            else:
+                changed = _changed(different, representative, blocks, self._shifts, nx)
+        where = self._shifts, self._neighbourhood, nx
+        _mark_affected(changed, representative, blocks, *where, affected, True)
         factor = _empty_factor(nodes.size)
         before, known = tuple(old), (*blocks, affected)
-        grid = self._shifts, self._neighbourhood, nx, self.influence
+        whole = self.influence.shape == self._shape
+        grid = *where, (self.influence, *self._sides, whole)
         threads.in_parts(
             lambda start, stop: _factorise(start, stop, nodes, slot, known, grid, before, factor),
             nodes.size,
             smallest=CHUNK,
         )
-        self._known = blocks[0], nodes, slot, factor
+        self._known = new, nodes, slot, factor
+        if self._dense(max(nodes.size, old[0].size), MADE_ANEW):
+            return
+        _mark_affected(changed, representative, blocks, *where, affected, False)
+        level[nodes] = 0
+        _clear(old[0], nx, self._shifts, self._offsets, self._widths, representative, old[1])
+        self._spare = representative, old[1], level, affected
+
+    def _dense(self, nodes, fraction):
+        """Whether so many nodes are, on all levels, more than a fraction of the window's cells."""
+        return nodes * len(self._shifts) > fraction * self._shape[0] * self._shape[1]
+
+    def _empty_window(self):
+        """Representatives, slots, levels and affected blocks, of no node.
+
+        Numbers are kept plus one: of the pages of an array of zeros only those that are written to
+        take memory.
+        """
+        cells, blocks = self._shape[0] * self._shape[1], self._offsets[-1]
+        return (
+            np.zeros(blocks, np.int32),
+            np.zeros(cells, np.int32),
+            np.zeros(cells, np.int8),
+            np.zeros(blocks, bool),
+        )
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """U U' residual, both (n,) float32 on the contact set.
@@ -134,60 +175,88 @@ def block_shifts(space: HalfSpace) -> np.ndarray:
     return np.array(shifts, np.int64)
 
 
+def _block_grid(ny, nx, shifts):
+    """Where the blocks of every level begin, and how many there are along y and x."""
+    widths = np.stack([((ny - 1) >> shifts[:, 0]) + 1, ((nx - 1) >> shifts[:, 1]) + 1], axis=1)
+    return np.concatenate([[0], np.cumsum(widths[:, 0] * widths[:, 1])]), widths
+
+
 @njit(cache=True)
-def _representatives(nodes, ny, nx, shifts):
-    """For every level, the node (cell number) that stands for each block, or -1."""
-    levels = shifts.shape[0]
-    offsets = np.empty(levels + 1, np.int64)
-    widths = np.empty((levels, 2), np.int64)
-    offsets[0] = 0
-    for k in range(levels):
-        widths[k, 0] = ((ny - 1) >> shifts[k, 0]) + 1
-        widths[k, 1] = ((nx - 1) >> shifts[k, 1]) + 1
-        offsets[k + 1] = offsets[k] + widths[k, 0] * widths[k, 1]
-    representative = np.full(offsets[levels], -1, np.int32)
-    level = np.zeros(ny * nx, np.int8)
+def _represent(nodes, nx, shifts, offsets, widths, representative, level):
+    """For every level, the node (cell number plus one) that stands for each block, else 0."""
     candidates = nodes.copy()
-    representative[candidates] = candidates
-    for k in range(1, levels):
+    for node in nodes:
+        representative[node] = node + 1
+    for k in range(1, shifts.shape[0]):
         n = 0
         for node in candidates:
             y, x = (node // nx) >> shifts[k, 0], (node % nx) >> shifts[k, 1]
             block = offsets[k] + y * widths[k, 1] + x
-            if representative[block] < 0:
-                representative[block] = node
+            if representative[block] == 0:
+                representative[block] = node + 1
                 level[node] = k
                 candidates[n] = node
                 n += 1
         candidates = candidates[:n]
-    return representative, offsets, widths, level
 
 
 @njit(cache=True)
-def _affected(changed, before, blocks, shifts, neighbourhood, nx):
+def _clear(nodes, nx, shifts, offsets, widths, representative, slot):
+    """Undo what `_represent` did, and the slots."""
+    for node in nodes:
+        slot[node] = 0
+        for k in range(shifts.shape[0]):
+            y, x = (node // nx) >> shifts[k, 0], (node % nx) >> shifts[k, 1]
+            representative[offsets[k] + y * widths[k, 1] + x] = 0
+
+
+@njit(cache=True)
+def _changed(different, before, blocks, shifts, nx):
+    """Blocks of all levels, ascending, with another representative: they hold a different node."""
+    representative, offsets, widths, _ = blocks
+    changed = np.empty(different.size * shifts.shape[0], np.int64)
+    n = 0
+    for k in range(shifts.shape[0]):
+        first = n
+        for node in different:
+            y, x = (node // nx) >> shifts[k, 0], (node % nx) >> shifts[k, 1]
+            block = offsets[k] + y * widths[k, 1] + x
+            if before[block] != representative[block]:
+                changed[n] = block
+                n += 1
+        changed[first:n].sort()
+        unique = first
+        for i in range(first, n):
+            if i == first or changed[i] != changed[unique - 1]:
+                changed[unique] = changed[i]
+                unique += 1
+        n = unique
+    return changed[:n]
+
+
+@njit(cache=True)
+def _mark_affected(changed, before, blocks, shifts, neighbourhood, nx, affected, value):
     """For every level, the blocks whose nodes may be conditioned otherwise than ``before``."""
     representative, offsets, widths, _ = blocks
     reach = neighbourhood.size - 1
-    affected = np.zeros(representative.size, np.bool_)
     k = 0
     for block in changed:
         while block >= offsets[k + 1]:
             k += 1
         y, x = divmod(block - offsets[k], widths[k, 1])
-        _mark(affected, offsets[k], widths[k], y, x, reach)
+        _mark(affected, offsets[k], widths[k], y, x, reach, value)
         # Both have come to, or lost, precedence on the level below.
-        for node in (before[block], representative[block]):
+        for node in (before[block] - 1, representative[block] - 1):
             if k > 0 and node >= 0:
                 y, x = (node // nx) >> shifts[k - 1, 0], (node % nx) >> shifts[k - 1, 1]
-                _mark(affected, offsets[k - 1], widths[k - 1], y, x, reach)
-    return affected
+                _mark(affected, offsets[k - 1], widths[k - 1], y, x, reach, value)
 
 
 @njit(cache=True)
-def _mark(affected, offset, width, y, x, reach):
+def _mark(affected, offset, width, y, x, reach, value):
     for by in range(max(y - reach, 0), min(y + reach + 1, width[0])):
         for bx in range(max(x - reach, 0), min(x + reach + 1, width[1])):
-            affected[offset + by * width[1] + bx] = True
+            affected[offset + by * width[1] + bx] = value
 
 
 @njit(cache=True, nogil=True)
@@ -208,11 +277,11 @@ def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
         y, x = node // nx, node % nx
         k = level[node]
         block_y, block_x = y >> shifts[k, 0], x >> shifts[k, 1]
-        before = old_slot[node]
+        before = old_slot[node] - 1
         if before >= 0 and not affected[offsets[k] + block_y * widths[k, 1] + block_x]:
             count[i], diagonal[i] = old_count[before], old_diagonal[before]
             for a in range(count[i]):
-                neighbours[i, a] = slot[old_nodes[old_neighbours[before, a]]]
+                neighbours[i, a] = slot[old_nodes[old_neighbours[before, a]]] - 1
                 weight[i, a] = old_weight[before, a]
             continue
         n = 0
@@ -220,14 +289,14 @@ def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
             row = offsets[k] + by * widths[k, 1]
             reach = neighbourhood[abs(by - block_y)]
             for bx in range(max(block_x - reach, 0), min(block_x + reach + 1, widths[k, 1])):
-                other = representative[row + bx]
+                other = representative[row + bx] - 1
                 above = level[max(other, 0)]
                 # Put in its place before it is known to stay there: that takes less than a branch.
                 members[n] = other
                 n += (other >= 0) & ((above > k) | ((above == k) & (other < node)))
         count[i] = n
         for a in range(n):
-            neighbours[i, a] = slot[members[a]]
+            neighbours[i, a] = slot[members[a]] - 1
         waiting[n, filled[n]] = i
         filled[n] += 1
         if filled[n] == WIDTH:
@@ -266,14 +335,34 @@ def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
             node = nodes[neighbours[i, a]]
             ys[a, lane], xs[a, lane], present[a, lane] = node // nx, node % nx, 1
         ys[n, lane], xs[n, lane], present[n, lane] = nodes[i] // nx, nodes[i] % nx, 1
+    table = influence[0]
+    # In most windows no two nodes are further apart than the table reaches.
+    if influence[3]:
+        for a in range(n + 1):
+            for b in range(a):
+                here = a * side + b * WIDTH
+                for lane in range(WIDTH):
+                    distance = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
+                    both = present[a, lane] * present[b, lane]
+                    lower[here + lane] = both * table[distance]
+        return n
     for a in range(n + 1):
         for b in range(a):
             here = a * side + b * WIDTH
             for lane in range(WIDTH):
-                distance = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
+                away_y, away_x = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
                 both = present[a, lane] * present[b, lane]
-                lower[here + lane] = both * influence[distance]
+                lower[here + lane] = both * _influence(influence, away_y, away_x)
     return n
+
+
+@njit(cache=True)
+def _influence(influence, y, x):
+    """From the table, or of a point load."""
+    table, dy, dx, _ = influence
+    if y < table.shape[0] and x < table.shape[1]:
+        return table[y, x]
+    return np.float32(1 / np.pi) / np.sqrt((y * dy) ** 2 + (x * dx) ** 2)
 
 
 @njit(cache=True)
@@ -294,14 +383,14 @@ def _solve_columns(places, nodes, nx, influence, factor, lower, column):
                 s = s - load(lower, a * side + c) * load(lower, b * side + c)
             store(lower, here, s * load(lower, b * (side + WIDTH)))
         here = a * (side + WIDTH)
-        lower[here : here + WIDTH] = influence[0, 0]
+        lower[here : here + WIDTH] = influence[0][0, 0]
         s = load(lower, here)
         for c in range(0, a * WIDTH, WIDTH):
             s = s - load(lower, a * side + c) * load(lower, a * side + c)
         store(lower, here, s)
         for lane in range(here, here + WIDTH):
             lower[lane] = np.float32(1) / np.sqrt(
-                max(lower[lane], LEAST_CONDITIONAL_VARIANCE * influence[0, 0])
+                max(lower[lane], LEAST_CONDITIONAL_VARIANCE * influence[0][0, 0])
             )
     column[: n * WIDTH] = 0
     store(column, n * WIDTH, load(lower, n * (side + WIDTH)))

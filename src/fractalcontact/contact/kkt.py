@@ -30,6 +30,9 @@ class Problem:
         Which of the two.
     cap : float
         Largest pressure, or infinity.
+    nodes : (n,) int32 ndarray or None
+        Numbers of the cells that may touch, ascending, where the problem is restricted to these:
+        whatever is on nodes is then on them alone. None where it is on the whole window.
     """
 
     space: HalfSpace
@@ -37,6 +40,7 @@ class Problem:
     load: float
     by_force: bool
     cap: float = np.inf
+    nodes: np.ndarray | None = None
 
     def first_touch(self) -> np.ndarray:
         """The given force on the nodes that touch first, where nothing better is known.
@@ -150,6 +154,46 @@ def kkt_residual(
     if not pressure.shape == displacement.shape == clearance.shape:
         raise ValueError("expected pressure, displacement and clearance of one size")
     return KKTResidual(*_kkt_residual(pressure, displacement, clearance, closure, cap))
+
+
+def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, cap: float) -> float:
+    """Bound on how far the energy of a pressure is above the least of the same force.
+
+    Parameters
+    ----------
+    pressure, gap : (n,) ndarray
+        Between the bounds; and K p + c, less any constant. Nodes that are further apart than all
+        that carry pressure may be left out.
+    cap : float
+        Largest pressure, or infinity.
+
+    Returns
+    -------
+    float
+        In the unit of their product.
+
+    Notes
+    -----
+    E(p) = p.K p / 2 + p.c is convex with gradient v = K p + c. So for the pressure p* of least
+    energy among those of the same sum F and the same bounds, E(p) - E(p*) <= v.(p - p*) <= G,
+    the largest v.(p - q) over all such q: the Frank-Wolfe gap (M. Frank and P. Wolfe, Naval
+    Res. Logist. Quart. 3 (1956) 95; M. Jaggi, Proc. 30th Int. Conf. Mach. Learn. (2013) 427).
+    Without a cap the best q puts F on the node of least v, and G = sum p_i (v_i - min v); with
+    a cap H it puts H on each of the F / H nodes of least v. A constant in v, such as the
+    closure, changes nothing.
+    """
+    loaded = pressure > 0
+    if not loaded.any():
+        return 0.0
+    within = gap[gap <= gap[loaded].max()]
+    excess = within - within.min()
+    total = pressure[loaded] @ (gap[loaded] - within.min())
+    if np.isfinite(cap):
+        whole, rest = divmod(pressure[loaded].sum() / cap, 1.0)
+        most = min(int(whole), excess.size - 1)
+        excess = np.partition(excess, most)
+        total -= cap * (excess[:most].sum() + rest * excess[most])
+    return max(float(total), 0.0)
 
 
 def nodes_between_bounds(pressure: np.ndarray, cap: float) -> np.ndarray:

@@ -53,7 +53,7 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
     if clearance.size > KEPT_CELLS:
         forget_preconditioner(coarse_space)
     pressure = solution.pressure.reshape(coarse_space.shape) / 2
-    pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.influence())
+    pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.near_influence(4))
     return np.minimum(pressure, problem.cap).ravel()
 
 
@@ -104,7 +104,7 @@ def prolong(pressure: np.ndarray, clearance: np.ndarray, influence: np.ndarray) 
         On the coarse grid, no less than zero; m = (n + 1) // 2.
     clearance : (ny, nx) ndarray
         Opening at first touch on the fine grid.
-    influence : (ny, nx) ndarray
+    influence : (4, 4) or larger ndarray
         Displacement of nodes so far from one of unit pressure, in the unit of the clearance.
 
     Returns
@@ -141,7 +141,8 @@ def redistribute(
     ValueError
         If these are not on one grid of at least four nodes each way.
     """
-    if not before.shape == change.shape == gap.shape == influence.shape or min(gap.shape) < 4:
+    one = before.shape == change.shape == gap.shape
+    if not one or min(gap.shape) < 4 or min(influence.shape) < 4:
         shapes = ", ".join(str(values.shape) for values in (before, change, gap, influence))
         raise ValueError(f"shapes {shapes}: expected one grid of 4 x 4 nodes or more")
     # A cell's nodes and those of the eight around it lie in six rows and columns.
@@ -160,8 +161,8 @@ def _redistribute(before, change, gap, influence):
     A cell sees what others have become.
     """
     ny, nx = gap.shape
-    own, around = _influence_on(influence)
-    maps = _redistributions(own)
+    own, around = influence_on(influence)
+    maps = redistributions(own)
     known, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
     for top in range(0, ny, 2):
         for side in range(0, nx, 2):
@@ -183,14 +184,14 @@ def _redistribute(before, change, gap, influence):
             for a in range(4):
                 for b in range(4):
                     opening[a] -= own[a, b] * known[b]
-            _equalise_gaps(maps, opening, total, mask, pressure)
+            equalise_gaps(maps, opening, total, mask, pressure)
             for a in range(4):
                 if mask & (1 << a):
                     change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - known[a]
 
 
 @njit(cache=True)
-def _influence_on(influence):
+def influence_on(influence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of the four nodes of a cell on each other, and on each of those six by six about it.
 
     The second leaves out what they have on each other.
@@ -208,7 +209,7 @@ def _influence_on(influence):
 
 
 @njit(cache=True)
-def _redistributions(own):
+def redistributions(own: np.ndarray) -> np.ndarray:
     """For each set of a cell's nodes, given by its bits, how a sum is distributed: (16, 4, 5).
 
     Of gaps g and a sum S pressures p = -M g + c S leave even gaps: own p + g is the same for all,
@@ -227,7 +228,9 @@ def _redistributions(own):
 
 
 @njit(cache=True)
-def _equalise_gaps(maps, gap, total, mask, pressure):
+def equalise_gaps(
+    maps: np.ndarray, gap: np.ndarray, total: float, mask: int, pressure: np.ndarray
+) -> None:
     """Pressures of a given sum on the nodes of a ``mask`` that leave even gaps where positive.
 
     Those in tension are dropped, the strongest first, until there is none. Only by how much gaps

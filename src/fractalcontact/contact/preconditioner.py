@@ -21,6 +21,9 @@ from .node_sets import check_nodes, check_on_set
 DIRECT = 96
 #: Windows of at most so many cells along the longer side do without the coarse correction too.
 SMALL = 160
+#: Sets of at most so many nodes among few candidates do without it as well: they are scattered, and
+#: what their nodes add up to is no smooth pressure. It would cost more applications than it saves.
+SCATTERED = 10_000
 
 
 class Preconditioner:
@@ -48,10 +51,13 @@ class Preconditioner:
         self._shape = space.shape
         neighbourhood = NARROW_NEIGHBOURHOOD if self.small else WIDE_NEIGHBOURHOOD
         self._factor = InverseCholesky(space, neighbourhood)
-        self._coarse = None if self.small else CoarseCorrection(space)
+        # Not held: what is kept for a half-space would keep it.
+        self._space = weakref.ref(space)
+        self._coarse: CoarseCorrection | None = None
         self._exact: np.ndarray | None = None
+        self._local = self.small
 
-    def update(self, nodes: np.ndarray, *, fresh: bool) -> None:
+    def update(self, nodes: np.ndarray, *, fresh: bool, scattered: bool = False) -> None:
         """Make this the inverse on another contact set.
 
         Parameters
@@ -60,6 +66,8 @@ class Preconditioner:
             Its nodes as numbers of cells, ascending.
         fresh : bool
             Whether to make the coarse operator anew, which else may lag a little behind the set.
+        scattered : bool
+            Whether the set is among few candidates in a large window: see `SCATTERED`.
 
         Raises
         ------
@@ -75,8 +83,17 @@ class Preconditioner:
             self._exact = _exact_inverse(nodes, self._shape[1], self._factor.influence)
             return
         self._factor.update(nodes)
-        if self._coarse is not None:
+        self._local = self.small or (scattered and nodes.size <= SCATTERED)
+        if not self._local:
+            if self._coarse is None:
+                self._coarse = self._new_coarse_correction()
             self._coarse.update(nodes, fresh)
+
+    def _new_coarse_correction(self):
+        space = self._space()
+        if space is None:
+            raise ReferenceError("the half-space of this preconditioner is gone")
+        return CoarseCorrection(space)
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """The approximate solution x of K x = residual, both (n,) float32 on the contact set.
@@ -89,7 +106,7 @@ class Preconditioner:
         if self._exact is not None:
             check_on_set(residual, len(self._exact))
             return times(self._exact, residual)
-        if self._coarse is None:
+        if self._local or self._coarse is None:
             return self._factor(residual)
         check_on_set(residual, self._factor.size)
         return self._coarse.balance(residual, self._factor)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.kernel_cache import njit
 from ..elastic.halfspace import HalfSpace
+from ..elastic.multipole import MultipoleLevels, MultipoleOperator
 from .preconditioner import preconditioner
 
 # Applications in one solve: on an exact set about ten reach 1e-6.
@@ -32,16 +33,50 @@ class Operator:
     Parameters
     ----------
     space : HalfSpace
+    nodes : (n,) int32 ndarray, optional
+        Numbers of the cells between which it is wanted, ascending; by default all of the window.
+        Pressures, displacements and sets of nodes are then on these alone.
+    levels : MultipoleLevels, optional
+        Of these nodes, where they are known.
+
+    Attributes
+    ----------
+    size : int
+        Nodes.
+    applications : int
     """
 
-    def __init__(self, space: HalfSpace):
-        self.space, self.inverse = space, preconditioner(space)
+    def __init__(
+        self,
+        space: HalfSpace,
+        nodes: np.ndarray | None = None,
+        levels: MultipoleLevels | None = None,
+    ):
+        self.space, self.nodes, self.inverse = space, nodes, preconditioner(space)
         self.applications = 0
-        self._grid = np.zeros(space.shape, np.float32)
+        self.size = space.shape[0] * space.shape[1] if nodes is None else nodes.size
+        if nodes is None:
+            self._grid = np.zeros(space.shape, np.float32)
+        else:
+            levels = MultipoleLevels(space.shape, nodes) if levels is None else levels
+            self._between = {
+                np.dtype(dtype): MultipoleOperator(space, levels, dtype)
+                for dtype in (np.float32, np.float64)
+            }
+
+    def precondition(self, active: np.ndarray, *, fresh: bool) -> None:
+        """Make `inverse` that on a contact set, as `Preconditioner.update`."""
+        if self.nodes is None:
+            self.inverse.update(active, fresh=fresh)
+        else:
+            self.inverse.update(self.nodes[active], fresh=fresh, scattered=True)
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
-        """Displacement of the whole grid, (n,), in the precision of the pressure, (n,)."""
+        """Displacement of all nodes, (n,), in the precision of the pressure, (n,)."""
         self.applications += 1
+        if self.nodes is not None:
+            loaded = np.flatnonzero(pressure)
+            return self._between[pressure.dtype](loaded, pressure[loaded])
         return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
 
     def on(self, *pairs: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
@@ -52,6 +87,11 @@ class Operator:
         ValueError
             If a pair does not go together, or lies outside the grid.
         """
+        if self.nodes is not None:
+            self.applications += 1
+            loaded = np.concatenate([pair[0] for pair in pairs])
+            values = np.concatenate([pair[1] for pair in pairs]).astype(np.float32, copy=False)
+            return self._between[values.dtype](loaded, values)
         grid = self._grid.ravel()
         for nodes, values in pairs:
             _put(grid, nodes, values)
@@ -80,7 +120,7 @@ class ProjectedCG:
     solution, residual : (n,) float32 ndarray
         x, and what is left of the right side.
     image : float32 ndarray
-        K x on the whole grid.
+        K x on all nodes of the operator.
     multiplier : float
         Lagrange multiplier of the sum.
     unclipped : (n,) float32 ndarray
@@ -100,7 +140,7 @@ class ProjectedCG:
         self.operator, self.active, self.inverse = operator, active, operator.inverse
         self.residual = right_side.astype(np.float32)
         self.solution = np.zeros(active.size, np.float32)
-        self.image = np.zeros(operator.space.shape, np.float32).ravel()
+        self.image = np.zeros(operator.size, np.float32)
         self.unclipped = np.ones(active.size, np.float32)
         self.at_zero = self.at_cap = np.zeros(active.size, bool)
         self.multiplier = 0.0
@@ -182,7 +222,7 @@ def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     """
     if active.size == 0:
         return 0.0, 0.0
-    operator.inverse.update(active, fresh=True)
+    operator.precondition(active, fresh=True)
     equations = ProjectedCG(operator, active, np.ones(active.size))
     equations.iterate(TANGENT_RESIDUAL, by_force=False)
     residual, q = equations.residual.astype(float), equations.solution.astype(float)

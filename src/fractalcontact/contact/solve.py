@@ -8,7 +8,6 @@ returns unverified.
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,11 +24,20 @@ from ..core.arguments import (
 from ..core.errors import NotConverged
 from ..elastic.halfspace import HalfSpace
 from .active_set import ActiveSetMethod
+from .candidates import (
+    FROM_LOAD,
+    MARGIN,
+    STEP_GAIN,
+    LoadCase,
+    may_restrict,
+    solve_nested,
+    solve_restricted,
+)
 from .effort import SOLVING
 from .full_approximation import full_approximation_start
-from .kkt import Problem
 from .nested_iteration import nested_iteration_start
-from .state import ContactState, unloaded_state
+from .state import Candidates, CandidateState, ContactState, unloaded_state
+from .topography import Topography
 
 # Earlier states are extrapolated by no more than this many of their own steps.
 FURTHEST = 2.0
@@ -78,27 +86,40 @@ def solve_contact(
     NotConverged
         If the conditions are not met to ``rtol``.
     """
-    load, clearance = checked_problem(composite, space, closure, force, start, rtol)
+    load, topography = _checked(composite, space, closure, force, start, rtol)
     if load == 0:
-        return unloaded_state(space, clearance)
+        return unloaded_state(space, topography.clearance())
     units = _Units(space, load, force is not None)
-    problem = units.problem(clearance, checked_hardness(hardness, space, force))
+    case = units.case(topography, checked_hardness(hardness, space, force))
     with SOLVING.counted(1):
-        if start is None or not start.pressure.any():
-            pressure, displacement = nested_iteration_start(problem), None
-        else:
-            pressure, displacement = units.extrapolated(start, load)
-            if displacement is not None:
-                changed = full_approximation_start(problem, pressure, displacement)
-                if changed is not None:
-                    pressure, displacement = changed, None
-        solution = ActiveSetMethod(problem, rtol).solve(pressure, displacement)
-    state = units.state(solution, clearance, problem, start)
+        problem, solution = _solve(case, units, load, start, rtol)
+    state = units.state(solution, topography, problem, start)
     if not state.residual <= rtol:
         what = "are still violated" if math.isfinite(state.residual) else "have no finite state"
         reason = f"contact conditions {what} after {state.iterations} applications of the operator"
         raise NotConverged(reason, state, state.residual)
     return state
+
+
+def _solve(case, units, load, start, rtol):
+    """The problem as it was solved, and the solution: the caller checks its residual."""
+    restrict = may_restrict(case.space, rtol)
+    if start is None or not start.in_contact.any():
+        if restrict:
+            return solve_nested(case, rtol)
+        problem = case.problem()
+        return problem, ActiveSetMethod(problem, rtol).solve(nested_iteration_start(problem))
+    if restrict:
+        known = units.candidates(case, start, load)
+        if known is not None:
+            return solve_restricted(case, *known, rtol)
+    problem = case.problem()
+    pressure, displacement = units.extrapolated(start, load)
+    if displacement is not None:
+        changed = full_approximation_start(problem, pressure, displacement)
+        if changed is not None:
+            pressure, displacement = changed, None
+    return problem, ActiveSetMethod(problem, rtol).solve(pressure, displacement)
 
 
 def checked_hardness(hardness: float | None, space: HalfSpace, force: float | None) -> float:
@@ -150,12 +171,15 @@ def checked_problem(
     ValueError
         As `solve_contact`.
     """
+    load, topography = _checked(composite, space, closure, force, start, rtol)
+    return load, topography.clearance()
+
+
+def _checked(composite, space, closure, force, start, rtol):
+    """Load and topography, as `checked_problem`."""
     if not isinstance(space, HalfSpace):
         raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
-    height = field(composite, "composite topography", space.shape)
-    if not np.isfinite(height).all():
-        missing = np.count_nonzero(~np.isfinite(height))
-        raise ValueError(f"the composite topography has {missing} missing or infinite cells")
+    topography = Topography(composite, space.shape)
     if (closure is None) == (force is None):
         raise ValueError("give either closure= or force=")
     name, unit = ("closure", "mm") if force is None else ("force", "N")
@@ -166,7 +190,7 @@ def checked_problem(
         _check_start(start, space)
     if not 0 < number(rtol, "rtol", "fractions of the closure") < 1:
         raise ValueError(f"rtol {rtol}: expected between 0 and 1")
-    depth = float(height.max()) - float(height.min())
+    depth = topography.highest - topography.lowest
     if not depth <= MOST_INPUT:
         raise ValueError(f"composite topography {depth:g} mm deep: expected {MOST_INPUT:g} at most")
     if load > 0 and not _within_double_precision(space, load, force is not None, depth):
@@ -175,13 +199,16 @@ def checked_problem(
             "expected such that closures, pressures and forces on this grid are of "
             f"{LEAST_RESULT:g} to {MOST_RESULT:g} mm, MPa and N"
         )
-    return load, height.max() - height
+    return load, topography
 
 
 def _check_start(start, space):
     """Refuse what is no state of this grid."""
     if not isinstance(start, ContactState):
         raise ValueError(f"start {quoted(start)}: expected a ContactState, as solve_contact gives")
+    # A state of candidates was made by this solver, and its displacement need not be computed.
+    if isinstance(start, CandidateState) and start.space.shape == space.shape:
+        return
     for name in ("pressure", "displacement"):
         values = field(getattr(start, name), f"{name} of the start", space.shape)
         if not np.isfinite(values).all():
@@ -218,13 +245,41 @@ class _Units:
         self.length, self.pressure = _load_units(space, load, by_force)
         self.load = float(space.shape[0] * space.shape[1]) if by_force else 1.0
 
-    def problem(self, clearance, hardness):
+    def case(self, topography, hardness):
         cap = hardness / self.pressure
         if cap < LEAST_RESULT:
             raise ValueError(
                 f"hardness {hardness:g}: too low for pressures of {self.pressure:g} MPa"
             )
-        return Problem(self.space, clearance.ravel() / self.length, self.load, self.by_force, cap)
+        return LoadCase(self.space, topography, self.length, self.load, self.by_force, cap)
+
+    def candidates(self, case, start, load):
+        """The candidates at a load, a pressure on them, and its displacement; None if too many.
+
+        As `extrapolated`; the bound on the closure goes with the force.
+        """
+        space = self.space
+        known = start.space == space
+        at = start.force if self.by_force else start.closure
+        factor = min(load / at, FURTHEST) if at > 0 else 1.0
+        bound = FROM_LOAD * start.closure / self.length * max(factor, 1.0)
+        bound = bound if self.by_force else MARGIN * self.load
+        restricted = case.restricted(bound, None, STEP_GAIN)
+        if restricted is None:
+            return None
+        nodes = restricted.nodes
+        before = start._before if known else None
+        step = at - (before.force if self.by_force else before.closure) if before else 0.0
+        pressure = start.pressure.ravel()[nodes].astype(float)
+        if step:
+            along = np.clip((load - at) / step, -1.0, FURTHEST)
+            pressure = (1 + along) * pressure - along * before.pressure.ravel()[nodes]
+        else:
+            pressure *= factor
+        pressure /= self.pressure
+        if not pressure.any():
+            return None
+        return restricted, pressure, restricted.operator(pressure) if known else None
 
     def extrapolated(self, start, load):
         """Pressure at a load, and its displacement, along the line through two earlier states.
@@ -247,19 +302,41 @@ class _Units:
         pressure, displacement = (np.asarray(values, float).ravel() for values in fields)
         return pressure / self.pressure, displacement / self.length if known else None
 
-    def state(self, solution, clearance, problem, start):
+    def state(self, solution, topography, problem, start):
         """The solution in mm, N and MPa."""
         space = self.space
+        closure = solution.closure * self.length if self.by_force else self.length
+        # Of the states before, one is enough, and it need not hold on to its own.
+        before = None if start is None or start.space != space else start.without_before()
+        if problem.nodes is not None:
+            on_nodes = solution.pressure * self.pressure
+            pressure = np.zeros(space.shape)
+            pressure.ravel()[problem.nodes] = on_nodes
+            force = float(on_nodes.sum()) * space.cell_area
+            return CandidateState(
+                pressure,
+                closure=closure,
+                force=force,
+                residual=solution.residual if math.isfinite(force) else math.nan,
+                iterations=solution.applications,
+                space=space,
+                hardness=problem.cap * self.pressure,
+                before=before,
+                candidates=Candidates(
+                    problem.nodes,
+                    on_nodes,
+                    solution.displacement * self.length,
+                    topography.clearance_at(problem.nodes),
+                    topography,
+                ),
+            )
         pressure = solution.pressure.reshape(space.shape) * self.pressure
         displacement = solution.displacement.reshape(space.shape) * self.length
-        closure = solution.closure * self.length if self.by_force else self.length
         force = float(pressure.sum()) * space.cell_area
-        # Of the states before, one is enough, and it need not hold on to its own.
-        before = None if start is None or start.space != space else replace(start, _before=None)
         return ContactState(
             pressure=pressure,
             displacement=displacement,
-            gap=displacement + clearance - closure,
+            gap=displacement + topography.clearance() - closure,
             closure=closure,
             force=force,
             # What is no number violates no condition, and must not pass for a state.

@@ -1,5 +1,6 @@
 """A state of contact: pressures, displacements, gaps, and what follows from them."""
 
+import copy
 import dataclasses
 from dataclasses import dataclass
 
@@ -9,8 +10,9 @@ from ..core.errors import NotConverged
 from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from .effort import SOLVING
-from .kkt import nodes_between_bounds
+from .kkt import frank_wolfe_gap, nodes_between_bounds
 from .projected_cg import Operator, stiffness
+from .topography import Topography
 
 # Largest relative error of the stiffness.
 STIFFNESS_ERROR = 1e-6
@@ -80,6 +82,25 @@ class ContactState:
         return int(np.count_nonzero(weak) + np.count_nonzero(near))
 
     @computed_once
+    def energy_error(self) -> float:
+        """Bound on the energy above its minimum at the same force, as a fraction of the energy.
+
+        The energy E = sum (u / 2 + c) p s^2, elastic and of closing the clearance c, is least for
+        the exact state among all pressures of its force within the bounds, whether the force or the
+        closure was given. The bound is the Frank-Wolfe gap (`kkt.frank_wolfe_gap`); the elastic
+        energy of the error of the pressure is no more than that either. 0 without a force.
+        """
+        pressure, displacement, gap = (values.ravel() for values in self._on_nodes())
+        # What it would be to undo the displacement and close the gap from there: c = g - u + w.
+        energy = float(pressure @ (gap - displacement / 2)) + self.closure * float(pressure.sum())
+        bound = frank_wolfe_gap(pressure, gap, self.hardness)
+        return bound / energy if energy > 0 else 0.0
+
+    def _on_nodes(self):
+        """Pressure, displacement and gap of all nodes that may carry pressure."""
+        return self.pressure, self.displacement, self.gap
+
+    @computed_once
     def stiffness(self) -> float:
         """Normal stiffness dF/dw, N/mm, from K q = 1 on the nodes strictly between the bounds.
 
@@ -90,12 +111,140 @@ class ContactState:
         NotConverged
             If it is not known to :data:`STIFFNESS_ERROR`.
         """
-        active = nodes_between_bounds(self.pressure.ravel(), self.hardness)
         with SOLVING.counted(0):
-            value, error = stiffness(Operator(self.space), active)
+            value, error = stiffness(*self._operator_on_active())
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         return value * self.space.modulus * self.space.cell
+
+    def _operator_on_active(self):
+        """An operator, and the nodes strictly between the bounds."""
+        return Operator(self.space), nodes_between_bounds(self.pressure.ravel(), self.hardness)
+
+    def without_before(self) -> "ContactState":
+        """The same state without those that it was extrapolated from.
+
+        Returns
+        -------
+        ContactState
+        """
+        state = copy.copy(self)
+        vars(state)["_before"] = None
+        return state
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The nodes of a state that could touch: all others have a gap, whatever the pressures.
+
+    Attributes
+    ----------
+    nodes : (n,) int32 ndarray
+        Numbers of their cells, ascending.
+    pressure, displacement, clearance : (n,) ndarray
+        MPa and mm; the clearance is that of first touch.
+    topography : Topography
+        That it is a state of.
+    """
+
+    nodes: np.ndarray
+    pressure: np.ndarray
+    displacement: np.ndarray
+    clearance: np.ndarray
+    topography: Topography
+
+
+class CandidateState(ContactState):
+    """A state that was solved and verified on candidates for contact alone (`candidates`).
+
+    Displacement and gap of the whole window are computed when they are asked for.
+
+    Parameters
+    ----------
+    pressure : (ny, nx) ndarray
+        MPa.
+    closure, force, residual, iterations, space, hardness
+        As `ContactState` has them.
+    before : ContactState or None
+        The state it was solved from.
+    candidates : Candidates
+    """
+
+    _candidates: Candidates
+
+    def __init__(
+        self,
+        pressure: np.ndarray,
+        *,
+        closure: float,
+        force: float,
+        residual: float,
+        iterations: int,
+        space: HalfSpace,
+        hardness: float,
+        before: ContactState | None,
+        candidates: Candidates,
+    ):
+        vars(self).update(
+            pressure=pressure,
+            closure=closure,
+            force=force,
+            residual=residual,
+            iterations=iterations,
+            space=space,
+            hardness=hardness,
+            _before=before,
+            _candidates=candidates,
+        )
+
+    @computed_once
+    def displacement(self) -> np.ndarray:  # type: ignore[override]
+        """Elastic displacement u = K p of the composite surface, mm, (ny, nx)."""
+        return self.space.displacement(self.pressure)
+
+    @computed_once
+    def gap(self) -> np.ndarray:  # type: ignore[override]
+        """Remaining opening, mm, (ny, nx).
+
+        Raises
+        ------
+        ValueError
+            If the topography that was solved has been changed since.
+        """
+        known = self._candidates
+        if not np.array_equal(known.topography.clearance_at(known.nodes), known.clearance):
+            raise ValueError("the composite topography of this state has been changed since")
+        return self.displacement + known.topography.clearance() - self.closure
+
+    @property
+    def candidates(self) -> int:
+        """How many nodes could touch."""
+        return self._candidates.nodes.size
+
+    @property
+    def area(self) -> float:
+        """A_r = N s^2, mm2."""
+        return float(np.count_nonzero(self._candidates.pressure)) * self.space.cell_area
+
+    @property
+    def ambiguous(self) -> int:
+        """As of any state: all others than candidates are further away than the tolerance."""
+        known, tolerance = self._candidates, self.residual * self.closure
+        _, _, gap = self._on_nodes()
+        weakest = tolerance * self.space.modulus / self.space.cell
+        touching = known.pressure > 0
+        weak = touching & (known.pressure <= weakest)
+        return int(np.count_nonzero(weak | (~touching & (gap <= tolerance))))
+
+    def _on_nodes(self):
+        known = self._candidates
+        gap = known.displacement + known.clearance - self.closure
+        return known.pressure, known.displacement, gap
+
+    def _operator_on_active(self):
+        between = nodes_between_bounds(self._candidates.pressure, self.hardness)
+        nodes = self._candidates.nodes[between]
+        return Operator(self.space, nodes), np.arange(nodes.size, dtype=np.int32)
 
 
 def unloaded_state(space: HalfSpace, clearance: np.ndarray) -> ContactState:

@@ -22,8 +22,9 @@ from ..core.arguments import (
     refuse_masked,
     whole_number,
 )
-from ..core.threads import computed_once
+from ..core.threads import computed_once, count
 from .convolution import Convolution, fast_length
+from .influence import influence_at, influence_table
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
@@ -34,45 +35,6 @@ RIGID_PLATE_SELF_TERMS = {
 }
 #: Compiled code counts cells in four bytes.
 MOST_CELLS = 2**31 - 1
-
-
-def love_displacement(
-    x: float | np.ndarray, y: float | np.ndarray, dx: float, dy: float
-) -> np.ndarray:
-    """Displacement at (x, y) under uniform pressure on a rectangle centred at the origin.
-
-    Parameters
-    ----------
-    x, y : float or ndarray
-        Where the displacement is wanted, mm.
-    dx, dy : float
-        Sides of the loaded rectangle, mm.
-
-    Returns
-    -------
-    ndarray
-        E* u / p in mm.
-
-    Notes
-    -----
-    A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377: pi E* u / p is the sum over the four
-    corners, signed, of X asinh(Y/|X|) + Y asinh(X/|Y|).
-    """
-    total = np.zeros(())
-    for sign_x in (1, -1):
-        for sign_y in (1, -1):
-            corner = _love_corner(x + sign_x * dx / 2, y + sign_y * dy / 2)
-            total = total + sign_x * sign_y * corner
-    return total / np.pi
-
-
-def _love_corner(x, y):
-    """X asinh(Y/|X|) + Y asinh(X/|Y|), continued by its limit where X or Y vanishes."""
-    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-    first, second = np.zeros(x.shape), np.zeros(x.shape)
-    np.divide(y, np.abs(x), out=first, where=x != 0)
-    np.divide(x, np.abs(y), out=second, where=y != 0)
-    return x * np.arcsinh(first) + y * np.arcsinh(second)
 
 
 def rectangle_mean_displacement(a: float, b: float) -> float:
@@ -203,18 +165,49 @@ class HalfSpace:
 
     @computed_once
     def _influence(self):
-        dy, dx = (d / self.cell for d in self.spacing)
-        y = np.arange(self.shape[0])[:, None] * dy
-        x = np.arange(self.shape[1])[None, :] * dx
-        if self.kernel == "love":
-            influence = love_displacement(x, y, dx, dy)
-        else:
-            distance = np.hypot(x, y)
-            distance[0, 0] = 1.0
-            influence = 1 / (np.pi * distance)
-            influence[0, 0] = RIGID_PLATE_SELF_TERMS[self.kernel]
+        influence = self._table(self.shape)
         influence.flags.writeable = False
         return influence
+
+    def near_influence(self, side: int) -> np.ndarray:
+        """The same up to a distance of ``side`` cells each way, or as far as the window reaches.
+
+        Made once and kept; read only.
+
+        Parameters
+        ----------
+        side : int
+
+        Returns
+        -------
+        (my, mx) ndarray
+        """
+        if side not in self._near:
+            near = self._table((min(side, self.shape[0]), min(side, self.shape[1])))
+            near.flags.writeable = False
+            self._near.setdefault(side, near)
+        return self._near[side]
+
+    @computed_once
+    def _near(self):
+        return {}
+
+    def influence_at(self, y: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The same at any distances, none of them zero, (n,), counted in cells."""
+        return influence_at(y, x, self._sides, self._self_term)
+
+    @property
+    def _self_term(self):
+        """None for Love's kernel."""
+        return RIGID_PLATE_SELF_TERMS.get(self.kernel)
+
+    @computed_once
+    def _sides(self):
+        """Sides of a cell (y, x), in units of `cell`."""
+        return tuple(d / self.cell for d in self.spacing)
+
+    def _table(self, shape):
+        return influence_table(shape, self._sides, self._self_term)
 
     def coarser(self, factor: int) -> "HalfSpace":
         """The same half-space on cells ``factor`` times as long and as wide, covering the window.
@@ -241,7 +234,8 @@ class HalfSpace:
         shape = -(-self.shape[0] // factor), -(-self.shape[1] // factor)
         sides = factor * self.spacing[0], factor * self.spacing[1]
         coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
-        vars(coarse)["_influence"] = self.influence()[: shape[0], : shape[1]]
+        # To the last bit the same influence.
+        vars(coarse)["_sides"] = self._sides
         return self._coarser.setdefault(factor, coarse)
 
     @computed_once
@@ -279,22 +273,40 @@ class HalfSpace:
             images[index] = convolution(values[index])
         return images
 
-    @computed_once
+    @property
     def _double(self):
-        return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
+        return self._convolutions[0]
+
+    @property
+    def _single(self):
+        return self._convolutions[1]
 
     @computed_once
-    def _single(self):
-        return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
+    def _convolutions(self):
+        """In double and in single precision, from one spectrum, which is not kept."""
+        spectrum = self._spectrum()
+        return tuple(
+            Convolution(spectrum, self.shape, self._padded, dtype)
+            for dtype in (np.float64, np.float32)
+        )
 
     def _spectrum(self):
-        """Transform of the influence in its circulant: even both ways, and so real and even."""
-        spectrum = self.influence()
+        """Transform of the influence in its circulant: even both ways, and so real and even.
+
+        Of even length it is a cosine transform (DCT-I) of half the circulant.
+        """
+        spectrum = self._table(self.shape)
         for axis in (1, 0):
             n, padded = self.shape[axis], self._padded[axis]
-            distance = np.minimum(np.arange(padded), padded - np.arange(padded))
-            circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)
-            spectrum = fft.rfft(circulant, axis=axis).real
+            half = padded // 2 + 1
+            if padded % 2 == 0:
+                place = np.minimum(np.arange(half), n - 1)
+                spectrum = np.take(spectrum, place, axis=axis) if half != n else spectrum
+                spectrum = fft.dct(spectrum, 1, axis=axis, overwrite_x=True, workers=count())
+            else:
+                distance = np.minimum(np.arange(padded), padded - np.arange(padded))
+                circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)
+                spectrum = fft.rfft(circulant, axis=axis).real
         return spectrum
 
 

@@ -48,6 +48,11 @@ STATES: dict[str, tuple] = {
     "band_dimension": (_STATE, "1", "D_2 between the cut-off and the roll-off"),
     "cut_dimension": (_STATE, "1", "the same of the bearing-area cut of as many nodes"),
     "residual": (_STATE, "1", "largest KKT residual, fraction of the closure"),
+    "energy_error": (
+        _STATE,
+        "1",
+        "Frank-Wolfe bound on the energy above its minimum, fraction of it",
+    ),
 }
 #: What is kept of every surface.
 SURFACES: dict[str, tuple] = {
@@ -224,4 +229,5 @@ def _numbers_of(
         "band_dimension": correlation_dimension(domain, SPACING, band).value,
         "cut_dimension": correlation_dimension(cut, SPACING, band).value,
         "residual": state.residual,
+        "energy_error": state.energy_error,
     }

@@ -25,6 +25,7 @@ SCALARS = {
     "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
     "residual": ("1", "largest KKT residual, fraction of the closure"),
+    "energy_error": ("1", "Frank-Wolfe bound on the energy above its minimum, fraction of it"),
     "iterations": ("1", "applications of the elastic operator"),
     "suspect_load_share": ("1", "fraction of the force on suspicious cells of the scans"),
 }

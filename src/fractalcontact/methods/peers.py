@@ -113,6 +113,11 @@ class PublicCode:
         """Applications of the operator counted since then; None of a code that cannot count."""
         return None
 
+    @property
+    def path(self) -> str:
+        """Which way the last call went, where the code has several: its operator and counters."""
+        return ""
+
 
 def solve_in_child(
     set_up: Callable[[ArrayLike, HalfSpace], PublicCode],

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from ..elastic.halfspace import HalfSpace
     from .peers import PublicCode
 
+#: Nodes along the smallest window of methods that know dyadic ones only.
+LEAST_DYADIC = 32
+
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
@@ -47,6 +50,9 @@ class Method:
         The loads under which the pressure can be capped at a hardness.
     kernels : tuple of str
         The influence kernels of `HalfSpace` that it knows; any if none is named.
+    windows : str
+        Windows that it knows: ``"any"``, or ``"dyadic"`` for squares of 32, 64, 128 ... square
+        cells a side.
     holes : bool
         Whether it would take a cell without a height for one that never touches, which is another
         problem than the package's.
@@ -77,6 +83,7 @@ class Method:
     loads: tuple[str, ...] = ("closure",)
     hardness: tuple[str, ...] = ()
     kernels: tuple[str, ...] = ()
+    windows: str = "any"
     holes: bool = False
     warm: bool = False
     direct: bool = False
@@ -150,6 +157,10 @@ class Method:
             "start": start,
             "hardness": hardness,
         }
+        if not self.takes(space):
+            raise NotOffered(
+                f"{self.title or self.name} takes square windows of 32, 64, 128 ... square cells"
+            )
         rtol = self.rtol if rtol is None else rtol
         if self.packages:
             from .peers import solve_in_child
@@ -181,6 +192,19 @@ class Method:
     @cached_property
     def _module(self) -> ModuleType:
         return import_module(f"{__package__}.{self.module}")
+
+    def takes(self, space: "HalfSpace") -> bool:
+        """Whether the window of a half-space is one that the method knows.
+
+        Parameters
+        ----------
+        space : HalfSpace
+        """
+        if self.windows == "any":
+            return True
+        (ny, nx), (dy, dx) = space.shape, space.spacing
+        square = ny == nx and abs(dy - dx) <= 1e-9 * dx
+        return square and nx >= LEAST_DYADIC and nx & (nx - 1) == 0
 
     def offers(
         self,
