@@ -289,7 +289,7 @@ def test_maps_are_true_to_scale(atlas, specimen):
 def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
     written = []
     for folder in (tmp_path / "first", tmp_path / "second"):
-        captions = draw_figures(atlas_file, "pair", folder, FIGURES)
+        captions = draw_figures(atlas_file, "pair", folder, FIGURES).captions
         assert list(captions) == list(FIGURES)
         written.append({path.name: path.read_bytes() for path in folder.iterdir()})
     assert written[0] == written[1]

@@ -92,13 +92,13 @@ def test_a_warning_stands_in_the_sheet_and_in_the_captions_of_contact(atlas_file
     with netCDF4.Dataset(path, "a") as file:
         file["quality/sliding"].warning = changed["quality/sliding"].attrs["warning"]
     names = ["fig02_relief", "fig08_prefractals"]
-    captions = draw_figures(path, "sliding", tmp_path, names)
+    captions = draw_figures(path, "sliding", tmp_path, names).captions
     assert "WARNING" not in captions["fig02_relief"]
     assert captions["fig08_prefractals"].endswith(
         "WARNING: resolutions s = 0.1 mm lie below the noise."
     )
     assert "WARNING" in (tmp_path / "fig08_prefractals.txt").read_text()
-    clean = draw_figures(atlas_file, "sliding", tmp_path, names[1:])
+    clean = draw_figures(atlas_file, "sliding", tmp_path, names[1:]).captions
     assert "WARNING" not in clean["fig08_prefractals"]
 
 

@@ -51,7 +51,8 @@ def test_figures_of_a_study(atlas_file, atlas, tmp_path):
         "estimator_bias",
     ]
     assert study_figures_of({"study": "x", "area_slope": {}}) == ["area_slope"]
-    captions = draw_study_figures(atlas_file, ["flat", "pair", "sliding"], tmp_path, ["area_slope"])
+    specimens = ["flat", "pair", "sliding"]
+    captions = draw_study_figures(atlas_file, specimens, tmp_path, ["area_slope"]).captions
     assert list(captions) == ["area_slope"]
     assert (tmp_path / "area_slope.txt").read_text(encoding="utf-8") == captions[
         "area_slope"

@@ -9,6 +9,7 @@ from fractalcontact.mechanics.closure import (
     bulk_settlement,
     closure_curves,
     elastic_dilatancy,
+    full_contact_warning,
 )
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.load_curve import closure_at_force
@@ -227,3 +228,21 @@ def slid_joint(cells, loads, resolutions=(1,)):
 
 
 SOLVER = {"rtol": 1e-7, "kernel": "love"}
+
+
+def test_the_closure_of_polished_faces_in_full_contact_is_undetermined():
+    """They settle like a rigid punch, by less than w_b: the difference says nothing of them."""
+    heights = self_affine((32, 32), 0.1, 0.8, seed=3, rms=5e-5)
+    curves = curves_of(heights, [1.0, 1e4])
+    light, full = curves["interface_closure"].squeeze().values
+    assert curves["area_share"].values.squeeze()[1] == 1
+    # The closure of the whole is known as ever, and lies below the settlement by 8 %.
+    difference = float(curves["closure"].squeeze()[1] - curves["bulk_settlement"][1])
+    assert -0.09 < difference * 2e4 * 3.2 / 1e4 < -0.06
+    assert np.isnan(full)
+    assert 0 < light <= heights.max() - heights.min()
+    assert np.isnan(curves["interface_stiffness"].squeeze()[1])
+    assert "so full in 1 of 2 states" in full_contact_warning(curves)
+    rough = curves_of(self_affine((32, 32), 0.1, 0.8, seed=3, rms=0.05), [1.0, 100.0])
+    assert (rough["interface_closure"] > 0).all()
+    assert full_contact_warning(rough) == ""

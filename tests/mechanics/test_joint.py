@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.errors import InputError
+from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.mechanics.joint import (
     choose_offsets,
     composite_topography,
@@ -142,3 +143,32 @@ def test_the_limit_is_what_chance_gives():
 def test_faces_that_stay_alike_have_no_such_range():
     length, uncorrelated, limit = correlation_ranges([0, 1, 2], [[1, 0.9, 0.8]], 400.0)
     assert np.isnan([*length, *uncorrelated, limit]).all()
+
+
+@pytest.mark.parametrize("direction", ["E", "N", "W", "S"])
+@pytest.mark.parametrize("level", [0.0, 1e5])
+def test_a_slide_in_one_pass_is_that_of_whole_arrays(rough, direction, level):
+    joint = specimen(rough)
+    joint["lower"] = joint["lower"] + level
+    cells = np.arange(6)
+    opened, spread = rigid_dilatancy(joint, direction, cells)
+    found = face_correlation(joint, direction, cells)
+    _, z_u = faces(joint)
+    upper = z_u[window_slices(joint)]
+    under = without_mean_plane(upper)
+    for n in cells:
+        composite = composite_topography(joint, direction, n)
+        above = without_mean_plane(composite + upper)
+        rho = np.mean(above * under) / np.sqrt(np.mean(above**2) * np.mean(under**2))
+        accuracy = {"rel": 1e-9, "abs": 1e-15 * max(level, 1)}
+        assert opened[n] == pytest.approx(composite.max(), **accuracy)
+        assert spread[n] == pytest.approx(composite.std(), **accuracy)
+        assert found[n] == pytest.approx(rho, rel=1e-9 if level == 0 else 1e-7)
+    assert opened[0] == spread[0] == 0
+
+
+def test_a_plane_is_correlated_with_nothing(rough):
+    y, x = np.indices(rough.shape)
+    joint = specimen(rough)
+    joint["lower"] = ("y", "x"), 0.3 * x + 0.1 * y
+    assert np.isnan(face_correlation(joint, "E", [0, 2])).all()

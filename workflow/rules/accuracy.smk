@@ -193,6 +193,7 @@ use rule study_figures as accuracy_figures with:
             name=ACCURACY_FIGURES,
             ending=("svg", "csv", "txt"),
         ),
+        undrawn=f"{RESULTS}/undrawn_of_accuracy.txt",
     log:
         f"{RESULTS}/logs/accuracy_figures.log",
     benchmark:
@@ -201,6 +202,20 @@ use rule study_figures as accuracy_figures with:
         specimens=[],
         names=ACCURACY_FIGURES,
         code=code("study_figures", *figure_modules(ACCURACY_FIGURES)),
+
+
+use rule all_drawn as accuracy_drawn with:
+    input:
+        rules.accuracy_figures.output.undrawn,
+    output:
+        f"{RESULTS}/all_drawn_of_accuracy.txt",
+    log:
+        f"{RESULTS}/logs/accuracy_drawn.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/accuracy_drawn.tsv"
+    params:
+        logs=f"{RESULTS}/logs/accuracy_figures.log",
+        code=code("all_drawn"),
 
 
 def accuracy_pictures(wildcards):
@@ -212,6 +227,7 @@ def accuracy_pictures(wildcards):
     parts = expand(rules.stability_part.output[0], part=PARTS)
     return [
         *rules.accuracy_figures.output,
+        *rules.accuracy_drawn.output,
         *rules.accuracy_atlas.output,
         *rules.accuracy_atlas.input,
         *parts,

@@ -28,6 +28,7 @@ from fractalcontact.study import guards, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
+from fractalcontact.study.memory import specimen_memory
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.study.size_tasks import size_jobs
 

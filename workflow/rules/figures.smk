@@ -56,6 +56,8 @@ def configuration_of(wildcards):
 
 
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
+#: Names of the figures that failed, which is empty but for an error of the program.
+UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
 
 # The figures of a specimen are drawn from an atlas of its own, made just before: so a new scan draws
@@ -68,6 +70,7 @@ rule figures:
         *pictures("match"),
         *beside("match"),
         atlas=SPECIMEN_ATLAS,
+        undrawn=UNDRAWN,
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
@@ -93,6 +96,7 @@ use rule figures as figures_against_plane with:
         *pictures("flat"),
         *beside("flat"),
         atlas=SPECIMEN_ATLAS,
+        undrawn=UNDRAWN,
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
@@ -116,6 +120,7 @@ rule study_figures:
             name=STUDY_FIGURES,
             ending=("svg", "csv", "txt"),
         ),
+        undrawn=f"{RESULTS}/undrawn_of_study.txt",
     log:
         f"{RESULTS}/logs/study_figures.log",
     benchmark:
@@ -131,6 +136,30 @@ rule study_figures:
         code=code("study_figures", *figure_modules(STUDY_FIGURES)),
     script:
         "../scripts/study_figures.py"
+
+
+# A figure that fails keeps no other from being drawn, of this specimen or another; but the study has
+# not succeeded, and ends here with the names of those that failed.
+rule all_drawn:
+    input:
+        expand(UNDRAWN, specimen=SPECIMENS),
+        *([rules.study_figures.output.undrawn] if STUDY_FIGURES else []),
+    output:
+        f"{RESULTS}/all_drawn.txt",
+    log:
+        f"{RESULTS}/logs/all_drawn.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/all_drawn.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=500,
+        runtime=5,
+    params:
+        logs=f"the logs in {RESULTS}/logs/figures",
+        code=code("all_drawn"),
+    script:
+        "../scripts/all_drawn.py"
 
 
 def figures_of_specimens(opposite, specimens):
@@ -164,5 +193,6 @@ def collect_everything(wildcards):
         *expand(rules.size_effect_part.output[0], job=SIZE_JOBS),
         *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
+        *rules.all_drawn.output,
     ]
     return [*stages, *all_figure_files(), *RESULT_PAGE]

@@ -48,6 +48,16 @@ def options_of(wildcards):
     return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_of(wildcards)["spacing"])
 
 
+def memory_of(wildcards):
+    """Megabytes that the job of a specimen takes, by the size of its scan files."""
+    scan = SCANS.get(wildcards.specimen)
+    if scan is not None:
+        return specimen_memory(scan.files)
+    recipe = recipe_of(wildcards)
+    nodes = round(recipe["size"] / recipe["spacing"])
+    return max(2000, 700 + nodes**2 // 5000)  # 200 bytes a node
+
+
 # The levelled specimen, and its joint before contact is solved: the dimension of its face, what the
 # instrument adds and which resolutions go below it, and one face slid over the other (offsets,
 # composite topographies, rigid dilatancy). Seconds of work, so one job.
@@ -63,7 +73,7 @@ rule specimen:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
+        mem_mb=lambda wc, attempt: memory_of(wc) * attempt,
         runtime=15,
     params:
         settings=settings_read_by("specimens"),

@@ -46,6 +46,8 @@ def job(snakemake):
             for path in _below(results, snakemake.input):
                 checksums.require_intact(results, path)
             yield log
+            if _told_to_stop:  # the work may have taken the interrupt for an error of its own
+                raise KeyboardInterrupt
             checksums.record(results, _below(results, snakemake.output))
         signal.signal(signal.SIGTERM, signal.SIG_IGN)  # done: it ends at once anyway
         log.info(

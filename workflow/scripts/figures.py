@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from _drawn import report
 from _job import job
 from _stages import join_stages, read_stages
 
@@ -11,11 +12,6 @@ with job(snakemake) as log:
     stages, made_with = read_stages(snakemake.input)
     atlas = snakemake.output.atlas
     join_stages(stages, made_with, atlas, snakemake.params.configuration, log)
-    captions = draw_figures(
-        atlas,
-        snakemake.wildcards.specimen,
-        Path(snakemake.output[0]).parent,
-        snakemake.params.names,
-    )
-    for name, caption in captions.items():
-        log.info("%s: %s", name, caption)
+    specimen = snakemake.wildcards.specimen
+    drawn = draw_figures(atlas, specimen, Path(snakemake.output[0]).parent, snakemake.params.names)
+    report(drawn, specimen, snakemake.output.undrawn, log)

@@ -6,21 +6,43 @@ a study the names of all its specimens; a :class:`figures.kit.drawing.Drawing` o
 """
 
 import importlib
+import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ..core.errors import InputError, OutputError
 from ..study.atlas import STAGES, read_atlas
 from ..study.figure_list import all_figures
 from .kit.drawing import Drawing, garbage_collection_paused, print_style, save
+from .kit.undrawn import undrawn
 
 #: Stages of the scan itself, not of contact that a warning is about.
 _OF_THE_SCAN = {"specimens", "quality", "surface_dimension"}
 #: Figures that state the warnings themselves.
 _STATING = {"quality"}
 
+#: A full disk, no memory, or an atlas that cannot be read fails every figure.
+_NOT_OF_THE_FIGURE = (InputError, OutputError, OSError, MemoryError)
+
 #: Files written for each figure: two pictures, the numbers in them, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What became of some figures.
+
+    Attributes
+    ----------
+    captions : dict of str to str
+        By figure.
+    failures : dict of str to str
+        Traceback of each that an error of the program kept from being drawn; its picture says so.
+    """
+
+    captions: dict[str, str] = field(default_factory=dict)
+    failures: dict[str, str] = field(default_factory=dict)
 
 
 def drawer_of(name: str) -> Callable[..., Drawing]:
@@ -47,8 +69,11 @@ def drawer_of(name: str) -> Callable[..., Drawing]:
 
 def draw_figures(
     atlas_path: Path | str, specimen: str, folder: Path | str, names: Sequence[str]
-) -> dict[str, str]:
+) -> Drawn:
     """Draw figures of one specimen and write each as PNG, SVG, CSV and caption.
+
+    One that fails does not keep the others from being drawn: whoever calls sees to it that the
+    failure is not overlooked.
 
     Parameters
     ----------
@@ -60,8 +85,7 @@ def draw_figures(
 
     Returns
     -------
-    dict
-        Figure name to caption.
+    Drawn
     """
     atlas = read_atlas(atlas_path)
     found = [atlas[f"{stage}/{specimen}"].attrs.get("warning") for stage in ("quality", "closure")]
@@ -70,7 +94,7 @@ def draw_figures(
 
 def draw_study_figures(
     atlas_path: Path | str, specimens: Sequence[str], folder: Path | str, names: Sequence[str]
-) -> dict[str, str]:
+) -> Drawn:
     """Draw figures of a whole study, as :func:`draw_figures` does those of one specimen.
 
     Parameters
@@ -83,8 +107,7 @@ def draw_study_figures(
 
     Returns
     -------
-    dict
-        Figure name to caption.
+    Drawn
     """
     # To read the stages that none of them draws takes long.
     needs = {stage for name in names for stage in all_figures()[name].needs}
@@ -93,14 +116,26 @@ def draw_study_figures(
 
 
 def _draw(atlas, subject, folder, names, warning=""):
-    captions = {}
+    drawn = Drawn()
     with print_style():
         for name in names:
             with garbage_collection_paused():
-                drawing = drawer_of(name)(atlas, subject)
-                of_scan = _OF_THE_SCAN.issuperset(all_figures()[name].needs)
-                if warning and not of_scan and name not in _STATING:
-                    drawing = replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")
-                save(drawing, folder, name)
-            captions[name] = drawing.caption
-    return captions
+                try:
+                    drawing = _with_warning(drawer_of(name)(atlas, subject), name, warning)
+                    save(drawing, folder, name)
+                except _NOT_OF_THE_FIGURE:
+                    raise
+                except Exception as error:
+                    drawn.failures[name] = traceback.format_exc()
+                    drawing = undrawn(all_figures()[name].title, subject, error)
+                    save(drawing, folder, name)
+            drawn.captions[name] = drawing.caption
+    return drawn
+
+
+def _with_warning(drawing, name, warning):
+    """The drawing, with what must be known of the specimen in its caption."""
+    of_scan = _OF_THE_SCAN.issuperset(all_figures()[name].needs)
+    if not warning or of_scan or name in _STATING:
+        return drawing
+    return replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")

@@ -61,6 +61,48 @@ def interface_closure(closure: Numbers, settlement: Numbers, flush: Any = False)
     return np.where(flush, 0.0, closing)
 
 
+def determined_closure(closing: xr.DataArray, flush: xr.DataArray) -> xr.DataArray:
+    """Interface closure where it is determined: missing where the contact is too full to tell.
+
+    Faces in full contact are loaded like a rigid punch, which settles less than the uniform
+    pressure of w_b does: by some 0.08 F/(E* b) for a square. Where the rough faces close by less
+    than that, w - w_b is negative, which no closure is, and says nothing of the interface.
+
+    Parameters
+    ----------
+    closing : xr.DataArray
+        w_int of :func:`interface_closure`, mm.
+    flush : xr.DataArray of bool
+        Where faces match everywhere: nothing closes there, and that is known.
+
+    Returns
+    -------
+    xr.DataArray
+        NaN where w_int <= 0 and the faces are not flush.
+    """
+    return closing.where((closing > 0) | flush)
+
+
+def full_contact_warning(curves: xr.Dataset) -> str:
+    """Warning where contact is so full that no interface is left to tell, "" if nowhere.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        From :func:`closure_curves`.
+    """
+    finest = curves.sel(resolution=curves["resolution"].min())
+    solved = finest["solved"]
+    full = int((solved & finest["interface_closure"].isnull()).sum())
+    if not full:
+        return ""
+    return (
+        f"contact is so full in {full} of {int(solved.sum())} states that the interface closes by "
+        "less than the settlement of the blocks is known to: closure, dilatancy and stiffness of "
+        "the interface are undetermined there"
+    )
+
+
 def closure_curves(
     states: xr.Dataset,
     window: tuple[float, float],
@@ -121,8 +163,10 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     )
     flush = curves["composite_spread"] == 0
     closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
-    curves["interface_closure"] = closing.transpose(*order)
-    curves["interface_closure"].attrs = cf_attrs("mm", "interface closure w_int = w - w_b")
+    curves["interface_closure"] = determined_closure(closing, flush).transpose(*order)
+    curves["interface_closure"].attrs = cf_attrs(
+        "mm", "interface closure w_int = w - w_b; none where contact is too full to tell"
+    )
     for name, words in (
         ("area", "real contact area A_r / A_0"),
         ("area_corrected", "real contact area A_r / A_0, corrected for the perimeter"),

@@ -15,9 +15,9 @@ from ..core.datasets import labelled, labelled_dataset
 from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
-from ..core.mean_plane import without_mean_plane
 from ..surface.specimen import faces, largest_offset, nominal_area, window_slices
 from .composite_dimension import composite_dimensions
+from .rigid_slide import Slide, slide
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
 #: slide, a surface against a rigid plane.
@@ -139,13 +139,8 @@ def rigid_dilatancy(
     spread : (n,) ndarray
         Standard deviation sigma_z of h in mm.
     """
-    mated = composite_topography(specimen, direction, 0).max()
-    opened, spread = [], []
-    for n in np.asarray(cells, int):
-        composite = composite_topography(specimen, direction, n)
-        opened.append(composite.max() - mated)
-        spread.append(composite.std())
-    return np.array(opened), np.array(spread)
+    slid = _slid(specimen, direction, np.r_[0, np.asarray(cells, int)])
+    return slid.highest[1:] - slid.highest[0], slid.spread[1:]
 
 
 def face_correlation(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> np.ndarray:
@@ -161,15 +156,19 @@ def face_correlation(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> 
     (n,) ndarray
         Pearson's coefficient; NaN where a face is a plane.
     """
-    _, z_u = faces(specimen)
-    upper = z_u[window_slices(specimen)]
-    under = without_mean_plane(upper)
-    correlation = []
-    for n in np.asarray(cells, int):
-        above = without_mean_plane(composite_topography(specimen, direction, n) + upper)
-        norm = np.sqrt(np.mean(above**2) * np.mean(under**2))
-        correlation.append(np.mean(above * under) / norm if norm > 0 else np.nan)
-    return np.array(correlation)
+    return _slid(specimen, direction, np.asarray(cells, int)).correlation
+
+
+def _slid(specimen: xr.Dataset, direction: str, cells: np.ndarray) -> Slide:
+    """The joint at offsets (n,) in cells; they are checked as :func:`composite_topography` does."""
+    farthest = int(max(cells))
+    if direction != "none" and farthest > largest_offset(specimen, direction):
+        raise InputError(_too_far(specimen, direction, farthest))
+    z_l, z_u = faces(specimen)
+    window = window_slices(specimen)
+    corner = [along.start for along in window]
+    corners = corner + np.outer(cells, DIRECTION_STEPS[direction])
+    return slide(z_l, np.ascontiguousarray(z_u[window]), corners)
 
 
 def correlation_ranges(
@@ -313,8 +312,10 @@ def _describe_slide(
     for i, direction in enumerate(directions):
         ratio = spacing / direction_spacing(specimen, direction)
         own = np.round(cells * ratio).astype(int)
-        dilatancy[i], spread[i] = rigid_dilatancy(specimen, direction, own)
-        correlation[i] = face_correlation(specimen, direction, own)
+        slid = _slid(specimen, direction, own)
+        # The first cell of all is that of no offset.
+        dilatancy[i], spread[i] = slid.highest - slid.highest[0], slid.spread
+        correlation[i] = slid.correlation
     slid = offsets_of(cells, spacing)
     length, uncorrelated, limit = correlation_ranges(slid, correlation, nominal_area(specimen))
     table = RIGID_SLIDE | _CORRELATION

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 
+from ..core.strips import blocks, strips
 from .points import Lattice
 from .triangles import circumradius, doubled_area, on_one_line
 
@@ -133,18 +134,28 @@ def points_per_cell(points: np.ndarray, heights: np.ndarray, lattice: Lattice) -
     heights : ndarray, shape (ny, nx)
         NaN where missing.
     """
-    columns = np.round((points[:, 0] - lattice.x0) / lattice.dx).astype(np.int64)
-    rows = np.round((points[:, 1] - lattice.y0) / lattice.dy).astype(np.int64)
-    inside = (columns >= 0) & (columns < lattice.nx) & (rows >= 0) & (rows < lattice.ny)
-    cells, counts = np.unique(rows[inside] * lattice.nx + columns[inside], return_counts=True)
     measured = np.isfinite(heights)
     n_measured = int(measured.sum())
     if n_measured == 0:
         return np.nan
+    if heights.size <= 4 * len(points):
+        held = np.zeros(heights.size, dtype=np.uint32)
+        for part in blocks(len(points)):
+            np.add.at(held, _cells_of(points[part], lattice), np.uint32(1))
+        return float(np.median(held[measured.ravel()]))
+    cells, counts = np.unique(_cells_of(points, lattice), return_counts=True)
     counts = np.sort(counts[measured.ravel()[cells]])
     empty = n_measured - len(counts)  # most cells may be, so that they are not listed
     middle = [(n_measured - 1) // 2 - empty, n_measured // 2 - empty]
     return float(np.mean([counts[i] if i >= 0 else 0 for i in middle]))
+
+
+def _cells_of(points: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Cell of each point, counted row by row; points outside the grid are left out."""
+    columns = np.round((points[:, 0] - lattice.x0) / lattice.dx).astype(np.int64)
+    rows = np.round((points[:, 1] - lattice.y0) / lattice.dy).astype(np.int64)
+    inside = (columns >= 0) & (columns < lattice.nx) & (rows >= 0) & (rows < lattice.ny)
+    return rows[inside] * lattice.nx + columns[inside]
 
 
 def far_from_points(points: np.ndarray, lattice: Lattice, area: float) -> np.ndarray:
@@ -163,8 +174,11 @@ def far_from_points(points: np.ndarray, lattice: Lattice, area: float) -> np.nda
     """
     x = lattice.x0 + lattice.dx * np.arange(lattice.nx)
     y = lattice.y0 + lattice.dy * np.arange(lattice.ny)
-    cells = np.stack(np.meshgrid(x, y), axis=-1)
     reach = FAR * np.sqrt(max(area, lattice.dx * lattice.dy))
-    known = points[np.isfinite(points[:, 2])]
-    distance, _ = plane_tree(known).query(cells, distance_upper_bound=reach)
-    return ~np.isfinite(distance)
+    measured = np.isfinite(points[:, 2])
+    tree = plane_tree(points if measured.all() else points[measured])
+    far = np.empty((lattice.ny, lattice.nx), dtype=bool)
+    for rows in strips(far.shape, 4):
+        cells = np.stack(np.meshgrid(x, y[rows]), axis=-1)
+        far[rows] = ~np.isfinite(tree.query(cells, distance_upper_bound=reach)[0])
+    return far

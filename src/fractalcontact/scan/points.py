@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.strips import blocks
 
 #: Coordinates may stray this fraction of the pitch from a lattice (rounding in the export).
 LATTICE_TOLERANCE = 0.1
@@ -57,8 +58,13 @@ def merge_points(points: np.ndarray) -> tuple[np.ndarray, Repeats]:
     repeats : Repeats
         Points beyond the first.
     """
-    points = points[np.isfinite(points[:, :2]).all(axis=1)]
+    placed = np.isfinite(points[:, :2]).all(axis=1)
+    if not placed.all():
+        points = points[placed]
+    del placed
     if len(points) == 0:
+        return points, Repeats(0, 0)
+    if _in_rows(points):  # as most instruments write them: no repeats, and nothing to sort
         return points, Repeats(0, 0)
     points = points[np.lexsort(points.T[[2, 0, 1]])]  # NaN heights come last at their x, y
     same_place = (points[1:, 0] == points[:-1, 0]) & (points[1:, 1] == points[:-1, 1])
@@ -78,6 +84,16 @@ def merge_points(points: np.ndarray) -> tuple[np.ndarray, Repeats]:
     return np.column_stack([points[starts, :2], heights]), repeats
 
 
+def _in_rows(points: np.ndarray) -> bool:
+    """Whether points already ascend in y and, at equal y, in x, no two at the same place."""
+    for part in blocks(len(points) - 1):
+        x, y = points[part.start : part.stop + 1, :2].T
+        along_y = np.diff(y)
+        if not ((along_y > 0) | ((along_y == 0) & (np.diff(x) > 0))).all():
+            return False
+    return True
+
+
 def single_precision_note(points: np.ndarray) -> str:
     """Say how coarsely single precision rounds x and y, "" if they are finer or it is harmless.
 
@@ -86,12 +102,14 @@ def single_precision_note(points: np.ndarray) -> str:
     points : ndarray, shape (n, 3)
         As the file has them: any factor of units would hide the rounding.
     """
+    for part in blocks(len(points)):
+        known = points[part][np.isfinite(points[part]).all(axis=1), :2]
+        with np.errstate(over="ignore"):
+            if np.any(known.astype(np.float32) != known):
+                return ""
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
         return ""
-    with np.errstate(over="ignore"):
-        if np.any(points[:, :2].astype(np.float32) != points[:, :2]):
-            return ""
     rounding = float(np.spacing(np.float32(np.abs(points[:, :2]).max())))
     # Two largest of three sides: a cloud may stand upright.
     area = np.prod(np.sort(np.ptp(points, axis=0))[1:])
@@ -152,10 +170,12 @@ def place_on_lattice(points: np.ndarray, lattice: Lattice) -> np.ndarray:
     -------
     ndarray, shape (ny, nx)
     """
-    columns = np.round((points[:, 0] - lattice.x0) / lattice.dx).astype(int)
-    rows = np.round((points[:, 1] - lattice.y0) / lattice.dy).astype(int)
     heights = np.full((lattice.ny, lattice.nx), np.nan)
-    heights[rows, columns] = points[:, 2]
+    for part in blocks(len(points)):
+        x, y, z = points[part].T
+        columns = np.round((x - lattice.x0) / lattice.dx).astype(int)
+        rows = np.round((y - lattice.y0) / lattice.dy).astype(int)
+        heights[rows, columns] = z
     return heights
 
 

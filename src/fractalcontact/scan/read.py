@@ -160,7 +160,7 @@ def _measure(path: Path, options) -> Measured:
         if note := single_precision_note(raw.values):
             notes.append(note)
         assert unit_xy is not None  # points were required to have one
-        values = raw.values.copy()
+        values = _own(raw.values)
         values[:, 2] = _without_missing(raw.values[:, 2], missing)
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         values[:, 2] *= length_factor(unit_z, f"{path}: unit_z")
@@ -181,10 +181,16 @@ def _measure(path: Path, options) -> Measured:
     return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles)
 
 
+def _own(values: np.ndarray) -> np.ndarray:
+    """Numbers that were read, to be changed in place: nobody else has them."""
+    return values if values.flags.writeable else values.copy()
+
+
 def _refuse_enormous(values: np.ndarray, path: Path) -> None:
     """Numbers such as 1e300 are damage or an undeclared mark, and make arithmetic overflow."""
-    finite = values[np.isfinite(values)]
-    largest = max(finite.min(), finite.max(), key=abs) if finite.size else 0.0
+    finite = np.isfinite(values)
+    low, high = values.min(where=finite, initial=np.inf), values.max(where=finite, initial=-np.inf)
+    largest = max(low, high, key=abs) if finite.any() else 0.0
     if abs(largest) > LARGEST_NUMBER:
         raise InputError(
             f"{path}: it holds {largest:g} mm, which no instrument measures; if that marks missing "

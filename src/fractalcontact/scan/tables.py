@@ -89,7 +89,9 @@ def table_to_raw(
             )
         return RawScan(table, "matrix", **stated)
     chosen = [_column_index(c, names, n_columns, where) for c in columns or (0, 1, 2)]
-    return RawScan(np.ascontiguousarray(table[:, chosen]), "points", **stated)
+    if chosen != list(range(n_columns)):  # else a copy of all would be in vain
+        table = table[:, chosen]
+    return RawScan(np.ascontiguousarray(table), "points", **stated)
 
 
 def _named_xyz(names) -> list[int] | None:

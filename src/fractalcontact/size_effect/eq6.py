@@ -190,7 +190,10 @@ def _line_through_occupied(domain: np.ndarray, parts: Sequence[int]) -> LineFit:
     x = -np.log(parts)
     line = fit_line(x, np.log(count))
     dx = x - x.mean()
-    variance = np.sum(dx**2 * (1 - count / np.square(parts)) / count) / np.sum(dx**2) ** 2
+    spread = np.sum(dx**2)
+    if not spread > 0:  # one size: no line
+        return line
+    variance = np.sum(dx**2 * (1 - count / np.square(parts)) / count) / spread**2
     half = max(line.slope_high - line.slope, special.ndtri((1 + CONFIDENCE) / 2) * variance**0.5)
     return line._replace(slope_low=line.slope - half, slope_high=line.slope + half)
 

@@ -34,6 +34,8 @@ _OVER_LOADS = {
         "exponent of corrected A_r/A_0 against b",
     ),
 }
+#: Of them, what the bulk's part leaves of the whole: below 0 it means nothing.
+_OF_INTERFACE = ("interface_closure", "interface_compliance")
 
 
 def joint_by_size(
@@ -136,6 +138,11 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
     nodes = states["nodes"].transpose(*dims)
     for name, (exponent, fewest, words) in _OVER_LOADS.items():
         add_mean(result, name, states[name], states[f"{name}_error"])
+        if name in _OF_INTERFACE:
+            # Where contact is too full to tell the interface from the bulk.
+            below = result[name] < 0
+            for ending in (*INTERVAL, "_error"):
+                result[f"{name}{ending}"] = result[f"{name}{ending}"].where(~below)
         values = states[name].transpose(*dims)
         positive = ((values > 0) | values.isnull()).all("window")
         usable = usable_sizes(nodes.values, fewest) & positive.values

@@ -8,7 +8,7 @@ from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
-from ..mechanics.closure import closure_curves, elastic_dilatancy
+from ..mechanics.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..mechanics.contact_fields import contact_fields
 from ..mechanics.overlap import load_warning
 from ..mechanics.separation import prefractal_openings
@@ -65,7 +65,8 @@ def state_stages(
         ),
         seating_force=_seating_force(settings, area),
     )
-    curves.attrs["warning"] = load_warning(curves, specimens, settings)
+    warnings = (load_warning(curves, specimens, settings), full_contact_warning(curves))
+    curves.attrs["warning"] = "; ".join(filter(None, warnings))
     dilatancy = elastic_dilatancy(curves, joints)
     laws = area_laws(
         curves,

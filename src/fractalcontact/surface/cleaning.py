@@ -6,6 +6,7 @@ from scipy import ndimage
 
 from ..core.errors import InputError
 from ..core.mean_plane import without_mean_plane
+from ..core.strips import strips
 from .grid import spacing_of
 from .suspect import Suspects, find_suspects
 
@@ -23,7 +24,6 @@ _MANY_DEVIATIONS = 8.0
 #: far rougher than the rest, with honest steps.
 _MANY_RELIEFS = 3.0
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
-_BLOCK = 4_000_000  # numbers sorted at once, to bound memory
 
 
 def clean_faces(
@@ -207,21 +207,21 @@ def _surroundings(z: np.ndarray, present: np.ndarray):
     out of all but the extreme cells, and the range of those; NaN where too few cells are present.
     """
     windows = np.lib.stride_tricks.sliding_window_view(z, (_SIDE, _SIDE))
-    rows, columns = np.nonzero(present)
-    first_row, first_column = (
-        np.clip(cells - _SIDE // 2, 0, n - _SIDE)
-        for cells, n in zip((rows, columns), z.shape, strict=True)
-    )
-    found = np.full((3, len(rows)), np.nan)
-    step = _BLOCK // _SIDE**2
-    for start in range(0, len(rows), step):
-        part = slice(start, start + step)
-        ordered = windows[first_row[part], first_column[part]].reshape(-1, _SIDE**2)
-        ordered = np.sort(ordered, axis=1)  # missing cells come last
+    found = np.full((3, np.count_nonzero(present)), np.nan)
+    start = 0
+    for strip in strips(z.shape, _SIDE**2):
+        rows, columns = np.nonzero(present[strip])
+        rows += strip.start
+        first_row, first_column = (
+            np.clip(cells - _SIDE // 2, 0, n - _SIDE)
+            for cells, n in zip((rows, columns), z.shape, strict=True)
+        )
+        ordered = windows[first_row, first_column].reshape(-1, _SIDE**2)
+        ordered.sort(axis=1)  # missing cells come last
         count = np.isfinite(ordered).sum(axis=1)
         judged = np.flatnonzero(count >= _FEWEST)
         count = count[judged]
-        own = z[rows[part], columns[part]][judged]
+        own = z[rows, columns][judged]
         low, high = ordered[judged, _LARGEST_CLUSTER], ordered[judged, count - 1 - _LARGEST_CLUSTER]
         median = (ordered[judged, (count - 1) // 2] + ordered[judged, count // 2]) / 2
         found[:, start + judged] = (
@@ -229,6 +229,7 @@ def _surroundings(z: np.ndarray, present: np.ndarray):
             np.maximum(own - high, low - own),
             high - low,
         )
+        start += len(rows)
     return found
 
 

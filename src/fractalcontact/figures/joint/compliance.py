@@ -21,6 +21,7 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
+from ..kit.empty import TOO_FULL, say_empty
 from ..kit.verdicts import verdict_words
 from ..kit.words import TOWARDS, force_label, opening, place, pressure_label, short
 
@@ -177,7 +178,13 @@ def _draw_closures(closed, compliance, table):
             mfc="white",
             ls="none",
         )
-    closed.set_ylim(bottom=min(0, table["interface_closure_mm"].min()))
+    if not np.isfinite(table["interface_compliance_mm_per_MPa"]).any():
+        say_empty(compliance, TOO_FULL)
+    closures = table["interface_closure_mm"].dropna()
+    if (closures != 0).any():
+        closed.set_ylim(bottom=min(0, closures.min()))
+    elif closures.empty:
+        say_empty(closed, TOO_FULL)
     closed.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
     compliance.set_yscale("log")
     compliance.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)")

@@ -21,6 +21,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
+from ..kit.empty import TOO_FULL, say_empty
 from ..kit.words import NOMINAL_PRESSURE, estimate, place, short, supplementary
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"
@@ -127,6 +128,7 @@ def _draw_theory(axes, table):
     """The slopes of the theories, through the middle of the points fitted and behind them."""
     known = table[np.isfinite(table["conductance_per_mm"])]
     if known.empty:
+        say_empty(axes, TOO_FULL)
         return
     middle = known[known["fitted"]] if known["fitted"].any() else known
     p, h = (np.log(middle[key]) for key in ("nominal_pressure_MPa", "conductance_per_mm"))

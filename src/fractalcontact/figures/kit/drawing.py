@@ -29,6 +29,7 @@ from ...core.atomic import atomic_write
 from ...core.labels import printable
 from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
+from .empty import settle_empty_axes
 from .ticks import keep_labels, plain_ticks
 from .words import force_unit
 
@@ -115,6 +116,7 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
     folder = Path(folder)
     figure = drawing.figure
     figure.set_dpi(DPI)
+    settle_empty_axes(figure)
     # The layout is found once and each file drawn once. `savefig` draws everything once more for
     # either file, to find the layout; and what the layout has measured, this canvas remembers.
     canvas = FigureCanvasAgg(figure)

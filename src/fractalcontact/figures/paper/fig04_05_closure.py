@@ -30,6 +30,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
+from ..kit.empty import TOO_FULL, say_empty
 from ..kit.verdicts import claim, sentences
 from ..kit.words import (
     NOMINAL_PRESSURE,
@@ -114,7 +115,8 @@ def _semi_logarithmic(curve, pressure):
 
 def _draw_closure(axes, curves, drawn, direction, area):
     size = force_axis(axes.yaxis, curves["normal_force"])
-    largest = limit = float(curves["interface_closure"].isel(offset=drawn).max())
+    closures = curves["interface_closure"].isel(offset=drawn)
+    largest = limit = float(closures.max())
     for n, i in enumerate(drawn):
         curve = curves.isel(offset=i)
         style = {"color": colour_of(n)}
@@ -129,7 +131,13 @@ def _draw_closure(axes, curves, drawn, direction, area):
         if asymptotic and w_m <= FARTHEST_ASYMPTOTE * largest:
             axes.axvline(w_m, ls=":", lw=0.8, **style)
             limit = max(limit, w_m)
-    axes.set_xlim(0, 1.05 * limit)
+    if np.isfinite(closures).any():
+        # Flush faces have closures of 0 alone.
+        axes.set_xlim(0, 1.05 * limit if limit > 0 else None)
+        if 0 < limit < 1e-3:  # long numbers would stand one over the other
+            axes.ticklabel_format(axis="x", scilimits=(0, 0))
+    else:
+        say_empty(axes, TOO_FULL)
     axes.set_ylim(0, 1.05 * float(curves["normal_force"][-1]) / size)
     axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
     _second_axis(axes, size / area).set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
@@ -278,7 +286,7 @@ def _draw_stiffness(axes, table):
         axes.set_yscale("log")
         axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
     else:
-        axes.text(0.5, 0.5, "faces flush, or contact full", transform=axes.transAxes, ha="center")
+        say_empty(axes, TOO_FULL)
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
     label_short_span(axes.yaxis)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
+from ...core.strips import stacked
 from ...core.units import length_factor
 from ..format import Format
 from ..options import ScanOptions
@@ -115,7 +116,7 @@ class _Reading:
         notes: tuple[str, ...] = ()
         if self._short:
             notes = (f"the last line ({self._short[0]}) was cut short and is left out",)
-        return np.concatenate(self._parts), self.style, notes
+        return stacked(self._parts), self.style, notes
 
     def _add_lines(self, lines: list[str]) -> None:
         data = self._data_lines(lines)

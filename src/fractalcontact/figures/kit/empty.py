@@ -1,0 +1,78 @@
+"""Panels without anything to draw: words in place of curves, and axes that can be drawn.
+
+A specimen in full contact has no stiffness of an interface, a plane no spectrum: such a panel says
+why, and no figure fails for it.
+"""
+
+import textwrap
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import FigureBase
+from matplotlib.ticker import NullLocator
+
+#: Why there is nothing of the interface to draw.
+TOO_FULL = (
+    "contact so full, or faces so flush, that what the interface gives cannot be told from what "
+    "the blocks beside it give"
+)
+#: Of the words in an empty panel.
+_MARK = "nothing-to-draw"
+#: Ends of a logarithmic axis that nothing is drawn on.
+_ENDS = (0.1, 1.0)
+#: What a panel says whose figure gives no reason of its own.
+_NOTHING = "nothing above zero to draw on a logarithmic axis"
+
+
+def say_empty(axes: Axes, reason: str) -> None:
+    """Say in the middle of a panel why nothing is drawn in it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    reason : str
+    """
+    axes.text(
+        0.5,
+        0.5,
+        textwrap.fill(reason, 48),
+        transform=axes.transAxes,
+        ha="center",
+        va="center",
+        color="0.35",
+        bbox={"color": "white"},
+        gid=_MARK,
+    )
+
+
+def settle_empty_axes(figure: FigureBase) -> None:
+    """Give logarithmic axes that hold no positive value ends, and their panels words.
+
+    To be called once everything is drawn: matplotlib has no ticks for such an axis, and raises.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.FigureBase
+    """
+    for axes in figure.axes:
+        empty = [axis for axis in (axes.xaxis, axes.yaxis) if _without_values(axis)]
+        for axis in empty:
+            low, high = axis.get_view_interval()
+            if not (0 < low < high and np.isfinite(high)):
+                set_ends = axes.set_xlim if axis is axes.xaxis else axes.set_ylim
+                set_ends(*_ENDS)
+                _without_ticks(axes, axis.axis_name)
+        if empty and axes.get_visible() and not any(t.get_gid() == _MARK for t in axes.texts):
+            say_empty(axes, _NOTHING)
+
+
+def _without_ticks(axes, name):
+    """No numbers on an axis that has none, nor on its second one."""
+    for panel in (axes, *axes.child_axes):
+        axis = getattr(panel, f"{name}axis")
+        axis.set_major_locator(NullLocator())
+        axis.set_minor_locator(NullLocator())
+
+
+def _without_values(axis) -> bool:
+    return axis.get_scale() == "log" and not np.isfinite(axis.get_minpos())
