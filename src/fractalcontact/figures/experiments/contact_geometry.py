@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ...domain.box_dimension import WIDEST
 from ..kit.drawing import WIDTH, Drawing, colour_of, entries, group, legends_below, letter
-from ..kit.words import number, supplementary
+from ..kit.words import SUPPLEMENTARY, number
 from ._reduced_pressure import load_axis
 
 TITLE = "Dimension of the contact domain beside its null models"
@@ -92,7 +92,7 @@ def _caption(test) -> str:
     beyond = known & ((low > test["cut_delta_high"]) | (high < test["cut_delta_low"]))
     rising = test["band_delta"].isel(reduced_pressure=[0, -1]).diff("reduced_pressure")
     return (
-        f"{supplementary('synthetic surfaces, arm R, finest cut-off')} Correlation dimension of "
+        f"{SUPPLEMENTARY} Correlation dimension of "
         "the contact domain between cut-off and roll-off; bars: 99 % over surfaces "
         f"({count} of each H), none where wider than {WIDEST:g}. It differs from the bearing-area "
         f"cut's beyond both intervals at {int(beyond.sum())} of the {int(known.sum())} states of "

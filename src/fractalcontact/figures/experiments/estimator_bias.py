@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of, entries, group, letter
-from ..kit.words import supplementary
+from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Bias, scatter and coverage of the estimators of the surface dimension"
 SUBJECT = "study"
@@ -125,7 +125,7 @@ def _table(bias):
 def _caption(bias):
     start, first = (bias.attrs[key] for key in ("from_hurst", "first_cells"))
     opening = (
-        f"{supplementary()} Estimators of Delta_g = 3 - H on {bias.sizes['seed']} synthetic "
+        f"{SUPPLEMENTARY} Estimators of Delta_g = 3 - H on {bias.sizes['seed']} synthetic "
         f"surfaces of each kind; lags of {first:g} cells to side/8 or roll-off/4."
     )
     known = bias.sel(estimator=bias["worst_bias"].notnull())

@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ...mechanics.theory import fudged_persson_area, persson_area
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, letter
-from ..kit.words import number, supplementary
+from ..kit.words import SUPPLEMENTARY, number
 from ._reduced_pressure import load_axis
 
 TITLE = "Contact area over the resolution: the law of the rms slope"
@@ -109,7 +109,7 @@ def _caption(test, table) -> str:
     )
     count = int(test["number"].isel(surface=(test["of_arm"] == "R").values).max()) + 1
     return (
-        f"{supplementary('synthetic surfaces, arm R')} (a) Corrected contact area at every short "
+        f"{SUPPLEMENTARY} (a) Corrected contact area at every short "
         f"cut-off (markers), {count} surfaces of each H, against the pressure over the rms slope "
         f"there. {words}(b) Delta_sigma by A_r(s), 99 % over surfaces, differs from that of "
         f"h'_rms(s) alone by at most {number(departure)}, as if it were the surface's, not the "

@@ -20,7 +20,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.words import number, supplementary
+from ..kit.words import SUPPLEMENTARY, number
 
 TITLE = "Which exponent carries the size effect"
 SUBJECT = "study"
@@ -149,7 +149,7 @@ def _caption(test: xr.Dataset) -> str:
     flat = int(test["no_size_effect"].sum())
     largest = float(np.nanmax(abs(test["alpha"].values)))
     return (
-        f"{supplementary('synthetic surfaces against a plane')} Exponent of the corrected contact "
+        f"{SUPPLEMENTARY} Exponent of the corrected contact "
         f"area over the side b (from {test.attrs['smallest_side']} nodes on) against that of "
         "eq. 6; bars: 99 % over surfaces; p* = p/(E* h'_rms). Eq. 6 is refuted for "
         f"{refuted} of {classes.size} classes and supported for {supported}. That there is no size "

@@ -21,7 +21,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.words import number, percent, supplementary
+from ..kit.words import SUPPLEMENTARY, number, percent
 
 TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
 SUBJECT = "study"
@@ -247,7 +247,7 @@ def _caption(test: xr.Dataset, strengths: pd.DataFrame, exponents: pd.DataFrame)
     )
     found = f"{at_v}{at_fraction}. " if at_v else ""
     return (
-        f"{supplementary('synthetic mated joints that slide')} Strength without truncation of the "
+        f"{SUPPLEMENTARY} Strength without truncation of the "
         f"angle (which would meet {percent(strengths['truncated_share'].mean())}); bars: 99 % over "
         "surfaces. "
         f"{found}Classes: {verdicts}."

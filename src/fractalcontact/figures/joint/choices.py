@@ -19,7 +19,7 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
-from ..kit.words import percent, place, short, supplementary
+from ..kit.words import SUPPLEMENTARY, percent, place, short
 
 TITLE = "States solved, their accuracy and its reasons, and the errors stated"
 SUBJECT = "specimen"
@@ -121,7 +121,7 @@ def _caption(label, plan, errors, direction):
         least, most = percent(spacing.min()), percent(spacing.max())
         by_spacing = f"; twice the spacing changes the closure by {least} to {most}"
     return (
-        f"{supplementary(label, place(direction))} (a) Solve plan for the requested accuracy "
+        f"{SUPPLEMENTARY} (a) Solve plan for the requested accuracy "
         f"({plan.attrs['asked']}); (b) largest errors stated. {plan.attrs['states_solved']} of "
         f"{plan.attrs['states']} states were solved; the others are missing in the atlas. The "
         f"largest solver error is {worst['largest']:.2g}, of the {worst['quantity']} at "

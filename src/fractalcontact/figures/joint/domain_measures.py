@@ -50,7 +50,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure.legend(handles=handles, loc="outside lower center", ncols=MOST_LOADS)
     where = place(str(measures["direction"].item()), float(measures["offset"]))
     headline(figure, settings["label"], where)
-    start = opening("section 6", settings["label"], where)
+    start = opening("section 6")
     return Drawing(figure, table, f"{start} {_caption(measures.isel(normal_force=mapped), table)}")
 
 

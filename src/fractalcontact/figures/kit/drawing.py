@@ -31,7 +31,7 @@ from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
 from .empty import settle_empty_axes
 from .ticks import keep_labels, plain_ticks
-from .words import force_unit
+from .words import force_unit, formulas
 
 #: Okabe and Ito's colours, distinguished by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
@@ -269,6 +269,22 @@ def headline(figure: Figure | SubFigure, label: str, *where: str, below: str = "
         # What is below loses no height to a long label.
         figure.set_figheight(figure.get_figheight() + LINE * text.count("\n"))
     figure.suptitle("\n".join(filter(None, (text, below))), fontsize=TITLE_SIZE)
+
+
+def entitle(figure: Figure, title: str) -> None:
+    """Say above the headline of a figure what it shows; the figure becomes so much higher.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    title : str
+        Symbols as captions have them.
+    """
+    width = int(LETTERS_AN_INCH * figure.bbox.width / figure.dpi)
+    lines = textwrap.wrap(title, width)
+    figure.set_figheight(figure.get_figheight() + LINE * len(lines))
+    words = (*map(formulas, lines), figure.get_suptitle())
+    figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
 
 
 def label_in_lines(label: str, *where: str, width: float) -> str:
