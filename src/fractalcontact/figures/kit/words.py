@@ -34,6 +34,7 @@ SUPPLEMENTARY = "Supplementary figure."
 _FORMULAS = {
     "Delta_sigma": r"$\Delta_\sigma$",
     "Delta_g": r"$\Delta_g$",
+    "sigma*": r"$\sigma^*$",
     "sigma_0": r"$\sigma_0$",
     "A_r": "$A_r$",
 }
