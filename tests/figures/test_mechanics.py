@@ -272,7 +272,7 @@ def test_every_axis_has_a_label_with_its_unit(atlas, specimen, figure):
     assert isinstance(drawing.data, pd.DataFrame)
     assert 0 < len(drawing.data) <= 20_000
     label = {"sliding": "synthetic twin of nothing", "pair": "Brèche", "flat": "flat"}[specimen]
-    assert label in drawing.caption
+    assert label in drawing.figure.get_suptitle()
     assert "Fig" in drawing.caption
     assert "nan" not in drawing.caption
 

@@ -158,7 +158,7 @@ def _difference_words(test):
     agree = int(((low <= 0) & (high >= 0))[known].sum())
     return (
         f"Their difference is {number(mean[known].min())} to {number(mean[known].max())}; zero "
-        f"lies in {agree} of {int(known.sum())} intervals, against eq. 5."
+        f"lies in {agree} of {int(known.sum())} intervals."
     )
 
 

@@ -151,15 +151,16 @@ def _equal_pressure_table(test, i, common):
 
 
 def _edge_words(test):
-    """Compliance of the bulk beside that of the interface, at the last load that has both."""
+    """That the bulk is more compliant than the interface, at the last load that has both."""
     if not np.isfinite(test["area_exponent_low"].values).any():
         return "Parts hold too few nodes in contact."
     ratio = test["edge_ratio"].sel(part=1).values
     known = np.flatnonzero(ratio > 0)
     if not len(known):
         return ""
-    pressure = short(test["nominal_pressure"][known[-1]])
+    if ratio[known[-1]] < 1:
+        return ""
     return (
-        f"Bulk over interface compliance: {short(ratio[known[-1]], 2)} at {pressure} MPa; from 1 "
-        "on edges matter."
+        f"Edges matter: at {pressure_words(test, known[-1])} the bulk is "
+        f"{short(ratio[known[-1]], 2)} times as compliant as the interface."
     )

@@ -54,7 +54,7 @@ def settle_empty_axes(figure: FigureBase) -> None:
     ----------
     figure : matplotlib.figure.FigureBase
     """
-    for axes in figure.axes:
+    for axes in (axes for axes in figure.axes if axes.axison):
         empty = [axis for axis in (axes.xaxis, axes.yaxis) if _without_values(axis)]
         for axis in empty:
             low, high = axis.get_view_interval()

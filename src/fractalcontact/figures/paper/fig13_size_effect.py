@@ -30,6 +30,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, 4.8))
     axes = figure.subplots()
     for n, (_, rows) in enumerate(table.groupby("load_N")):
+        if rows["sigma_0_MPa"].isna().all():
+            continue
         own = rows.iloc[0]
         point: dict[str, Any] = {
             "marker": MARKERS[n],
@@ -42,7 +44,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     lines = [_draw_lines(axes, loading, estimate, shown, table) for estimate in loading.estimates]
     legends_below(figure, *lines)
     draw_axes(axes)
-    axes.set_title("eq. 6 extrapolated to other sizes; markers: the specimen")
+    axes.set_title("lines: eq. 6; markers: the specimen")
     headline(figure, *loading.title)
     return Drawing(figure, table, _caption(rise_words(atlas, name, loading, numbers=False)))
 
