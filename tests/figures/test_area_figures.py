@@ -179,7 +179,7 @@ def test_flush_faces_are_passed_over_and_if_there_are_no_others_said_to_be(with_
     drawing = drawn(changed(with_area, "area/sliding", flush), "sliding")
     drawing.figure.draw_without_rendering()
     assert FULL_CONTACT in drawing.caption
-    assert "no kappa at light load: the faces are flush" in drawing.caption
+    assert "No kappa at light load: the faces are flush" in drawing.caption
 
 
 def test_one_load_is_drawn(with_area):

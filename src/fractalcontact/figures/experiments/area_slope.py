@@ -123,8 +123,8 @@ def _caption(slopes):
     with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
     low, high = (number(slopes.attrs[f"{name}_kappa"], 3) for name in _THEORIES)
     return (
-        f"{SUPPLEMENTARY} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces at light "
-        f"load. Corrected kappa is {with_one} with a roll-off and {without} without. Persson has "
+        f"{SUPPLEMENTARY} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces. "
+        f"Corrected kappa is {with_one} with a roll-off and {without} without. Persson has "
         f"{low}, Bush {high}. {_scatter_words(slopes)}"
     )
 

@@ -111,5 +111,5 @@ def _caption(test, table) -> str:
     return (
         f"{SUPPLEMENTARY} Contact area at every short cut-off over the pressure by the rms slope "
         f"there, {count} synthetic surfaces of each H. {words}Delta_sigma by A_r(s) differs from "
-        f"that of h'_rms(s) alone by at most {number(departure)}: it is the surface's."
+        f"that of h'_rms(s) alone by at most {number(departure)}."
     )

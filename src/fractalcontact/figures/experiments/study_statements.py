@@ -114,5 +114,5 @@ def _caption(tables, whole):
     pressed = "; ".join(f"{row['claim']}: {row['verdict']}" for _, row in whole[-1:].iterrows())
     return (
         f"After the statements of {PAPER}. Verdicts over {len(tables)} specimens: {summary}; "
-        f"{int(verdicts['circular'].astype(bool).sum())} circular (*). Blank: not asked. {pressed}"
+        f"{int(verdicts['circular'].astype(bool).sum())} circular (*). {pressed}"
     ).rstrip() + ("." if pressed else "")

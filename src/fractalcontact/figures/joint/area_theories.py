@@ -201,7 +201,7 @@ def _table(curve, law):
 
 def _caption(law):
     return (
-        f"{opening('Fig. 5')} Contact area beside theories, and its slope kappa. "
+        f"{opening('Fig. 5')} Contact area and its slope kappa. "
         f"{_law_words(law)} {_between_words(law)}"
     )
 

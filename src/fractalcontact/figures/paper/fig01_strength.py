@@ -165,7 +165,7 @@ def _table(laws):
 
 def _caption(laws, share, falls):
     return sentences(
-        f"{opening('Fig. 1b')} Computed shear strength and slope of dilatancy of sub-windows at "
+        f"{opening('Fig. 1b')} Strength and slope of dilatancy of sub-windows at "
         f"v = {share_words(laws, share)} of their side b.",
         _slope_words(laws, share),
         falls,

@@ -206,9 +206,10 @@ def _size_words(specimen, sides):
 
 
 def _caption(specimen, faces, dimension):
-    absent = percent(1 - float(specimen["valid"].mean()))
+    absent = 1 - float(specimen["valid"].mean())
+    holes = f", {percent(absent)} not measured" if absent else ""
     what = "levelled face" if len(faces) == 1 else "levelled faces"
-    return f"{opening('Fig. 2')} Relief of the {what}, {absent} not measured. {_words(dimension)}"
+    return f"{opening('Fig. 2')} Relief of the {what}{holes}. {_words(dimension)}"
 
 
 def _words(dimension):
