@@ -1,5 +1,7 @@
 """What the figures of the size test share: loads, lines of eq. 6, axes."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -51,7 +53,12 @@ def draw_predictions(axes: Axes, test: xr.Dataset) -> list[Artist]:
         value, low, high = (
             one[f"predicted_slope{end}"].values[known] for end in ("", "_low", "_high")
         )
-        style = {"color": COLOURS[i + 1], "ls": line, "marker": MARKERS[i + 1], "ms": 3}
+        style: dict[str, Any] = {
+            "color": COLOURS[i + 1],
+            "ls": line,
+            "marker": MARKERS[i + 1],
+            "ms": 3,
+        }
         axes.fill_between(pressure[known], low, high, color=style["color"], alpha=0.15, lw=0)
         axes.plot(pressure[known], value, label=f"eq. 6, $\\Delta_\\sigma$ by {words}", **style)
     return entries(axes)
@@ -63,7 +70,7 @@ def load_axis(axes: Axes, test: xr.Dataset) -> None:
     beyond = pressure[test["beyond_study"].values.astype(bool)]
     if len(beyond):
         first = np.sqrt(beyond[0] * pressure[pressure < beyond[0]][-1])
-        style = {"color": "0.93", "lw": 0, "zorder": 0}
+        style: dict[str, Any] = {"color": "0.93", "lw": 0, "zorder": 0}
         axes.axvspan(first, beyond[-1] * 1.3, label="beyond the study's loads", **style)
     axes.axhline(0, color="0.5", lw=0.6)
     axes.set_xscale("log")

@@ -20,6 +20,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure, FigureBase, SubFigure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 from numpy.typing import ArrayLike
@@ -282,7 +283,14 @@ def entitle(figure: Figure, title: str) -> None:
     """
     width = int(LETTERS_AN_INCH * figure.bbox.width / figure.dpi)
     lines = textwrap.wrap(title, width)
-    figure.set_figheight(figure.get_figheight() + LINE * len(lines))
+    before = figure.get_figheight()
+    figure.set_figheight(before + LINE * len(lines))
+    if not isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
+        # Nothing moves the panels out of the title's way.
+        for axes in figure.axes:
+            x, y, width, height = axes.get_position().bounds
+            part = before / figure.get_figheight()
+            axes.set_position((x, y * part, width, height * part))
     words = (*map(formulas, lines), figure.get_suptitle())
     figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
 

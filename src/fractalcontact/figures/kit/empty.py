@@ -8,7 +8,7 @@ import textwrap
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import FigureBase
+from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 #: Why there is nothing of the interface to draw.
@@ -45,14 +45,14 @@ def say_empty(axes: Axes, reason: str) -> None:
     )
 
 
-def settle_empty_axes(figure: FigureBase) -> None:
+def settle_empty_axes(figure: Figure) -> None:
     """Give logarithmic axes that hold no positive value ends, and their panels words.
 
     To be called once everything is drawn: matplotlib has no ticks for such an axis, and raises.
 
     Parameters
     ----------
-    figure : matplotlib.figure.FigureBase
+    figure : matplotlib.figure.Figure
     """
     for axes in (axes for axes in figure.axes if axes.axison):
         empty = [axis for axis in (axes.xaxis, axes.yaxis) if _without_values(axis)]

@@ -1,5 +1,7 @@
 """Stiffness of the interface over the spacing, tangent and initial, in the closure figure."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -54,7 +56,7 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
     known = table.dropna(subset="stiffness_MPa_per_mm")
     tangent = known[known["quantity"] == "tangent"]
     for n, (force, points) in enumerate(tangent.groupby("force_N")):
-        style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
+        style: dict[str, Any] = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
         axes.plot(
             points["spacing_mm"],
             points["stiffness_MPa_per_mm"],
