@@ -138,7 +138,7 @@ def one_pit():
 
 
 def steep():
-    """Slopes of some hundreds: needles."""
+    """Slopes of ten and more: needles."""
     return Extreme(noise(1.0))
 
 
@@ -147,7 +147,8 @@ def steep_against_plane():
 
 
 def three_digit_slopes():
-    return Extreme(noise(2.0, shape=(32, 32)) * np.r_[1.0], spacing=0.02, settings=FLAT)
+    """Slopes of hundreds, in a field that is wider than the relief is high."""
+    return Extreme(noise(1.0, shape=(24, 1200)), spacing=0.005, settings=FLAT)
 
 
 def cliff():

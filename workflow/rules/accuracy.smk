@@ -206,7 +206,7 @@ use rule study_figures as accuracy_figures with:
 
 use rule all_drawn as accuracy_drawn with:
     input:
-        rules.accuracy_figures.output.undrawn,
+        undrawn=[rules.accuracy_figures.output.undrawn],
     output:
         f"{RESULTS}/all_drawn_of_accuracy.txt",
     log:

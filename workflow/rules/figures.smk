@@ -142,8 +142,12 @@ rule study_figures:
 # not succeeded, and ends here with the names of those that failed.
 rule all_drawn:
     input:
-        expand(UNDRAWN, specimen=SPECIMENS),
-        *([rules.study_figures.output.undrawn] if STUDY_FIGURES else []),
+        undrawn=[
+            *expand(UNDRAWN, specimen=SPECIMENS),
+            *([rules.study_figures.output.undrawn] if STUDY_FIGURES else []),
+        ],
+        # Not before everything else is there: a job that fails keeps others from being begun.
+        atlas=rules.atlas.output[0],
     output:
         f"{RESULTS}/all_drawn.txt",
     log:

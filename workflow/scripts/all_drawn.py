@@ -8,7 +8,7 @@ from fractalcontact.core.atomic import atomic_write
 from fractalcontact.core.errors import OutputError
 
 with job(snakemake) as log:
-    names = [name for path in snakemake.input for name in Path(path).read_text().split()]
+    names = [name for path in snakemake.input.undrawn for name in Path(path).read_text().split()]
     if names:
         raise OutputError(
             f"not drawn, because of an error of the program: {', '.join(names)}; their pictures "

@@ -9,6 +9,7 @@ from ..contact.nested_iteration import restrict_sum
 from ..contact.solve import solve_contact
 from ..domain.measures import measures_of_states
 from ..elastic.halfspace import HalfSpace
+from ..mechanics.rigid_slide import slide
 from ..roughness.dimension import surface_dimension
 from ..surface.synthesis import self_affine
 
@@ -29,6 +30,7 @@ def compile_kernels() -> list[float]:
     surface[0, 0] = np.nan
     surface_dimension(surface, 1.0)
     surface[0, 0] = 0.0
+    slide(surface, surface[:9, :9].copy(), np.array([[0, 0], [0, 9]]))
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
     states = []
     for hardness in (None, 1.0):

@@ -316,8 +316,8 @@ def _describe_slide(
         # The first cell of all is that of no offset.
         dilatancy[i], spread[i] = slid.highest - slid.highest[0], slid.spread
         correlation[i] = slid.correlation
-    slid = offsets_of(cells, spacing)
-    length, uncorrelated, limit = correlation_ranges(slid, correlation, nominal_area(specimen))
+    offsets = offsets_of(cells, spacing)
+    length, uncorrelated, limit = correlation_ranges(offsets, correlation, nominal_area(specimen))
     table = RIGID_SLIDE | _CORRELATION
     values = (dilatancy, spread, correlation, length, uncorrelated, limit)
     return labelled_dataset(
@@ -325,7 +325,7 @@ def _describe_slide(
         dict(zip(table, values, strict=True)),
         coords={
             "direction": directions,
-            "rigid_offset": ("rigid_offset", slid, cf_attrs("mm", "shear offset v")),
+            "rigid_offset": ("rigid_offset", offsets, cf_attrs("mm", "shear offset v")),
         },
     )
 

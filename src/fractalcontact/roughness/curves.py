@@ -126,7 +126,7 @@ def add_squares(
         row = i * BLOCKS // ny
         for column in range(BLOCKS):
             squares, n = 0.0, 0
-            for j in range(*_pairs_in_block(column, nx, length)):
+            for j in range(*pairs_in_block(column, nx, length)):
                 d = differences[i, j]
                 if np.isfinite(d):
                     squares += d * d
@@ -136,8 +136,11 @@ def add_squares(
 
 
 @njit(cache=True)
-def _pairs_in_block(block, nx, length):
-    """First start of a pair of cells `length` apart whose middle lies in the block, and the end."""
+def pairs_in_block(block: int, nx: int, length: int) -> tuple[int, int]:
+    """First start of a pair of cells `length` apart whose middle lies in the block, and the end.
+
+    A kernel, of whole numbers alone.
+    """
     first = (2 * nx * block // BLOCKS - length + 1) // 2
     last = (2 * nx * (block + 1) // BLOCKS - length + 1) // 2
     return max(first, 0), max(min(last, nx - length), 0)

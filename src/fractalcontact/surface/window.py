@@ -204,6 +204,8 @@ def _reachable_places(specimen, shape, reach) -> np.ndarray:
 def _free_places(valid: np.ndarray, shape) -> np.ndarray:
     """True at [y, x] where the rectangle of ``shape`` that starts there has no hole."""
     ny, nx = shape
+    if valid.all():  # sums over a large scan are asked for a dozen times
+        return np.ones((valid.shape[0] - ny + 1, valid.shape[1] - nx + 1), dtype=bool)
     holes = np.zeros([n + 1 for n in valid.shape], dtype=np.int64)
     np.cumsum(np.cumsum(~valid, axis=0), axis=1, out=holes[1:, 1:])
     return (holes[ny:, nx:] - holes[:-ny, nx:] - holes[ny:, :-nx] + holes[:-ny, :-nx]) == 0

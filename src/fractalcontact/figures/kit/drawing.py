@@ -48,6 +48,8 @@ DPI = 200
 COMPRESSION = 3
 #: Points of the letters of a figure's title, how many stand in an inch, and inches a line is high.
 TITLE_SIZE, LETTERS_AN_INCH, LINE = 9, 14, 0.15
+#: Inches between the edge of a figure and its title.
+_EDGE = 0.05
 #: Letters of a specimen's label that are shown.
 LONGEST_LABEL = 300
 _DOLLAR = "\ue000"
@@ -285,14 +287,17 @@ def entitle(figure: Figure, title: str) -> None:
     lines = textwrap.wrap(title, width)
     before = figure.get_figheight()
     figure.set_figheight(before + LINE * len(lines))
-    if not isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
+    laid_out = isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine)
+    if not laid_out:
         # Nothing moves the panels out of the title's way.
         for axes in figure.axes:
             x, y, width, height = axes.get_position().bounds
             part = before / figure.get_figheight()
             axes.set_position((x, y * part, width, height * part))
     words = (*map(formulas, lines), figure.get_suptitle())
-    figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
+    title = figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
+    if not laid_out:
+        title.set_y(1 - _EDGE / figure.get_figheight())
 
 
 def label_in_lines(label: str, *where: str, width: float) -> str:

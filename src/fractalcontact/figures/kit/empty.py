@@ -8,6 +8,7 @@ import textwrap
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
@@ -69,7 +70,7 @@ def settle_empty_axes(figure: Figure) -> None:
 def _without_ticks(axes, name):
     """No numbers on an axis that has none, nor on its second one."""
     for panel in (axes, *axes.child_axes):
-        axis = getattr(panel, f"{name}axis")
+        axis: Axis = getattr(panel, f"{name}axis")
         axis.set_major_locator(NullLocator())
         axis.set_minor_locator(NullLocator())
 

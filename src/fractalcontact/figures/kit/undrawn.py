@@ -26,7 +26,8 @@ def undrawn(title: str, subject: str | list[str], error: BaseException) -> Drawi
     reason = printable(f"{type(error).__name__}: {error}", _LONGEST)
     of = "" if isinstance(subject, list) else f" of {subject}"
     words = f"Not drawn: {title}{of}, because of an error of the program ({reason})."
-    figure = Figure(figsize=(WIDTH, 1.6), layout="none")
+    figure = Figure(figsize=(WIDTH, 1.6))
+    figure.set_layout_engine("none")  # there are no axes to lay out
     # Nothing in the words is a formula.
     figure.text(
         0.5,

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..curves import Curve, add_squares, along_axes, lengths_in_cells
+from ...core.kernel_cache import njit
+from ..curves import BLOCKS, Curve, along_axes, lengths_in_cells, pairs_in_block
 from ..estimator import Estimator
 from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square, short_wave_fraction
 from ..roll_off import second_difference_fraction
@@ -22,9 +23,25 @@ def second_difference_curves(heights: np.ndarray, spacing: float) -> dict[str, C
     return along_axes(spacing, lags, heights, _add_second_differences)
 
 
+@njit(cache=True)
 def _add_second_differences(heights, lag, total, weight):
-    second = heights[:, 2 * lag :] - 2 * heights[:, lag:-lag] + heights[:, : -2 * lag]
-    add_squares(second, 2 * lag, total, weight)
+    """Add squares of second differences along x to the blocks that hold their middles.
+
+    As :func:`roughness.curves.add_squares`, but without an array of them: that of a large scan does
+    not fit the processor's cache.
+    """
+    ny, nx = heights.shape
+    for i in range(ny):
+        row = i * BLOCKS // ny
+        for column in range(BLOCKS):
+            squares, n = 0.0, 0
+            for j in range(*pairs_in_block(column, nx, 2 * lag)):
+                d = heights[i, j + 2 * lag] - 2 * heights[i, j + lag] + heights[i, j]
+                if np.isfinite(d):
+                    squares += d * d
+                    n += 1
+            total[row, column] += squares
+            weight[row, column] += n
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
