@@ -66,7 +66,11 @@ def _draw_loads(axes, test, dimension, which):
     axes.set_ylim(0.6, 2.05)
     label_short_span(axes.xaxis)
     axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$ (1)")
-    letter(axes, which, rf"$\Delta_g$ = {dimension:g}")
+    title = rf"$\Delta_g$ = {dimension:g}"
+    if test.sizes["dimension"] > 1:
+        letter(axes, which, title)
+    else:
+        axes.set_title(title, loc="left")
 
 
 def _legends(test):

@@ -127,6 +127,8 @@ def _draw_elastic(axes, dilatancy, opened, shown, mapped, points):
     if axes.get_xscale() == "log":
         axes.set_xlim(offsets.min() / 1.3, offsets.max() * 1.3)
     axes.margins(y=0.12)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - 0.1 * (high - low), high)  # room for a letter below the lowest point
     axes.set_ylabel(r"dilatancy $\delta$ (mm)")
     letter(axes, "b", f"elastic dilatancy, {place(direction)}")
 
