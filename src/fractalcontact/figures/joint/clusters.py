@@ -150,7 +150,8 @@ def _draw_domains(panels, table):
             axes.plot(v, y, ls=LINES[n % 4], lw=0.8, color=colour_of(n))
             axes.plot(v[many], y[many], ls="none", **style)
             axes.plot(v[~many], y[~many], ls="none", mfc="white", **style)
-        name = f"$F$ = {force_label(force)}: $I \\sim v^x$, $x$ = {slope_text(_trend(points, 'morisita'))}"
+        exponent = slope_text(_trend(points, "morisita"))
+        name = rf"$F$ = {force_label(force)}: $I \sim v^x$, $x$ = {exponent}"
         number.plot([], [], ls=LINES[n % 4], lw=0.8, label=name, **style)
         above = 1 + 1.96 * points["morisita_scatter"]
         below = (1 - 1.96 * points["morisita_scatter"]).clip(lower=0.1)
