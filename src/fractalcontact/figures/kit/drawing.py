@@ -295,9 +295,9 @@ def entitle(figure: Figure, title: str) -> None:
             part = before / figure.get_figheight()
             axes.set_position((x, y * part, width, height * part))
     words = (*map(formulas, lines), figure.get_suptitle())
-    title = figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
+    shown = figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
     if not laid_out:
-        title.set_y(1 - _EDGE / figure.get_figheight())
+        shown.set_y(1 - _EDGE / figure.get_figheight())
 
 
 def label_in_lines(label: str, *where: str, width: float) -> str:
