@@ -19,6 +19,7 @@ from fractalcontact.study.stages import EXPERIMENT, STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
+SOLVER = solver_settings({}, "tiny")
 AREA_SLOPE = {
     "dimension": 2.2,
     "nodes": 64,

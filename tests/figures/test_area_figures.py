@@ -71,7 +71,7 @@ def test_labels_table_and_caption(with_area, name):
     drawing = drawn(with_area, name)
     drawing.figure.draw_without_rendering()
     axes_labels_have_units(drawing.figure)
-    assert settings_of(with_area, name)["label"] in drawing.caption
+    assert settings_of(with_area, name)["label"] in drawing.figure.get_suptitle()
     assert "Fig. 5" in drawing.caption
     assert "nan" not in drawing.caption
     assert 0 < len(drawing.data) <= 20_000

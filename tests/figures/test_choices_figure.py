@@ -1,21 +1,27 @@
-"""Figure of the solve plan and of the errors stated for the states."""
+"""Figures of the solve plan, and of the errors stated for the states."""
 
 import numpy as np
 import pytest
 from cases import representative
 
-from fractalcontact.figures.joint import choices
+from fractalcontact.figures.joint import choices, stated_errors
+
+NAMES = ("sliding", "flat", "pair")
 
 
-@pytest.mark.parametrize("name", representative(["sliding", "flat", "pair"]))
-def test_choices_and_errors_of_every_specimen(atlas, name):
+@pytest.mark.parametrize("name", representative(NAMES))
+def test_choices_of_every_specimen(atlas, name):
     drawing = choices.draw(atlas, name)
-    made, drawn = (drawing.data[drawing.data["kind"] == kind] for kind in ("choice", "error"))
-    assert list(made["choice"]) == list(atlas[f"choices/{name}"]["choice"].values)
+    assert list(drawing.data["choice"]) == list(atlas[f"choices/{name}"]["choice"].values)
+    assert f"{int(atlas[f'closure/{name}']['solved'].sum())} of " in drawing.caption
+
+
+@pytest.mark.parametrize("name", representative(NAMES))
+def test_stated_errors_are_the_largest_of_the_atlas(atlas, name):
+    drawing = stated_errors.draw(atlas, name)
     curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0).sel(resolution=1)
     worst = (curves["area_error"] / curves["area"]).max("offset")
-    area = drawn[drawn["quantity"] == "real contact area"]
+    area = drawing.data[drawing.data["quantity"] == "real contact area"]
     np.testing.assert_allclose(area["largest"], worst.values)
-    assert f"{int(atlas[f'closure/{name}']['solved'].sum())} of " in drawing.caption
     halved = bool(np.isfinite(curves["closure_spacing_error"]).any())
     assert ("twice the spacing changes the closure by" in drawing.caption) == halved

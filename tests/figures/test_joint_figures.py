@@ -150,7 +150,7 @@ def test_every_axis_has_a_label_with_its_unit(atlas, figure, what):
     assert "nan" not in drawing.caption
     assert "inf" not in re.sub("interface|inform", "", drawing.caption)
     labels = {"sliding": "synthetic twin of nothing", "pair": "Brèche", "flat": "flat"}
-    shown = drawing.caption
+    shown = drawing.figure.get_suptitle() or drawing.caption
     if not isinstance(what, str):  # of a study: the legend names its specimens
         shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
     for name in [what] if isinstance(what, str) else [n for n in what if n != "flat"]:

@@ -91,7 +91,7 @@ def test_a_map_stands_at_its_own_pressure_and_its_own_load_is_in_the_table(with_
 def test_figures_of_maps_need_nothing_but_maps(maps, figure):
     drawing = drawn(only_maps(maps), figure)
     assert len(drawing.data) == len(maps)
-    assert drawing.caption.startswith("Supplementary figure: measured contact maps.")
+    assert drawing.caption.startswith("Supplementary figure. ")
     assert "thresholds 0.35 to 0.95" in drawing.caption
     assert len(drawing.caption.split()) < 70
     stored = [float(maps[name]["delta_sigma"]) for name in drawing.data["map"]]

@@ -239,7 +239,7 @@ def test_axes_and_captions_say_what_is_drawn(atlas, figure, specimen):
     label = common.settings_of(atlas, specimen)["label"]
     paper_number = int(figure[3:5])
     assert drawing.caption.startswith(f"After Fig. {paper_number} of ")
-    assert label in drawing.caption
+    assert label in drawing.figure.get_suptitle()
     assert "nan" not in drawing.caption
     assert len(re.findall(r"\.(?= [A-Z(]|$)", drawing.caption)) <= 6  # sentences
     assert 0 < len(drawing.data) < 20_000

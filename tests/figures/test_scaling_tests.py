@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 from cases import representative
 
-from fractalcontact.figures.experiments import dimension_test
-from fractalcontact.figures.joint import size_test
+from fractalcontact.figures.experiments import dimension_difference, dimension_test
+from fractalcontact.figures.joint import size_prediction, size_slopes, size_test
 from fractalcontact.figures.kit.drawing import print_style, save, settings_of
 from fractalcontact.figures.paper import fig11_slope_angle
 
@@ -53,18 +53,21 @@ def written_twice_alike(module, atlas, name, folder):
 
 @pytest.mark.parametrize("name", representative(SPECIMENS))
 def test_direct_test_labels_and_caption(atlas, name):
-    drawing = drawn(size_test, atlas, name)
-    drawing.figure.draw_without_rendering()
-    axes_labels_have_units(drawing.figure)
-    assert settings_of(atlas, name)["label"] in drawing.caption
-    assert "eq. 6" in drawing.caption
-    assert "nan" not in drawing.caption
+    for module in (size_test, size_slopes, size_prediction):
+        drawing = drawn(module, atlas, name)
+        drawing.figure.draw_without_rendering()
+        axes_labels_have_units(drawing.figure)
+        assert settings_of(atlas, name)["label"] in drawing.figure.get_suptitle()
+        assert "nan" not in drawing.caption
 
 
 @pytest.mark.parametrize("name", representative(SPECIMENS))
 def test_direct_test_points_are_those_of_the_atlas(atlas, name):
     test = atlas[f"size_test/{name}"].to_dataset()
-    data = drawn(size_test, atlas, name).data
+    fraction = drawn(size_test, atlas, name).data
+    fraction = fraction[(fraction["quantity"] == "area_fraction") & fraction["b_mm"].notna()]
+    np.testing.assert_array_equal(fraction["mean"], test["area_fraction"].values.ravel())
+    data = drawn(size_slopes, atlas, name).data
     equal = data[data["quantity"] == "equal_pressure"]
     np.testing.assert_array_equal(equal["value_MPa"], test["equal_pressure"].values.ravel())
     slopes = data[data["quantity"] == "slope"]
@@ -72,7 +75,10 @@ def test_direct_test_points_are_those_of_the_atlas(atlas, name):
     said = data[data["quantity"] == "predicted_slope"]
     np.testing.assert_array_equal(said["slope"], test["predicted_slope"].T.values.ravel())
     assert list(said["verdict"]) == list(test["verdict"].T.values.ravel())
-    assert ("predicted_strength" in set(data["quantity"])) == (name != "flat")
+    predicted = drawn(size_prediction, atlas, name).data
+    assert ("predicted_strength" in set(predicted["quantity"])) == (name != "flat")
+    area = predicted[predicted["quantity"] == "predicted_area"]
+    np.testing.assert_array_equal(area["predicted"], test["predicted_area"].T.values.ravel())
 
 
 def test_direct_test_without_a_slope(atlas):
@@ -82,10 +88,11 @@ def test_direct_test_without_a_slope(atlas):
                 test[f"{name}{end}"] = test[f"{name}{end}"] * np.nan
         return test
 
-    drawing = drawn(size_test, changed(atlas, "size_test/flat", nothing_found), "flat")
-    drawing.figure.draw_without_rendering()
-    assert "Parts hold too few nodes in contact" in drawing.caption
-    assert "nan" not in drawing.caption
+    for module in (size_test, size_slopes):
+        drawing = drawn(module, changed(atlas, "size_test/flat", nothing_found), "flat")
+        drawing.figure.draw_without_rendering()
+        assert "Parts hold too few nodes in contact" in drawing.caption
+        assert "nan" not in drawing.caption
 
 
 @pytest.mark.full
@@ -97,16 +104,20 @@ def test_direct_test_is_the_same_twice(atlas, tmp_path):
 
 
 def test_estimators_labels_table_and_caption(atlas):
-    drawing = drawn(dimension_test, atlas, list(SPECIMENS))
-    drawing.figure.draw_without_rendering()
-    axes_labels_have_units(drawing.figure)
-    test = atlas["dimension_test/surfaces"].to_dataset()
-    free = drawing.data[drawing.data["branch"] == "elastic"]
-    np.testing.assert_array_equal(
-        free["mean_delta_sigma_area"], test["mean_delta_sigma_area"].values.ravel()
+    drawing, compared = (
+        drawn(module, atlas, list(SPECIMENS)) for module in (dimension_test, dimension_difference)
     )
-    assert len(drawing.data[drawing.data["branch"] == "with hardness"]) == 3
-    assert "intervals, against eq. 5" in drawing.caption
+    for one in (drawing, compared):
+        one.figure.draw_without_rendering()
+        axes_labels_have_units(one.figure)
+    test = atlas["dimension_test/surfaces"].to_dataset()
+    np.testing.assert_array_equal(
+        drawing.data["mean_delta_sigma_area"], test["mean_delta_sigma_area"].values.ravel()
+    )
+    free = compared.data[compared.data["branch"] == "elastic"]
+    np.testing.assert_array_equal(free["mean_difference"], test["mean_difference"].values.ravel())
+    assert len(compared.data[compared.data["branch"] == "with hardness"]) == 3
+    assert "zero lies in" in compared.caption
     assert "1.39" not in drawing.caption  # the paper's value is of another surface
 
 
@@ -125,7 +136,7 @@ def test_estimators_without_a_hardness(atlas):
         del test.attrs["hardness"]
         return test
 
-    drawing = drawn(dimension_test, changed(atlas, "dimension_test/surfaces", elastic), [])
+    drawing = drawn(dimension_difference, changed(atlas, "dimension_test/surfaces", elastic), [])
     drawing.figure.draw_without_rendering()
     assert "yields" not in drawing.caption
     assert "with hardness" not in set(drawing.data["branch"])

@@ -31,7 +31,7 @@ def drawn(module, atlas):
 def test_labels_and_caption(atlas, module):
     drawing = drawn(module, atlas)
     assert len(drawing.caption.split()) < 70
-    assert drawing.caption.startswith("Supplementary figure: synthetic ")
+    assert drawing.caption.startswith("Supplementary figure. ")
     assert "nan" not in drawing.caption
     for axes in drawing.figure.axes:
         assert axes.get_xlabel()

@@ -133,9 +133,10 @@ def test_every_axis_states_its_unit(atlas, specimen, figure):
 
 @pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 1))
 def test_caption_names_the_specimen_and_its_claim(atlas, specimen, figure):
-    caption = drawn(atlas, specimen, figure).caption
+    drawing = drawn(atlas, specimen, figure)
+    caption = drawing.caption
     label = json.loads(atlas.attrs["configuration"])["settings"][specimen]["label"]
-    assert label in caption
+    assert label in drawing.figure.get_suptitle()
     assert "nan" not in caption
     assert "  " not in caption
     assert ("Fig. 1b" in caption) == (figure == "fig01_strength")

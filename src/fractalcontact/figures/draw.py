@@ -8,20 +8,17 @@ a study the names of all its specimens; a :class:`figures.kit.drawing.Drawing` o
 import importlib
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
+
+from xarray import DataTree
 
 from ..core.errors import InputError, OutputError
 from ..study.atlas import read_atlas
 from ..study.figure_list import all_figures
 from ..study.stages import STAGES
-from .kit.drawing import Drawing, garbage_collection_paused, print_style, save
+from .kit.drawing import Drawing, entitle, garbage_collection_paused, print_style, save
 from .kit.undrawn import undrawn
-
-#: Stages of the scan itself, not of contact that a warning is about.
-_OF_THE_SCAN = {"specimens", "quality", "surface_dimension"}
-#: Figures that state the warnings themselves.
-_STATING = {"quality"}
 
 #: A full disk, no memory, or an atlas that cannot be read fails every figure.
 _NOT_OF_THE_FIGURE = (InputError, OutputError, OSError, MemoryError)
@@ -47,7 +44,7 @@ class Drawn:
 
 
 def drawer_of(name: str) -> Callable[..., Drawing]:
-    """Function that draws a figure, by the figure's name.
+    """Function that draws a figure under its title, by the figure's name.
 
     Parameters
     ----------
@@ -64,8 +61,16 @@ def drawer_of(name: str) -> Callable[..., Drawing]:
     KeyError
         If no figure has this name.
     """
-    _, group, module = all_figures()[name].module.split("/")
-    return importlib.import_module(f".{group}.{module}", __package__).draw
+    figure = all_figures()[name]
+    _, group, module = figure.module.split("/")
+    draw = importlib.import_module(f".{group}.{module}", __package__).draw
+
+    def entitled(atlas: DataTree, subject: str | list[str]) -> Drawing:
+        drawing = draw(atlas, subject)
+        entitle(drawing.figure, figure.title)
+        return drawing
+
+    return entitled
 
 
 def draw_figures(
@@ -88,9 +93,7 @@ def draw_figures(
     -------
     Drawn
     """
-    atlas = read_atlas(atlas_path)
-    found = [atlas[f"{stage}/{specimen}"].attrs.get("warning") for stage in ("quality", "closure")]
-    return _draw(atlas, specimen, folder, names, "; ".join(filter(None, found)))
+    return _draw(read_atlas(atlas_path), specimen, folder, names)
 
 
 def draw_study_figures(
@@ -116,13 +119,13 @@ def draw_study_figures(
     return _draw(atlas, list(specimens), folder, names)
 
 
-def _draw(atlas, subject, folder, names, warning=""):
+def _draw(atlas, subject, folder, names):
     drawn = Drawn()
     with print_style():
         for name in names:
             with garbage_collection_paused():
                 try:
-                    drawing = _with_warning(drawer_of(name)(atlas, subject), name, warning)
+                    drawing = drawer_of(name)(atlas, subject)
                     save(drawing, folder, name)
                 except _NOT_OF_THE_FIGURE:
                     raise
@@ -132,11 +135,3 @@ def _draw(atlas, subject, folder, names, warning=""):
                     save(drawing, folder, name)
             drawn.captions[name] = drawing.caption
     return drawn
-
-
-def _with_warning(drawing, name, warning):
-    """The drawing, with what must be known of the specimen in its caption."""
-    of_scan = _OF_THE_SCAN.issuperset(all_figures()[name].needs)
-    if not warning or of_scan or name in _STATING:
-        return drawing
-    return replace(drawing, caption=f"{drawing.caption} WARNING: {warning}.")

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from ...accuracy.speed import DEFAULT_RTOL, ERRORS, MODEL, MODELS, OURS
 from ..kit.drawing import WIDTH, Drawing, label_short_span, letter
-from ..kit.words import short, supplementary
+from ..kit.words import SUPPLEMENTARY, short
 from ._speed import AXES, OURS_STYLE, legend_of, scenes_of, styles, table_of, values_of
 
 TITLE = "Errors and wall time of models cheaper than elastic contact"
@@ -80,7 +80,7 @@ def _default(scene):
 def _caption(scenes):
     words = [f"{model}: {_model_words(scenes, model)}" for model in MODELS]
     return (
-        f"{supplementary()} Errors and cost of models cheaper than elastic contact at full "
+        f"{SUPPLEMENTARY} Errors and cost of models cheaper than elastic contact at full "
         f"resolution, at the closure of the reference, on {len(scenes)} test problems. Force "
         f"within {GOOD_ENOUGH['force_error']:g} on (and in the median as many times as fast as "
         f"{OURS}): {'; '.join(words)}."

@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ...accuracy.convergence import QUANTITIES
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import estimate, supplementary
+from ..kit.words import SUPPLEMENTARY, estimate
 
 TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
 SUBJECT = "accuracy"
@@ -119,7 +119,7 @@ def _caption(found, trials):
     verdict = f"fewer than 9 of 10 for {', '.join(short_of)}" if short_of else "9 of 10 or more"
     of_force = f" (of the force: {', '.join(orders)})" if orders else ""
     return (
-        f"{supplementary()} Relative errors against exact solutions as the spacing falls, with "
+        f"{SUPPLEMENTARY} Relative errors against exact solutions as the spacing falls, with "
         f"their orders{of_force}. (c) Richardson extrapolation from s, 2 s and 4 s lies within its "
         f"own error bar, of {cases} trials, in: {within}; {verdict}."
     )

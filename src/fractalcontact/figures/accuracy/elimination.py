@@ -87,7 +87,7 @@ def _caption(elimination):
     if defeated.size:
         readings = f", not with {_listed(defeated)}, readings of its rigid plate"
     return (
-        f"{opening('section 4', 'elimination')} To drop points in tension for good, as the paper "
+        f"{opening('section 4')} To drop points in tension for good, as the paper "
         "does, is right where the inverse influence matrix has no positive entry off its diagonal "
         f"(a): so with Love's kernel{readings}. Random surfaces end on a wrong set in "
         f"{chance or f'none of {tried} per case'}. (b) Loose solves lose nodes."

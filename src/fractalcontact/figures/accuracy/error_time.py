@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from ...accuracy.speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
 from ..kit.drawing import WIDTH, Drawing, letter
-from ..kit.words import short, supplementary
+from ..kit.words import SUPPLEMENTARY, short
 from ._speed import (
     AXES,
     draw_points,
@@ -52,7 +52,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
     words = (
-        f"{supplementary()} Error of the force against wall time on self-affine surfaces "
+        f"{SUPPLEMENTARY} Error of the force against wall time on self-affine surfaces "
         f"({_runs_words(scenes)}). {caption(scenes, 'force_error')}"
     )
     return Drawing(figure, table_of(scenes), words)

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..kit.drawing import WIDTH, Drawing, letter
-from ..kit.words import supplementary
+from ..kit.words import SUPPLEMENTARY
 from ._speed import (
     AXES,
     draw_points,
@@ -50,7 +50,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
     words = (
-        f"{supplementary()} Errors of A_r, of Delta_sigma from boxes and of pressure against wall "
+        f"{SUPPLEMENTARY} Errors of A_r, of Delta_sigma from boxes and of pressure against wall "
         f"time, {size} x {size} nodes, {100 * contact:g} % in contact; zeros stand at the foot. "
         f"For pressure {caption(scenes, 'pressure_error')}"
     )

@@ -14,7 +14,7 @@ from ...accuracy.speed import OURS
 from ...accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
 from ...methods.registry import METHODS
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group
-from ..kit.words import supplementary
+from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Verdicts on every solver by kind of test problem"
 SUBJECT = "accuracy"
@@ -117,7 +117,7 @@ def _caption(stability, counts):
         for solver, row in zip(stability["solver"].values, totals, strict=True)
     )
     return (
-        f"{supplementary()} Verdicts on {stability.sizes['draw']} draws of each of "
+        f"{SUPPLEMENTARY} Verdicts on {stability.sizes['draw']} draws of each of "
         f"{stability.sizes['kind']} kinds of test problem. Right of those offered (silently "
         f"wrong): {by_solver}. A state is right within {stability.attrs['margin']:g} times the "
         f"tolerance {stability.attrs['rtol']:g} of the KKT conditions"

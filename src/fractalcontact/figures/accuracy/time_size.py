@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ...accuracy.speed import OURS
 from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import estimate, short, supplementary
+from ..kit.words import SUPPLEMENTARY, estimate, short
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles
 
 TITLE = "Wall time and memory against the size of the grid"
@@ -91,7 +91,7 @@ def _caption(growth, columns):
             f"operator alone {100 * float(part.min()):.0f} to {100 * float(part.max()):.0f} % of it"
         )
     return (
-        f"{supplementary()} Wall time and peak memory of cold solves within "
+        f"{SUPPLEMENTARY} Wall time and peak memory of cold solves within "
         f"{short(growth.attrs['error'])} of the reference force. Our time grows with the nodes to "
         f"the power, {'; '.join(words)}."
     )

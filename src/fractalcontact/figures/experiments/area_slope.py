@@ -20,7 +20,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.words import number, supplementary
+from ..kit.words import SUPPLEMENTARY, number
 
 TITLE = "Real contact area of synthetic surfaces at light load, with and without a roll-off"
 SUBJECT = "study"
@@ -122,13 +122,10 @@ def _table(slopes):
 def _caption(slopes):
     with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
     low, high = (number(slopes.attrs[f"{name}_kappa"], 3) for name in _THEORIES)
-    loads = slopes["reduced_pressure"].values
     return (
-        f"{supplementary()} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces of "
-        f"Delta_g = {slopes.attrs['dimension']:g}, raw (hollow) and corrected, at reduced "
-        f"pressures {loads[0]:g} to {loads[-1]:g}. Corrected kappa is {with_one} with a roll-off "
-        f"and {without} without, where few hills carry the load. Persson has {low}, Bush {high}. "
-        f"{_scatter_words(slopes)}"
+        f"{SUPPLEMENTARY} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces. "
+        f"Corrected kappa is {with_one} with a roll-off and {without} without. Persson has "
+        f"{low}, Bush {high}. {_scatter_words(slopes)}"
     )
 
 

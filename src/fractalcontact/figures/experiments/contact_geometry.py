@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ...domain.box_dimension import WIDEST
 from ..kit.drawing import WIDTH, Drawing, colour_of, entries, group, legends_below, letter
-from ..kit.words import number, supplementary
+from ..kit.words import SUPPLEMENTARY, number
 from ._reduced_pressure import load_axis
 
 TITLE = "Dimension of the contact domain beside its null models"
@@ -44,7 +44,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         _draw_curves(axes, test.sel(hurst=hurst), _CURVES, colours=(1, 2))
         axes.axhline(1 + hurst, color="0.5", lw=0.8, ls=":", label="$1+H$")
         letter(axes, next(letters), f"$H$ = {hurst:g}")
-    panels[0].set_ylabel("correlation dimension $D_2$")
+    panels[0].set_ylabel("correlation dimension $D_2$ (1)")
     handles = entries(panels[0])
     if constructions.size:
         others = np.atleast_1d(parts[1].subplots(1, len(constructions), sharey=True))
@@ -53,7 +53,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
                 one = test.sel(construction=name, hurst=hurst)
                 _draw_curves(axes, one, _OTHERS, colours=(i + 3, i + 3), of=f", $H$ = {hurst:g}")
             letter(axes, next(letters), str(name))
-        others[0].set_ylabel("correlation dimension $D_2$")
+        others[0].set_ylabel("correlation dimension $D_2$ (1)")
         legends_below(parts[0], handles)
         legends_below(parts[1], entries(others[0]))
     else:
@@ -72,7 +72,7 @@ def _draw_curves(axes, one, curves, *, colours, of="") -> None:
         axes.errorbar(load, one[name], yerr=error, label=f"{label}{of}", **style)
     axes.axhline(2, color="k", lw=0.8, label="random nodes" if not of else None)
     load_axis(axes, load)
-    axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$")
+    axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$ (1)")
 
 
 def _table(test) -> pd.DataFrame:
@@ -92,11 +92,8 @@ def _caption(test) -> str:
     beyond = known & ((low > test["cut_delta_high"]) | (high < test["cut_delta_low"]))
     rising = test["band_delta"].isel(reduced_pressure=[0, -1]).diff("reduced_pressure")
     return (
-        f"{supplementary('synthetic surfaces, arm R, finest cut-off')} Correlation dimension of "
-        "the contact domain between cut-off and roll-off; bars: 99 % over surfaces "
-        f"({count} of each H), none where wider than {WIDEST:g}. It differs from the bearing-area "
-        f"cut's beyond both intervals at {int(beyond.sum())} of the {int(known.sum())} states of "
-        f"{known.size} at which both are determined, and rises with load by "
+        f"{SUPPLEMENTARY} Correlation dimension of contact domains between cut-off and roll-off, "
+        f"{count} synthetic surfaces of each H. It differs from the bearing-area cut's beyond both "
+        f"intervals at {int(beyond.sum())} of {int(known.sum())} states, and rises with load by "
         f"{number(float(rising.mean()))}."
-        f"{' Below: other constructions.' if test.sizes['construction'] else ''}"
     )

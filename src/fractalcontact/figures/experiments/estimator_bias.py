@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of, entries, group, letter
-from ..kit.words import supplementary
+from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Bias, scatter and coverage of the estimators of the surface dimension"
 SUBJECT = "study"
@@ -123,10 +123,10 @@ def _table(bias):
 
 
 def _caption(bias):
-    start, first = (bias.attrs[key] for key in ("from_hurst", "first_cells"))
+    start = bias.attrs["from_hurst"]
     opening = (
-        f"{supplementary()} Estimators of Delta_g = 3 - H on {bias.sizes['seed']} synthetic "
-        f"surfaces of each kind; lags of {first:g} cells to side/8 or roll-off/4."
+        f"{SUPPLEMENTARY} Bias and coverage of the estimators of Delta_g = 3 - H on "
+        f"{bias.sizes['seed']} synthetic surfaces of each kind."
     )
     known = bias.sel(estimator=bias["worst_bias"].notnull())
     if not known.sizes["estimator"]:
@@ -136,8 +136,8 @@ def _caption(bias):
     name = bias.attrs["recommended"]
     return (
         f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of "
-        f"{errors[name]:.3f}, {_place(errors, name)}; its 95 % intervals hold H in "
-        f"{100 * least[name]:.0f} % of every kind or more, those of the worst estimator in "
+        f"{errors[name]:.3f}, {_place(errors, name)}; its intervals hold H in "
+        f"{100 * least[name]:.0f} % or more, those of the worst estimator in "
         f"{100 * least.min():.0f} %.{_rough_words(bias, start)}"
     )
 

@@ -30,6 +30,7 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
+from ..kit.sizes import plain_decades
 from ..kit.verdicts import CIRCULAR_SHORT, row_of
 from ..kit.words import PAPER, estimate, short
 
@@ -246,6 +247,8 @@ def _prepare(panels, slides):
     if decades:
         opened.set_yscale("log", nonpositive="mask")
         spread.set_yscale("log", nonpositive="mask")
+        plain_decades(opened.yaxis)
+        plain_decades(spread.yaxis)
     opened.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
     spread.set_ylabel(r"spread of the composite $\sigma_z$ (mm)")
     ratio.set_ylabel(r"$\delta_r/\sigma_z$ (1)")
@@ -310,8 +313,8 @@ class Trend(NamedTuple):
 def _caption(slides, verdicts):
     synthetic = slides[: len(SURFACES)]
     words = (
-        f"After Figs. 6a and 7a of {PAPER}. (a) Rigid dilatancy delta_r, (b) deviation sigma_z of "
-        f"the composite topography, (c) their ratio. {_explanation(synthetic)}"
+        f"After Figs. 6a and 7a of {PAPER}. Rigid dilatancy delta_r beside the spread sigma_z of "
+        f"the composite topography. {_explanation(synthetic)}"
     )
     return f"{words} The paper's plateaus: {verdicts}." if verdicts else words
 
@@ -336,9 +339,8 @@ def _explanation(synthetic):
     with_it, without = synthetic
     ratios = np.concatenate([slide.ratio.mean(axis=0)[slide.v > 0] for slide in synthetic])
     return (
-        f"delta_r / sigma_z stays {_span(ratios)}. Over the second half of v, delta_r with the "
-        f"roll-off {_level(with_it)} ({_change(with_it)}), without it {_level(without)} "
-        f"({_change(without)})."
+        f"delta_r / sigma_z stays {_span(ratios)}. With a roll-off delta_r {_level(with_it)} "
+        f"({_change(with_it)}), without it {_level(without)} ({_change(without)})."
     )
 
 

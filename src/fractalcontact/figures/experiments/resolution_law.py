@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ...mechanics.theory import fudged_persson_area, persson_area
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, letter
-from ..kit.words import number, supplementary
+from ..kit.words import SUPPLEMENTARY, number
 from ._reduced_pressure import load_axis
 
 TITLE = "Contact area over the resolution: the law of the rms slope"
@@ -36,9 +36,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
             left.plot(one.index, one.values, label=label, ms=3.5, **style)
     _draw_theories(left, table, test)
     left.set_xscale("log")
-    left.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms}(s))$")
-    left.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}(s)/p$")
-    left.legend(fontsize=6)
+    left.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms}(s))$ (1)")
+    left.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}(s)/p$ (1)")
+    left.legend(fontsize=6.5, loc="lower left", bbox_to_anchor=(0, 0.1))
     letter(left, "a", f"cut-offs of {cut_offs[0]:g} to {cut_offs[-1]:g} nodes")
     _draw_exponents(right, test)
     return Drawing(figure, table, _caption(test, table))
@@ -94,8 +94,8 @@ def _draw_exponents(axes, test) -> None:
         axes.plot(load, one["theory_delta"], color=colour_of(i), ls=":")
         axes.axhline(1 + hurst, color=colour_of(i), lw=0.5, ls="--")
     load_axis(axes, load)
-    axes.set_xlabel(r"load $p/(E^* h'_\mathrm{rms})$, finest")
-    axes.set_ylabel(r"$\Delta_\sigma$ by $A_r(s)$")
+    axes.set_xlabel(r"load $p/(E^* h'_\mathrm{rms})$, finest (1)")
+    axes.set_ylabel(r"$\Delta_\sigma$ by $A_r(s)$ (1)")
     letter(axes, "b", "dotted: Persson; dashed: $1+H$")
 
 
@@ -109,9 +109,7 @@ def _caption(test, table) -> str:
     )
     count = int(test["number"].isel(surface=(test["of_arm"] == "R").values).max()) + 1
     return (
-        f"{supplementary('synthetic surfaces, arm R')} (a) Corrected contact area at every short "
-        f"cut-off (markers), {count} surfaces of each H, against the pressure over the rms slope "
-        f"there. {words}(b) Delta_sigma by A_r(s), 99 % over surfaces, differs from that of "
-        f"h'_rms(s) alone by at most {number(departure)}, as if it were the surface's, not the "
-        "contact's."
+        f"{SUPPLEMENTARY} Contact area at every short cut-off over the pressure by the rms slope "
+        f"there, {count} synthetic surfaces of each H. {words}Delta_sigma by A_r(s) differs from "
+        f"that of h'_rms(s) alone by at most {number(departure)}."
     )

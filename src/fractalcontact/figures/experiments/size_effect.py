@@ -20,9 +20,9 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.words import number, supplementary
+from ..kit.words import SUPPLEMENTARY, number
 
-TITLE = "Which exponent carries the size effect"
+TITLE = "Size effect of the contact area on synthetic surfaces: measured against eq. 6"
 SUBJECT = "study"
 NEEDS = ("size_effect",)
 KEY = "size_effect"
@@ -55,10 +55,14 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.remove()
     for which, axes, arm in zip("abcd", panels.ravel(), arms, strict=False):
         _draw_arm(axes, table[table["arm"] == arm], test)
-        letter(axes, which, f"{arm}: {_ARMS[str(arm)]}")
-        axes.set_xlabel(r"eq. 6: $-(2-\Delta_\sigma)$")
+        title = f"{arm}: {_ARMS[str(arm)]}"
+        if len(arms) > 1:
+            letter(axes, which, title)
+        else:
+            axes.set_title(title, loc="left")
+        axes.set_xlabel(r"eq. 6: $-(2-\Delta_\sigma)$ (1)")
     for axes in panels[:, 0]:
-        axes.set_ylabel(r"found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$")
+        axes.set_ylabel(r"found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$ (1)")
     legends_below(figure, _classes(test), _loads(test), _lines())
     return Drawing(figure, table, _caption(test))
 
@@ -149,10 +153,8 @@ def _caption(test: xr.Dataset) -> str:
     flat = int(test["no_size_effect"].sum())
     largest = float(np.nanmax(abs(test["alpha"].values)))
     return (
-        f"{supplementary('synthetic surfaces against a plane')} Exponent of the corrected contact "
-        f"area over the side b (from {test.attrs['smallest_side']} nodes on) against that of "
-        "eq. 6; bars: 99 % over surfaces; p* = p/(E* h'_rms). Eq. 6 is refuted for "
-        f"{refuted} of {classes.size} classes and supported for {supported}. That there is no size "
-        f"effect (|alpha| below 0.02) is shown in {flat} of {test['no_size_effect'].size} cases; "
-        f"|alpha| is at most {number(largest)}."
+        f"{SUPPLEMENTARY} Exponent alpha of the contact area over b, beside that of eq. 6. "
+        f"Eq. 6 is refuted for {refuted} of {classes.size} classes and supported for {supported}; "
+        f"|alpha| is at most {number(largest)}, shown to be below 0.02 in {flat} of "
+        f"{test['no_size_effect'].size} cases."
     )

@@ -21,7 +21,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.words import number, percent, supplementary
+from ..kit.words import SUPPLEMENTARY, number, percent
 
 TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
 SUBJECT = "study"
@@ -30,6 +30,8 @@ KEY = "size_strength"
 ORDER = 8
 
 _ENDS = ("", "_low", "_high")
+#: Labels of ticks stand at least this fraction of the axis apart.
+_CLEAR = 0.15
 #: Colours of the laws; sides have the others.
 _LAWS = {"elastic": colour_of(0), "capped": colour_of(2)}
 
@@ -142,9 +144,19 @@ def _draw_strength(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         np.tan(np.radians(test.attrs["basic_friction_angle"])), color="0.6", ls=":", lw=1, zorder=0
     )
     axes.set_xscale("log")
-    ticks = of_theory["high"].to_numpy()
+    ticks = _apart(of_theory["high"].to_numpy())
     axes.set_xticks(ticks, [f"{v:g}" for v in ticks])
     axes.minorticks_off()
+
+
+def _apart(ticks: np.ndarray) -> list[float]:
+    """Of ticks along a logarithmic axis those whose labels stand clear of each other."""
+    chosen: list[float] = []
+    least = (ticks.max() / ticks.min()) ** _CLEAR
+    for tick in np.sort(ticks):
+        if not chosen or tick >= least * chosen[-1]:
+            chosen.append(float(tick))
+    return chosen
 
 
 def _draw_exponents(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
@@ -178,12 +190,13 @@ def _draw_exponents(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
     if any(kind == "equal v/b" for kind, _, _ in places):
         axes.axvline(test.sizes["interval"] - 0.5, color="0.6", lw=0.8)
     axes.set_xticks(range(len(places)), [_ends_text(*place) for place in places], fontsize=7)
+    axes.tick_params(axis="x", rotation=90)
 
 
 def _ends_text(kind: str, low: float, high: float) -> str:
     if kind == "equal v":
-        return f"{low:g}\nto {high:g}"
-    return f"1/{1 / low:.4g}\nto 1/{1 / high:.4g}"
+        return f"{low:g} to {high:g}"
+    return f"1/{1 / low:.4g} to 1/{1 / high:.4g}"
 
 
 def _groups(test: xr.Dataset) -> list[tuple[str, float]]:
@@ -247,9 +260,8 @@ def _caption(test: xr.Dataset, strengths: pd.DataFrame, exponents: pd.DataFrame)
     )
     found = f"{at_v}{at_fraction}. " if at_v else ""
     return (
-        f"{supplementary('synthetic mated joints that slide')} Strength without truncation of the "
-        f"angle (which would meet {percent(strengths['truncated_share'].mean())}); bars: 99 % over "
-        "surfaces. "
+        f"{SUPPLEMENTARY} Strength of mated joints over displacement and over size, its angle not "
+        f"held ({percent(strengths['truncated_share'].mean())} would be). "
         f"{found}Classes: {verdicts}."
     )
 

@@ -111,10 +111,8 @@ def _caption(tables, whole):
     verdicts = pd.concat([*tables.values(), whole])
     counts = verdicts["verdict"].value_counts()
     summary = ", ".join(f"{verdict} {counts[verdict]}" for verdict in SIGNS if verdict in counts)
-    pressed = "; ".join(
-        f"{row['claim']}: {row['verdict']} ({row['numbers']})" for _, row in whole[-1:].iterrows()
-    )
+    pressed = "; ".join(f"{row['claim']}: {row['verdict']}" for _, row in whole[-1:].iterrows())
     return (
         f"After the statements of {PAPER}. Verdicts over {len(tables)} specimens: {summary}; "
-        f"{int(verdicts['circular'].astype(bool).sum())} circular (*). Blank: not asked. {pressed}"
+        f"{int(verdicts['circular'].astype(bool).sum())} circular (*). {pressed}"
     ).rstrip() + ("." if pressed else "")

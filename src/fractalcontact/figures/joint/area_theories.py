@@ -63,7 +63,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
     headline(figure, settings["label"], where)
     linear = claim(atlas, name, "A_r ~ F", "area_is_linear", numbers=False)
-    caption = sentences(_caption(settings["label"], where, law), linear)
+    caption = sentences(_caption(law), linear)
     return Drawing(figure, _table(curve, law), caption)
 
 
@@ -199,10 +199,10 @@ def _table(curve, law):
     return pd.DataFrame(columns | {name: law[name].values for name, *_ in THEORIES})
 
 
-def _caption(label, where, law):
+def _caption(law):
     return (
-        f"{opening('Fig. 5', label, where)} (a) Contact area, raw (hollow) and corrected, "
-        f"beside theories; (b) slope kappa. {_law_words(law)} {_between_words(law)}"
+        f"{opening('Fig. 5')} Contact area and its slope kappa. "
+        f"{_law_words(law)} {_between_words(law)}"
     )
 
 
@@ -221,8 +221,7 @@ def _law_words(law):
         if low <= exponent <= high
     ]
     archard = f"Archard's level {', '.join(levels)}" if levels else "none of Archard's levels"
-    loads = f"{law['corrected_n']:.0f} loads"
-    return f"A_r ~ F^m, m = {fit} over {loads}, fits {archard}."
+    return f"A_r ~ F^m, m = {fit}, fits {archard}."
 
 
 def _between_words(law):
@@ -234,6 +233,6 @@ def _between_words(law):
     low, high = law.attrs["persson_kappa"], law.attrs["bush_gibson_thomas_kappa"]
     side = "between" if low <= value <= high else "below both" if value < low else "above both"
     return (
-        f"Corrected kappa at light load, {_mean(law, 'corrected_')}, lies {side} Persson's "
+        f"kappa at light load, {_mean(law, 'corrected_')}, lies {side} Persson's "
         f"{number(low, 3)} and Bush's {number(high, 3)}."
     )

@@ -29,7 +29,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.verdicts import claim
+from ..kit.verdicts import claim, sentences
 from ..kit.words import estimate, force_label, opening, place, short, slope_text
 
 TITLE = "Figs. 6 and 7: clusters of the contact domains, and their localisation with the offset"
@@ -97,7 +97,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, by_load, [heading(at), *entries(distribution)])
     headline(figure, settings["label"], place(direction))
     clustered = claim(atlas, name, "growing clustering with v", "domains_cluster")
-    caption = _caption(settings["label"], direction, clustered, sizes)
+    caption = _caption(clustered, sizes)
     data = pd.concat([table.assign(kind="domain"), sizes.assign(kind="sizes")], ignore_index=True)
     return Drawing(figure, data, caption)
 
@@ -150,7 +150,8 @@ def _draw_domains(panels, table):
             axes.plot(v, y, ls=LINES[n % 4], lw=0.8, color=colour_of(n))
             axes.plot(v[many], y[many], ls="none", **style)
             axes.plot(v[~many], y[~many], ls="none", mfc="white", **style)
-        name = f"$F$ = {force_label(force)}: $I$ as $v$ to {slope_text(_trend(points, 'morisita'))}"
+        exponent = slope_text(_trend(points, "morisita"))
+        name = rf"$F$ = {force_label(force)}: $I \sim v^x$, $x$ = {exponent}"
         number.plot([], [], ls=LINES[n % 4], lw=0.8, label=name, **style)
         above = 1 + 1.96 * points["morisita_scatter"]
         below = (1 - 1.96 * points["morisita_scatter"]).clip(lower=0.1)
@@ -205,11 +206,12 @@ def _trend(points, column):
     return fit_line(np.log(used["offset_mm"]), np.log(used[column]))
 
 
-def _caption(label, direction, clustered, sizes):
-    return (
-        f"{opening('Figs. 6 and 7', label, place(direction))} Contact clusters: (a) number, "
-        f"(b) largest, (c) localisation (Morisita's index, random nodes 1), (d) sizes with "
-        f"a^-beta. {clustered} {_size_words(sizes)}"
+def _caption(clustered, sizes):
+    return sentences(
+        f"{opening('Figs. 6 and 7')} Clusters of contact: number, largest, localisation (random "
+        "nodes: 1) and sizes.",
+        clustered,
+        _size_words(sizes),
     )
 
 
@@ -226,5 +228,5 @@ def _size_words(sizes):
     else:
         values = f"{short(fitted['exponent'].min())} to {short(fitted['exponent'].max())}"
     broken = sum(not follows_law(law.fit_clusters, law.fit_distance) for law in fitted.itertuples())
-    words = f"Beta is {values} ({low}–{high} mm2)"
+    words = f"Their number falls as a^-beta, beta {values} ({low}–{high} mm2)"
     return f"{words}, not followed at {broken} of {len(fitted)} offsets." if broken else f"{words}."

@@ -22,7 +22,7 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.empty import TOO_FULL, say_empty
-from ..kit.verdicts import verdict_words
+from ..kit.verdicts import sentences, verdict_words
 from ..kit.words import TOWARDS, force_label, opening, place, pressure_label, short
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
@@ -31,7 +31,11 @@ NEEDS = ("specimens", "joints", "closure", "statements")
 ORDER = 70
 
 #: What the paper says of the stages of sliding (:mod:`statements.judge`).
-STAGES = ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again")
+STAGES = {
+    "compliance_rises_at_first": "rising at first",
+    "curves_overlap": "then the same",
+    "compliance_rises_again": "then rising again",
+}
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -46,7 +50,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     direction = str(curves["direction"].values)
     shown = dilatancy_loads(curves["normal_force"].values, settings, specimen)
     closures = _closure_table(curves, shown)
-    seat = _common_seat(curves)
 
     figure = Figure(figsize=(WIDTH, 7.4))
     correlation, closed, compliance = figure.subplots(
@@ -61,11 +64,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         upper.set_xlabel("")
     legends_below(figure, entries(correlation), entries(compliance))
     headline(figure, settings["label"])
-    verdicts = [
-        verdict_words(atlas, name, said, numbers=False) or "not asked here" for said in STAGES
-    ]
+    verdicts = {
+        words: verdict_words(atlas, name, said, numbers=False) for said, words in STAGES.items()
+    }
     force = group(atlas, "statements", name).attrs["force"]
-    caption = _caption(settings["label"], direction, joint, verdicts, force, seat)
+    caption = sentences(_caption(direction, joint), _stage_words(verdicts, force))
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
@@ -216,23 +219,26 @@ def _ends_of_correlation(joint, direction):
     return float(along["correlation_length"]), float(along["uncorrelated_offset"])
 
 
-def _caption(label, direction, joint, verdicts, force, seat):
+def _caption(direction, joint):
     ends = _ends_of_correlation(joint, direction)
-    kinds = "," if seat is None else ", seated and from first touch,"
     return (
-        f"{opening('Figs. 4 and 5', label, place(direction))} (a) Correlation of the faces: "
-        f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))}; "
-        f"(b) closure{kinds} (c) compliance. The paper: more compliant with v at "
-        f"first ({verdicts[0]}), then overlapping curves ({verdicts[1]}), then more compliant "
-        f"again ({verdicts[2]}) at {force_label(force)}."
+        f"{opening('Figs. 4 and 5')} Correlation of the faces, closure and compliance against v. "
+        f"The correlation is "
+        f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))}."
     )
+
+
+def _stage_words(verdicts, force):
+    """What the paper says of the compliance as v grows, and the verdicts that were asked for."""
+    said = ", ".join(f"{words} ({verdict})" for words, verdict in verdicts.items() if verdict)
+    return f"The paper's compliance at {force_label(force)}: {said}." if said else ""
 
 
 def _correlation_words(ends, decidable):
     """Where the correlation of the faces has fallen to 1/e, and where it is lost."""
     length, uncorrelated = ends
     if not np.isfinite(length):
-        return "it does not fall to 1/e"
+        return "nowhere down to 1/e"
     lost = (
         f"lost from {short(uncorrelated)} mm"
         if np.isfinite(uncorrelated)

@@ -22,7 +22,7 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.empty import TOO_FULL, say_empty
-from ..kit.words import NOMINAL_PRESSURE, estimate, place, short, supplementary
+from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, estimate, place, short
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"
 SUBJECT = "specimen"
@@ -64,7 +64,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         remarks.append(heading(f"hollow: not fitted (fewer than {RESOLVED_NODES} nodes)"))
     legends_below(figure, entries(axes)[:n], remarks)
     headline(figure, settings["label"], place(direction))
-    return Drawing(figure, table, _caption(settings["label"], direction, table))
+    return Drawing(figure, table, _caption(table))
 
 
 def _table(curves):
@@ -140,10 +140,10 @@ def _draw_theory(axes, table):
         axes.plot(np.exp(ends), height, color="0.6", lw=1, ls=":", zorder=0, label=name)
 
 
-def _caption(label, direction, table):
+def _caption(table):
     return (
-        f"{supplementary(label, place(direction))} Conductance of the interface over "
-        f"conductivity, h_c/k, from its normal stiffness (Barber 2003). {_exponent_words(table)}"
+        f"{SUPPLEMENTARY} Conductance over conductivity, h_c/k, from the normal stiffness (Barber "
+        f"2003). {_exponent_words(table)}"
     )
 
 
@@ -157,7 +157,6 @@ def _exponent_words(table):
     reached = int(((fitted["exponent_low"] <= high) & (fitted["exponent_high"] >= low)).sum())
     below = int((fitted["exponent_high"] < low).sum())
     above = len(fitted) - reached - below
-    pressure = table[table["fitted"]]["nominal_pressure_MPa"]
     law = fitted.iloc[0]
     values = (
         f"a power {estimate(law['exponent'], law['exponent_low'], law['exponent_high'])}"
@@ -170,10 +169,5 @@ def _exponent_words(table):
         else f"{reached} of {len(fitted)} intervals reach theory's {low:g} to {high:g}, {below} "
         f"lie below and {above} above"
     )
-    finite_size = (
-        " Lower powers are a finite-size effect of windows with few hills." if below else ""
-    )
-    return (
-        f"It grows as {values} of the pressure ({short(pressure.min())}–{short(pressure.max())} "
-        f"MPa): {verdict}.{finite_size}"
-    )
+    finite_size = " Low powers: few hills in the window." if below else ""
+    return f"It grows as {values} of the pressure: {verdict}.{finite_size}"

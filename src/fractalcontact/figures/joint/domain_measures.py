@@ -19,15 +19,15 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.words import force_label, interval, opening, place, short
+from ..kit.words import force_label, interval, opening, place
 
-TITLE = "Local slopes, lacunarity and generalised dimensions of the contact"
+TITLE = "Is the contact domain fractal: local slopes, lacunarity, dimensions of the pressure"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "domain_measures")
 ORDER = 150
 
 #: Loads drawn, the map load among them.
-MOST_LOADS = 4
+MOST_LOADS = 3
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -50,7 +50,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure.legend(handles=handles, loc="outside lower center", ncols=MOST_LOADS)
     where = place(str(measures["direction"].item()), float(measures["offset"]))
     headline(figure, settings["label"], where)
-    start = opening("section 6", settings["label"], where)
+    start = opening("section 6")
     return Drawing(figure, table, f"{start} {_caption(measures.isel(normal_force=mapped), table)}")
 
 
@@ -104,7 +104,7 @@ def _draw_slopes(axes, table):
     axes.set_ylim(-0.1, max(2.2, axes.get_ylim()[1]))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    letter(axes, "a", "box counts")
+    letter(axes, "a", "box counts (fractal: level)")
 
 
 def _draw_lacunarity(axes, table, mapped):
@@ -125,7 +125,7 @@ def _draw_lacunarity(axes, table, mapped):
         ylabel=r"lacunarity $\langle M^2\rangle/\langle M\rangle^2$ (1)",
     )
     label_short_span(axes.xaxis)
-    letter(axes, "b", "lacunarity")
+    letter(axes, "b", "lacunarity (1: even)")
 
 
 def _draw_spectrum(axes, table, mapped):
@@ -136,13 +136,13 @@ def _draw_spectrum(axes, table, mapped):
             axes.fill_between(points["order_q"], low, high, color=style["color"], alpha=0.15, lw=0)
     axes.axhline(2, color="0.6", ls="-.", lw=0.8, zorder=0)
     axes.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")
-    letter(axes, "c", "pressure")
+    letter(axes, "c", "pressure (fractal: level)")
 
 
 def _caption(state, table):
     words = (
-        "(a) Local slopes of box counts, (b) gliding-box lacunarity, (c) generalised dimensions of "
-        f"pressure. At F = {force_label(float(state['normal_force']))} "
+        "Local slopes of box counts, gliding-box lacunarity and dimensions of the pressure. At F = "
+        f"{force_label(float(state['normal_force']))} "
     )
     dimensions = [
         f"{_interval(state, key)} from {label}"
@@ -162,10 +162,9 @@ def _caption(state, table):
 
 
 def _interval(state, key):
-    """A dimension with its interval and the range of its fit."""
+    """A dimension with its interval."""
     ends = (state[f"{key}{end}"].item() for end in ("", "_low", "_high"))
-    r = (short(state[f"{key}_r_{end}"].item()) for end in ("min", "max"))
-    return f"{interval(*ends)} ({'–'.join(r)} mm)"
+    return interval(*ends)
 
 
 def _law(state, table):

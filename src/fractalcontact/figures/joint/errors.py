@@ -19,7 +19,7 @@ from ..kit.drawing import (
     nearest_load,
     settings_of,
 )
-from ..kit.words import force_label, percent, place, supplementary
+from ..kit.words import SUPPLEMENTARY, force_label, percent, place
 
 TITLE = "Error of each quantity by source"
 SUBJECT = "specimen"
@@ -84,7 +84,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, settings["label"], where)
     specimen = group(atlas, "specimens", name)
     load = nearest_load(budget["normal_force"].values, settings["map_load"], specimen)
-    caption = _caption(f"{supplementary(settings['label'], where)}", budget, load)
+    caption = _caption(budget, load)
     return Drawing(figure, table, caption)
 
 
@@ -147,7 +147,7 @@ def _draw_legend(axes, panels) -> None:
     )
 
 
-def _caption(opening, budget, load) -> str:
+def _caption(budget, load) -> str:
     """Sources of error, and the largest at the load of the maps."""
     here = budget.isel(normal_force=load)
     parts = []
@@ -161,12 +161,9 @@ def _caption(opening, budget, load) -> str:
         largest = str(errors["source"].values[int(np.nanargmax(errors))])
         parts.append(f"{words} {percent(total)} ({largest})")
     found = (
-        f"At {force_label(float(here['normal_force']))} the totals and their largest sources are: "
+        f"Totals at {force_label(float(here['normal_force']))} and their largest sources: "
         f"{', '.join(parts)}."
         if parts
         else "No total is known at the load of the maps."
     )
-    return (
-        f"{opening} Errors by source, half-widths at 95 %; bold: total of the number for this "
-        f"surface, dashed: for its population. {found}"
-    )
+    return f"{SUPPLEMENTARY} Errors by source and in all, half-widths at 95 %. {found}"

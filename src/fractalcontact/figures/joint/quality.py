@@ -25,7 +25,7 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.maps import scan_extent
-from ..kit.words import percent, supplementary
+from ..kit.words import SUPPLEMENTARY, percent
 from ..paper.fig02_relief import draw_faces
 from ._history import history
 from ._quality_pair import draw_gap, draw_gap_heights, draw_load_share, pair_entries, pair_table
@@ -111,7 +111,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         parse_math=False,
     )
     table = _table(specimen, quality, faces, curves)
-    return Drawing(figure, table, _caption(label, specimen, quality, warnings))
+    return Drawing(figure, table, _caption(specimen, quality, warnings))
 
 
 # -- words and numbers -----------------------------------------------------------------------------
@@ -157,18 +157,17 @@ def _cells_words(specimen, quality, faces):
     return f"{cells}."
 
 
-def _caption(label, specimen, quality, warnings):
+def _caption(specimen, quality, warnings):
     faces = [str(face) for face in quality["face"].values]
     found = ["all resolutions of the study lie within the fractal range"]
-    if any(warnings):
-        found = [f"WARNING: {warning}" for warning in warnings if warning]
+    if stated := sum(map(bool, warnings)):
+        found = [f"{stated} warning{'s stand' if stated > 1 else ' stands'} below the panels"]
     found += filter(None, [overlap_words(specimen, quality)])
     ends = " ".join(f"{sentence[0].upper()}{sentence[1:]}." for sentence in found)
     what = ", gap, load on suspicious cells" if len(faces) == 2 else ""
     return (
-        f"{supplementary('quality of the scan', label)} Relief, mask, heights, profiles, "
-        f"spectra{what}, with noise floor, fractal range and the shortest wave 2 s of each "
-        f"resolution s. {_cells_words(specimen, quality, faces)} {ends}"
+        f"{SUPPLEMENTARY} Relief, mask, heights, profiles and spectra of the scan{what}. "
+        f"{_cells_words(specimen, quality, faces)} {ends}"
     )
 
 

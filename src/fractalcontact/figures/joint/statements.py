@@ -8,7 +8,7 @@ from ...statements.judge import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, group, label_in_lines, settings_of
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
 from ..kit.verdicts import CIRCULAR_SHORT
-from ..kit.words import force_label, opening, place
+from ..kit.words import force_label, opening
 
 TITLE = "Statements of the paper, and whether they hold"
 SUBJECT = "specimen"
@@ -30,7 +30,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     judged = group(atlas, "statements", name)
     table = pd.DataFrame({key: judged[key].values for key in DATA})
     figure = draw_table(table, label)
-    return Drawing(figure, table, _caption(label, judged, table))
+    return Drawing(figure, table, _caption(judged, table))
 
 
 def draw_table(table: pd.DataFrame, label: str) -> Figure:
@@ -74,7 +74,7 @@ def _texts(row):
     }
 
 
-def _caption(label, judged, table):
+def _caption(judged, table):
     counts = table["verdict"].value_counts()
     summary = ", ".join(
         f"{counts[key]} {_noun(key, counts[key])}" for key in SIGNS if key in counts
@@ -82,9 +82,9 @@ def _caption(label, judged, table):
     circular = int(table["circular"].sum())
     chosen = f" {circular} circular: the specimen was chosen for them." if circular else ""
     return (
-        f"{opening('the statements', label, place(judged.attrs['direction']))} Of {len(table)} "
-        f"statements {summary}.{chosen} The rules that judge them are ours, for the paper gives "
-        f"none; where a load is needed, F = {force_label(judged.attrs['force'])}."
+        f"{opening('the statements')} Of {len(table)} "
+        f"statements {summary}.{chosen} The rules that judge them are ours, the paper gives "
+        f"none; load: {force_label(judged.attrs['force'])}."
     )
 
 

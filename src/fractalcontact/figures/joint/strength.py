@@ -52,7 +52,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         legends.legend(handles=entries(summary), loc="lower left", title="(c)")
     headline(figure, settings["label"], place(direction))
     table = pd.concat([_table(strength, shown), _summary_table(strength)], ignore_index=True)
-    return Drawing(figure, table, _caption(settings, direction, strength, shown))
+    return Drawing(figure, table, _caption(strength, shown))
 
 
 def _draw_angles(axes, strength, shown):
@@ -176,10 +176,10 @@ def _summary_table(strength):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, direction, strength, shown):
+def _caption(strength, shown):
     return (
-        f"{opening('section 5', settings['label'], place(direction))} (a) Dilatancy angle i, "
-        "(b) strength sigma_0 tan(phi_b + i), (c) peak and residual. "
+        f"{opening('section 5')} Dilatancy angle i, strength sigma_0 tan(phi_b + i), its peak "
+        "and residual. "
         f"{_strength_words(strength, shown)} {_barton_words(strength)}"
     )
 
@@ -196,11 +196,11 @@ def _strength_words(strength, shown):
         )
     held = strength["held_high"].values[shown].astype(int)
     n = strength.sizes["interval"]
-    words = "No interval had to be held."
+    words = "No angle had to be held."
     if (held > 0).any():
         words = (
-            f"{_counts(held)} of {n} intervals were held at {LARGEST_FRICTION_ANGLE:g} degrees: "
-            "peaks there are no result."
+            f"{_counts(held)} of {n} angles were held at {LARGEST_FRICTION_ANGLE:g} degrees: no "
+            "result."
         )
     j = shown[-1]
     pressure = short(strength["nominal_pressure"][j])

@@ -56,7 +56,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         ignore_index=True,
     )
     larger = claim(atlas, name, "more compliant larger samples", "larger_samples_close_more")
-    return Drawing(figure, table, sentences(_caption(settings, laws, mapped), larger))
+    return Drawing(figure, table, sentences(_caption(laws), _closure_words(laws), larger))
 
 
 def _draw_roughness(axes, laws, shown):
@@ -167,11 +167,10 @@ def _closure_table(laws):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, laws, mapped):
+def _caption(laws):
     return (
-        f"{opening('eq. 2 and section 5', settings['label'])} (a) sigma_z of sub-windows of side b "
-        f"about their own planes; (b) their interface closure. {_hurst_words(laws)} "
-        f"{_closure_words(laws, mapped)}"
+        f"{opening('eq. 2 and section 5')} Roughness sigma_z and interface closure of sub-windows "
+        f"against their side b. {_hurst_words(laws)}"
     )
 
 
@@ -181,8 +180,7 @@ def _hurst_words(laws):
     expected = [float(laws[f"expected_hurst{end}"]) for end in ("", "_low", "_high")]
     if not np.isfinite(hurst[0]):
         return "No fit of eq. 2: fewer than three sizes lie in its range."
-    low, high = (short(laws[f"face_hurst_b_{end}"]) for end in ("min", "max"))
-    words = f"H = {estimate(*hurst)} ({low}–{high} mm)"
+    words = f"H = {estimate(*hurst)}"
     if not np.isfinite(expected[0]):
         return f"{words}."
     agree = hurst[1] <= expected[2] and expected[1] <= hurst[2]
@@ -190,19 +188,7 @@ def _hurst_words(laws):
     return f"{words} {verb} with 3 - Delta_g = {estimate(*expected)}."
 
 
-def _closure_words(laws, mapped):
-    """How the closure from first contact, an extreme of the window, grows with it."""
-    exponent = laws["closure_exponent"]
-    known = np.isfinite(exponent)
-    if not known.any():
-        return "No exponent: too few sizes hold ten nodes in contact."
-    return f"w_int ~ b^e, e = {_range(exponent.values[mapped])} in (b)."
-
-
-def _range(values):
-    """The smallest to the largest of some values."""
-    known = values[np.isfinite(values)]
-    if not known.size:
-        return "none"
-    low, high = short(known.min()), short(known.max())
-    return low if low == high else f"{low} to {high}"
+def _closure_words(laws):
+    """That no exponent of the closure could be fitted."""
+    known = bool(np.isfinite(laws["closure_exponent"]).any())
+    return "" if known else "No exponent: too few sizes hold ten nodes in contact."

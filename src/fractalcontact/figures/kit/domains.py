@@ -14,7 +14,7 @@ from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
 from .verdicts import verdict_words
-from .words import interval, opening, place, short
+from .words import interval, place
 
 
 @dataclass(frozen=True)
@@ -137,10 +137,6 @@ class Loading:
         """Which specimen, and where its contact is: parts of a headline."""
         return self.settings["label"], self.place
 
-    def opening(self, figure: str) -> str:
-        """First words of the caption of a figure of the paper."""
-        return opening(figure, self.settings["label"], self.place)
-
     @property
     def map_load(self) -> int:
         """Index of the load whose contact domains the study wants drawn."""
@@ -177,22 +173,6 @@ class Loading:
                 ("box", "box counting", "box counting", box, no_dimension),
             )
         )
-
-    def fit_ranges(self, load: int | None = None) -> str:
-        """Words on what the estimates are fitted over, under one load, or the widest of all."""
-        which = slice(None) if load is None else [load]
-        scaling = self.scaling.isel(normal_force=which)
-        box = self.counts.isel(normal_force=which)
-        products = scaling["sigma_n"] * scaling["delta_sigma"]
-        used = xr.apply_ufunc(np.isfinite, products).any("normal_force")
-        spacing = scaling["spacing"].where(used)
-        spans = (("s", spacing, spacing), ("r", box["fit_min"], box["fit_max"]))
-        words = [
-            f"{what} = {short(float(low.min()))}–{short(float(high.max()))} mm"
-            for what, low, high in spans
-            if bool(np.isfinite(low).any())
-        ]
-        return f"fit: {', '.join(words)}" if words else "no fits"
 
     def domain(self, factor: int, load: int) -> np.ndarray:
         """Contact domain (y, x) at ``factor`` times the scan's spacing under the load-th load."""

@@ -20,6 +20,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure, FigureBase, SubFigure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 from numpy.typing import ArrayLike
@@ -31,7 +32,7 @@ from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
 from .empty import settle_empty_axes
 from .ticks import keep_labels, plain_ticks
-from .words import force_unit
+from .words import force_unit, formulas
 
 #: Okabe and Ito's colours, distinguished by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
@@ -47,6 +48,8 @@ DPI = 200
 COMPRESSION = 3
 #: Points of the letters of a figure's title, how many stand in an inch, and inches a line is high.
 TITLE_SIZE, LETTERS_AN_INCH, LINE = 9, 14, 0.15
+#: Inches between the edge of a figure and its title.
+_EDGE = 0.05
 #: Letters of a specimen's label that are shown.
 LONGEST_LABEL = 300
 _DOLLAR = "\ue000"
@@ -269,6 +272,32 @@ def headline(figure: Figure | SubFigure, label: str, *where: str, below: str = "
         # What is below loses no height to a long label.
         figure.set_figheight(figure.get_figheight() + LINE * text.count("\n"))
     figure.suptitle("\n".join(filter(None, (text, below))), fontsize=TITLE_SIZE)
+
+
+def entitle(figure: Figure, title: str) -> None:
+    """Say above the headline of a figure what it shows; the figure becomes so much higher.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    title : str
+        Symbols as captions have them.
+    """
+    width = int(LETTERS_AN_INCH * figure.bbox.width / figure.dpi)
+    lines = textwrap.wrap(title, width)
+    before = figure.get_figheight()
+    figure.set_figheight(before + LINE * len(lines))
+    laid_out = isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine)
+    if not laid_out:
+        # Nothing moves the panels out of the title's way.
+        for axes in figure.axes:
+            x, y, width, height = axes.get_position().bounds
+            part = before / figure.get_figheight()
+            axes.set_position((x, y * part, width, height * part))
+    words = (*map(formulas, lines), figure.get_suptitle())
+    shown = figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
+    if not laid_out:
+        shown.set_y(1 - _EDGE / figure.get_figheight())
 
 
 def label_in_lines(label: str, *where: str, width: float) -> str:

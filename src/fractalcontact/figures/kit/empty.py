@@ -18,7 +18,7 @@ TOO_FULL = (
     "the blocks beside it give"
 )
 #: Of the words in an empty panel.
-_MARK = "nothing-to-draw"
+MARK = "nothing-to-draw"
 #: Ends of a logarithmic axis that nothing is drawn on.
 _ENDS = (0.1, 1.0)
 #: What a panel says whose figure gives no reason of its own.
@@ -42,7 +42,7 @@ def say_empty(axes: Axes, reason: str) -> None:
         va="center",
         color="0.35",
         bbox={"color": "white"},
-        gid=_MARK,
+        gid=MARK,
     )
 
 
@@ -55,7 +55,7 @@ def settle_empty_axes(figure: Figure) -> None:
     ----------
     figure : matplotlib.figure.Figure
     """
-    for axes in figure.axes:
+    for axes in (axes for axes in figure.axes if axes.axison):
         empty = [axis for axis in (axes.xaxis, axes.yaxis) if _without_values(axis)]
         for axis in empty:
             low, high = axis.get_view_interval()
@@ -63,7 +63,7 @@ def settle_empty_axes(figure: Figure) -> None:
                 set_ends = axes.set_xlim if axis is axes.xaxis else axes.set_ylim
                 set_ends(*_ENDS)
                 _without_ticks(axes, axis.axis_name)
-        if empty and axes.get_visible() and not any(t.get_gid() == _MARK for t in axes.texts):
+        if empty and axes.get_visible() and not any(t.get_gid() == MARK for t in axes.texts):
             say_empty(axes, _NOTHING)
 
 

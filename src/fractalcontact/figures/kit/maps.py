@@ -11,6 +11,7 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
+from scipy.ndimage import maximum_filter
 
 from ...surface.specimen import window_slices
 from .drawing import COLOURS
@@ -26,6 +27,12 @@ HALO = [withStroke(linewidth=2.5, foreground="white")]
 #: more than so many along a side of the map.
 FEW_NODES = 100
 FINE_NODES = 100
+
+#: Points that a node in contact is wide at least, so that print shows it, as long as no more than
+#: this fraction of the map becomes black.
+LEAST_DOT, MOST_BLACK = 0.8, 0.3
+#: Of captions of maps whose nodes are drawn wider than they are.
+ENLARGED = "Nodes are drawn enlarged."
 
 
 def scan_extent(specimen: xr.Dataset) -> tuple[float, ...]:
@@ -100,8 +107,8 @@ def draw_map(
     return drawn
 
 
-def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks: int = 5) -> None:
-    """A contact domain in black; rings where its nodes are too few and too small to be seen.
+def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks: int = 5) -> bool:
+    """A contact domain in black, its nodes enlarged where print would lose them; rings round few.
 
     Parameters
     ----------
@@ -111,14 +118,49 @@ def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks
         Of the window (y, x), mm.
     ticks : int
         About so many along each side.
+
+    Returns
+    -------
+    bool
+        Whether nodes are drawn enlarged, which the caption then says by `ENLARGED`.
     """
     # No cell is missing in a window, and a node smaller than a pixel must not vanish.
     grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
-    draw_map(axes, domain, sides, ticks=ticks, **grey)
+    drawn = enlarged(domain, _node_points(axes, domain.shape, sides))
+    draw_map(axes, drawn, sides, ticks=ticks, **grey)
     nodes = np.argwhere(domain)
     if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
         y, x = node_position(nodes.T, domain.shape, sides)
         axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7, clip_on=False)
+    return drawn is not domain
+
+
+def enlarged(domain: np.ndarray, points: float) -> np.ndarray:
+    """A domain whose nodes are squares of several nodes, where one is too small for print.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+    points : float
+        How wide a node is in print, points.
+
+    Returns
+    -------
+    (ny, nx) bool ndarray
+        The domain itself where its nodes can be seen, or would fill the map.
+    """
+    for times in range(int(np.ceil(LEAST_DOT / points)), 1, -1):
+        drawn = maximum_filter(domain, size=times, mode="constant", cval=0)
+        if drawn.mean() <= MOST_BLACK:
+            return drawn
+    return domain
+
+
+def _node_points(axes, shape, sides):
+    """How wide a node will be in print, points; the layout moves the map a little after that."""
+    box = axes.get_window_extent()
+    scale = min(box.width / sides[1], box.height / sides[0])
+    return 72 / axes.figure.dpi * scale * sides[0] / shape[0]
 
 
 def node_position(node: ArrayLike, shape: Sequence[int], sides: Sequence[float]) -> list:

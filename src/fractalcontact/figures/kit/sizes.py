@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
+from .empty import MARK
 from .words import estimate, length_unit, short
 
 #: Where more than this fraction of the sub-windows had their angle held, a marker is left open.
@@ -63,7 +64,8 @@ def draw_means(
 def nothing_in(axes: Axes, why: str) -> None:
     """Say why axes are empty, without ticks that would number nothing."""
     axes.set(xticks=[], yticks=[])
-    axes.text(0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", color="0.4")
+    text = axes.text(0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", gid=MARK)
+    text.set_color("0.4")
 
 
 def apart(b: np.ndarray, j: int, n: int) -> np.ndarray:

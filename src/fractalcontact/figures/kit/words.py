@@ -27,15 +27,29 @@ _SPANS = {"": 1.0, "mm/mm": 1.0, "degrees": 30.0}
 _FORCE_UNITS = (("GN", 1e9), ("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
 
 
-def opening(figures: str, label: str, where: str = "") -> str:
-    """First words of a caption: "Fig. 2", a specimen's label, the place of its contact."""
-    return f"After {figures} of {PAPER}: {', '.join(filter(None, (label, where)))}."
+#: First words of the caption of a figure that the paper does not have.
+SUPPLEMENTARY = "Supplementary figure."
+
+#: Symbols of titles, as the captions write them and as formulas.
+_FORMULAS = {
+    "Delta_sigma": r"$\Delta_\sigma$",
+    "Delta_g": r"$\Delta_g$",
+    "sigma*": r"$\sigma^*$",
+    "sigma_0": r"$\sigma_0$",
+    "A_r": "$A_r$",
+}
 
 
-def supplementary(*subject: str) -> str:
-    """First words of the caption of a figure that the paper does not have, and its subject."""
-    words = ", ".join(filter(None, subject))
-    return f"Supplementary figure: {words}." if words else "Supplementary figure."
+def opening(figures: str) -> str:
+    """First words of a caption after "Fig. 2"; specimen and place stand in the figure's title."""
+    return f"After {figures} of {PAPER}."
+
+
+def formulas(text: str) -> str:
+    """Text with its symbols as formulas: "Delta_g" as a Greek letter with an index."""
+    for symbol, formula in _FORMULAS.items():
+        text = text.replace(symbol, formula)
+    return text
 
 
 def place(direction: str, offset: float | None = None) -> str:

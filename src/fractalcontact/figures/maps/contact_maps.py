@@ -8,7 +8,7 @@ from ...domain.departure import is_fractal
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import map_table, measured_series, threshold_words
-from ..kit.words import interval, percent, short, supplementary
+from ..kit.words import SUPPLEMENTARY, interval, percent, short
 
 TITLE = "Measured contact maps"
 SUBJECT = "study"
@@ -74,7 +74,7 @@ def _caption(series, maps):
     beyond = sum(is_fractal(verdict) for verdict in verdicts)
     warned = sum(bool(one.attrs["warning"]) for _, one in maps)
     words = (
-        f"{supplementary('measured contact maps')} Cells in contact (black), "
+        f"{SUPPLEMENTARY} Cells in contact (black), "
         f"{threshold_words(series)}; above each its nominal pressure, A_r/A_0 "
         f"({percent(min(shares))} to {percent(max(shares))} in all) and Delta_sigma. By box "
         f"counting it lies beyond as many random cells in {beyond} of {len(maps)} maps; the "

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from ..kit.drawing import WIDTH, Drawing, entries, headline, label_short_span, legends_below, letter
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
-from ..kit.words import interval, supplementary
+from ..kit.words import SUPPLEMENTARY, interval
 
 TITLE = "Dimension of measured contact maps against pressure"
 SUBJECT = "study"
@@ -67,7 +67,7 @@ def _caption(series):
     longest = sorted(series, key=lambda each: -len(each.maps))
     words = " ".join(_trend_words(each) for each in longest[:_IN_WORDS])
     return (
-        f"{supplementary('measured contact maps')} Delta_sigma by box counting "
+        f"{SUPPLEMENTARY} Delta_sigma by box counting "
         f"({threshold_words(series)}) beside as many random cells. {words}"
     )
 

@@ -62,7 +62,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     falls = claim(
         atlas, name, "fall of strength with size", "strength_falls_with_size", numbers=False
     )
-    return Drawing(figure, _table(laws), _caption(settings, laws, share, falls))
+    return Drawing(figure, _table(laws), _caption(laws, share, falls))
 
 
 def _draw_strength(axes, laws, share):
@@ -163,12 +163,10 @@ def _table(laws):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, laws, share, falls):
-    where = place(str(laws["direction"].values))
+def _caption(laws, share, falls):
     return sentences(
-        f"{opening('Fig. 1b', settings['label'], where)} (a) Computed shear strength and (b) slope "
-        f"of dilatancy of sub-windows at v = {share_words(laws, share)} of their side b, 95 % "
-        "intervals.",
+        f"{opening('Fig. 1b')} Strength and slope of dilatancy of sub-windows at "
+        f"v = {share_words(laws, share)} of their side b.",
         _slope_words(laws, share),
         falls,
         _limit_words(laws, share),

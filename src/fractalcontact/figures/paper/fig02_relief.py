@@ -59,7 +59,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles = [outline, *([missing_patch()] if any(missing) else []), *estimates]
     figure.legend(handles=handles, loc="outside lower left", ncols=3)
     headline(figure, label, below=_size_words(specimen, sides))
-    return Drawing(figure, _table(dimension), _caption(label, specimen, faces, dimension))
+    return Drawing(figure, _table(dimension), _caption(specimen, faces, dimension))
 
 
 def draw_faces(
@@ -205,13 +205,11 @@ def _size_words(specimen, sides):
     )
 
 
-def _caption(label, specimen, faces, dimension):
-    absent = percent(1 - float(specimen["valid"].mean()))
+def _caption(specimen, faces, dimension):
+    absent = 1 - float(specimen["valid"].mean())
+    holes = f", {percent(absent)} not measured" if absent else ""
     what = "levelled face" if len(faces) == 1 else "levelled faces"
-    return (
-        f"{opening('Fig. 2', label)} Shaded relief of the {what}, {absent} not measured. "
-        f"{_words(dimension)}"
-    )
+    return f"{opening('Fig. 2')} Relief of the {what}{holes}. {_words(dimension)}"
 
 
 def _words(dimension):
@@ -228,7 +226,7 @@ def _words(dimension):
     )
     kind = str(dimension["length_kind"].sel(estimator=estimator).item())
     return (
-        f"Delta_g of the lower face is {_recommended_words(dimension)} by "
+        f"Delta_g is {_recommended_words(dimension)} by "
         f"{estimator.replace('_', ' ')}, {kind}s {first:.3g} to {last:.3g} mm"
         f"{_roll_off_words(dimension)}{_known_words(dimension)}; {table['n']} estimators give "
         f"{table['lowest']:.2f} to {table['highest']:.2f}. {_axes_words(dimension)}"

@@ -12,7 +12,7 @@ from ...mechanics.joint import DIRECTION_STEPS
 from ...surface.specimen import faces, window_sides, window_slices
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
-from ..kit.verdicts import claim
+from ..kit.verdicts import claim, sentences
 from ..kit.words import length_unit, opening, place
 
 TITLE = "Fig. 3: the joint slid to its largest offset, dilatancy and composite topography"
@@ -134,8 +134,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(profile, "b", "profile through the point of first touch")
     letter(composite, "c", "composite topography $h$")
     headline(figure, label, place(slid.direction, slid.offset))
-    left = claim(atlas, name, "loss of all correlation", "no_correlation_is_left")
-    return Drawing(figure, profiles, _caption(label, slid, left))
+    left = claim(atlas, name, "loss of all correlation", "no_correlation_is_left", numbers=False)
+    return Drawing(figure, profiles, _caption(slid, left))
 
 
 def _draw_plan(figure, axes, slid):
@@ -227,10 +227,10 @@ def _draw_composite(figure, axes, slid):
     axes.plot(x, y, marker="o", path_effects=HALO, **_TOUCH)
 
 
-def _caption(label, slid, correlation_left):
-    return (
-        f"{opening('Fig. 3', label, place(slid.direction))} (a) Window before and after the "
-        f"largest v solved, {slid.offset:.3g} mm; (b) profile through the first touch, lifted by "
-        f"delta_r = {slid.dilatancy:.3g} mm; (c) composite topography, standard deviation "
-        f"{slid.composite.std():.3g} mm. {correlation_left}"
+def _caption(slid, correlation_left):
+    return sentences(
+        f"{opening('Fig. 3')} Window before and after v = {slid.offset:.3g} mm, profile through "
+        f"the first touch, and composite topography. The joint opens by delta_r = "
+        f"{slid.dilatancy:.3g} mm.",
+        correlation_left,
     )

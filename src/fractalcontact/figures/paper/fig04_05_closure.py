@@ -2,22 +2,18 @@
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
 from ...core.resolved import RESOLVED_NODES
 from ...mechanics.closure_laws import HYPERBOLA, LAWS, SEMI_LOGARITHMIC, UNDECIDED
-from ...mechanics.states import chosen_offset
-from ...surface.specimen import cell_side, nominal_area
+from ...surface.specimen import nominal_area
 from ..kit.drawing import (
     LINES,
     MARKERS,
     WIDTH,
     Drawing,
     colour_of,
-    dilatancy_loads,
     entries,
     finest_curves,
     force_axis,
@@ -26,7 +22,6 @@ from ..kit.drawing import (
     label_short_span,
     legends_below,
     letter,
-    nearest_load,
     settings_of,
     spread,
 )
@@ -35,12 +30,12 @@ from ..kit.verdicts import claim, sentences
 from ..kit.words import (
     NOMINAL_PRESSURE,
     estimate,
-    force_label,
     opening,
     percent,
     place,
     short,
 )
+from ._stiffness import draw_stiffness, stiffness_table, stiffness_words
 
 TITLE = "Figs. 4 and 5: closure curves with their laws, real contact area, and stiffness"
 SUBJECT = "specimen"
@@ -67,34 +62,29 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     direction = str(curves["direction"].values)
     laws = group(atlas, "area", name).sel(direction=direction)
     drawn = spread(curves.sizes["offset"], CURVES)
-    stiffness = _stiffness_table(
+    stiffness = stiffness_table(
         group(atlas, "closure", name).sel(direction=direction), settings, specimen
     )
 
     figure = Figure(figsize=(WIDTH, 6.8))
-    panels = figure.subplot_mosaic("ab;cc", height_ratios=[1.6, 1])
+    panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.15, 1])
     area = nominal_area(specimen)
     _draw_closure(panels["a"], curves, drawn, direction, area)
-    _draw_area(panels["b"], curves, drawn, direction, laws, area)
-    _draw_stiffness(panels["c"], stiffness)
-    legends_below(figure, entries(panels["a"]), entries(panels["b"]))
+    _draw_light_loads(panels["b"], curves, drawn)
+    _draw_area(panels["c"], curves, drawn, direction, laws, area)
+    draw_stiffness(panels["d"], stiffness)
+    legends_below(figure, entries(panels["a"]), entries(panels["c"]))
     letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
-    letter(panels["b"], "b", "real contact area (filled: corrected, hollow: raw)")
-    letter(panels["c"], "c", f"stiffness over the spacing, {_state(direction, stiffness)}")
+    letter(panels["b"], "b", r"closure at light loads (dotted: $k_{ni}\,w_\mathrm{int}$)")
+    letter(panels["c"], "c", "contact area (filled: corrected, hollow: raw)")
+    letter(panels["d"], "d", f"stiffness over the spacing, {_state(direction, stiffness)}")
     headline(figure, settings["label"], place(direction))
     caption = sentences(
-        _caption(settings["label"], direction, curves, stiffness),
+        _caption(curves, stiffness),
         claim(atlas, name, "hyperbola", "closure_is_hyperbolic", numbers=False),
         claim(atlas, name, "A_r ~ F", "area_is_linear", numbers=False),
-        claim(
-            atlas,
-            name,
-            "rise of compliance at first",
-            "compliance_rises_at_first",
-            numbers=False,
-        ),
     )
-    table = [_table(curves, drawn, laws), stiffness.assign(panel="c")]
+    table = [_table(curves, drawn, laws), stiffness.assign(panel="d")]
     return Drawing(figure, pd.concat(table, ignore_index=True), caption)
 
 
@@ -143,6 +133,32 @@ def _draw_closure(axes, curves, drawn, direction, area):
     _second_axis(axes, size / area).set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
 
 
+def _draw_light_loads(axes, curves, drawn):
+    """The closure curves on logarithmic axes, with the line that k_ni gives each at light load."""
+    pressure = curves["nominal_pressure"].values
+    for n, i in enumerate(drawn):
+        curve = curves.isel(offset=i)
+        style = {"color": colour_of(n)}
+        w, resolved = curve["interface_closure"].values, curve["resolved"].values
+        axes.plot(w[resolved], pressure[resolved], MARKERS[n], **style)
+        axes.plot(w[~resolved], pressure[~resolved], MARKERS[n], **style, **_OPEN)
+        k_ni = float(curve["hyperbola_k_ni"])
+        if np.isfinite(k_ni):
+            ends = np.array([pressure[0], pressure[-1]])
+            axes.plot(ends / k_ni, ends, ls=":", lw=0.9, **style)
+    axes.set(xscale="log", yscale="log")
+    closures = curves["interface_closure"].isel(offset=drawn)
+    drawable = closures.where(closures > 0)
+    if np.isfinite(drawable).any():
+        axes.set_xlim(float(drawable.min()) / 1.5, float(drawable.max()) * 1.5)
+        axes.set_ylim(pressure[0] / 1.5, pressure[-1] * 1.5)
+    else:
+        say_empty(axes, TOO_FULL)
+    axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
+    axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
+    label_short_span(axes.xaxis)
+
+
 def _draw_laws(axes, curve, area, size, style):
     """Both laws over the loads that they were fitted to, the better one in full."""
     ends = [float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max")]
@@ -160,11 +176,15 @@ def _draw_laws(axes, curve, area, size, style):
 def _law_words(curve):
     """The law named, and the misfits of both."""
     misfits = [
-        f"{words} {percent(float(curve[f'{prefix}_misfit']))}"
-        for words, prefix in (("semi-log", "semi_logarithmic"), ("hyperbola", "hyperbola"))
+        f"{percent(float(curve[f'{prefix}_misfit']))} {words}"
+        for words, prefix in (("log", "semi_logarithmic"), ("hyperbola", "hyperbola"))
         if np.isfinite(float(curve[f"{prefix}_misfit"]))
     ]
-    return f"misfit {', '.join(misfits)}" if misfits else f"no fit: {_no_law(curve)}"
+    if not misfits:
+        return f"no fit: {_no_law(curve)}"
+    k_ni = float(curve["hyperbola_k_ni"])
+    initial = f"$k_{{ni}}$ {short(k_ni)} MPa/mm, " if np.isfinite(k_ni) else ""
+    return f"{initial}misfit {', '.join(misfits)}"
 
 
 def _no_law(curve):
@@ -219,87 +239,11 @@ def _exponent(law):
     return estimate(*(float(law[f"corrected_exponent{end}"]) for end in ("", "_low", "_high")))
 
 
-# -- stiffness -------------------------------------------------------------------------------------
-
-
-def _stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) -> pd.DataFrame:
-    """Tangent stiffness at the loads asked for, and k_ni, at every resolution of one offset."""
-    curves = curves.sel(offset=chosen_offset(settings["map_offset"], curves["offset"].values))
-    forces = curves["normal_force"].values
-    mapped = nearest_load(forces, settings["map_load"], specimen)
-    loads = sorted({*dilatancy_loads(forces, settings, specimen), mapped})
-    rows = []
-    for k in np.sort(curves["resolution"].values):
-        curve = curves.sel(resolution=k)
-        row = {"spacing_mm": k * cell_side(specimen), "offset_mm": float(curve["offset"])}
-        ends = {end: float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")}
-        quantity = {"quantity": "k_ni, extrapolated to zero load", "resolved": True}
-        columns = {f"stiffness{end}_MPa_per_mm": value for end, value in ends.items()}
-        rows.append(row | quantity | columns)
-        rows += [
-            row
-            | {
-                "quantity": "tangent",
-                "force_N": forces[j],
-                "nominal_pressure_MPa": float(curve["nominal_pressure"][j]),
-                "stiffness_MPa_per_mm": float(curve["interface_stiffness"][j]),
-                "resolved": bool(curve["resolved"][j]),
-                "map_load": j == mapped,
-            }
-            for j in loads
-        ]
-    return pd.DataFrame(rows)
-
-
-def _draw_stiffness(axes, table):
-    known = table.dropna(subset="stiffness_MPa_per_mm")
-    tangent = known[known["quantity"] == "tangent"]
-    for n, (force, points) in enumerate(tangent.groupby("force_N")):
-        style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
-        axes.plot(
-            points["spacing_mm"],
-            points["stiffness_MPa_per_mm"],
-            ls="-",
-            label=f"tangent, $F$ = {force_label(force)}",
-            **style,
-        )
-        few = points[~points["resolved"]]
-        axes.plot(few["spacing_mm"], few["stiffness_MPa_per_mm"], ls="none", mfc="white", **style)
-    initial = known[known["quantity"] != "tangent"]
-    if len(initial):
-        value = initial["stiffness_MPa_per_mm"].values
-        ends = [initial[f"stiffness_{end}_MPa_per_mm"].values for end in ("low", "high")]
-        axes.errorbar(
-            initial["spacing_mm"],
-            value,
-            yerr=np.maximum([value - ends[0], ends[1] - value], 0),
-            color=colour_of(0),
-            marker="D",
-            mfc="white",
-            ls="--",
-            lw=0.8,
-            capsize=2,
-            label="$k_{ni}$, extrapolated to $F$ = 0",
-        )
-    axes.set_xscale("log")
-    if len(known):
-        axes.set_yscale("log")
-        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
-    else:
-        say_empty(axes, TOO_FULL)
-    axes.set_xlabel("spacing $s$ (mm)")
-    axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
-    label_short_span(axes.yaxis)
-    spacings = table["spacing_mm"].unique()
-    axes.set_xticks(spacings, [short(s) for s in spacings])
-    axes.xaxis.set_minor_locator(NullLocator())
-
-
 # -- table and caption -----------------------------------------------------------------------------
 
 
 def _table(curves, drawn, laws):
-    """Points drawn in (a) and (b), with the numbers fitted to their curve."""
+    """Points drawn in (a) to (c), with the numbers fitted to their curve."""
     points = {
         "force_N": "normal_force",
         "nominal_pressure_MPa": "nominal_pressure",
@@ -331,7 +275,7 @@ def _table(curves, drawn, laws):
     rows = []
     for i in drawn:
         curve, law = curves.isel(offset=i), laws.isel(offset=i)
-        columns = {"panel": "a, b", "offset_mm": float(curve["offset"])}
+        columns = {"panel": "a, b, c", "offset_mm": float(curve["offset"])}
         columns |= {column: curve[name].values for column, name in points.items()}
         columns |= {column: curve[name].item() for column, name in fitted.items()}
         columns["area_fitted"] = law["corrected_fitted"].values
@@ -341,10 +285,10 @@ def _table(curves, drawn, laws):
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, curves, stiffness):
+def _caption(curves, stiffness):
     return (
-        f"{opening('Figs. 4 and 5', label, place(direction))} Closure, area, stiffness. "
-        f"{_laws_words(curves)} {_stiffness_words(stiffness)}"
+        f"{opening('Figs. 4 and 5')} Closure, contact area and stiffness. "
+        f"{_laws_words(curves)} {stiffness_words(stiffness)}"
     )
 
 
@@ -358,26 +302,3 @@ def _laws_words(curves):
     named = {law: int((laws == law).sum()) for law in LAWS}
     counts = ", ".join(f"{law} {n}" for law, n in named.items() if n)
     return f"Better law of {fitted.sum()} curves: {counts}."
-
-
-def _stiffness_words(table):
-    """Tangent stiffness at the load of the maps, and what twice the spacing makes of it."""
-    tangent = table[table["map_load"].eq(True)]
-    at = force_label(tangent["force_N"].iloc[0])
-    value, change = _with_change(tangent)
-    if not np.isfinite(value):
-        return f"No tangent stiffness at {at}."
-    words = f"Tangent stiffness at {at}: {short(value)} MPa/mm"
-    words += f" ({change} at 2 s)" if change else ""
-    value, change = _with_change(table[table["quantity"] != "tangent"])
-    return f"{words}; k_ni, extrapolated, {short(value)} ({change})." if change else f"{words}."
-
-
-def _with_change(rows):
-    """A stiffness at the finest spacing, and the change that twice that makes of it, in words."""
-    values = rows.sort_values("spacing_mm")["stiffness_MPa_per_mm"].values
-    spacings = rows["spacing_mm"].sort_values().values
-    doubled = len(values) > 1 and spacings[1] < 2.1 * spacings[0]
-    if not doubled or not np.isfinite(values[:2]).all():
-        return values[0], ""
-    return values[0], percent(values[1] / values[0] - 1, "+")

@@ -3,7 +3,6 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from xarray import DataTree
 
 from ...core.fitting import fit_line
@@ -21,10 +20,11 @@ from ..kit.drawing import (
     legends_below,
     letter,
     nearest_load,
+    offset_axis,
     settings_of,
     spread,
 )
-from ..kit.maps import HALO, draw_domain
+from ..kit.maps import ENLARGED, HALO, draw_domain
 from ..kit.verdicts import claim, sentences
 from ..kit.words import TOWARDS, area_label, force_label, opening, place, short, slope_text
 
@@ -41,8 +41,6 @@ _PLATEAUS = (
 DOMAINS, COLUMNS = 6, 3
 #: What the table has of the contact area.
 _OF_AREA = ("nodes", "area_share", "area_corrected_share", "area_corrected_resolved")
-#: (b) shows the offsets up to this part of the largest, and at least so many, apart from the rest.
-INITIAL_PART, INITIAL_OFFSETS = 0.1, 4
 #: A change over the second half below this share of the mean there is called nearly flat.
 NEARLY_FLAT = 0.1
 
@@ -67,28 +65,27 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     rows = -(-len(points) // COLUMNS)
     figure = Figure(figsize=(WIDTH, 3.2 + 2.5 * rows))
     top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, 2.5 * rows])  # type: ignore[misc]  # an array
-    ranges = _ranges(dilatancy["offset"].values)
-    rigid, *elastic = top.subplots(
-        1, 1 + len(ranges), width_ratios=[2.3, 1.5, 1][: 1 + len(ranges)]
-    )
+    rigid, elastic = top.subplots(1, 2)
     _draw_rigid(rigid, dilatancy, plateaus)
     opened = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)
     opened = opened.assign_coords(resolved=curves["resolved"])
-    _draw_elastic(elastic, ranges, dilatancy, opened, shown, mapped, points)
-    legends_below(top, entries(rigid), entries(elastic[0]))
+    _draw_elastic(elastic, dilatancy, opened, shown, mapped, points)
+    legends_below(top, entries(rigid), entries(elastic))
     domains = group(atlas, "contact", name)[f"in_contact_{finest}"].sel(direction=direction)
     panels = bottom.subplots(rows, COLUMNS, squeeze=False)
     at_map = curves.isel(normal_force=mapped)
-    _draw_domains(panels, domains[:, mapped], at_map, points, window_sides(specimen))
+    larger = _draw_domains(panels, domains[:, mapped], at_map, points, window_sides(specimen))
     bottom.suptitle(
         f"(c) contact domains at $F$ = {force_label(loads[mapped])}", x=0.01, ha="left", fontsize=8
     )
     headline(figure, settings["label"])
     table = _table(dilatancy, direction, shown, curves)
     caption = sentences(
-        _caption(settings["label"], direction, float(at_map["normal_force"])),
-        sentences(*(claim(atlas, name, *said) for said in _PLATEAUS)) or _plateau_words(plateaus),
-        claim(atlas, name, "fall of A_r with v", "area_falls"),
+        _caption(float(at_map["normal_force"])),
+        sentences(*(claim(atlas, name, *said, numbers=False) for said in _PLATEAUS))
+        or _plateau_words(plateaus),
+        claim(atlas, name, "fall of A_r with v", "area_falls", numbers=False),
+        ENLARGED if larger else "",
     )
     return Drawing(figure, table, caption)
 
@@ -119,30 +116,21 @@ def _draw_rigid(axes, dilatancy, plateaus):
     letter(axes, "a", "rigid dilatancy")
 
 
-def _ranges(offsets):
-    """The first offsets (from, to) and the others, which need another scale; mm."""
-    limit = max(INITIAL_PART * offsets[-1], offsets[min(INITIAL_OFFSETS, len(offsets)) - 1])
-    return [(0, limit)] + ([(limit, offsets[-1])] if limit < offsets[-1] else [])
-
-
-def _draw_elastic(panels, ranges, dilatancy, opened, shown, mapped, points):
-    """Elastic dilatancy, a panel a range of offsets."""
-    for panel in panels[1:]:
-        panel.sharey(panels[0])
-        panel.tick_params(labelleft=False)
-    direction = str(opened["contact_direction"].values)
+def _draw_elastic(axes, dilatancy, opened, shown, mapped, points):
+    """Elastic dilatancy under some loads, below the rigid one."""
+    direction, offsets = str(opened["contact_direction"].values), opened["offset"].values
     rigid = dilatancy["rigid_dilatancy"].sel(direction=direction)
-    for panel, (first, last) in zip(panels, ranges, strict=True):
-        panel.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=1, label="rigid, $F$ = 0")
-        _elastic_curves(panel, opened, shown)
-        _mark_points(panel, opened[:, mapped], points, (first, last))
-        panel.margins(y=0.12)
-        margin = 0.06 * (last - first) or None
-        panel.set_xlim(first, margin and last + margin)
-        panel.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-        panel.set_xlabel("offset $v$ (mm)")
-    panels[0].set_ylabel(r"dilatancy $\delta$ (mm)")
-    letter(panels[0], "b", f"elastic dilatancy, {place(direction)}")
+    axes.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=1, label="rigid, $F$ = 0")
+    _elastic_curves(axes, opened, shown)
+    _mark_points(axes, opened[:, mapped], points)
+    offset_axis(axes, offsets)
+    if axes.get_xscale() == "log":
+        axes.set_xlim(offsets.min() / 1.3, offsets.max() * 1.3)
+    axes.margins(y=0.12)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - 0.1 * (high - low), high)  # room for a letter below the lowest point
+    axes.set_ylabel(r"dilatancy $\delta$ (mm)")
+    letter(axes, "b", f"elastic dilatancy, {place(direction)}")
 
 
 def _elastic_curves(axes, opened, shown):
@@ -156,33 +144,33 @@ def _elastic_curves(axes, opened, shown):
         axes.plot(few["offset"], few, ls="none", mfc="white", **style)
 
 
-def _mark_points(axes, curve, points, shown_range):
-    """Letters of the domains at their points of the curve, where these axes show them."""
+def _mark_points(axes, curve, points):
+    """Letters of the domains at their points of the curve."""
     for k, i in enumerate(points):
-        v = float(curve["offset"][i])
-        if v <= shown_range[1] and (v > shown_range[0] or shown_range[0] == 0):
-            axes.annotate(
-                _domain_letter(k),
-                (v, float(curve[i])),
-                (0, -11),
-                textcoords="offset points",
-                ha="center",
-                path_effects=HALO,
-            )
+        axes.annotate(
+            _domain_letter(k),
+            (float(curve["offset"][i]), float(curve[i])),
+            (0, -11),
+            textcoords="offset points",
+            ha="center",
+            path_effects=HALO,
+        )
 
 
 def _draw_domains(panels, domains, states, points, sides):
-    """Contact domains of one load at some offsets, row by row."""
+    """Contact domains of one load at some offsets, row by row; whether nodes are enlarged."""
+    larger = False
     for k, panel in enumerate(panels.ravel()):
         if k >= len(points):
             panel.remove()
             continue
         i = points[k]
-        draw_domain(panel, domains[i].values, sides)
+        larger |= draw_domain(panel, domains[i].values, sides)
         panel.set_title(
             f"{_domain_letter(k)}: $v$ = {short(states['offset'][i])} mm, "
             f"$A_r/A_0$ = {area_label(states.isel(offset=i))}"
         )
+    return larger
 
 
 def _domain_letter(k):
@@ -220,10 +208,10 @@ def _table(dilatancy, direction, shown, curves):
     return pd.concat(rows, ignore_index=True)
 
 
-def _caption(label, direction, force):
+def _caption(force):
     return (
-        f"{opening('Figs. 6 and 7', label)} (a) Rigid and (b) elastic dilatancy, the latter "
-        f"{place(direction)}; (c) contact domains at F = {force_label(force)}."
+        f"{opening('Figs. 6 and 7')} Rigid and elastic dilatancy, and contact domains at F = "
+        f"{force_label(force)}."
     )
 
 

@@ -18,11 +18,12 @@ from ..kit.drawing import (
     label_short_span,
     letter,
 )
-from ..kit.maps import draw_domain
-from ..kit.verdicts import claim
+from ..kit.maps import ENLARGED, draw_domain
+from ..kit.verdicts import claim, sentences
 from ..kit.words import (
     REAL_PRESSURE,
     force_label,
+    opening,
     percent,
     pressure_label,
     short,
@@ -55,8 +56,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     top, bottom = figure.subfigures(2, 1, height_ratios=[height, 2.0])  # type: ignore[misc]  # an array
     panels = top.subplots(rows, columns, squeeze=False, sharey=True).ravel()
     letters = "abcdefghijklmnop"
+    larger = False
     for axes, which, row in zip(panels, letters, table.itertuples(), strict=False):
-        draw_domain(axes, loading.domain(row.resolution, i), loading.sides)
+        larger |= draw_domain(axes, loading.domain(row.resolution, i), loading.sides)
         letter(axes, which, f"$s$ = {short(row.spacing_mm)} mm\n{_area_words(row)}")
         axes.label_outer()
     for axes in panels[len(table) :]:
@@ -64,9 +66,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes = bottom.subplots()
     _draw_pressures(axes, table, limit)
     letter(axes, letters[len(table)], f"real mean pressure (rms slope {short(slope)})")
-    headline(top, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
+    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     falls = claim(atlas, name, "fall of A_r as a power", "area_is_lacunar", numbers=False)
     caption = _caption(loading, i, table, slope, limit, falls)
+    caption = sentences(caption, ENLARGED if larger else "")
     return Drawing(figure, table.assign(rms_slope=slope), caption)
 
 
@@ -137,7 +140,7 @@ def _caption(loading, i, table, slope, limit, falls):
     # "no fit", "no dimension": the reasons stand in Figs. 9 and 10.
     by_area, by_box = (e.reason[i].split(":")[0] or e.text(i) for e in loading.estimates)
     return (
-        f"{loading.opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}. "
+        f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}. "
         f"{falls} {_model_words(table, slope, limit)} Delta_sigma: {by_area} by A_r(s), "
         f"{by_box} by box counting. {disagreement(loading.scaling.isel(normal_force=i))}"
     )

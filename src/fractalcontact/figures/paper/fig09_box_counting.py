@@ -10,9 +10,9 @@ from ...domain.box_dimension import local_slopes, spans
 from ...domain.count_law import LawTerms, law_count
 from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
-from ..kit.maps import draw_domain
+from ..kit.maps import ENLARGED, draw_domain
 from ..kit.verdicts import claim, sentences
-from ..kit.words import force_label, interval, short
+from ..kit.words import force_label, interval, opening, short
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
@@ -36,7 +36,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     table = _table(counts)
     figure = Figure(figsize=(WIDTH, 3.6))
     left, middle, right = figure.subplots(1, 3)
-    draw_domain(left, loading.domain(loading.finest, i), loading.sides)
+    larger = draw_domain(left, loading.domain(loading.finest, i), loading.sides)
     letter(left, "a", "contact domain")
     _draw_counts(middle, table, counts)
     _draw_slopes(right, table, counts)
@@ -47,6 +47,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         _caption(loading, i, counts),
         claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=False),
         claim(atlas, name, "fractal set", "domains_are_fractal"),
+        ENLARGED if larger else "",
     )
     return Drawing(figure, table, caption)
 
@@ -151,14 +152,13 @@ def _draw_slopes(axes, table, counts):
 
 
 def _caption(loading, i, counts):
-    start = f"{loading.opening('Fig. 9')} F = {force_label(loading.forces[i])}; "
+    start = f"{opening('Fig. 9')} Box counts beside null models. "
     ordinary = _ordinary(counts)
     reason = str(counts["reason"].item())
     if reason:
-        return f"{start}box counts: no dimension: {reason}; ordinary slope {ordinary}."
+        return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
     return (
-        f"{start}box counts beside null models. Delta_sigma = {loading.estimates[1].text(i)} "
-        f"({counts['estimator'].item()}, r = {short(counts['fit_min'])}–"
+        f"{start}Delta_sigma = {loading.estimates[1].text(i)} (r = {short(counts['fit_min'])}–"
         f"{short(counts['fit_max'])} mm); ordinary slope {ordinary}."
     )
 

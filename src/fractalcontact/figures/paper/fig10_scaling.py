@@ -10,7 +10,7 @@ from ...domain.renormalisation import RESOLUTION
 from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, entries, headline, legends_below, letter
 from ..kit.verdicts import claim
-from ..kit.words import force_label, short
+from ..kit.words import force_label, opening, short
 from ._size_effect import draw_axes, size_effect
 
 TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
@@ -109,7 +109,7 @@ def _draw_pressures(axes, loading, i, table):
 def _caption(loading, i, falls):
     by_area, by_box = loading.estimates
     return (
-        f"{loading.opening('Fig. 10')} (a) A_r(s); (b) eq. 6 extrapolated from the specimen, "
-        f"F = {force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.text(i)} by "
-        f"A_r(s), {by_box.text(i)} by box counting ({loading.fit_ranges(i)})."
+        f"{opening('Fig. 10')} A_r(s), and eq. 6 extrapolated from the specimen at F = "
+        f"{force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.text(i)} by A_r(s), "
+        f"{by_box.text(i)} by box counting."
     )

@@ -166,8 +166,7 @@ def _table(laws):
 
 
 def _caption(settings, laws, share, drawn, falls):
-    where = place(str(laws["direction"].values))
-    first = opening("Fig. 11", settings["label"], where)
+    first = opening("Fig. 11")
     if not drawn:
         return sentences(
             first,
@@ -175,9 +174,9 @@ def _caption(settings, laws, share, drawn, falls):
             falls,
         )
     return sentences(
-        f"{first} (a) Computed limit slope angle and (b) relative strength of sub-windows at "
-        f"v = {share_words(laws, share)} of their side b, 95 % intervals; no exponent through "
-        "strengths held at their bound.",
+        f"{first} Computed limit slope angle and relative strength of sub-windows at "
+        f"v = {share_words(laws, share)} of their side b; no exponent goes through strengths held "
+        "at their bound.",
         falls,
         _beyond_barton(settings, laws),
     )

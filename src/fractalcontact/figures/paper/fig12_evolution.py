@@ -8,9 +8,10 @@ from xarray import DataTree
 from ...core.resolved import CORRECTED_NODES
 from ..kit.domains import Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, letter
-from ..kit.maps import draw_domain
+from ..kit.maps import ENLARGED, draw_domain
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
-from ..kit.words import force_label, percent, wrapped
+from ..kit.verdicts import sentences
+from ..kit.words import force_label, opening, percent, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"
@@ -42,11 +43,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     states = loading.scaling.sel(resolution=loading.finest)
     finest = states["area"].values
     corrected = np.where(states["nodes"] >= CORRECTED_NODES, states["area_corrected"], np.nan)
+    larger = False
     for axes, which, i in zip(maps, "abcdef", shown, strict=False):
-        draw_domain(axes, loading.domain(loading.finest, i), loading.sides, ticks=3)
+        larger |= draw_domain(axes, loading.domain(loading.finest, i), loading.sides, ticks=3)
         known = np.isfinite(corrected[i])
-        share = percent((corrected if known else finest)[i] / nominal) + ("" if known else " (raw)")
-        letter(axes, which, f"{force_label(loading.forces[i])}\n$A_r/A_0$ = {share}")
+        share = percent((corrected if known else finest)[i] / nominal) + ("" if known else " raw")
+        letter(axes, which, f"{force_label(loading.forces[i])}\n{share}")
         axes.label_outer()
     axes = bottom.subplots()
     measured = measured_series(atlas)
@@ -59,6 +61,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     table = pd.concat([_table(loading, finest, corrected, nominal), *_measured_rows(measured)])
     rises = rise_words(atlas, name, loading)
     caption = f"{_caption(loading, rises)}{_measured_words(measured)}"
+    caption = sentences(caption, ENLARGED if larger else "")
     return Drawing(figure, table.reset_index(drop=True), caption)
 
 
@@ -194,7 +197,6 @@ def _draw_dimensions(axes, loading):
 
 def _caption(loading, rises):
     return (
-        f"{loading.opening('Fig. 12')} Delta_sigma over load "
-        f"({loading.fit_ranges()}). The paper's rise with F: {rises}. "
-        f"{departures(loading.counts)}"
+        f"{opening('Fig. 12')} Contact domains with A_r/A_0, and Delta_sigma over load. The "
+        f"paper's rise with F: {rises}. {departures(loading.counts)}"
     )

@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ..kit.domains import Loading, rise_words
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, heading, headline, legends_below
-from ..kit.words import force_label, interval
+from ..kit.words import force_label, interval, opening
 from ._size_effect import draw_axes, size_effect
 
 TITLE = "Fig. 13: eq. 6 extrapolated to other sizes, load by load"
@@ -30,6 +30,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, 4.8))
     axes = figure.subplots()
     for n, (_, rows) in enumerate(table.groupby("load_N")):
+        if rows["sigma_0_MPa"].isna().all():
+            continue
         own = rows.iloc[0]
         point: dict[str, Any] = {
             "marker": MARKERS[n],
@@ -42,11 +44,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     lines = [_draw_lines(axes, loading, estimate, shown, table) for estimate in loading.estimates]
     legends_below(figure, *lines)
     draw_axes(axes)
-    axes.set_title("eq. 6 extrapolated to other sizes; markers: the specimen")
+    axes.set_title("lines: eq. 6; markers: the specimen")
     headline(figure, *loading.title)
-    return Drawing(
-        figure, table, _caption(loading, rise_words(atlas, name, loading, numbers=False))
-    )
+    return Drawing(figure, table, _caption(rise_words(atlas, name, loading, numbers=False)))
 
 
 def _draw_lines(axes, loading, estimate, shown, table):
@@ -54,11 +54,13 @@ def _draw_lines(axes, loading, estimate, shown, table):
     line = estimate.style["linestyle"]
     handles = [heading(rf"{estimate.symbol}: slope $-(2-\Delta_\sigma)$, 95 % interval")]
     for n, i in enumerate(shown):
+        if estimate.reason[i]:
+            continue
         force = loading.forces[i]
         rows = table[(table["load_N"] == force) & (table["estimator"] == estimate.label)]
         style = {"color": COLOURS[n], "linestyle": line}
         axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style)
-        slope = "none" if estimate.reason[i] else interval(*(d[i] for d in _slope(estimate)))
+        slope = interval(*(d[i] for d in _slope(estimate)))
         label = f"{force_label(force)}: {slope}"
         handles.append(Line2D([], [], **style, marker=MARKERS[n], label=label))
     return handles
@@ -69,9 +71,8 @@ def _slope(estimate):
     return estimate.value - 2, estimate.low - 2, estimate.high - 2
 
 
-def _caption(loading, rises):
+def _caption(rises):
     return (
-        f"{loading.opening('Fig. 13')} Eq. 6 extrapolated from the specimen (solid by A_r(s), "
-        f"dashed by box counting), not measured ({loading.fit_ranges()}). The paper's rise of "
-        f"Delta_sigma: {rises}."
+        f"{opening('Fig. 13')} Eq. 6 extrapolated from the specimen (solid by A_r(s), dashed by "
+        f"box counting), not measured. The paper's rise of Delta_sigma: {rises}."
     )

@@ -1,0 +1,175 @@
+"""The two estimates of Delta_sigma compared: over the size, box by box, and as material yields."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from xarray import DataTree
+
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    group,
+    headline,
+    label_short_span,
+    legends_below,
+    letter,
+)
+from ..kit.words import PAPER, number
+
+TITLE = "Do A_r(s) and box counting give one Delta_sigma: their difference on synthetic surfaces"
+SUBJECT = "study"
+NEEDS = ("dimension_test",)
+KEY = "dimension_test"
+ORDER = 31
+
+_NAMES = ("delta_sigma_area", "delta_sigma_box")
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Difference over size, boxes per node over resolution, and both where the material yields."""
+    test = group(atlas, "dimension_test", "surfaces")
+    capped = "capped_pressure" in test.dims
+    figure = Figure(figsize=(WIDTH, 3.7))
+    panels = figure.subplots(1, 2 + capped)
+    _draw_difference(panels[0], test, "a")
+    _draw_boxes(panels[1], test, "b")
+    if capped:
+        _draw_capped(panels[2], test, "c")
+    legends_below(figure, *_legends(test))
+    headline(figure, "means over seeds, lightest and heaviest load")
+    return Drawing(figure, _table(test), _caption(test))
+
+
+def _shown(test):
+    """Indices of the loads drawn."""
+    return sorted({0, test.sizes["reduced_pressure"] - 1})
+
+
+def _draw_difference(axes, test, which):
+    """Difference of the two over the size; a line style a load, a colour a dimension."""
+    size = test["size"].values
+    for i in range(test.sizes["dimension"]):
+        for n, j in enumerate(_shown(test)):
+            one = test.isel(dimension=i, reduced_pressure=j)
+            mean, low, high = (one[f"mean_difference{end}"].values for end in ("", "_low", "_high"))
+            beside = size * 1.03 ** (n + 2 * i - 2)
+            colour = colour_of(i)
+            axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])
+            axes.vlines(beside, low, high, color=colour, lw=0.5)
+    axes.axhline(0, color="0.5", lw=0.6)
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(size, [f"{n:g}" for n in size])
+    axes.minorticks_off()
+    axes.set_ylim(-0.35, 0.85)
+    axes.set_xlabel("nodes per side (1)")
+    axes.set_ylabel(r"$\Delta_\sigma$: $A_r(s)$ less box counting (1)")
+    letter(axes, which, "difference (one law: 0)")
+
+
+def _draw_boxes(axes, test, which):
+    """Occupied boxes of the finest domain over nodes in contact, at the largest size."""
+    largest = test.isel(size=-1)
+    k = test["resolution"].values
+    for i in range(test.sizes["dimension"]):
+        for n, j in enumerate(_shown(test)):
+            ratio = largest["boxes_per_node"].isel(dimension=i, reduced_pressure=j).mean("seed")
+            style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
+            axes.plot(k, ratio, **style)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("resolution $k = s_k/s$ (1)")
+    axes.set_ylabel("occupied boxes $ks$ / nodes at $k$ (1)")
+    label_short_span(axes.xaxis)
+    label_short_span(axes.yaxis)
+    letter(axes, which, "boxes per node (one law: level)")
+
+
+def _draw_capped(axes, test, which):
+    """Both estimators with a hardness, up to where the whole window yields."""
+    part = test["capped_pressure"].values
+    for i in range(test.sizes["dimension"]):
+        one = test.isel(dimension=i)
+        for name, face, line in (
+            ("delta_sigma_area", colour_of(i), "-"),
+            ("delta_sigma_box", "white", "--"),
+        ):
+            style = {"color": colour_of(i), "marker": MARKERS[i], "mfc": face, "lw": 0.8}
+            axes.plot(part, one[f"capped_mean_{name}"].values, ls=line, **style)
+    axes.axhline(2, color="0.5", lw=0.6)
+    axes.set_ylim(0.8, 2.1)
+    axes.set_xlabel("$F/(H A_0)$ (1)")
+    axes.set_ylabel(r"$\Delta_\sigma$ (1)")
+    letter(axes, which, rf"hardness {test.attrs['hardness']:g} $E^* h'_\mathrm{{rms}}$")
+    axes.text(0.97, 0.05, "filled: $A_r(s)$\nopen: boxes", transform=axes.transAxes, ha="right")
+
+
+def _legends(test):
+    dimensions = [
+        Line2D([], [], color=colour_of(i), marker=MARKERS[i], label=rf"$\Delta_g$ = {g:g}")
+        for i, g in enumerate(test["dimension"].values)
+    ]
+    loads = test["reduced_pressure"].values
+    lines = [
+        Line2D([], [], color="k", ls=LINES[n % len(LINES)], label=f"(a), (b) load {loads[j]:g}")
+        for n, j in enumerate(_shown(test))
+    ]
+    return dimensions, lines
+
+
+def _table(test):
+    ends = ("", "_low", "_high", "_n")
+    free = test[[f"mean_difference{end}" for end in ends]].to_dataframe().reset_index()
+    ratio = test["boxes_per_node"].mean("seed").to_dataframe().reset_index()
+    tables = [
+        table.rename(columns={"reduced_pressure": "p_over_E_slope"}).assign(branch=branch)
+        for table, branch in ((free, "elastic"), (ratio, "boxes and pre-fractals"))
+    ]
+    if "capped_pressure" in test.dims:
+        names = [f"capped_mean_{name}{end}" for name in _NAMES for end in ends]
+        capped = test[names].to_dataframe().reset_index()
+        capped.columns = [
+            "F_over_H_A0" if column == "capped_pressure" else column.removeprefix("capped_")
+            for column in capped.columns
+        ]
+        tables.append(capped.assign(branch="with hardness"))
+    return pd.concat(tables, ignore_index=True)
+
+
+def _caption(test):
+    return (
+        f"After Figs. 8 and 9 of {PAPER}. Delta_sigma by A_r(s) less that by box counting. "
+        f"{_difference_words(test)} {_capped_words(test)}"
+    ).strip()
+
+
+def _difference_words(test):
+    """Whether the two estimates agree, at all sizes and loads."""
+    mean = test["mean_difference"].values
+    low, high = (test[f"mean_difference_{end}"].values for end in ("low", "high"))
+    known = np.isfinite(low)
+    if not known.any():
+        return "Too few values to compare the two."
+    agree = int(((low <= 0) & (high >= 0))[known].sum())
+    return (
+        f"Their difference is {number(mean[known].min())} to {number(mean[known].max())}; zero "
+        f"lies in {agree} of {int(known.sum())} intervals."
+    )
+
+
+def _capped_words(test):
+    """Where box counting tends as the material yields."""
+    if "capped_pressure" not in test.dims:
+        return ""
+    last = test.isel(capped_pressure=-1)
+    values = last["capped_mean_delta_sigma_box"].values
+    known = values[np.isfinite(last["capped_mean_delta_sigma_box_low"].values)]
+    if not known.size:
+        return ""
+    ends = " to ".join(dict.fromkeys((number(known.min()), number(known.max()))))
+    return f"Where the material yields box counting reaches {ends}."

@@ -1,0 +1,96 @@
+"""What the figures of the size test share: loads, lines of eq. 6, axes."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from xarray import DataTree
+
+from ..kit.drawing import COLOURS, MARKERS, entries, group, label_short_span
+from ..kit.words import place, pressure_label
+
+#: How each estimate of Delta_sigma is drawn where eq. 6 takes it, and how it is named.
+ESTIMATORS = {"area": ("-", "$A_r(s)$"), "box": ("--", "box counting")}
+#: Loads shown over the side b.
+MOST_LOADS = 3
+#: Verdicts and their reasons: of the well-conditioned form, of eq. 6's own, and of both.
+JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
+
+
+def size_test_of(atlas: DataTree, name: str) -> xr.Dataset:
+    """Size test of a specimen with what was predicted of its whole window."""
+    laws = group(atlas, "windows", name)
+    predicted = [of for of in laws if {"predictor", "dilatancy_load"} & set(laws[of].dims)]
+    return group(atlas, "size_test", name).assign({of: laws[of] for of in predicted})
+
+
+def place_of(test: xr.Dataset) -> str:
+    """Where the contact is, in words."""
+    return place(str(test["direction"].values), float(test["offset"]))
+
+
+def first_loads(test: xr.Dataset, name: str) -> np.ndarray:
+    """Indices of loads with a value: those of the study, or where it has none those beyond."""
+    known = np.isfinite(test[name].values)
+    of_study = known & ~test["beyond_study"].values.astype(bool)
+    return np.flatnonzero(of_study if of_study.any() else known)
+
+
+def pressure_words(test: xr.Dataset, i: int) -> str:
+    """Nominal pressure of the i-th load."""
+    return pressure_label(float(test["nominal_pressure"][i]))
+
+
+def draw_predictions(axes: Axes, test: xr.Dataset) -> list[Artist]:
+    """-(2 - Delta_sigma) over the load with intervals; legend entries."""
+    pressure = test["nominal_pressure"].values
+    for i, (estimator, (line, words)) in enumerate(ESTIMATORS.items()):
+        one = test.sel(estimator=estimator)
+        known = np.isfinite(one["predicted_slope"].values)
+        value, low, high = (
+            one[f"predicted_slope{end}"].values[known] for end in ("", "_low", "_high")
+        )
+        style: dict[str, Any] = {
+            "color": COLOURS[i + 1],
+            "ls": line,
+            "marker": MARKERS[i + 1],
+            "ms": 3,
+        }
+        axes.fill_between(pressure[known], low, high, color=style["color"], alpha=0.15, lw=0)
+        axes.plot(pressure[known], value, label=f"eq. 6, $\\Delta_\\sigma$ by {words}", **style)
+    return entries(axes)
+
+
+def load_axis(axes: Axes, test: xr.Dataset) -> None:
+    """Axis of sigma_0 of the whole, loads beyond the study in grey."""
+    pressure = test["nominal_pressure"].values
+    beyond = pressure[test["beyond_study"].values.astype(bool)]
+    if len(beyond):
+        first = np.sqrt(beyond[0] * pressure[pressure < beyond[0]][-1])
+        style: dict[str, Any] = {"color": "0.93", "lw": 0, "zorder": 0}
+        axes.axvspan(first, beyond[-1] * 1.3, label="beyond the study's loads", **style)
+    axes.axhline(0, color="0.5", lw=0.6)
+    axes.set_xscale("log")
+    axes.set_xlim(pressure[0] / 1.3, pressure[-1] * 1.3)
+    axes.set_ylim(-2.3, 0.8)
+    axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
+    label_short_span(axes.xaxis)
+
+
+def predicted_table(test: xr.Dataset, i: int, common: dict) -> pd.DataFrame:
+    """What eq. 6 predicts under the i-th load by every estimate, and the verdicts on it."""
+    return pd.DataFrame(
+        {
+            "quantity": "predicted_slope",
+            **common,
+            "estimator": test["estimator"].values,
+            **{
+                f"slope{end}": test[f"predicted_slope{end}"].values[:, i]
+                for end in ("", "_low", "_high")
+            },
+            **{name: test[name].values[:, i] for name in JUDGED},
+        }
+    )

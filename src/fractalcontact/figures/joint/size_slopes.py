@@ -1,0 +1,143 @@
+"""Eq. 6 in its own form: sigma_0 of parts of the window at the sigma* of the whole, over b."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from xarray import DataTree
+
+from ..kit.drawing import (
+    COLOURS,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    entries,
+    heading,
+    headline,
+    legends_below,
+    letter,
+    settings_of,
+    spread,
+)
+from ..kit.sizes import nothing_in, plain_decades, size_axis
+from ..kit.verdicts import claim, sentences
+from ..kit.words import SUPPLEMENTARY, interval
+from ._size_test import (
+    ESTIMATORS,
+    MOST_LOADS,
+    draw_predictions,
+    first_loads,
+    load_axis,
+    place_of,
+    predicted_table,
+    pressure_words,
+    size_test_of,
+)
+
+TITLE = "Eq. 6 in its own form: pressure that gives parts of the window the sigma* of the whole"
+SUBJECT = "specimen"
+NEEDS = ("size_test", "windows", "statements")
+ORDER = 171
+
+
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """sigma_0 at equal sigma* over b under some loads, and its slope over the load."""
+    test = size_test_of(atlas, name)
+    figure = Figure(figsize=(WIDTH, 3.9))
+    equal, slopes = figure.subplots(1, 2)
+    shown = _draw_equal(equal, test)
+    legends_below(figure, shown, _draw_slopes(slopes, test))
+    headline(figure, settings_of(atlas, name)["label"], place_of(test))
+    caption = sentences(
+        f"{SUPPLEMENTARY} Nominal pressure at equal sigma* over the side b of parts of the window, "
+        "and its slope.",
+        claim(atlas, name, "eq. 6", "size_effect_follows", numbers=False),
+        _found_words(test),
+    )
+    return Drawing(figure, _table(test), caption)
+
+
+def _draw_equal(axes, test):
+    """sigma_0 over b at the sigma* of the whole, with the slopes predicted; legend entries."""
+    b = test["side"].values
+    fitted = first_loads(test, "slope")
+    loads = fitted[spread(len(fitted), MOST_LOADS)]
+    handles = [heading("whole window, and the measured slope")]
+    for n, i in enumerate(loads):
+        style = {"color": COLOURS[n], "marker": MARKERS[n]}
+        pressure = test["equal_pressure"].values[i]
+        axes.plot(b, pressure, ls="none", **style)
+        for estimator, (line, _) in ESTIMATORS.items():
+            slope = float(test["predicted_slope"].sel(estimator=estimator)[i])
+            axes.plot(b, pressure[0] * (b / b[0]) ** slope, color=COLOURS[n], ls=line, lw=0.8)
+        found = interval(*(float(test[f"slope{end}"][i]) for end in ("", "_low", "_high")))
+        label = f"{pressure_words(test, i)}: {found}"
+        handles.append(Line2D([], [], ls="none", **style, label=label))
+    size_axis(axes, b, "parts")
+    axes.set_ylabel(r"$\sigma_0$ at the same $\sigma^*$ (MPa)")
+    letter(axes, "a", "points: measured; lines: eq. 6")
+    if not len(loads):
+        nothing_in(axes, "no load at which three sizes\nhold enough nodes")
+        return handles[:1]
+    axes.set_yscale("log")
+    drawn = test["equal_pressure"].values[loads]
+    axes.set_ylim(np.nanmin(drawn) / 2, np.nanmax(drawn) * 3)
+    plain_decades(axes.yaxis)
+    return handles
+
+
+def _draw_slopes(axes, test):
+    """Slopes at equal sigma*, measured and predicted, over the load; legend entries."""
+    pressure = test["nominal_pressure"].values
+    draw_predictions(axes, test)
+    slope, low, high = (test[f"slope{end}"].values for end in ("", "_low", "_high"))
+    known = np.isfinite(slope)
+    axes.vlines(pressure[known], low[known], high[known], color="k", lw=0.8)
+    determined = known & test["well_conditioned"].values.astype(bool)
+    for chosen, face, words in (
+        (determined, "k", "measured"),
+        (known & ~determined, "white", "measured, ill-conditioned"),
+    ):
+        axes.plot(pressure[chosen], slope[chosen], "ko", mfc=face, ms=4, label=words)
+    load_axis(axes, test)
+    axes.set_ylabel(r"slope of $\log\sigma_0$ over $\log b$ (1)")
+    letter(axes, "b", "slopes, measured and by eq. 6")
+    return entries(axes)
+
+
+def _table(test):
+    tables = []
+    for i, force in enumerate(test["normal_force"].values):
+        common = {
+            "load_N": force,
+            "nominal_pressure_MPa": float(test["nominal_pressure"][i]),
+            "beyond_study": bool(test["beyond_study"][i]),
+        }
+        equal = {
+            "quantity": "equal_pressure",
+            **common,
+            "b_mm": test["side"].values,
+            "value_MPa": test["equal_pressure"].values[i],
+            "median_window_MPa": test["window_pressure"].values[i],
+            "windows": test["windows"].values,
+        }
+        equal |= {
+            name: test[name].values[i]
+            for name in ("windows_below", "windows_above", "windows_unknown")
+        }
+        ends = {f"slope{e}": [float(test[f"slope{e}"][i])] for e in ("", "_low", "_high", "_n")}
+        tables += [
+            pd.DataFrame(equal),
+            pd.DataFrame({"quantity": "slope", **common, **ends}),
+            predicted_table(test, i, common),
+        ]
+    return pd.concat(tables, ignore_index=True)
+
+
+def _found_words(test):
+    """How many of the measured slopes are well conditioned."""
+    known = np.isfinite(test["slope"].values)
+    if not known.any():
+        return "Parts hold too few nodes in contact."
+    good = int((known & test["well_conditioned"].values.astype(bool)).sum())
+    return f"Slopes are measured at {int(known.sum())} loads, well-conditioned at {good}."

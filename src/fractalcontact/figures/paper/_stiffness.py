@@ -1,0 +1,122 @@
+"""Stiffness of the interface over the spacing, tangent and initial, in the closure figure."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.ticker import NullLocator
+
+from ...mechanics.states import chosen_offset
+from ...surface.specimen import cell_side
+from ..kit.drawing import MARKERS, colour_of, dilatancy_loads, label_short_span, nearest_load
+from ..kit.empty import TOO_FULL, say_empty
+from ..kit.words import force_label, percent, short
+
+
+def stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) -> pd.DataFrame:
+    """Tangent stiffness at the loads asked for, and k_ni, at every resolution of one offset."""
+    curves = curves.sel(offset=chosen_offset(settings["map_offset"], curves["offset"].values))
+    forces = curves["normal_force"].values
+    mapped = nearest_load(forces, settings["map_load"], specimen)
+    loads = sorted({*dilatancy_loads(forces, settings, specimen), mapped})
+    rows = []
+    for k in np.sort(curves["resolution"].values):
+        curve = curves.sel(resolution=k)
+        row = {"spacing_mm": k * cell_side(specimen), "offset_mm": float(curve["offset"])}
+        ends = {end: float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")}
+        quantity = {"quantity": "k_ni, extrapolated to zero load", "resolved": True}
+        columns = {f"stiffness{end}_MPa_per_mm": value for end, value in ends.items()}
+        rows.append(row | quantity | columns)
+        rows += [
+            row
+            | {
+                "quantity": "tangent",
+                "force_N": forces[j],
+                "nominal_pressure_MPa": float(curve["nominal_pressure"][j]),
+                "stiffness_MPa_per_mm": float(curve["interface_stiffness"][j]),
+                "resolved": bool(curve["resolved"][j]),
+                "map_load": j == mapped,
+            }
+            for j in loads
+        ]
+    return pd.DataFrame(rows)
+
+
+def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
+    """Tangent stiffness and k_ni over the spacing.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    table : pd.DataFrame
+        Of :func:`stiffness_table`.
+    """
+    known = table.dropna(subset="stiffness_MPa_per_mm")
+    tangent = known[known["quantity"] == "tangent"]
+    for n, (force, points) in enumerate(tangent.groupby("force_N")):
+        style: dict[str, Any] = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
+        axes.plot(
+            points["spacing_mm"],
+            points["stiffness_MPa_per_mm"],
+            ls="-",
+            label=f"$F$ = {force_label(force)}",
+            **style,
+        )
+        few = points[~points["resolved"]]
+        axes.plot(few["spacing_mm"], few["stiffness_MPa_per_mm"], ls="none", mfc="white", **style)
+    initial = known[known["quantity"] != "tangent"]
+    if len(initial):
+        value = initial["stiffness_MPa_per_mm"].values
+        ends = [initial[f"stiffness_{end}_MPa_per_mm"].values for end in ("low", "high")]
+        axes.errorbar(
+            initial["spacing_mm"],
+            value,
+            yerr=np.maximum([value - ends[0], ends[1] - value], 0),
+            color=colour_of(0),
+            marker="D",
+            mfc="white",
+            ls="--",
+            lw=0.8,
+            capsize=2,
+            label="$k_{ni}$ ($F$ = 0)",
+        )
+    axes.set_xscale("log")
+    if len(known):
+        axes.set_yscale("log")
+        # Room for the legend above all points.
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high * (high / low) ** 0.7)
+        axes.legend(loc="upper left", ncols=2, handlelength=1.5, columnspacing=1)
+    else:
+        say_empty(axes, TOO_FULL)
+    axes.set_xlabel("spacing $s$ (mm)")
+    axes.set_ylabel(r"stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
+    label_short_span(axes.yaxis)
+    spacings = table["spacing_mm"].unique()
+    axes.set_xticks(spacings, [short(s) for s in spacings])
+    axes.xaxis.set_minor_locator(NullLocator())
+
+
+def stiffness_words(table: pd.DataFrame) -> str:
+    """Tangent stiffness at the load of the maps, and what twice the spacing makes of it."""
+    tangent = table[table["map_load"].eq(True)]
+    at = force_label(tangent["force_N"].iloc[0])
+    value, change = _with_change(tangent)
+    if not np.isfinite(value):
+        return f"No tangent stiffness at {at}."
+    words = f"Tangent stiffness at {at}: {short(value)} MPa/mm"
+    words += f" ({change} at 2 s)" if change else ""
+    value, change = _with_change(table[table["quantity"] != "tangent"])
+    return f"{words}; k_ni {short(value)} ({change})." if change else f"{words}."
+
+
+def _with_change(rows):
+    """A stiffness at the finest spacing, and the change that twice that makes of it, in words."""
+    values = rows.sort_values("spacing_mm")["stiffness_MPa_per_mm"].values
+    spacings = rows["spacing_mm"].sort_values().values
+    doubled = len(values) > 1 and spacings[1] < 2.1 * spacings[0]
+    if not doubled or not np.isfinite(values[:2]).all():
+        return values[0], ""
+    return values[0], percent(values[1] / values[0] - 1, "+")
