@@ -127,7 +127,12 @@ def state_of(atlas, name, place):
 def number_in(words):
     """The first number of words such as "0.3601 ± 2.6 × 10⁻⁸"."""
     raised = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-    text = words.replace("−", "-").split(" ± ")[0].split(" [")[0].removesuffix(" at the finest spacing")
+    text = (
+        words.replace("−", "-")
+        .split(" ± ")[0]
+        .split(" [")[0]
+        .removesuffix(" at the finest spacing")
+    )
     mantissa, _, power = text.partition(" × 10")
     return float(mantissa) * 10.0 ** int(power.translate(raised) or 0)
 
