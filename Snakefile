@@ -4,6 +4,10 @@ from snakemake.utils import min_version
 
 min_version("9.0")
 
+# The first page of `snakemake --report`.
+report: "workflow/report/start.rst"
+
+
 if not workflow.configfiles:
 
     configfile: "config/paper.yaml"
@@ -22,11 +26,11 @@ include: "workflow/rules/accuracy.smk"
 
 
 onsuccess:
-    checksums.write_manifest(RESULTS)
+    write_records()
 
 
 onerror:
-    checksums.write_manifest(RESULTS)
+    write_records()
 
 
 rule all:

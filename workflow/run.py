@@ -1,13 +1,14 @@
 """What `make` runs: Snakemake on a study, after all that can be known beforehand was looked at.
 
-python workflow/run.py STUDY [--profile NAME] [--drop] [--full] [--dry-run] [--verbose] -- options and
-targets
+python workflow/run.py STUDY [--dry-run] [--profile NAME] [--drop] [--full] [--verbose] -- WORDS
+
+WORDS are options and targets of Snakemake.
 
 The study is read as plain data first: Snakemake itself runs Python that stands in a study which
 says `__use_yte__: true`. A lock that a killed run left is taken away, that of a living run never.
 Files that were damaged since they were made are set aside, so that Snakemake makes them again. Told
-to end, it ends all jobs. The terminal gets a line a job; Snakemake's own words are in .snakemake/log,
-or, with --verbose, in the terminal instead.
+to end, it ends all jobs. The terminal gets a line a job; Snakemake's own words are in
+.snakemake/log, or, with --verbose, in the terminal instead.
 """
 
 import argparse
@@ -193,6 +194,8 @@ def _run(command, options, results):
     except _Stopped as stopped:
         for number in signals:
             signal.signal(number, signal.SIG_IGN)
+        if terminal is not None:
+            terminal.mute()
         print("interrupted: jobs end, and 'make' goes on from there", file=sys.stderr)
         if child is not None:
             _end(child, cluster=options.profile != "default")

@@ -4,6 +4,7 @@ It is told the events of workflow/logger, and reads the logs of jobs for their o
 of one that failed, and warnings of the data, which stand together at the end.
 """
 
+import contextlib
 import csv
 import re
 import sys
@@ -61,7 +62,7 @@ class Terminal:
         self.waiting, self.total, self.done, self.widest = {}, 0, 0, 1
         self.times = _Times(self.results / "benchmarks")
         self.past = deque(maxlen=_KEPT)
-        self.errors, self.warnings, self.nothing = [], {}, False
+        self.errors, self.warnings, self.nothing, self.muted = [], {}, False, False
 
     # -- what it is told ---------------------------------------------------------------------------
 
@@ -78,6 +79,11 @@ class Terminal:
         """Keep a line that a job or Snakemake wrote past its log."""
         with self.lock:
             self.past.append(line.rstrip("\n"))
+
+    def mute(self):
+        """Say nothing from now on: what jobs say that are told to end is of no use."""
+        with self.lock:
+            self.muted = True
 
     def _remark(self, event):
         if event["text"].startswith("Nothing to be done"):
@@ -126,9 +132,10 @@ class Terminal:
         said = self._error_of(job)
         self.failed[number] = job
         if said is not None:
-            log = f"; its log: {job['log'][0]}" if job["log"] else ""
             self._say(f"error: {said}", self.err)
-            self._say(f"  in: {_cut(job['title'], WIDTH - 6 - len(log))}{log}", self.err)
+            self._say(f"  job: {_cut(job['title'], WIDTH - 7)}", self.err)
+            for path in job["log"]:
+                self._say(f"  log: {path}", self.err)
 
     def _error(self, event):
         self.errors.append(_without_places(event["text"]))
@@ -142,7 +149,7 @@ class Terminal:
         return time.monotonic() - self.running.pop(number, time.monotonic())
 
     def _left(self):
-        """About how long the jobs that are left will take, in words; none before it can be known."""
+        """About how long the rest will take, in words; none before it can be known."""
         if self.done == self.total or (self.done < 3 and not self.times.known):
             return ""
         now = time.monotonic()
@@ -250,10 +257,10 @@ class Terminal:
             self._say("  and more, which the result page has", self.err)
 
     def _say(self, line, file=None):
-        try:
+        if self.muted:
+            return
+        with contextlib.suppress(BrokenPipeError):  # nobody reads any more: the study goes on
             print(line, file=file or self.out, flush=True)
-        except BrokenPipeError:  # nobody reads any more: the study goes on
-            pass
 
 
 class _Times:
