@@ -31,6 +31,7 @@ _PROFILES = {
     "https://w3id.org/ro/wfrun/workflow/0.5": ("Workflow Run Crate", "0.5"),
     "https://w3id.org/workflowhub/workflow-ro-crate/1.0": ("Workflow RO-Crate", "1.0"),
 }
+_BIOSCHEMAS = "https://bioschemas.org/profiles/ComputationalWorkflow/1.0-RELEASE"
 _LICENCES = "https://spdx.org/licenses/"
 #: Media types that the standard library does not know, or not everywhere.
 _MEDIA = {
@@ -116,7 +117,7 @@ def write_crate(
     if not atlases:
         return
     made = max(path.stat().st_mtime for path in atlases)
-    date = f"{datetime.datetime.fromtimestamp(made, datetime.UTC):%Y-%m-%dT%H:%M:%SZ}"
+    date = f"{datetime.datetime.fromtimestamp(made, datetime.UTC):%Y-%m-%dT%H:%M:%S+00:00}"
     citation = yaml.safe_load((workflow.folder / "CITATION.cff").read_text(encoding="utf-8"))
     code = _copied(results, workflow)
     files = [line.rstrip("\n").partition("  ")[::2] for line in checksums.lines_of(results)]
@@ -125,7 +126,7 @@ def write_crate(
         *_heads(study, citation, date, code[0], [*code, *(one["@id"] for one in entities)]),
         *_people(citation),
         *_workflow_entities(results, workflow, citation, code),
-        _action(study, date, code[0], entities, inputs),
+        _action(study, date, _author_ids(citation), code[0], entities, inputs),
         *_scans(inputs),
         *entities,
     ]
@@ -150,8 +151,10 @@ def _copied(results: Path, workflow: Workflow) -> list[str]:
     return copied
 
 
-def _refer(names: Iterable[str]) -> list[dict[str, str]]:
-    return [{"@id": name} for name in names]
+def _refer(names: Iterable[str]) -> list[dict[str, str]] | dict[str, str]:
+    """References to entities; one alone is no list."""
+    found = [{"@id": name} for name in names]
+    return found[0] if len(found) == 1 else found
 
 
 def _heads(
@@ -186,6 +189,7 @@ def _heads(
             {"@id": url, "@type": "CreativeWork", "name": name, "version": version}
             for url, (name, version) in _PROFILES.items()
         ),
+        {"@id": _BIOSCHEMAS, "@type": "CreativeWork", "name": "ComputationalWorkflow"},
     ]
 
 
@@ -222,10 +226,9 @@ def _workflow_entities(
         "programmingLanguage": language,
         "license": {"@id": _LICENCES + citation["license"]},
         "author": _refer(_author_ids(citation)),
+        "conformsTo": {"@id": _BIOSCHEMAS},
         "hasPart": _refer(code[1:]),
     }
-    for entity in described[1:]:
-        entity["@type"] = ["File", "SoftwareSourceCode"]
     system = {
         "@type": "ComputerLanguage",
         "name": workflow.language,
@@ -237,7 +240,12 @@ def _workflow_entities(
 
 
 def _action(
-    study: str, date: str, main: str, entities: list[dict], inputs: Mapping[str, str]
+    study: str,
+    date: str,
+    agents: list[str],
+    main: str,
+    entities: list[dict],
+    inputs: Mapping[str, str],
 ) -> dict[str, Any]:
     """The run of the workflow: made of the configuration and the scans, all other files."""
     names = [entity["@id"] for entity in entities]
@@ -246,6 +254,8 @@ def _action(
         "@id": "#run",
         "@type": "CreateAction",
         "name": f"Making of the study {study}",
+        "description": "what was made, of the configuration and the scans, by the workflow",
+        "agent": _refer(agents),
         "endTime": date,
         "actionStatus": "http://schema.org/CompletedActionStatus",
         "instrument": {"@id": main},
