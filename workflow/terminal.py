@@ -36,6 +36,8 @@ _REASONS = {
     "Input files updated by another job": "what it is made of is made again",
     "Rules with": "is always done",
 }
+#: In a parameter, the checksum of a scan.
+_CHECKSUM = re.compile(r"\b[0-9a-f]{64}\b")
 #: A parameter that is the digest of code, as `core.sources.digest` writes it.
 _DIGEST = re.compile(r"'?[0-9a-f]{16}'?")
 
@@ -299,6 +301,8 @@ def _reason(text):
     """Why a job is done, from the reasons that Snakemake gives."""
     why = next((words for key, words in _REASONS.items() if key in text), text)
     if why == _REASONS["Params have changed"]:
+        if _CHECKSUM.search(text):
+            return "its scan changed"
         values = re.findall(r"(?:before|now): (.*?)(?= now: |;|$)", text)
         kinds = [value.split(",") for value in values if "<nothing exclusive>" not in value]
         if kinds and all(_DIGEST.fullmatch(one.strip()) for kind in kinds for one in kind):

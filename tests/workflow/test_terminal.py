@@ -208,6 +208,10 @@ REASONS = {
     "all output: before: {'window': 20},'0123456789abcdef' now: {'window': 30} ": (
         "settings changed"
     ),
+    "Params have changed since last execution: Union of exclusive params before and now across "
+    f"all output: before: {{'scans/a.npy': '{'0' * 64}'}} now: {{'scans/a.npy': '{'1' * 64}'}} ": (
+        "its scan changed"
+    ),
     "something that a later Snakemake says": "something that a later Snakemake says",
 }
 
