@@ -91,7 +91,8 @@ class Terminal:
         if event["text"].startswith("Nothing to be done"):
             self.nothing = True
         elif event["level"] == "WARNING":
-            self._say(f"warning: {event['text']}", self.err)
+            for line in _wrapped(f"warning: {event['text']}", WIDTH):
+                self._say(line, self.err)
 
     def _run_info(self, event):
         counts = dict(event["stats"])
@@ -110,6 +111,8 @@ class Terminal:
     def _job_started(self, event):
         for number in event["jobs"]:
             self.running[number] = time.monotonic()
+            if again := self.failed.pop(number, None):  # on a cluster, with more memory
+                self.waiting[again["rule_name"]] += 1
         self.widest = max(self.widest, len(self.running))
 
     def _job_finished(self, event):
@@ -210,7 +213,7 @@ class Terminal:
                 self._explain()
             elif self.nothing:
                 self._say("nothing to do: everything there is, is up to date")
-            else:
+            elif self.total:  # not where something else was asked for, such as a report
                 took = _duration(time.monotonic() - self.begin)
                 self._say(f"{_counted(self.done, 'job')} done in {took}")
             if not self.dry_run:
@@ -249,8 +252,7 @@ class Terminal:
     def _say_warnings(self):
         lines = []
         for text, name in self.warnings.items():
-            wrapped = textwrap.wrap(f"{name}: {text}", WIDTH - 4, break_on_hyphens=False)
-            lines += [f"  {'  ' * (n > 0)}{line}" for n, line in enumerate(wrapped)]
+            lines += [f"  {line}" for line in _wrapped(f"{name}: {text}", WIDTH - 2)]
         if lines:
             self._say("warnings of the data:", self.err)
         for line in lines[:MOST_WARNINGS]:
@@ -326,6 +328,10 @@ def _is_full(lines):
 
 def _counted(n, noun):
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def _wrapped(text, width):
+    return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
 
 
 def _cut(text, width):

@@ -258,3 +258,25 @@ def test_after_an_interruption_nothing_more_is_said(said):
 )
 def test_durations_in_words(seconds, words):
     assert terminal._duration(seconds) == words
+
+
+def test_a_job_that_succeeds_at_the_second_attempt_has_not_failed(said):
+    start, both = said
+    one = start()
+    begin(one, ["specimen"])
+    told = event("job_error", jobid=0, rule_name="specimen", rule_msg=None, log=[])
+    for attempt in range(2):
+        start_job(one, 0, "specimen", "rock: scan")
+        one.hear(told if attempt == 0 else event("job_finished", job_id=0))
+    assert one.failed == {}
+    one.finish(0)
+    lines, errors = both()
+    assert lines[-2:] == ["[1/1] rock: scan (0 s)", "1 job done in 0 s"]
+    assert errors[0].startswith("error: ended without a word")
+
+
+def test_a_warning_before_the_jobs_is_wrapped(said):
+    start, both = said
+    start().hear(event(None, level="WARNING", text="scans: passed over: " + "a b.tmp, " * 40))
+    assert both()[1][0].startswith("warning: scans: passed over: ")
+    assert max(map(len, both()[1])) <= terminal.WIDTH
