@@ -20,6 +20,8 @@ WIDTH = 120
 MOST_WARNINGS = 24
 #: Lines kept of what jobs and Snakemake write past their logs.
 _KEPT = 200
+#: Rules that make nothing themselves: what they ask for is made when they come.
+_TARGETS = ("all", "pages", "accuracy")
 #: A time left is said from so many seconds on.
 _WORTH_SAYING = 5
 _FULL = ("No space left on device", "Disk quota exceeded", "no space left on its disk")
@@ -98,12 +100,14 @@ class Terminal:
         counts = dict(event["stats"])
         if self.total:  # a dry run counts twice
             return
-        self.total = counts.pop("total")
+        self.total = counts.pop("total") - sum(counts.pop(rule, 0) for rule in _TARGETS)
         self.waiting = counts
         if not self.dry_run:
             self._say(f"{_counted(self.total, 'job')}; what is made goes to {self.results}")
 
     def _job_info(self, event):
+        if event["rule_name"] in _TARGETS:
+            return
         title = " ".join((event["rule_msg"] or event["rule_name"]).split())
         keys = ("rule_name", "reason", "log")
         self.jobs[event["jobid"]] = {"title": title} | {key: event[key] for key in keys}
@@ -291,8 +295,6 @@ class _Times:
 
     def expected(self, rule):
         """Seconds of one more job of a rule: the mean of its others, else that of all jobs."""
-        if rule == "all":
-            return 0
         known = self.now.get(rule) or self.before.get(rule)
         known = known or [seconds for jobs in self.now.values() for seconds in jobs]
         known = known or [seconds for jobs in self.before.values() for seconds in jobs]

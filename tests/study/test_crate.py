@@ -141,11 +141,11 @@ def test_authors_are_those_of_the_citation(results, tmp_path):
     # The same again for the same results, and no line of the manifest is about it.
     write_crate(results, workflow, "test", {})
     assert (results / FILE).read_text(encoding="utf-8") == text
-    assert not any("crate" in line or "workflow/" in line for line in checksums.lines_of(results))
+    assert not any("crate" in line or "code/" in line for line in checksums.lines_of(results))
 
 
 def test_without_an_atlas_there_is_nothing_to_describe(results):
     (results / "atlas.nc").unlink()
     write_crate(results, WORKFLOW, "test", {})
     assert not (results / FILE).exists()
-    assert not (results / "workflow").exists()
+    assert not (results / "code").exists()

@@ -77,7 +77,7 @@ def test_a_run_is_a_line_a_job_and_leaves_a_crate_of_what_it_made(finished):
     assert entities["atlas.nc"]["sha256"] == sha256(finished / ATLAS)
     scan = sha256(finished / "scans/rock.npy")
     assert [e["sha256"] for e in entities.values() if e.get("name") == "rock.npy"] == [scan]
-    assert (finished / "results/test/workflow/Snakefile").is_file()
+    assert (finished / "results/test/code/Snakefile").is_file()
 
 
 def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):

@@ -7,6 +7,7 @@ import sys
 import time
 
 import pytest
+import yaml
 from projects import command, made, project, run, small_study, write_scan
 
 __all__ = ["project"]  # a fixture
@@ -218,7 +219,9 @@ def test_a_folder_of_scans_that_is_not_there_is_one_sentence_without_the_workflo
 
 
 def test_an_empty_folder_of_scans_is_a_warning_and_a_dry_run_a_table(project):
-    done = made(project, "config/smoke.yaml", "--dry-run", targets=["results/smoke/atlas.nc"])
+    study = yaml.safe_load((project / "config/smoke.yaml").read_text()) | {"scans": "scans"}
+    (project / STUDY).write_text(yaml.safe_dump(study))
+    done = made(project, STUDY, "--dry-run", targets=["results/smoke/atlas.nc"])
     assert done.returncode == 0, done.stderr
     warning = "warning: scans: no scan files there; only what the study itself makes is used"
     assert done.stderr.splitlines() == [warning]

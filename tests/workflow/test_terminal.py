@@ -77,11 +77,27 @@ def test_the_time_left_follows_from_earlier_runs_and_is_shared_by_the_jobs_at_wo
     start_job(one, 0, "specimen")
     start_job(one, 1, "contact")  # two at work from here on
     one.hear(event("job_finished", job_id=0))
-    # Four of 200 s and one of 40 s by two at a time; `all` takes no time.
+    # Four of 200 s and one of 40 s by two at a time.
     assert both()[0][-1].endswith("; about 7 min 0 s left)")
     # What this run found counts more than what earlier ones did.
     one.hear(event("job_finished", job_id=1))
     assert both()[0][-1].endswith("; about 20 s left)")
+
+
+def test_what_only_asks_for_others_is_no_job(said):
+    start, both = said
+    one = start()
+    begin(one, ["specimen", "all"])
+    for number, rule in enumerate(("specimen", "all")):
+        start_job(one, number, rule)
+        one.hear(event("job_finished", job_id=number))
+    one.finish(0)
+    lines = [
+        "1 job; what is made goes to results/test",
+        "[1/1] specimen (0 s)",
+        "1 job done in 0 s",
+    ]
+    assert both() == (lines, [])
 
 
 def test_no_time_is_guessed_before_anything_is_known(said):

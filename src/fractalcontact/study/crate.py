@@ -21,6 +21,7 @@ from .figure_list import all_figures
 from .stages import STAGES
 
 FILE = "ro-crate-metadata.json"
+_CODE = "code"
 _CONTEXT = (
     "https://w3id.org/ro/crate/1.1/context",
     "https://w3id.org/ro/terms/workflow-run/context",
@@ -101,7 +102,7 @@ def write_crate(
     results : path-like
         Folder of the study; without an atlas in it, nothing is written.
     workflow : Workflow
-        What made them; its files are copied to the folder ``workflow``.
+        What made them; its files are copied to the folder ``code``.
     study : str
         Name of the study.
     inputs : mapping of str to str
@@ -141,7 +142,7 @@ def _copied(results: Path, workflow: Workflow) -> list[str]:
     copied = []
     for pattern in (workflow.main, *workflow.parts):
         for source in sorted(workflow.folder.glob(pattern)):
-            name = f"workflow/{source.relative_to(workflow.folder).as_posix()}"
+            name = f"{_CODE}/{source.relative_to(workflow.folder).as_posix()}"
             content = source.read_bytes()
             target = results / name
             if not (target.is_file() and target.read_bytes() == content):
