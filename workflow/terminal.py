@@ -6,6 +6,7 @@ of one that failed, and warnings of the data, which stand together at the end.
 
 import contextlib
 import csv
+import io
 import re
 import sys
 import textwrap
@@ -38,6 +39,8 @@ _REASONS = {
     "Input files updated by another job": "what it is made of is made again",
     "Rules with": "is always done",
 }
+#: What would do things to a terminal; some of what is said comes from files of others.
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 #: In a parameter, the checksum of a scan.
 _CHECKSUM = re.compile(r"\b[0-9a-f]{64}\b")
 #: A parameter that is the digest of code, as `core.sources.digest` writes it.
@@ -59,6 +62,9 @@ class Terminal:
     def __init__(self, results, *, dry_run=False, out=None, err=None):
         self.results, self.dry_run = Path(results), dry_run
         self.out, self.err = out or sys.stdout, err or sys.stderr
+        for stream in (self.out, self.err):
+            if isinstance(stream, io.TextIOWrapper):  # names of specimens are in any script
+                stream.reconfigure(errors="backslashreplace")
         self.lock = threading.Lock()
         self.begin, self.began_at = time.monotonic(), time.time()
         #: Jobs by number: rule, title, log, reason; when those at work began; those that failed.
@@ -267,6 +273,7 @@ class Terminal:
     def _say(self, line, file=None):
         if self.muted:
             return
+        line = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", line)
         with contextlib.suppress(BrokenPipeError):  # nobody reads any more: the study goes on
             print(line, file=file or self.out, flush=True)
 

@@ -291,6 +291,16 @@ def test_a_job_that_succeeds_at_the_second_attempt_has_not_failed(said):
     assert errors[0].startswith("error: ended without a word")
 
 
+def test_names_of_others_neither_stop_nor_change_a_terminal(tmp_path):
+    narrow = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    one = terminal.Terminal(tmp_path, out=narrow, err=narrow)
+    begin(one, ["specimen"])
+    start_job(one, 0, "specimen", "Stein\x1b[2J 岩: scan")
+    one.hear(event("job_finished", job_id=0))
+    said = narrow.buffer.getvalue().decode("ascii").splitlines()
+    assert said[-1] == r"[1/1] Stein\x1b[2J \u5ca9: scan (0 s)"
+
+
 def test_a_warning_before_the_jobs_is_wrapped(said):
     start, both = said
     start().hear(event(None, level="WARNING", text="scans: passed over: " + "a b.tmp, " * 40))
