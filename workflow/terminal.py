@@ -41,6 +41,8 @@ _REASONS = {
 }
 #: What would do things to a terminal; some of what is said comes from files of others.
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+#: To the beginning of the line, which is emptied.
+_BACK = "\r\x1b[K"
 #: In a parameter, the checksum of a scan.
 _CHECKSUM = re.compile(r"\b[0-9a-f]{64}\b")
 #: A parameter that is the digest of code, as `core.sources.digest` writes it.
@@ -73,6 +75,8 @@ class Terminal:
         self.times = _Times(self.results / "benchmarks")
         self.past = deque(maxlen=_KEPT)
         self.errors, self.warnings, self.nothing, self.muted = [], {}, False, False
+        #: Whether a line that names the jobs at work can stand last, and be taken back.
+        self.live = self.out.isatty() and not dry_run
 
     # -- what it is told ---------------------------------------------------------------------------
 
@@ -84,6 +88,7 @@ class Terminal:
                 self._remark(event)
             else:
                 getattr(self, f"_{kind}", lambda event: None)(event)
+            self._show_at_work()
 
     def overhear(self, line):
         """Keep a line that a job or Snakemake wrote past its log."""
@@ -94,6 +99,8 @@ class Terminal:
         """Say nothing from now on: what jobs say that are told to end is of no use."""
         with self.lock:
             self.muted = True
+            if self.live:
+                print(_BACK, end="", file=self.out, flush=True)
 
     def _remark(self, event):
         if event["text"].startswith("Nothing to be done"):
@@ -270,12 +277,21 @@ class Terminal:
         if len(lines) > MOST_WARNINGS:
             self._say("  and more, which the result page has", self.err)
 
+    def _show_at_work(self):
+        """Name the jobs at work in the last line, which the next one takes the place of."""
+        if self.live and not self.muted:
+            titles = [self.jobs[number]["title"] for number in self.running if number in self.jobs]
+            line = _printable(_cut(f"at work: {'; '.join(titles)}", WIDTH - 1) if titles else "")
+            with contextlib.suppress(BrokenPipeError):
+                print(f"{_BACK}{line}", end="", file=self.out, flush=True)
+
     def _say(self, line, file=None):
         if self.muted:
             return
-        line = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", line)
         with contextlib.suppress(BrokenPipeError):  # nobody reads any more: the study goes on
-            print(line, file=file or self.out, flush=True)
+            if self.live:
+                print(_BACK, end="", file=self.out, flush=True)
+            print(_printable(line), file=file or self.out, flush=True)
 
 
 class _Times:
@@ -341,6 +357,10 @@ def _counted(n, noun):
 
 def _wrapped(text, width):
     return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
+
+
+def _printable(text):
+    return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def _cut(text, width):

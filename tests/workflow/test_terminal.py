@@ -291,6 +291,30 @@ def test_a_job_that_succeeds_at_the_second_attempt_has_not_failed(said):
     assert errors[0].startswith("error: ended without a word")
 
 
+class Screen(io.StringIO):
+    """A terminal that can take a line back."""
+
+    def isatty(self):
+        return True
+
+
+def test_jobs_at_work_stand_in_the_last_line_of_a_screen():
+    screen = Screen()
+    one = terminal.Terminal("results/test", out=screen, err=screen)
+    begin(one, ["specimen", "contact"])
+    start_job(one, 0, "specimen", "rock: levelled scan")
+    start_job(one, 1, "contact", f"{LONG}: contact states")
+    shown = screen.getvalue().rpartition("\r\x1b[K")[2]
+    assert shown.startswith("at work: rock: levelled scan; xxx")
+    assert len(shown) < terminal.WIDTH
+    one.hear(event("job_finished", job_id=0))
+    line, shown = screen.getvalue().split("\r\x1b[K")[-2:]
+    assert line == "[1/2] rock: levelled scan (0 s)\n"
+    assert shown.startswith("at work: xxx")
+    one.mute()
+    assert screen.getvalue().endswith("\r\x1b[K")
+
+
 def test_names_of_others_neither_stop_nor_change_a_terminal(tmp_path):
     narrow = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
     one = terminal.Terminal(tmp_path, out=narrow, err=narrow)
