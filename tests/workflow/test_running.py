@@ -235,12 +235,14 @@ def test_an_empty_folder_of_scans_is_a_warning_and_a_dry_run_a_table(project):
     assert not (project / "results").exists()
 
 
+@pytest.mark.full
 def test_options_that_snakemake_does_not_know_are_said_in_its_words(project):
     done = made(project, "config/smoke.yaml", targets=["--no-such-option"])
     assert done.returncode != 0
     assert "unrecognized arguments: --no-such-option" in done.stderr
 
 
+@pytest.mark.full
 def test_snakemake_speaks_itself_where_it_is_asked_to(project):
     done = made(project, "config/smoke.yaml", "--dry-run", "--verbose")
     assert done.returncode == 0
