@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
 sys.path.append(str(ROOT / "workflow/scripts"))
 import _running
-from terminal import Terminal
+from terminal import Terminal, put
 
 from fractalcontact.core import checksums
 from fractalcontact.core.atomic import sweep
@@ -299,7 +299,7 @@ def _name_page(results):
     """The last line of a run: where the results can be looked at."""
     page = results / "index.html"
     if page.is_file():
-        print(f"the results: {page.resolve().as_uri()}", flush=True)
+        put(f"the results: {page.resolve().as_uri()}\n", sys.stdout)
 
 
 if __name__ == "__main__":

@@ -4,9 +4,9 @@ It is told the events of workflow/logger, and reads the logs of jobs for their o
 of one that failed, and warnings of the data, which stand together at the end.
 """
 
-import contextlib
 import csv
 import io
+import os
 import re
 import sys
 import textwrap
@@ -100,7 +100,7 @@ class Terminal:
         with self.lock:
             self.muted = True
             if self.live:
-                print(_BACK, end="", file=self.out, flush=True)
+                put(_BACK, self.out)
 
     def _remark(self, event):
         if event["text"].startswith("Nothing to be done"):
@@ -282,16 +282,14 @@ class Terminal:
         if self.live and not self.muted:
             titles = [self.jobs[number]["title"] for number in self.running if number in self.jobs]
             line = _printable(_cut(f"at work: {'; '.join(titles)}", WIDTH - 1) if titles else "")
-            with contextlib.suppress(BrokenPipeError):
-                print(f"{_BACK}{line}", end="", file=self.out, flush=True)
+            put(f"{_BACK}{line}", self.out)
 
     def _say(self, line, file=None):
         if self.muted:
             return
-        with contextlib.suppress(BrokenPipeError):  # nobody reads any more: the study goes on
-            if self.live:
-                print(_BACK, end="", file=self.out, flush=True)
-            print(_printable(line), file=file or self.out, flush=True)
+        if self.live:
+            put(_BACK, self.out)
+        put(f"{_printable(line)}\n", file or self.out)
 
 
 class _Times:
@@ -357,6 +355,15 @@ def _counted(n, noun):
 
 def _wrapped(text, width):
     return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
+
+
+def put(text, stream):
+    """Write to a terminal or a pipe; where nobody reads any more, the study goes on."""
+    try:
+        print(text, end="", file=stream, flush=True)
+    except BrokenPipeError:
+        # What is still in the stream would be an error at the end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _printable(text):

@@ -315,6 +315,18 @@ def test_jobs_at_work_stand_in_the_last_line_of_a_screen():
     assert screen.getvalue().endswith("\r\x1b[K")
 
 
+def test_a_reader_that_ends_early_stops_nothing():
+    read, write = os.pipe()
+    with os.fdopen(write, "w") as stream:
+        one = terminal.Terminal("results/test", out=stream, err=stream)
+        begin(one, ["specimen"])
+        os.close(read)
+        for attempt in range(3):
+            start_job(one, attempt, "specimen", "rock: scan")
+            one.hear(event("job_finished", job_id=attempt))
+        assert one.done == 3
+
+
 def test_names_of_others_neither_stop_nor_change_a_terminal(tmp_path):
     narrow = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
     one = terminal.Terminal(tmp_path, out=narrow, err=narrow)
