@@ -4,13 +4,13 @@ from snakemake.utils import min_version
 
 min_version("9.0")
 
-# The first page of `snakemake --report`.
-report: "workflow/report/start.rst"
-
-
 if not workflow.configfiles:
 
     configfile: "config/paper.yaml"
+
+
+# What `snakemake --report` begins with.
+report: "workflow/report/start.rst"
 
 
 include: "workflow/rules/common.smk"

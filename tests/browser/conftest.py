@@ -1,7 +1,7 @@
-"""A small study from scans to pages, and a browser that says what it was asked and what went wrong.
+"""A small study from scans to pages, and a browser that tells what it was asked and what failed.
 
-``RESULTS=results/paper`` takes the results of a study that was made already. What the tests see goes
-to ``results/browser``.
+``RESULTS=results/paper`` takes the results of a study that was made already. What the tests see
+goes to ``results/browser``.
 """
 
 import os
@@ -27,7 +27,7 @@ HOSTILE = "<img src=x onerror=alert(1)> </script><script>alert(2)</script> 'q' &
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory):
-    """Folder of the results of a study: a twin, a surface against a plane, and two scanned faces."""
+    """Folder of the results of a study: a twin, a surface against a plane, two scanned faces."""
     if os.environ.get("RESULTS"):
         return Path(os.environ["RESULTS"]).absolute()
     project = copy_project(tmp_path_factory.mktemp("project"))

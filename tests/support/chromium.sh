@@ -2,8 +2,13 @@
 # Path of the browser that `make test-browser` drives: $CHROMIUM, or Debian's chromium, installed
 # where that may be done. Else says what is missing.
 set -eu
-for name in "${CHROMIUM:-chromium}" chromium-browser google-chrome; do
-    if command -v "$name"; then exit 0; fi
+if [ -n "${CHROMIUM:-}" ]; then
+    command -v "$CHROMIUM" && exit
+    echo "CHROMIUM=$CHROMIUM: there is no such program" >&2
+    exit 1
+fi
+for name in chromium chromium-browser google-chrome; do
+    if command -v "$name"; then exit; fi
 done
 if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
     apt-get update --quiet=2 >&2

@@ -179,7 +179,7 @@ def test_results_of_which_nothing_says_what_they_were_made_from_are_refused(proj
 # -- code, versions, settings ----------------------------------------------------------------------
 
 #: What words alone make again: nothing is solved.
-DRAWING = {"atlas", "figures_against_plane", "study_figures", "all"}
+DRAWING = {"atlas", "figures_against_plane", "study_figures", "explorer", "result_page", "all"}
 
 
 def append(path, text):

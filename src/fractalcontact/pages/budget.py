@@ -76,7 +76,7 @@ def _bar(quantity: Quantity) -> Bar:
 
 def _words(quantity, source):
     error = quantity.sources[source]
-    if error is not None:
+    if error is not None and not (error == 0 and quantity.reasons[source]):
         return _of_value(quantity, error)
     return quantity.reasons[source] or "not known"
 

@@ -9,6 +9,7 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from ..study.figure_list import Figure, all_figures
+from ..study.stages import JOINT, SPECIMEN, STAGES
 from .captions import symbols, take_apart, without_opening
 
 #: Sections of a specimen's page, in order, by name and title.
@@ -128,9 +129,11 @@ def redrawn(name: str, specimen: str, atlas: str) -> str:
         Path of the atlas.
     """
     stages = all_figures()[name].needs
-    subject = repr(specimen) if specimen else "sorted(atlas['specimens'].children)"
-    if not specimen and "specimens" not in stages:
-        subject = "[]"
+    subject = repr(specimen)
+    if not specimen:
+        # A study of synthetic surfaces, or of measured maps, alone has no specimens to list.
+        of_specimens = any(STAGES[stage].grain in (SPECIMEN, JOINT) for stage in stages)
+        subject = "sorted(atlas['specimens'].children)" if of_specimens else "[]"
     read = [
         f"{stage} = atlas['{stage}/{specimen}']" if specimen else f"{stage} = atlas['{stage}']"
         for stage in stages

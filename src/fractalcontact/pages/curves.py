@@ -8,6 +8,7 @@ import pandas as pd
 from ..core.determined import determined
 from .chosen import Chosen, finite
 from .summary import DIMENSION
+from .words import in_table
 
 #: Of dimensions: an area has one of its own.
 DIMENSION_UNIT = "1"
@@ -46,7 +47,7 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
         start = {
             "study": study,
             "specimen": one.name,
-            "label": one.label,
+            "label": in_table(one.label),
             "direction": one.direction,
             "offset_mm": one.offset,
         }

@@ -15,7 +15,7 @@ from .templating import write_page
 
 #: Colours of pressures and gaps, distinguished by colour-blind readers and in grey.
 COLOUR_MAP = "cividis"
-#: Steps of the colour map that the page gets; it interpolates between them.
+#: Colours of the map that the page gets; it interpolates between them.
 COLOURS = 33
 #: Letters of a specimen's label that are shown.
 LONGEST_LABEL = 100
@@ -72,4 +72,5 @@ def _specimens(atlas) -> Iterator[dict[str, Any]]:
 
 
 def _colours() -> list[str]:
-    return [to_hex(colour) for colour in colormaps[COLOUR_MAP].resampled(COLOURS).colors]
+    colours = colormaps[COLOUR_MAP]
+    return [to_hex(colours(i / (COLOURS - 1))) for i in range(COLOURS)]

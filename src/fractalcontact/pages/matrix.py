@@ -5,7 +5,7 @@ Verdicts are those of the stages ``statements`` and ``study_statements``; nothin
 
 import inspect
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -81,6 +81,12 @@ def matrix_of(atlas: xr.DataTree, specimens: Sequence[str]) -> list[Row]:
     """
     tables = {name: atlas[f"statements/{name}"].to_dataset() for name in specimens}
     return [row for one in all_statements() if (row := _row(one, tables)).cells]
+
+
+def counted(rows: Iterable[Row]) -> dict[str, int]:
+    """How often each verdict was given, in the order of :data:`SIGNS`; those never given not."""
+    given = [cell.verdict for row in rows for cell in row.cells.values()]
+    return {verdict: given.count(verdict) for verdict in SIGNS if verdict in given}
 
 
 def of_study(atlas: xr.DataTree) -> list[Row]:

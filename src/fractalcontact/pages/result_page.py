@@ -30,7 +30,7 @@ from .chosen import STAGES, Chosen, configuration_of, specimens_of
 from .curves import curves_table
 from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
 from .lights import warnings_of
-from .matrix import Row, matrix_of, of_study
+from .matrix import Row, counted, matrix_of, of_study
 from .summary import Specimen, summarised, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
@@ -175,11 +175,13 @@ def _index_values(
     curves: pd.DataFrame,
 ) -> dict[str, Any]:
     own = [name for name, figure in all_figures().items() if figure.subject == STUDY]
+    together = of_study(atlas)
     return {
         "specimens": specimens,
         "longest": _LONGEST,
         "matrix": rows,
-        "together": of_study(atlas),
+        "verdicts": counted([*rows, *together]),
+        "together": together,
         "maps": _maps(atlas),
         "cards": cards_of(own, place.figures, "figures", atlas=_as_typed(place.atlas)),
         "curves": _records(curves),
@@ -234,7 +236,6 @@ def _specimen_values(
     return {
         "specimen": specimen,
         "label": printable(chosen.label),
-        "warnings": warnings,
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "bars": bars_of(specimen),
         "statements": [(row, row.cells[chosen.name]) for row in rows if chosen.name in row.cells],

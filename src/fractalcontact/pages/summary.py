@@ -9,11 +9,13 @@ import xarray as xr
 
 from ..core.determined import determined
 from ..domain.box_dimension import WIDEST
+from ..mechanics.overlap import DECISIVE
 from ..statements.sliding import Plateaus
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
 from .lights import Light, lights_of
+from .words import in_table
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -94,9 +96,15 @@ class AtLoad:
     nominal_pressure: float
     of_maps: bool
     contact_nodes: float | None
+    suspect_share: float | None
     quantities: dict[str, Quantity]
     delta_sigma_boxes: Estimate
     delta_sigma_areas: Estimate
+
+    @property
+    def decided_by_scan(self) -> bool:
+        """Whether suspicious cells of the scans carry most of the load: its numbers are theirs."""
+        return self.suspect_share is not None and self.suspect_share > DECISIVE
 
 
 @dataclass(frozen=True)
@@ -184,6 +192,7 @@ def _at_load(chosen, curve, number):
         nominal_pressure=float(chosen.pressures[number]),
         of_maps=number == chosen.map_load,
         contact_nodes=finite(curve["nodes"].isel(state)),
+        suspect_share=finite(curve["suspect_load_share"].isel(state)),
         quantities=quantities_at(chosen, number),
         delta_sigma_boxes=_dimension(chosen, "domains", state),
         delta_sigma_areas=_dimension(chosen, "scaling", state),
@@ -254,13 +263,13 @@ def summary_table(study: str, specimens: list[Specimen]) -> pd.DataFrame:
     for one in specimens:
         start = {"study": study} | _of_specimen(one)
         rows += [start | _of_load(load) for load in one.loads]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows) if rows else pd.DataFrame(columns=["study", "specimen"])
 
 
 def _of_specimen(one):
     row = {
         "specimen": one.name,
-        "label": one.label,
+        "label": in_table(one.label),
         "opposite": one.opposite,
         "direction": one.direction,
         "offset_mm": one.offset,
@@ -285,6 +294,7 @@ def _of_load(load):
         "nominal_pressure_MPa": load.nominal_pressure,
         "load_of_maps": load.of_maps,
         "contact_nodes": load.contact_nodes,
+        "suspect_load_share": load.suspect_share,
     }
     for name, quantity in load.quantities.items():
         if name == "delta_sigma":  # stands below, with its interval

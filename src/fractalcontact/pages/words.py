@@ -2,6 +2,8 @@
 
 import math
 
+from ..core.labels import printable
+
 #: Below and above these a number has an exponent.
 _PLAIN = (1e-4, 1e6)
 #: Smaller units of lengths: from where on, its name, how many mm it is.
@@ -53,6 +55,12 @@ def percent(fraction: float | None, digits: int = 2) -> str:
     if fraction is None or not math.isfinite(fraction):
         return MISSING
     return f"{short(100 * fraction, digits)} %"
+
+
+def in_table(text: str) -> str:
+    """Untrusted text on one line, which no spreadsheet takes for a formula."""
+    shown = printable(text)
+    return f"'{shown}" if shown.lstrip()[:1] in tuple("=+-@") else shown
 
 
 def duration(seconds: float) -> str:

@@ -136,7 +136,7 @@ async function showMap(who) {
   const panel = panels[who];
   const canvas = panel.querySelector("canvas");
   drawMap(canvas, map, COLOURS);
-  canvas.parentElement.style.aspectRatio = `${map.columns * states.raw.window.spacing[1]} / ${map.rows * states.raw.window.spacing[0]}`;
+  canvas.closest(".canvas").style.aspectRatio = `${map.columns * states.raw.window.spacing[1]} / ${map.rows * states.raw.window.spacing[0]}`;
   canvas.classList.toggle("unsolved", !map.domain);
   const what = map.values ? field : "contact domain";
   const size = states.raw.window.shape.map((n, i) => short(n * states.raw.window.spacing[i], 3));
@@ -210,6 +210,21 @@ function leaveNode(who) {
   panels[who].querySelector(".node").textContent = `${size[1]} mm East by ${size[0]} mm North; point at a node to read it`;
 }
 
+/** Maps at one or four times their size, with the node that was read, or some contact, in sight. */
+function zoom() {
+  const factor = Number(document.querySelector("input[name=zoom]:checked").value);
+  for (const who of ["a", "b"]) {
+    const frame = panels[who].querySelector(".canvas");
+    frame.classList.toggle("zoomed", factor > 1);
+    const { map } = state[who];
+    if (!map) continue;
+    const node = state[who].node || contactNearMiddle(map);
+    const [across, up] = [(node.column + 0.5) / map.columns, 1 - (node.row + 0.5) / map.rows];
+    frame.scrollLeft = across * frame.scrollWidth - frame.clientWidth / 2;
+    frame.scrollTop = up * frame.scrollHeight - frame.clientHeight / 2;
+  }
+}
+
 // --- values, the lines of Python, the link
 
 function showValues() {
@@ -227,6 +242,10 @@ function valueRow(key, { units, meaning }) {
   head.textContent = symbols(meaning);
   const unit = document.createElement("td");
   unit.textContent = unitWords(units);
+  // Beside the quantity where a phone has no room for a column.
+  const beside = document.createElement("small");
+  beside.textContent = unit.textContent ? ` (${unit.textContent})` : "";
+  head.append(beside);
   row.append(head, unit);
   const values = {};
   for (const who of ["a", "b"]) {
@@ -255,8 +274,9 @@ function valueWords(key, { states, place }, value) {
     return high - low > 1 ? `undetermined ${words}` : `${short(value)} ${words}`;
   }
   const [total, solver] = [states.total(key, place), states.at(`${key}_error`, place)];
-  const error = Number.isFinite(total) ? total : solver;
-  const words = error > 0 ? `${short(value)} ± ${short(error, 2)}` : short(value);
+  let words = short(value);
+  if (total > 0) words += ` ± ${short(total, 2)}`;
+  else if (solver > 0) words += ` ± ${short(solver, 2)} (solver)`;
   return states.ofFinest(key, place) ? `${words} at the finest spacing` : words;
 }
 
@@ -274,7 +294,7 @@ function showCode() {
   ].join("\n");
 }
 
-/** A state for a link; "~" stands in no encoded name. */
+/** A state for a link. */
 function stateWords({ states, place }) {
   const { raw } = states;
   return [
@@ -296,9 +316,11 @@ function showLink() {
   byId("link").value = location.href;
 }
 
-/** State of words such as "twin~W~0.3~1000~1"; what is missing or unknown is that of the maps. */
+/** State of words such as "twin~W~0.3~1000~1" or "twin"; what is missing is that of the maps. */
 async function stateOf(words, fallback) {
-  const [name, direction, offset, force, resolution] = (words || "").split("~");
+  const parts = (words || "").split("~");
+  const [direction, offset, force, resolution] = parts.length > 4 ? parts.splice(-4) : [];
+  const name = parts.join("~");
   const i = INDEX.specimens.findIndex((one) => one.name === name);
   if (i < 0 && fallback) return { ...fallback, place: { ...fallback.place }, node: null };
   const number = Math.max(0, i);
@@ -314,7 +336,7 @@ async function stateOf(words, fallback) {
 
 async function restore() {
   const view = new URLSearchParams(location.hash.slice(1));
-  state.a = await stateOf(view.get("a"));
+  state.a = await stateOf(view.get("a") || view.get("specimen"));
   state.b = await stateOf(view.get("b"), state.a);
   byId("compare").checked = view.has("b");
   byId("logarithmic").checked = view.get("log") === "1";
@@ -352,6 +374,7 @@ async function start() {
   document.querySelectorAll("input[name=field]").forEach((input) => input.addEventListener("change", show));
   byId("copy").addEventListener("click", copyLink);
   byId("view").addEventListener("submit", (event) => event.preventDefault());
+  document.querySelectorAll("input[name=zoom]").forEach((input) => input.addEventListener("change", zoom));
   window.addEventListener("hashchange", restore);
   new ResizeObserver(() => state.a && showCurves()).observe(document.querySelector(".plots"));
   await restore();

@@ -35,6 +35,13 @@ function dotsOf(point) {
     .map((who) => ({ ...point(state[who].states, state[who].place), who }));
 }
 
+/** Axis of the force in the unit that suits the largest one. */
+function forceAxis(more) {
+  const largest = Math.max(...shownStates().flatMap((who) => state[who].states.raw.normal_force));
+  const [unit, per] = forceUnit(largest);
+  return { label: `normal force F (${unit})`, per, ...more };
+}
+
 const forceOf = (states, place) => states.raw.normal_force[place.normal_force];
 const unsolved = () => (state.a.states.solved(state.a.place) ? "" : "state A was not solved");
 const keyOfStates = () => shownStates().map((who) => [who, `${NAMES[who]}: ${state[who].states.name}`]);
@@ -105,14 +112,14 @@ function boxSeries(who) {
 const PLOTS = {
   closure: (log) => ({
     x: { label: "closure w (mm)", log, zero: true },
-    y: { label: "normal force F (N)", log, zero: true },
+    y: forceAxis({ log, zero: true }),
     series: overLoads(closurePoint),
     dots: dotsOf(closurePoint),
     key: [...keyOfStates(), ["other", "other offsets of A"], ["hollow", "fewer than 10 nodes touch"]],
     empty: unsolved(),
   }),
   area: (log) => ({
-    x: { label: "normal force F (N)", log, zero: true },
+    x: forceAxis({ log, zero: true }),
     y: { label: "real contact area Aᵣ (mm²)", log, zero: true },
     series: overLoads(areaPoint),
     dots: dotsOf(areaPoint),
@@ -120,7 +127,7 @@ const PLOTS = {
     empty: unsolved(),
   }),
   dimension: () => ({
-    x: { label: "normal force F (N)", log: true },
+    x: forceAxis({ log: true }),
     y: { label: "Δσ of the contact domain (1)", from: 0, to: 2 },
     series: dimensionSeries(),
     dots: dotsOf(dimensionPoint("domains/delta_sigma")),
@@ -128,22 +135,22 @@ const PLOTS = {
     empty: unsolved() || (dimensionSeries().some(({ points }) => points.some(({ y }) => Number.isFinite(y))) ? "" : "no Δσ under any load"),
   }),
   dilatancy: () => {
-    const { states, place } = state.a;
-    const slides = states.count("offset") > 1 || rigidSeries("a").length > 1;
-    const loads = range(states.count("normal_force"));
+    const { place } = state.a;
+    const sliding = shownStates().filter((who) => rigidSeries(who).length > 1);
+    const loads = sliding.includes("a") ? range(state.a.states.count("normal_force")) : [];
     return {
       x: { label: "offset v (mm)", zero: true },
       y: { label: "dilatancy δ (mm)", zero: true },
       series: [
         ...loads.map((i) => ({ points: pointsAlong("a", "offset", { ...place, normal_force: i }, elasticPoint), style: "other", marker: "none" })),
-        ...shownStates().flatMap((who) => [
+        ...sliding.flatMap((who) => [
           { points: rigidSeries(who), style: `${who} dashed`, marker: "none" },
           { points: pointsAlong(who, "offset", state[who].place, elasticPoint), style: who },
         ]),
       ],
-      dots: dotsOf(elasticPoint),
+      dots: dotsOf(elasticPoint).filter(({ who }) => sliding.includes(who)),
       key: [...keyOfStates(), ["plain dashed", "rigid"], ["plain solid", "elastic under the load"], ["other", "other loads of A"]],
-      empty: slides ? unsolved() : "the surface does not slide",
+      empty: sliding.includes("a") ? unsolved() : sliding.length ? "" : "the surface does not slide",
     };
   },
   boxes: () => ({

@@ -1,6 +1,7 @@
 // Maps of the contact, the pressure or the gap of one state on a canvas. Marked nodes are hatched
 // over their colour, so that one sees both. Colours are Okabe and Ito's.
-const INK = { contact: [0, 0, 0], free: [255, 255, 255], missing: [205, 205, 205] };
+// Pressures stand on black: few nodes touch, and the colours of most are light.
+const INK = { contact: [0, 0, 0], free: [255, 255, 255], missing: [205, 205, 205], dark: [0, 0, 0] };
 const MARKS = {
   overlap: { colour: [213, 94, 0], rising: true, words: "faces overlap here as scanned" },
   suspect: { colour: [204, 121, 167], rising: false, words: "otherwise suspicious cell" },
@@ -74,7 +75,12 @@ function valueColour(map, colours) {
   if (map.field === "gap")
     return (gap, touching) => (touching ? INK.contact : Number.isFinite(gap) ? mixed(colours, gap / largest) : INK.missing);
   return (pressure) =>
-    pressure > 0 ? mixed(colours, 1 - Math.log10(largest / pressure) / DECADES_OF_PRESSURE) : INK.free;
+    pressure > 0 ? mixed(colours, pressurePart(largest, pressure)) : INK.dark;
+}
+
+/** Place of a pressure on the colours, the darkest quarter left out. */
+function pressurePart(largest, pressure) {
+  return 0.25 + 0.75 * Math.max(0, 1 - Math.log10(largest / pressure) / DECADES_OF_PRESSURE);
 }
 
 /** Colour between those of a list, 0 the first and 1 the last. */
@@ -97,8 +103,9 @@ function mapLegend(map, colours) {
   };
   if (!map.domain) return entries;
   if (map.values) entries.push(colourBar(map, colours));
-  if (map.field !== "pressure" || !map.values) swatch(INK.contact, "in contact");
-  if (map.field !== "gap" || !map.values) swatch(INK.free, "free");
+  const shown = map.values ? map.field : "contact";
+  if (shown !== "pressure") swatch(INK.contact, "in contact");
+  if (shown !== "gap") swatch(shown === "pressure" ? INK.dark : INK.free, "free");
   for (const [kind, bits] of Object.entries(map.marks)) if (bits) swatch(MARKS[kind].colour, MARKS[kind].words, MARKS[kind].rising ? "135deg" : "45deg");
   return entries;
 }
@@ -108,7 +115,9 @@ function colourBar(map, colours) {
   const bar = document.createElement("span");
   bar.className = "colours";
   const strip = document.createElement("i");
-  const stops = Array.from({ length: 17 }, (_, i) => `rgb(${mixed(colours, i / 16).map(Math.round).join(" ")})`);
+  const first = map.field === "pressure" ? pressurePart(1, 0) : 0;
+  const parts = Array.from({ length: 17 }, (_, i) => first + ((1 - first) * i) / 16);
+  const stops = parts.map((part) => `rgb(${mixed(colours, part).map(Math.round).join(" ")})`);
   strip.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
   const [least, unit] = map.field === "gap" ? ["0", "mm"] : [`≤ ${short(largest / 10 ** DECADES_OF_PRESSURE, 2)}`, "MPa"];
   const scale = map.field === "gap" ? "" : ", logarithmic";
@@ -130,4 +139,16 @@ function nodeWords(map, row, column) {
   const mark = markOf(map, row, column);
   if (mark) words.push(MARKS[mark].words);
   return words.join(", ");
+}
+
+/** The node in contact nearest to the middle; the middle if there is none. */
+function contactNearMiddle(map) {
+  const middle = { row: map.rows >> 1, column: map.columns >> 1 };
+  let [best, least] = [middle, Infinity];
+  for (let row = 0; map.domain && row < map.rows; row++)
+    for (let column = 0; column < map.columns; column++) {
+      const distance = Math.hypot(row - middle.row, column - middle.column);
+      if (distance < least && map.domain.at(row, column)) [best, least] = [{ row, column }, distance];
+    }
+  return best;
 }

@@ -11,9 +11,9 @@ function svg(name, attributes, parent, text) {
   return element;
 }
 
-/** Scale of an axis: from numbers to pixels, with its ticks. */
+/** Scale of an axis: from numbers to pixels, with its ticks, labelled in units of `per`. */
 class Scale {
-  constructor(values, { log = false, from, to, zero = false }, start, end) {
+  constructor(values, { log = false, from, to, zero = false, per = 1 }, start, end) {
     const kept = values.filter((v) => Number.isFinite(v) && (!log || v > 0));
     let low = from ?? Math.min(...kept, zero && !log ? 0 : Infinity);
     let high = to ?? Math.max(...kept, zero && !log ? 0 : -Infinity);
@@ -28,7 +28,7 @@ class Scale {
       if (from === undefined && low !== 0) low -= room;
       if (to === undefined) high += room;
     }
-    Object.assign(this, { log, low, high, start, end });
+    Object.assign(this, { log, low, high, start, end, per });
   }
   shows(value) {
     return Number.isFinite(value) && (!this.log || value > 0);
@@ -51,19 +51,19 @@ class Scale {
     const step = power * ([1, 2, 5, 10].find((factor) => factor * power >= rough) || 10);
     const ticks = [];
     for (let i = Math.ceil(this.low / step); i * step <= this.high * (1 + 1e-12); i++)
-      ticks.push([i * step, short(Number((i * step).toPrecision(6)), 5)]);
+      ticks.push([i * step, short(Number(((i * step) / this.per).toPrecision(6)), 5)]);
     return ticks;
   }
   decades(most) {
     const [first, last] = [Math.ceil(Math.log10(this.low)), Math.floor(Math.log10(this.high))];
     const every = Math.max(1, Math.ceil((last - first + 1) / most));
     const ticks = [];
-    for (let e = first; e <= last; e++) if ((e - first) % every === 0) ticks.push([10 ** e, decade(e)]);
+    for (let e = first; e <= last; e++) if ((e - first) % every === 0) ticks.push([10 ** e, decade(e - Math.round(Math.log10(this.per)))]);
     if (ticks.length >= 3) return ticks;
     for (let e = first - 1; e <= last; e++)
       for (const factor of [2, 5]) {
         const value = factor * 10 ** e;
-        if (value >= this.low && value <= this.high) ticks.push([value, short(value, 1)]);
+        if (value >= this.low && value <= this.high) ticks.push([value, short(value / this.per, 1)]);
       }
     return ticks.sort((a, b) => a[0] - b[0]);
   }

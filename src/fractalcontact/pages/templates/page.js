@@ -142,7 +142,9 @@ function draw() {
   }
   const dimension = quantity.startsWith("Delta");
   const logarithmic = !dimension && rows.every((row) => row.value > 0);
-  const width = 760, height = 440, left = 78, right = 16, top = 14, bottom = 52;
+  // As wide as its place, so that letters keep their size on a phone.
+  const width = Math.max(320, Math.min(760, chart.clientWidth - 2)), height = Math.max(300, 0.58 * width);
+  const left = 72, right = 16, top = 14, bottom = 52;
   const pressures = rows.map((row) => row.nominal_pressure_MPa).filter((p) => p > 0);
   let values = rows.map((row) => row.value);
   if (dimension) values = [0, 2];
@@ -223,5 +225,6 @@ if (table) {
     draw();
   });
   document.addEventListener("click", openStatement);
+  addEventListener("resize", draw);
   draw();
 }

@@ -1,0 +1,237 @@
+"""The result page in a real browser: table, curves, statements and links."""
+
+import time
+from urllib.parse import unquote
+
+import numpy as np
+import pandas as pd
+import pytest
+
+pytestmark = [pytest.mark.browser, pytest.mark.workflow]
+#: Addresses of a page, those inside its templates too, and what stands in it to be linked to.
+LINKS = """() => {
+  const parts = [document, ...[...document.querySelectorAll("template")].map((t) => t.content)];
+  return parts.flatMap((part) => [...part.querySelectorAll("[href], [src]")]
+    .map((one) => one.getAttribute("href") || one.getAttribute("src")));
+}"""
+IDS = "() => [...document.querySelectorAll('[id]')].map((one) => one.id)"
+SHOWN = "td:nth-child({column}) [data-load={load}]"
+
+
+@pytest.fixture(scope="module")
+def pages(results):
+    """Names of the pages of the study, from the folder of the results."""
+    specimens = sorted(path.name for path in (results / "pages").glob("*.html"))
+    assert specimens
+    return ["index.html", *(f"pages/{name}" for name in specimens)]
+
+
+def rows_of(page):
+    return page.locator("#table tbody tr")
+
+
+def names_of(page):
+    return page.locator("#table .pick").evaluate_all("boxes => boxes.map((box) => box.value)")
+
+
+def test_opens_from_the_disk(open_page, results, report, shots):
+    begin = time.perf_counter()
+    with open_page("index.html") as page:
+        page.wait_for_selector("#chart svg")
+        seconds = time.perf_counter() - begin
+        page.screenshot(path=shots / "index_desktop.png", full_page=True)
+    size = (results / "index.html").stat().st_size
+    report.append(f"index.html: {size / 1e6:.2f} MB, drawn after {seconds:.2f} s")
+
+
+def test_every_link_leads_somewhere(open_page, results, pages):
+    linked, ids = {}, {}
+    for name in pages:
+        with open_page(name) as page:
+            linked[name], ids[name] = page.evaluate(LINKS), set(page.evaluate(IDS))
+    assert sum(map(len, linked.values())) > 50
+    for name, addresses in linked.items():
+        for address in addresses:
+            if address.startswith("data:"):
+                continue
+            path, _, place = address.partition("#")
+            target = ((results / name).parent / unquote(path)).resolve() if path else results / name
+            assert target.is_relative_to(results.resolve()), (name, address)
+            assert target.is_file(), (name, address)
+            known = ids.get(str(target.relative_to(results.resolve())) if path else name)
+            if place and known is not None:
+                assert unquote(place) in known, (name, address)
+
+
+def test_a_click_on_a_heading_sorts_the_rows_both_ways(open_page):
+    with open_page("index.html") as page:
+        headings = page.locator("#table thead button")
+        for i in range(headings.count()):
+            if i == 1:  # lights: how many are good
+                continue
+            orders = []
+            for direction in ("ascending", "descending"):
+                headings.nth(i).click()
+                heading = page.locator("#table thead th").nth(i)
+                assert heading.get_attribute("aria-sort") == direction
+                shown = page.evaluate(
+                    """i => [...document.querySelectorAll("#table tbody tr")].map((row) => {
+                      const cell = row.cells[i];
+                      const one = cell.querySelector("[data-load=maps]") || cell;
+                      return one.dataset.sort ?? one.textContent.trim();
+                    })""",
+                    i,
+                )
+                orders.append([text for text in shown if text != ""])
+                # What is missing stands last.
+                assert shown == orders[-1] + [""] * (len(shown) - len(orders[-1]))
+            if all(_is_number(text) for text in orders[0]):
+                orders = [[float(text) for text in order] for order in orders]
+            assert orders[0] == sorted(orders[0]), headings.nth(i).text_content()
+            assert orders[1] == sorted(orders[1], reverse=True)
+
+
+def _is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def test_the_table_shows_the_atlas_under_the_chosen_load(open_page, atlas):
+    with open_page("index.html") as page:
+        for load in ("maps", "low", "high"):
+            page.locator("#load").select_option(load)
+            for row, name in zip(rows_of(page).all(), names_of(page), strict=True):
+                contact = atlas[f"contact/{name}"].attrs
+                pressure = row.locator(SHOWN.format(column=6, load=load))
+                assert pressure.is_visible()
+                curves = (
+                    atlas[f"closure/{name}"]
+                    .to_dataset()
+                    .sel(
+                        direction=contact["map_direction"],
+                        offset=contact["map_offset"],
+                        resolution=contact["map_resolution"],
+                    )
+                )
+                sigma = float(pressure.get_attribute("data-sort"))
+                at = int(np.abs(curves["nominal_pressure"].values - sigma).argmin())
+                assert curves["nominal_pressure"].values[at] == pytest.approx(sigma)
+                if load == "maps":
+                    assert curves["normal_force"].values[at] == pytest.approx(contact["map_load"])
+                for column, variable in ((7, "interface_closure"), (8, "interface_stiffness")):
+                    cell = row.locator(SHOWN.format(column=column, load=load))
+                    found = cell.get_attribute("data-sort")
+                    expected = float(curves[variable].values[at])
+                    if found:
+                        assert float(found) == pytest.approx(expected)
+                nodes = row.locator(SHOWN.format(column=13, load=load)).get_attribute("data-sort")
+                assert float(nodes) == curves["nodes"].values[at]
+
+
+def test_every_specimen_has_four_lights_with_their_reasons(open_page, pages):
+    with open_page("index.html") as page:
+        for row in rows_of(page).all():
+            lights = row.locator(".lights li")
+            assert lights.count() == 4
+            for light in lights.all():
+                assert light.get_attribute("title")
+                assert light.text_content().split(":")[1].strip()
+    with open_page(pages[1]) as page:
+        assert page.locator(".lights.long li").count() == 4
+
+
+def test_ticked_specimens_lie_over_each_other_and_over_another_study(
+    open_page, results, tmp_path, shots
+):
+    with open_page("index.html") as page:
+        boxes, curves = page.locator(".pick"), page.locator("#chart polyline")
+        for box in boxes.all():
+            box.uncheck()
+        assert curves.count() == 0
+        assert "Tick a specimen" in page.locator("#chart").text_content()
+        for n, box in enumerate(boxes.all(), start=1):
+            box.check()
+            assert curves.count() == n == page.locator("#legend li").count()
+        for quantity in page.locator("#quantity option").all():
+            page.locator("#quantity").select_option(quantity.get_attribute("value"))
+            assert page.locator("#chart").text_content()
+        page.locator("#quantity").select_option(index=0)
+        table = pd.read_csv(results / "curves.csv").assign(study="another")
+        table.to_csv(tmp_path / "curves.csv", index=False)
+        before = curves.count()
+        page.locator("#other").set_input_files(tmp_path / "curves.csv")
+        page.wait_for_selector("#other-said:has-text('another')")
+        assert curves.count() == 2 * before
+        assert "other file" in page.locator("#legend").text_content()
+        page.locator("#chart").screenshot(path=shots / "index_overlay.png")
+        (tmp_path / "wrong.csv").write_text("a,b\n1,2\n")
+        page.locator("#other").set_input_files(tmp_path / "wrong.csv")
+        page.wait_for_selector("#other-said:has-text('no column')")
+        assert curves.count() == before
+
+
+def test_the_curves_are_those_of_the_atlas(results, atlas):
+    table = pd.read_csv(results / "curves.csv")
+    compared = 0
+    for name, rows in table[table["quantity"].str.contains("closure")].groupby("specimen"):
+        contact = atlas[f"contact/{name}"].attrs
+        curve = atlas[f"closure/{name}/interface_closure"].sel(
+            direction=contact["map_direction"],
+            offset=contact["map_offset"],
+            resolution=contact["map_resolution"],
+        )
+        for row in rows.itertuples():
+            at = np.abs(curve["nominal_pressure"].values - row.nominal_pressure_MPa).argmin()
+            assert row.value == pytest.approx(float(curve.values[at]), rel=1e-6)
+            compared += 1
+    assert compared > 5
+
+
+def test_a_verdict_opens_its_rule_and_a_key_closes_it(open_page, shots):
+    with open_page("index.html") as page:
+        link = page.locator(".matrix [data-opens]").first
+        link.click()
+        opened = page.locator("#opened")
+        assert opened.is_visible()
+        assert "Rule" in opened.text_content()
+        page.screenshot(path=shots / "index_statement.png")
+        page.keyboard.press("Escape")
+        assert opened.is_hidden()
+
+
+def test_numbers_of_a_figure_fold_out_and_its_pictures_are_there(open_page, pages, shots):
+    with open_page(pages[1]) as page:
+        folded = page.locator(".card details").first
+        inside = folded.locator(":scope > :not(summary)").first
+        assert inside.is_hidden()
+        folded.locator("summary").click()
+        assert inside.is_visible()
+        for picture in page.locator(".card img").all():
+            picture.scroll_into_view_if_needed()
+            picture.evaluate("one => one.decode()")
+            assert picture.evaluate("one => one.naturalWidth") > 100
+        page.screenshot(path=shots / "specimen_desktop.png", full_page=True)
+
+
+def test_a_specimen_leads_to_its_states(open_page, results):
+    with open_page("index.html") as page:
+        link = page.locator("a", has_text="explore").last
+        name = link.locator("xpath=ancestor::tr").locator(".pick").get_attribute("value")
+        link.click()
+        page.wait_for_selector("body[data-drawn]")
+        chosen = page.locator("[data-state=a] .specimen option:checked").text_content()
+        assert chosen.startswith(name)
+        page.locator("header a", has_text="results").click()
+        page.wait_for_selector("#table")
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_fits_a_phone(open_page, pages, shots, which):
+    with open_page(pages[which], phone=True) as page:
+        page.wait_for_load_state()
+        scroll, width = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
+        assert scroll <= width
+        page.screenshot(path=shots / f"{'specimen' if which else 'index'}_phone.png")

@@ -1,0 +1,325 @@
+"""The result page of a study: its numbers are the atlas's, its links lead to files, it is HTML."""
+
+import json
+import re
+import shutil
+import zipfile
+from html.parser import HTMLParser
+from urllib.parse import unquote, urlsplit
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+from page_study import HOSTILE, STUDY
+
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.pages.cards import redrawn
+from fractalcontact.pages.chosen import Chosen
+from fractalcontact.pages.files import FILES
+from fractalcontact.pages.lights import lights_of
+from fractalcontact.pages.matrix import (
+    counted,
+    figure_of_statement,
+    matrix_of,
+    numbers_of,
+    of_study,
+)
+from fractalcontact.pages.result_page import Place, write_result_page
+from fractalcontact.statements.judge import all_statements
+from fractalcontact.study.atlas import read_atlas, write_atlas
+from fractalcontact.study.figure_list import figures_of
+
+NAMES = ("flat.1", "pair")
+VOID = {"meta", "img", "br", "input", "link", "hr"}
+
+
+class Parsed(HTMLParser):
+    """Elements of a page, and whether each is closed where it should be."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.open, self.elements, self.ids, self.texts = [], [], [], []
+        self.feed(path.read_text(encoding="utf-8"))
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if "id" in dict(attrs):
+            self.ids.append(dict(attrs)["id"])
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open, f"</{tag}> ends nothing"
+        # A paragraph or an entry of a list may end by itself; here none does.
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+    def addresses(self):
+        return [
+            value
+            for _, attrs in self.elements
+            for name, value in attrs.items()
+            if name in ("href", "src", "action", "data", "poster", "srcset")
+        ]
+
+
+@pytest.fixture(scope="module")
+def atlas(results):
+    return read_atlas(results / "atlas.nc", without=("contact",))
+
+
+@pytest.fixture(scope="module")
+def pages(results):
+    paths = [results / "index.html", *sorted((results / "pages").glob("*.html"))]
+    assert [path.name for path in paths] == ["index.html", "flat.1.html", "pair.html"]
+    return {path: Parsed(path) for path in paths}
+
+
+def test_every_file_is_made(results):
+    assert all((results / name).is_file() for name in FILES)
+
+
+def test_pages_are_html_whose_names_are_unique(pages):
+    for parsed in pages.values():
+        assert len(parsed.ids) == len(set(parsed.ids))
+
+
+def test_links_lead_to_files_of_the_study_and_to_places_in_them(results, pages):
+    for path, parsed in pages.items():
+        for address in parsed.addresses():
+            parts = urlsplit(address)
+            if parts.scheme == "data":
+                continue
+            assert not parts.scheme, address
+            assert not parts.netloc, address
+            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            assert target.is_relative_to(results.resolve()), address
+            assert target.is_file(), address
+            if parts.fragment and target in pages:
+                assert unquote(parts.fragment) in pages[target].ids, address
+
+
+def test_every_figure_stands_on_its_specimen_s_page(results, pages):
+    for name, opposite in (("pair", "match"), ("flat.1", "flat")):
+        parsed = pages[results / f"pages/{name}.html"]
+        pictures = [attrs["src"] for tag, attrs in parsed.elements if tag == "img"]
+        wanted = {f"../figures/{name}/{figure}.png" for figure in figures_of(opposite)}
+        assert set(pictures) == wanted
+        assert all(attrs["loading"] == "lazy" for tag, attrs in parsed.elements if tag == "img")
+        addresses = set(parsed.addresses())
+        assert {address.replace(".png", ".csv") for address in wanted} <= addresses
+        assert not any(address.endswith((".svg", ".pdf")) for address in addresses)
+
+
+def test_what_strangers_wrote_is_text(results, pages):
+    """As the title of its page, in the table, in captions, and in the data of the script."""
+    for path, parsed in pages.items():
+        text = path.read_text(encoding="utf-8")
+        assert "<script>alert" not in text
+        assert "x.example" not in "".join(parsed.addresses())
+        assert {tag for tag, _ in parsed.elements} >= {"main", "header", "h1"}
+    heading = "".join(pages[results / "pages/pair.html"].texts)
+    assert HOSTILE in heading
+    data = re.search(
+        r'id="curves-data">(.*?)</script>', (results / "index.html").read_text("utf-8"), re.DOTALL
+    )
+    assert {row["label"] for row in json.loads(data[1])} == {HOSTILE, "flat.1"}
+
+
+def test_nothing_is_fetched(pages):
+    """The policy allows none, and no text of ours asks for any."""
+    for path, parsed in pages.items():
+        (policy,) = [a["content"] for tag, a in parsed.elements if a.get("http-equiv")]
+        assert "default-src 'none'" in policy
+        text = re.sub(r"http://www\.w3\.org/2000/svg", "", path.read_text(encoding="utf-8"))
+        assert re.findall(r"https?://(?!x\.example)", text) == []
+        assert "fetch(" not in text
+        assert "innerHTML" not in text
+
+
+def test_summary_has_the_numbers_of_the_atlas(results, atlas):
+    table = pd.read_csv(results / "summary.csv").set_index(["specimen", "nominal_pressure_MPa"])
+    assert sorted({name for name, _ in table.index}) == ["flat.1", "pair"]
+    assert len(table) == 2 * 3  # two loads of the dilatancy, one of the maps
+    for (name, pressure), row in table.iterrows():
+        closure = atlas[f"closure/{name}"].to_dataset()
+        state = {"offset": row["offset_mm"], "normal_force": row["normal_force_N"]}
+        here = closure.sel(direction=row["direction"], resolution=1)
+        here = here.sel(state, method="nearest")
+        assert here["nominal_pressure"].item() == pytest.approx(pressure)
+        budget = atlas[f"error_budget/{name}"].to_dataset()
+        budget = budget.sel(normal_force=row["normal_force_N"], method="nearest")
+        surface = atlas[f"surface_dimension/{name}"].to_dataset()
+        domains = atlas[f"domains/{name}"].to_dataset().sel(direction=row["direction"])
+        domains = domains.sel(resolution=1).sel(state, method="nearest")
+        wanted = {
+            "closure_mm": here["interface_closure"],
+            "stiffness_MPa_per_mm": here["interface_stiffness"],
+            "contact_nodes": here["nodes"],
+            "k_ni_MPa_per_mm": here["hyperbola_k_ni"],
+            "closure_error_surface_mm": budget["total"].sel(quantity="closure"),
+            "closure_error_population_mm": budget["total_of_population"].sel(quantity="closure"),
+            "delta_g": surface["recommended_value"],
+            "delta_sigma_boxes": domains["delta_sigma"],
+            "delta_sigma_boxes_high": domains["delta_sigma_high"],
+        }
+        for column, value in wanted.items():
+            np.testing.assert_allclose(row[column], float(value), rtol=1e-7, err_msg=column)
+        assert row["load_of_maps"] == (abs(pressure - 12.5) < 1e-9)
+
+
+def test_the_page_prints_the_numbers_of_the_summary(results, pages):
+    table = pd.read_csv(results / "summary.csv")
+    text = (results / "index.html").read_text(encoding="utf-8")
+    for _, row in table.iterrows():
+        shown = float(f"{row['closure_mm']:.3g}")
+        in_micrometres = f"{1000 * shown:.6g} µm" if shown < 1 else f"{shown:.3g} mm"
+        assert f">{in_micrometres}<small>" in text
+        assert f'data-sort="{float(row["contact_nodes"])}"' in text
+
+
+def test_curves_are_those_of_the_atlas(results, atlas):
+    table = pd.read_csv(results / "curves.csv")
+    for name in ("pair", "flat.1"):
+        chosen = Chosen(atlas, name)
+        states = chosen.values("closure")
+        drawn = table[(table["specimen"] == name) & (table["quantity"] == "interface closure")]
+        known = np.isfinite(states["interface_closure"].values)
+        np.testing.assert_allclose(drawn["value"], states["interface_closure"].values[known])
+        np.testing.assert_allclose(drawn["nominal_pressure_MPa"], chosen.pressures[known])
+        assert (drawn["low"].dropna() <= drawn["value"][drawn["low"].notna()]).all()
+        few = states["nodes"].values[known] < 10
+        assert (drawn["resolved"].values == ~few).all()
+
+
+def test_verdicts_are_those_of_the_atlas(results, atlas, pages):
+    rows = matrix_of(atlas, ["flat.1", "pair"])
+    asked = 0
+    for name in ("flat.1", "pair"):
+        table = atlas[f"statements/{name}"].to_dataset()
+        for statement in table["statement"].values:
+            (row,) = [row for row in rows if row.name == statement]
+            found = table.sel(statement=statement)
+            assert row.cells[name].verdict == found["verdict"].item()
+            assert row.cells[name].numbers == found["numbers"].item()
+            assert row.rule  # the first sentence of what judges it
+            assert f"statement-{statement}" in pages[results / f"pages/{name}.html"].ids
+            assert f"{name}--{statement}" in pages[results / "index.html"].ids
+            asked += 1
+    assert asked == sum(len(row.cells) for row in rows) == sum(counted(rows).values())
+
+
+def test_verdicts_are_counted_as_the_figure_of_the_study_counts_them(results, atlas, pages):
+    """Its caption says the same, in the same words."""
+    with print_style():
+        caption = drawer_of("study_statements")(atlas, ["flat.1", "pair"]).caption
+    counts = counted([*matrix_of(atlas, ["flat.1", "pair"]), *of_study(atlas)])
+    words = ", ".join(f"{verdict} {count}" for verdict, count in counts.items())
+    assert f": {words}" in caption
+    assert words in "".join(pages[results / "index.html"].texts)
+
+
+def test_every_statement_leads_to_a_figure_that_its_specimen_has():
+    for statement in all_statements():
+        assert figure_of_statement(statement, ("specimen", "joint")) in figures_of("match")
+        if not statement.slides:
+            assert figure_of_statement(statement, ("specimen",)) in figures_of("flat")
+    assert numbers_of("4-7") == {4, 5, 6, 7}
+    assert numbers_of("1b, 11") == {1, 11}
+    assert numbers_of("sect. 7") == set()
+
+
+def test_lights_follow_what_the_stages_say(atlas):
+    """A pair whose faces overlap, few nodes, a grid too coarse; and the same without them."""
+    words = {name: {one.key: one.word for one in lights_of(Chosen(atlas, name))} for name in NAMES}
+    assert words["flat.1"]["faces"] == "not asked"
+    for name in NAMES:
+        chosen = Chosen(atlas, name)
+        nodes = chosen.values("closure", "nodes")["nodes"].values[chosen.map_load]
+        wanted = "good" if nodes >= 30 else "in part" if nodes >= 10 else "poor"
+        assert words[name]["nodes"] == wanted
+        budget = chosen.stage("error_budget").sel(quantity="closure")
+        error = budget["relative_error"].sel(source="numerical").values[chosen.map_load]
+        wanted = "good" if error <= 0.01 else "in part" if error <= 0.1 else "poor"
+        assert words[name]["grid"] == wanted
+    changed = atlas.copy()
+    changed["closure/pair"].attrs["warning"] = "suspicious cells carry all"
+    assert {one.key: one.word for one in lights_of(Chosen(changed, "pair"))}["faces"] == "poor"
+    changed["closure/flat.1"].attrs["warning"] = "spikes carry all"
+    assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "poor"
+    changed["closure/flat.1"].attrs["warning"] = ""
+    changed["quality/flat.1"].attrs["warning"] = ""
+    assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "good"
+
+
+@pytest.mark.parametrize(
+    ("figure", "specimen"),
+    [
+        ("statements", "pair"),
+        pytest.param("study_statements", "", marks=pytest.mark.full),
+        pytest.param("fig04_05_closure", "flat.1", marks=pytest.mark.full),
+    ],
+)
+def test_the_lines_on_the_page_draw_the_figure_again(
+    results, pages, tmp_path, monkeypatch, figure, specimen
+):
+    code = redrawn(figure, specimen, "results/tiny/atlas.nc")
+    if specimen:
+        assert code in "".join(pages[results / f"pages/{specimen}.html"].texts)
+    (tmp_path / "results").symlink_to(results.parent)
+    monkeypatch.chdir(tmp_path)
+    values = {}
+    exec(code, values)
+    assert (tmp_path / f"{figure}.pdf").read_bytes().startswith(b"%PDF")
+    assert len(values["drawing"].data) > 0
+    values["atlas"].close()
+
+
+def test_tables_and_configuration_can_be_used_again(results):
+    assert yaml.safe_load((results / "study.yaml").read_text(encoding="utf-8")) == STUDY
+    with zipfile.ZipFile(results / "tables.zip") as archive:
+        names = archive.namelist()
+        assert archive.testzip() is None
+        assert archive.read("summary.csv") == (results / "summary.csv").read_bytes()
+    figures = {path.relative_to(results).as_posix() for path in results.rglob("figures/*/*.csv")}
+    assert set(names) == figures | {"summary.csv", "curves.csv"}
+
+
+@pytest.mark.full
+def test_the_same_results_are_the_same_pages(results, tmp_path):
+    shutil.copytree(results, tmp_path / "tiny", copy_function=shutil.copy2)
+    write_result_page(Place.of(tmp_path / "tiny"))
+    for path in [*results.glob("*.*"), *results.glob("pages/*")]:
+        if path.is_file():
+            again = tmp_path / "tiny" / path.relative_to(results)
+            assert again.read_bytes() == path.read_bytes(), path.name
+
+
+def test_a_study_without_specimens_has_a_page(tmp_path):
+    """One of synthetic surfaces or of measured maps alone."""
+    write_atlas(
+        {}, tmp_path / "atlas.nc", study="none", configuration={"study": {}, "settings": {}}
+    )
+    assert write_result_page(Place.of(tmp_path)) == []
+    text = "".join(Parsed(tmp_path / "index.html").texts)
+    assert "Study none" in text
+    assert "Specimens" not in text
+    assert list(pd.read_csv(tmp_path / "summary.csv").columns) == ["study", "specimen"]
+
+
+@pytest.mark.full
+def test_a_page_without_pictures_has_none(results, tmp_path):
+    """One that was removed, or is drawn later: what is there is shown, and nothing is promised."""
+    shutil.copytree(results, tmp_path / "tiny")
+    shutil.rmtree(tmp_path / "tiny/figures/pair")
+    write_result_page(Place.of(tmp_path / "tiny"))
+    parsed = Parsed(tmp_path / "tiny/pages/pair.html")
+    assert not any(tag == "img" for tag, _ in parsed.elements)
+    index = Parsed(tmp_path / "tiny/index.html")
+    assert not any("figures/pair" in address for address in index.addresses())

@@ -1,0 +1,115 @@
+"""Numbers in words, pictures, and error bars."""
+
+import base64
+import io
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from fractalcontact.pages.budget import bars_of
+from fractalcontact.pages.summary import Quantity
+from fractalcontact.pages.thumbnails import png_address, reduced, shaded
+from fractalcontact.pages.words import (
+    duration,
+    in_table,
+    measured,
+    percent,
+    short,
+    with_unit,
+)
+
+
+@pytest.mark.parametrize(
+    ("value", "trimmed", "whole"),
+    [
+        (2.2, "2.2", "2.20"),
+        (-0.05, "−0.05", "−0.0500"),
+        (19.999, "20", "20.0"),
+        (0, "0", "0"),
+        (123456, "123000", "123000"),
+        (0.9996, "1", "1.00"),
+        (1.234e-7, "1.23e−07", "1.23e−07"),
+        (None, "–", "–"),
+        (float("nan"), "–", "–"),
+    ],
+)
+def test_three_digits(value, trimmed, whole):
+    assert short(value) == trimmed
+    assert measured(value) == whole
+
+
+def test_units_suit_the_number():
+    assert with_unit(0.0123, "mm") == "12.3 µm"
+    assert with_unit(1.65, "mm2") == "1.65 mm²"
+    assert with_unit(2760, "MPa/mm") == "2.76 GPa/mm"
+    assert with_unit(30000, "N") == "30 kN"
+    assert with_unit(1.3, "1") == "1.3"
+    assert with_unit(None, "mm") == "–"
+    assert percent(0.0469) == "4.7 %"
+    assert [duration(s) for s in (47, 192, 7500)] == ["47 s", "3 min 12 s", "2 h 5 min"]
+
+
+def test_a_label_is_one_line_and_no_formula():
+    assert in_table("granite, both faces") == "granite, both faces"
+    assert in_table("a\nb") == "a\\nb"
+    assert in_table("") == ""
+    for start in ("=", "+", "-", "@", " ="):
+        assert in_table(f"{start}1+1") == f"'{start}1+1"
+
+
+def quantity(unit="mm", **sources):
+    surface = sum((v or 0) ** 2 for k, v in sources.items() if k != "window") ** 0.5
+    errors = {"surface": surface, "population": 1.0}
+    return Quantity("closure", "closure", unit, 2.0, errors, sources, dict.fromkeys(sources, "why"))
+
+
+class OneLoad:
+    """What :func:`bars_of` reads of a specimen."""
+
+    def __init__(self, *quantities):
+        self.of_maps = self
+        self.quantities = {one.name: one for one in quantities}
+
+
+def test_parts_of_a_bar_are_squares_and_fill_it():
+    (bar,) = bars_of(OneLoad(quantity(solver=0.3, numerical=0.4, estimator=None, window=9.0)))
+    shares = {part.source: part.share for part in bar.parts}
+    assert shares == pytest.approx({"solver": 36, "numerical": 64, "estimator": 0, "window": 0})
+    assert sum(shares.values()) == pytest.approx(100)
+    words = {part.source: part.words for part in bar.parts}
+    assert words == {"solver": "15 %", "numerical": "20 %", "estimator": "why", "window": "450 %"}
+    assert (bar.surface, bar.population) == ("25 %", "50 %")
+
+
+def test_a_dimension_has_its_error_as_it_is():
+    (bar,) = bars_of(OneLoad(quantity("1", estimator=0.25)))
+    assert (bar.value, bar.surface) == ("2", "0.25")
+
+
+def test_relief_is_lit_from_the_upper_left_and_missing_cells_are_white():
+    """A hill's slope towards it is brighter than the one away from it."""
+    y, x = np.mgrid[-1:1:40j, -1:1:40j]
+    hill = np.exp(-4 * (x**2 + y**2))
+    hill[:3, :3] = np.nan  # South-West: at the lower left of the picture
+    grey = shaded(hill, 1.0).astype(int)
+    assert grey[:20, :20].mean() > grey[20:, 20:].mean() + 20
+    assert (grey[-3:, :3] == 255).all()
+    assert (shaded(np.zeros((8, 8)), 1.0) == shaded(np.ones((8, 8)), 1.0)).all()
+
+
+def test_blocks_are_means_of_what_is_known():
+    heights = np.arange(24.0).reshape(4, 6)
+    heights[0, 0] = np.nan
+    found = reduced(heights, 3)
+    assert found.shape == (2, 3)
+    assert found[0, 0] == np.mean([1, 6, 7])
+    assert found[1, 2] == np.mean([16, 17, 22, 23])
+
+
+def test_a_picture_comes_back_as_it_was():
+    grey = np.random.default_rng(0).integers(0, 256, (7, 11)).astype(np.uint8)
+    start, _, data = png_address(grey).partition(",")
+    assert start == "data:image/png;base64"
+    found = imread(io.BytesIO(base64.b64decode(data)), format="png")
+    assert np.array_equal(np.round(255 * found), grey)

@@ -1,0 +1,28 @@
+"""The study whose result page is tested: its label is no friend."""
+
+HOSTILE = "</script><script>alert(1)</script><img src='https://x.example/a.png'> $\\alpha$ \"q\""
+STUDY = {
+    "study": "tiny",
+    "materials": {
+        "rock": {
+            "modulus": "20 GPa",
+            "poisson": 0.2,
+            "basic_friction_angle": "30 deg",
+            "joint_wall_strength": "80 MPa",
+        }
+    },
+    "defaults": {
+        "material": "rock",
+        "contact_directions": ["W"],
+        "directions": ["W", "E"],
+        "loads": ["1 MPa", "12.5 MPa", "25 MPa"],
+        "dilatancy_loads": ["1 MPa", "25 MPa"],
+        "map_load": "12.5 MPa",
+        "resolutions": [1, 2],
+        "window": "3.2 mm",
+    },
+    "specimens": {
+        "pair": {"offsets": ["0 mm", "0.2 mm", "0.6 mm"], "label": HOSTILE},
+        "flat.1": {"opposite": "flat"},
+    },
+}
