@@ -298,7 +298,7 @@ def _name_leftovers(results):
 def _name_page(results):
     """The last line of a run: where the results can be looked at, if these are the last ones."""
     page, atlas = results / "index.html", results / "atlas.nc"
-    if page.is_file() and page.stat().st_mtime >= atlas.stat().st_mtime:
+    if page.is_file() and atlas.is_file() and page.stat().st_mtime >= atlas.stat().st_mtime:
         put(f"the results: {page.resolve().as_uri()}\n", sys.stdout)
 
 
