@@ -1,6 +1,6 @@
 # make        environment, then the default study (config/paper.yaml)
 # make STUDY=config/mine.yaml   another study; DROP=yes lets its atlas lose specimens that it had
-# make dry-run  says what would be done
+# make dry-run  says what would be done, and why; VERBOSE=yes for any of these shows all Snakemake says
 # make keep-going   one bad scan does not keep the others from their figures
 # make slurm    the same on a cluster
 # make report   the result page alone, and what it is made of
@@ -29,7 +29,8 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet --require-vir
 # Read from the environment, so that a shell never sees what stands in them.
 export STUDY SCANS
 # Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
-RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop)
+RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop) \
+  $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
 .PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser bench problems fuzz fuzz-dialects lint format lock clean

@@ -26,11 +26,11 @@ include: "workflow/rules/accuracy.smk"
 
 
 onsuccess:
-    checksums.write_manifest(RESULTS)
+    write_records()
 
 
 onerror:
-    checksums.write_manifest(RESULTS)
+    write_records()
 
 
 rule all:

@@ -1,20 +1,26 @@
 """What `make` runs: Snakemake on a study, after all that can be known beforehand was looked at.
 
-python workflow/run.py STUDY [--profile NAME] [--drop] [--full] [--dry-run] -- options and targets
+python workflow/run.py STUDY [--dry-run] [--profile NAME] [--drop] [--full] [--verbose] -- WORDS
+
+WORDS are options and targets of Snakemake.
 
 The study is read as plain data first: Snakemake itself runs Python that stands in a study which
 says `__use_yte__: true`. A lock that a killed run left is taken away, that of a living run never.
 Files that were damaged since they were made are set aside, so that Snakemake makes them again. Told
-to end, it ends all jobs.
+to end, it ends all jobs. The terminal gets a line a job; Snakemake's own words are in
+.snakemake/log, or, with --verbose, in the terminal instead.
 """
 
 import argparse
+import io
+import json
 import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -23,6 +29,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
 sys.path.append(str(ROOT / "workflow/scripts"))
 import _running
+from terminal import Terminal, put
 
 from fractalcontact.core import checksums
 from fractalcontact.core.atomic import sweep
@@ -32,6 +39,10 @@ from fractalcontact.study.documents import read_study, study_name
 #: Seconds that another run is waited for, which may only be reading the workflow; and that jobs get
 #: to end when they are told to.
 WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
+#: Seconds that are waited for the last words of jobs once Snakemake has ended.
+LAST_WORDS = 2
+#: Where Snakemake finds the logger that tells the terminal what happens.
+LOGGER = ROOT / "workflow/logger"
 #: What a shell does not take as it is.
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
 #: Bytes free below which a study is not begun: the default one makes some 100 MB.
@@ -47,7 +58,7 @@ def main():
         results = Path("results") / (f"{name}_full" if options.full else name)
         if options.dry_run:
             _name_damage(results)
-            sys.exit(_run([*_command(options, name), "--dry-run", *passed], options))
+            sys.exit(_run([*_command(options, name), "--dry-run", *passed], options, results))
         _require_room(results)
         guard, has_locks = _running.alone(WAIT)
         if guard is None:
@@ -64,7 +75,7 @@ def main():
                 file=sys.stderr,
             )
         _running.share(guard)
-        status = _run([*_command(options, name), *passed], options)
+        status = _run([*_command(options, name), *passed], options, results)
         if status == 0:
             _name_leftovers(results)
             _name_page(results)
@@ -72,7 +83,7 @@ def main():
         sys.exit(f"error: {error}")
     if status:
         print(
-            "make: the study did not finish; what is done is kept, and 'make' goes on from there.",
+            "the study did not finish; what is done is kept, and 'make' goes on from there",
             file=sys.stderr,
         )
     sys.exit(status)
@@ -85,6 +96,7 @@ def _options():
     parser.add_argument("--drop", action="store_true", help="the atlas may lose specimens")
     parser.add_argument("--full", action="store_true", help="at full cost, beside the study")
     parser.add_argument("--dry-run", action="store_true", help="say what would be done")
+    parser.add_argument("--verbose", action="store_true", help="all that Snakemake says")
     own = sys.argv[1:]
     passed = own[own.index("--") + 1 :] if "--" in own else []
     return parser.parse_args(own[: own.index("--")] if "--" in own else own), passed
@@ -166,24 +178,68 @@ def _name_damage(results):
         print(f"{path}: {why}; a run sets it aside, and makes it again if needed", file=sys.stderr)
 
 
-def _run(command, options):
+def _run(command, options, results):
     """Exit code of a command whose whole family of processes ends with this one."""
     signals, child = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT), None
+    terminal = None if options.verbose else Terminal(results, dry_run=options.dry_run)
+    listeners = []
     try:
         for number in signals:
             signal.signal(number, _stop)
-        child = subprocess.Popen(command, env=_environment(options), start_new_session=True)
+        if terminal is None:
+            child = subprocess.Popen(command, env=_environment(options), start_new_session=True)
+        else:
+            child, listeners = _start(command, options, terminal)
         status = child.wait()
     except _Stopped as stopped:
         for number in signals:
             signal.signal(number, signal.SIG_IGN)
-        print("make: told to stop; jobs end, and 'make' goes on from there.", file=sys.stderr)
+        if terminal is not None:
+            terminal.mute()
+        print("interrupted: jobs end, and 'make' goes on from there", file=sys.stderr)
         if child is not None:
             _end(child, cluster=options.profile != "default")
         sys.exit(128 + stopped.args[0])
     for number in signals:
         signal.signal(number, signal.SIG_DFL)
+    for listener in listeners:
+        listener.join(LAST_WORDS)  # jobs that outlive Snakemake keep the pipe open
+    if terminal is not None:
+        terminal.finish(status)
     return status if status >= 0 else 128 - status
+
+
+def _start(command, options, terminal):
+    """Snakemake and those who listen to it: events of its logger, and what jobs write to stderr."""
+    heard, told = os.pipe()
+    path = os.pathsep.join(filter(None, [str(LOGGER), os.environ.get("PYTHONPATH")]))
+    environment = _environment(options) | {"PYTHONPATH": path, "FRACTALCONTACT_EVENTS": str(told)}
+    child = subprocess.Popen(
+        [*command[:3], "--logger", "fractalcontact", *command[3:]],
+        env=environment,
+        pass_fds=(told,),
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    os.close(told)
+    events = os.fdopen(heard, encoding="utf-8", errors="replace")
+    words = io.TextIOWrapper(child.stderr, encoding="utf-8", errors="replace")
+    listeners = [
+        threading.Thread(
+            target=_listen, args=(events, lambda line: terminal.hear(json.loads(line)))
+        ),
+        threading.Thread(target=_listen, args=(words, terminal.overhear)),
+    ]
+    for listener in listeners:
+        listener.daemon = True
+        listener.start()
+    return child, listeners
+
+
+def _listen(stream, take):
+    with stream:
+        for line in stream:
+            take(line)
 
 
 class _Stopped(Exception):
@@ -242,8 +298,8 @@ def _name_leftovers(results):
 def _name_page(results):
     """The last line of a run: where the results can be looked at, if these are the last ones."""
     page, atlas = results / "index.html", results / "atlas.nc"
-    if page.is_file() and page.stat().st_mtime >= atlas.stat().st_mtime:
-        print(f"the results: {page.resolve().as_uri()}", flush=True)
+    if page.is_file() and atlas.is_file() and page.stat().st_mtime >= atlas.stat().st_mtime:
+        put(f"the results: {page.resolve().as_uri()}\n", sys.stdout)
 
 
 if __name__ == "__main__":

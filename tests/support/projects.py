@@ -16,7 +16,7 @@ from fractalcontact.study.stages import EXPERIMENT, paths_of
 
 def copy_project(folder):
     """A working copy without results, with the kernels that are compiled already."""
-    for name in ("Snakefile", "environment.yml", "config", "workflow", "src"):
+    for name in ("Snakefile", "CITATION.cff", "environment.yml", "config", "workflow", "src"):
         source = ROOT / name
         if source.is_dir():
             shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))

@@ -1,5 +1,6 @@
 """What a change makes again, on one small study that was made up to its atlas."""
 
+import json
 import os
 import shutil
 from pathlib import Path
@@ -10,6 +11,7 @@ import yaml
 from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
 
 from fractalcontact.core import sources
+from fractalcontact.core.checksums import sha256
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.stages import STAGES, paths_of
 
@@ -29,6 +31,7 @@ def finished(tmp_path_factory):
     write_scan(folder, "rock")
     done = made(folder, STUDY, targets=[ATLAS])
     assert done.returncode == 0, done.stderr[-3000:]
+    (folder / "said").write_text(done.stdout)
     return folder
 
 
@@ -61,6 +64,22 @@ def test_the_atlas_has_all_stages_of_the_table_and_a_second_run_nothing_to_do(pr
     assert planned(project) == {}
 
 
+def test_a_run_is_a_line_a_job_and_leaves_a_crate_of_what_it_made(finished):
+    first, *jobs, last = (finished / "said").read_text().splitlines()
+    n = len(jobs)
+    assert first == f"{n} jobs; what is made goes to results/test"
+    assert last.startswith(f"{n} jobs done in ")
+    assert [line.split("]")[0] for line in jobs] == [f"[{k}/{n}" for k in range(1, n + 1)]
+    assert any(line[6:].startswith("rock: contact states") for line in jobs)
+    assert max(map(len, jobs)) <= 120
+    crate = json.loads((finished / "results/test/ro-crate-metadata.json").read_text())
+    entities = {entity["@id"]: entity for entity in crate["@graph"]}
+    assert entities["atlas.nc"]["sha256"] == sha256(finished / ATLAS)
+    scan = sha256(finished / "scans/rock.npy")
+    assert [e["sha256"] for e in entities.values() if e.get("name") == "rock.npy"] == [scan]
+    assert (finished / "results/test/code/Snakefile").is_file()
+
+
 def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):
     for name in (
         "workflow/scripts/_stages.py",  # beside the script of the atlas
@@ -79,6 +98,10 @@ def test_a_scan_replaced_by_an_older_file_is_read(project):
     os.replace(project / "other.npy", scan)
     jobs = planned(project)
     assert jobs["specimen"] == jobs["contact"] == jobs["analysis"] == 1
+    said = made(project, STUDY, "--dry-run", targets=[ATLAS]).stdout.splitlines()
+    reasons = {title: why for title, _, why in (line.strip().rpartition("  ") for line in said)}
+    (specimen,) = (title for title in reasons if title.startswith("rock: levelled scan"))
+    assert reasons[specimen] == "its scan changed"
 
 
 def test_a_missing_scan_and_a_damaged_file_stop_everything(project):

@@ -7,6 +7,7 @@ import sys
 import time
 
 import pytest
+import yaml
 from projects import command, made, project, run, small_study, write_scan
 
 __all__ = ["project"]  # a fixture
@@ -126,7 +127,8 @@ def test_a_run_that_is_told_to_end_ends_its_jobs(project, number):
     running.wait(timeout=60)
     said = (project / "said").read_text()
     assert running.returncode == 128 + number
-    assert "make: told to stop; jobs end" in said
+    assert "interrupted: jobs end, and 'make' goes on from there" in said
+    assert "error" not in said
     assert "Traceback" not in said
     deadline = time.monotonic() + 5
     while _at_work(project) and time.monotonic() < deadline:
@@ -203,3 +205,45 @@ def test_results_that_cannot_be_written_to_are_said_before_anything_runs(project
     (project / "results").write_text("a file")
     done = made(project, "config/smoke.yaml")
     assert done.stderr == "error: results: no folder that can be written to; allow it (chmod u+w)\n"
+
+
+def test_a_folder_of_scans_that_is_not_there_is_one_sentence_without_the_workflow(project):
+    study = small_study(project, scans="nowhere")
+    done = made(project, study)
+    assert done.returncode != 0
+    error, end = done.stderr.splitlines()
+    assert error.startswith("error: nowhere: no such folder (not mounted?); make it, name another")
+    assert end.startswith("the study did not finish")
+    assert done.stdout == ""
+    assert not (project / "results").exists()
+
+
+def test_an_empty_folder_of_scans_is_a_warning_and_a_dry_run_a_table(project):
+    study = yaml.safe_load((project / "config/smoke.yaml").read_text()) | {"scans": "scans"}
+    (project / STUDY).write_text(yaml.safe_dump(study))
+    done = made(project, STUDY, "--dry-run", targets=["results/smoke/atlas.nc"])
+    assert done.returncode == 0, done.stderr
+    warning = "warning: scans: no scan files there; only what the study itself makes is used"
+    assert done.stderr.splitlines() == [warning]
+    *jobs, end = done.stdout.splitlines()
+    assert end == f"{len(jobs)} jobs would be done; nothing was"
+    assert any(
+        line.startswith("  small_twin: levelled scan") and line.endswith("  not made yet")
+        for line in jobs
+    )
+    assert max(map(len, jobs)) <= 120
+    assert not (project / "results").exists()
+
+
+@pytest.mark.full
+def test_options_that_snakemake_does_not_know_are_said_in_its_words(project):
+    done = made(project, "config/smoke.yaml", targets=["--no-such-option"])
+    assert done.returncode != 0
+    assert "unrecognized arguments: --no-such-option" in done.stderr
+
+
+@pytest.mark.full
+def test_snakemake_speaks_itself_where_it_is_asked_to(project):
+    done = made(project, "config/smoke.yaml", "--dry-run", "--verbose")
+    assert done.returncode == 0
+    assert "Job stats:" in done.stdout + done.stderr

@@ -45,6 +45,8 @@ rule speed:
         recipe=config.get("speed"),
         peers=PEERS,
         code=code("speed", *METHOD_MODULES),
+    message:
+        "speed: {wildcards.case}, by every solver and model"
     script:
         "../scripts/speed.py"
 
@@ -66,6 +68,8 @@ rule speed_growth:
     params:
         error=config.get("speed", {}).get("error"),
         code=code("speed_growth"),
+    message:
+        "speed: time over the size of surfaces"
     script:
         "../scripts/speed_growth.py"
 
@@ -87,6 +91,8 @@ rule convergence:
     params:
         recipe=config.get("convergence"),
         code=code("convergence"),
+    message:
+        "convergence: {wildcards.problem}, compared with the exact solution"
     script:
         "../scripts/convergence.py"
 
@@ -108,6 +114,8 @@ rule stability_part:
         draws=config.get("stability", {}).get("draws"),
         peers=PEERS,
         code=code("stability_part", *METHOD_MODULES),
+    message:
+        "stability: hard test problems from kind {wildcards.part} on"
     script:
         "../scripts/stability_part.py"
 
@@ -128,6 +136,8 @@ rule stability:
         runtime=10,
     params:
         code=code("stability"),
+    message:
+        "stability: verdicts over all hard test problems"
     script:
         "../scripts/stability.py"
 
@@ -147,6 +157,8 @@ rule elimination:
     params:
         draws=config.get("stability", {}).get("elimination"),
         code=code("elimination", *METHOD_MODULES),
+    message:
+        "stability: elimination of nodes in tension alone, as the paper does"
     script:
         "../scripts/elimination.py"
 
@@ -178,6 +190,8 @@ rule accuracy_atlas:
     params:
         configuration={"study": config, "settings": {}},
         code=code("atlas"),
+    message:
+        "accuracy: all measurements in one file"
     script:
         "../scripts/atlas.py"
 
@@ -202,6 +216,8 @@ use rule study_figures as accuracy_figures with:
         specimens=[],
         names=ACCURACY_FIGURES,
         code=code("study_figures", *figure_modules(ACCURACY_FIGURES)),
+    message:
+        "accuracy: figures"
 
 
 use rule all_drawn as accuracy_drawn with:
@@ -237,3 +253,5 @@ def accuracy_pictures(wildcards):
 rule accuracy:
     input:
         accuracy_pictures,
+    message:
+        "accuracy: all measurements and figures"

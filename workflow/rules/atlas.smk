@@ -29,5 +29,7 @@ rule atlas:
     params:
         configuration={"study": config, "settings": SETTINGS},
         code=code("atlas"),
+    message:
+        "the study: its atlas, and what the paper says compared with it"
     script:
         "../scripts/atlas.py"

@@ -5,6 +5,7 @@ import re
 import sys
 from pathlib import Path
 
+import snakemake
 import yaml
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
@@ -14,8 +15,8 @@ PACKAGE = Path(workflow.basedir) / "src/fractalcontact"
 SCRIPTS = Path(workflow.basedir) / "workflow/scripts"
 sys.path.insert(0, str(PACKAGE.parent))
 sys.path.append(str(SCRIPTS))
-os.environ["PYTHONPATH"] = os.pathsep.join(
-    filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")])
+os.environ.update(
+    PYTHONPATH=os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
 )
 
 import _running
@@ -24,7 +25,7 @@ import _running
 from fractalcontact.core import checksums, sources
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
-from fractalcontact.study import guards, stages
+from fractalcontact.study import crate, guards, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
@@ -205,3 +206,24 @@ def code(script, *modules):
 
 # Two rules may run one script, in every process that reads the workflow.
 CODE = {}
+
+
+#: What made a study, for its crate of linked data.
+WORKFLOW = crate.Workflow(
+    folder=Path(workflow.basedir),
+    main="Snakefile",
+    parts=(
+        *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py"),
+        *("config/schema/*.yaml", "environment.yml", "requirements.lock", "CITATION.cff", "LICENSE"),
+    ),
+    language="Snakemake",
+    url="https://snakemake.github.io",
+    version=snakemake.__version__,
+)
+
+
+def write_records():
+    """Checksums of all that was made, and what it is: after the last job, be it done or not."""
+    checksums.write_manifest(RESULTS)
+    scans = {str(path): digest for path, digest in DIGEST_OF_SCAN.items() if digest}
+    crate.write_crate(RESULTS, WORKFLOW, config["study"], scans)

@@ -45,6 +45,8 @@ rule contact:
             slice(*part_of(wc, "resolutions"))
         ],
         code=code("contact"),
+    message:
+        "{wildcards.specimen}: contact states, part {wildcards.directions}.{wildcards.offsets}.{wildcards.resolutions}"
     script:
         "../scripts/contact.py"
 
@@ -82,6 +84,8 @@ rule analysis:
         **calling("closure"),
         settings=settings_read_by("closure"),
         solver=solver_read_by("closure"),
+    message:
+        "{wildcards.specimen}: closure, contact domains and their errors"
     script:
         "../scripts/stage.py"
 
@@ -106,6 +110,8 @@ rule strength:
     params:
         **calling("windows"),
         settings=settings_read_by("windows"),
+    message:
+        "{wildcards.specimen}: strength and size laws"
     script:
         "../scripts/stage.py"
 
@@ -120,6 +126,8 @@ use rule strength as size_laws_against_plane with:
         f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
         specimen=one_of(FLAT),
+    message:
+        "{wildcards.specimen}: size laws"
 
 
 # A measured map of contact goes straight to the analysis of domains.
@@ -143,5 +151,7 @@ rule contact_map:
         label=lambda wc: LABELS[wc.map],
         digests=lambda wc: digests_of(MAPS[wc.map]),
         code=code("contact_map"),
+    message:
+        "{wildcards.map}: measured contact map and its dimension"
     script:
         "../scripts/contact_map.py"

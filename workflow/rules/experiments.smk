@@ -19,6 +19,8 @@ rule roll_off:
         # Without the words for it: a new label makes no new joints.
         **stages.without_label(resolve_roll_off(config, SOURCE) or {}),
         **calling("roll_off"),
+    message:
+        "roll-off: dilatancy of synthetic joints with and without one"
     script:
         "../scripts/stage.py"
 
@@ -42,6 +44,8 @@ rule area_slope:
         **calling("area_slope"),
         recipe=config.get("area_slope"),
         rtol=SOLVER["rtol"],
+    message:
+        "area slope: contact area at light load, compared with the theories"
     script:
         "../scripts/stage.py"
 
@@ -66,6 +70,8 @@ rule dimension_test:
         **calling("dimension_test"),
         recipe=config.get("dimension_test"),
         rtol=SOLVER["rtol"],
+    message:
+        "dimension test: both estimates of Delta_sigma on synthetic surfaces"
     script:
         "../scripts/stage.py"
 
@@ -88,6 +94,8 @@ rule estimator_bias:
     params:
         **calling("estimator_bias"),
         recipe=config.get("estimator_bias"),
+    message:
+        "estimator bias: Delta_g of synthetic surfaces of known dimension"
     script:
         "../scripts/stage.py"
 
@@ -111,5 +119,7 @@ rule size_strength:
         **calling("size_strength"),
         recipe=config.get("size_strength"),
         rtol=SOLVER["rtol"],
+    message:
+        "size strength: synthetic joints that slide, over their size"
     script:
         "../scripts/stage.py"

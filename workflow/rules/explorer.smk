@@ -24,5 +24,7 @@ rule explorer:
             ],
             root=workflow.basedir,
         ),
+    message:
+        "the study: explorer of all contact states"
     script:
         "../scripts/explorer.py"

@@ -86,6 +86,8 @@ rule figures:
         names=figures_of("match"),
         configuration=configuration_of,
         code=code("figures", *figure_modules(figures_of("match"))),
+    message:
+        "{wildcards.specimen}: figures"
     script:
         "../scripts/figures.py"
 
@@ -134,6 +136,8 @@ rule study_figures:
         specimens=SPECIMENS,
         names=STUDY_FIGURES,
         code=code("study_figures", *figure_modules(STUDY_FIGURES)),
+    message:
+        "the study: figures over all specimens"
     script:
         "../scripts/study_figures.py"
 

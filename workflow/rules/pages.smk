@@ -30,6 +30,8 @@ rule result_page:
     params:
         code=code("result_page"),
         templates=sources.digest(PACKAGE.glob("pages/templates/*"), root=workflow.basedir),
+    message:
+        "the study: result page"
     script:
         "../scripts/result_page.py"
 

@@ -23,6 +23,8 @@ rule windows:
         **calling("window_states"),
         settings=settings_read_by("window_states"),
         solver=solver_read_by("window_states"),
+    message:
+        "{wildcards.specimen}: contact states of sub-windows, and eq. 6"
     script:
         "../scripts/stage.py"
 
@@ -58,6 +60,8 @@ rule size_effect_part:
         loads=config.get("size_effect", {}).get("loads"),
         rtol=SOLVER["rtol"],
         code=code("size_effect_part"),
+    message:
+        "size effect: synthetic surfaces {wildcards.job}"
     script:
         "../scripts/size_effect_part.py"
 
@@ -79,5 +83,7 @@ rule size_effect:
     params:
         **calling("size_effect"),
         recipe=config.get("size_effect"),
+    message:
+        "size effect: exponents, and what carries them"
     script:
         "../scripts/stage.py"

@@ -23,6 +23,8 @@ rule embedded:
     params:
         recipe=recipe_of,
         code=code("embedded"),
+    message:
+        "{wildcards.specimen}: synthetic scan"
     script:
         "../scripts/embedded.py"
 
@@ -80,6 +82,8 @@ rule specimen:
         options=options_of,
         digests=scan_digests,
         code=code("specimen"),
+    message:
+        "{wildcards.specimen}: levelled scan, its surface dimension and its joint"
     script:
         "../scripts/specimen.py"
 

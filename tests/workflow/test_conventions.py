@@ -1,0 +1,52 @@
+"""Conventions of Snakemake workflows: messages of rules, lint, the catalog, the report."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+import yaml
+from places import ROOT
+
+pytestmark = pytest.mark.workflow
+#: Of `snakemake --lint`: functions stand beside the rules that use them, as CONTRIBUTING.md has it.
+MEANT = "Mixed rules and functions in same snakefile.:"
+
+
+def test_every_rule_says_in_a_sentence_what_it_does():
+    for path in sorted([ROOT / "Snakefile", *ROOT.glob("workflow/rules/*.smk")]):
+        text = path.read_text()
+        for rule in re.split(r"(?m)^(?=(?:use )?rule )", text)[1:]:
+            name = rule.splitlines()[0]
+            inherits = name.startswith("use ")
+            message = re.search(r'^    message:\n        "([^"]+)"$', rule, re.MULTILINE)
+            assert message or inherits, (path.name, name)
+            if message:
+                assert len(message[1].split("{")[0]) < 80
+                wildcard = "{specimen}" in rule.partition("output:")[2].partition("log:")[0]
+                assert not wildcard or "{wildcards.specimen}" in message[1], name
+
+
+def test_lint_finds_nothing_but_what_is_meant():
+    words = ("--configfile", "config/smoke.yaml", "--lint")
+    done = subprocess.run(
+        [sys.executable, "-m", "snakemake", *words], cwd=ROOT, capture_output=True, text=True
+    )
+    assert "Lints for rule" not in done.stderr
+    assert set(re.findall(r"^    \* (.+)$", done.stderr, re.MULTILINE)) == {MEANT}
+
+
+def test_the_catalog_finds_what_it_wants():
+    catalog = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())
+    usage = catalog["usage"]
+    assert usage["report"] is True
+    assert usage["mandatory-flags"]["flags"].startswith("--configfile config/")
+    assert isinstance(usage["software-stack-deployment"]["conda"], bool)
+    assert (ROOT / usage["mandatory-flags"]["flags"].split()[1]).is_file()
+    assert (ROOT / "config/README.md").read_text().startswith("# ")
+
+
+def test_the_report_begins_with_a_page_of_its_own():
+    text = (ROOT / "Snakefile").read_text()
+    (start,) = re.findall(r'^report: "(.+)"$', text, re.MULTILINE)
+    assert '{{ snakemake.config["study"] }}' in (ROOT / start).read_text()
