@@ -166,6 +166,8 @@ rule all_drawn:
     params:
         logs=f"the logs in {RESULTS}/logs/figures",
         code=code("all_drawn"),
+    message:
+        "the study: whether all figures were drawn"
     script:
         "../scripts/all_drawn.py"
 

@@ -96,5 +96,7 @@ rule refused:
         f"{RESULTS}/logs/refused/{{refused}}.log",
     params:
         reason=lambda wildcards: REFUSED[int(wildcards.refused)],
+    message:
+        "a scan that is left out: what is wrong with it"
     script:
         "../scripts/refused.py"
