@@ -123,7 +123,7 @@ def test_one_spacing_is_that_of_square_cells():
     assert HalfSpace((4, 6), 0.1, 1e4) == HalfSpace((4, 6), (0.1, 0.1), 1e4)
     assert HalfSpace((4, 6), np.float32(0.5), 1e4).spacing == (0.5, 0.5)
     for wrong in (True, -0.1, 0, np.nan, "0.1", (0.1,), None):
-        with pytest.raises(ValueError, match="^spacing"):
+        with pytest.raises(ValueError, match=r"^spacing"):
             HalfSpace((4, 6), wrong, 1e4)
 
 
