@@ -19,8 +19,10 @@ html_theme = "alabaster"  # comes with Sphinx
 html_title = f"fractalcontact {version}"
 html_theme_options = {
     "description": "Rough contact of cracks in rock and concrete",
-    "page_width": "72rem",
-    "sidebar_width": "15rem",
+    "page_width": "76rem",
+    "sidebar_width": "16rem",
+    "font_family": "system-ui, sans-serif",
+    "head_font_family": "system-ui, sans-serif",
     "fixed_sidebar": True,
 }
 html_show_copyright = False

@@ -14,7 +14,7 @@ import xarray as xr
 
 
 def draw(atlas: xr.DataTree, specimen: str) -> plt.Figure:
-    """Composite topography and contact domain at the map offset, and closure curves of all offsets."""
+    """Composite topography and contact domain at the map offset, and closure curves."""
     contact = atlas[f"contact/{specimen}"].to_dataset()
     direction, offset = contact.attrs["map_direction"], contact.attrs["map_offset"]
     load, resolution = contact.attrs["map_load"], contact.attrs["map_resolution"]
@@ -31,8 +31,8 @@ def draw(atlas: xr.DataTree, specimen: str) -> plt.Figure:
     height = domain.shape[0] * float(np.diff(domain[domain.dims[0]][:2])[0])
     extent = (0, side, 0, height)
     relief = left.imshow(composite, origin="lower", extent=extent, cmap="viridis")
-    figure.colorbar(relief, ax=left, label="height (mm)")
-    left.set_title(f"composite topography\nat v = {offset:g} mm", fontsize=9)
+    figure.colorbar(relief, ax=left)
+    left.set_title(f"composite topography (mm)\nat v = {offset:g} mm", fontsize=9)
     rows, columns = np.nonzero(domain.values == 1)
     # A node is too small to be seen at this size: each gets a mark.
     cell_y, cell_x = height / domain.shape[0], side / domain.shape[1]

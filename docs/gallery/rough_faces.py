@@ -1,4 +1,4 @@
-"""Two rough faces pressed together: closure curve, hyperbola, k_ni and the dimension of the contact.
+"""Two rough faces pressed together: closure curve, k_ni and the dimension of the contact.
 
 python docs/gallery/rough_faces.py
 """
@@ -39,8 +39,8 @@ def main() -> tuple[Hyperbola, BoxDimension]:
         print(f"{pressure:6.2f} MPa: {closures[-1]:.4f} mm, {state.area / side**2:.1%} in contact")
     hyperbola = fit_hyperbola(PRESSURES, closures)
     print(
-        f"k_ni = {hyperbola.k_ni:.3g} [{hyperbola.k_ni_low:.3g}, {hyperbola.k_ni_high:.3g}] MPa/mm, "
-        f"misfit {hyperbola.misfit:.1%} {hyperbola.reason}"
+        f"k_ni = {hyperbola.k_ni:.3g} [{hyperbola.k_ni_low:.3g}, {hyperbola.k_ni_high:.3g}] "
+        f"MPa/mm, misfit {hyperbola.misfit:.1%} {hyperbola.reason}"
     )
     dimension = box_dimension(state.in_contact, SPACING)
     print(dimension)

@@ -155,7 +155,7 @@ class HalfSpace:
         ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MOST_CELLS))
         if ny * nx > MOST_CELLS:
             raise ValueError(f"shape {(ny, nx)}: expected no more than {MOST_CELLS} cells")
-        sides = (spacing, spacing) if isinstance(spacing, Real) else spacing
+        sides = (spacing, spacing) if isinstance(spacing, float | Real) else spacing
         dy, dx = pair(sides, "spacing", partial(_size, name="spacing", unit="mm"))
         modulus = _size(modulus, "modulus", "MPa (10 GPa are 10e3)")
         names = ["love", *RIGID_PLATE_SELF_TERMS]
