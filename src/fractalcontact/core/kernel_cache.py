@@ -127,8 +127,11 @@ class KernelCache(FunctionCache):
         return None
 
     def _tell(self):
-        """Say why nothing seems to happen: compiling all of them takes up to a minute."""
-        if not KernelCache._told:
+        """Say why nothing seems to happen: compiling all of them takes up to a minute.
+
+        Not of a kernel for other types, or one that was damaged, where the rest is on disk.
+        """
+        if not KernelCache._told and not any(path.is_dir() for path in self._paths):
             KernelCache._told = True
             LOG.warning(
                 "compiling kernels for this processor, once after an installation: up to a minute "
