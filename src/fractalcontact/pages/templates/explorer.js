@@ -242,6 +242,10 @@ function valueRow(key, { units, meaning }) {
   head.textContent = symbols(meaning);
   const unit = document.createElement("td");
   unit.textContent = unitWords(units);
+  // Beside the quantity where a phone has no room for a column.
+  const beside = document.createElement("small");
+  beside.textContent = unit.textContent ? ` (${unit.textContent})` : "";
+  head.append(beside);
   row.append(head, unit);
   const values = {};
   for (const who of ["a", "b"]) {
