@@ -9,6 +9,7 @@
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
 # make test-browser   the pages in Debian's chromium, which it installs where it may
+# make docs   the documentation in results/docs, every warning and broken link an error
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make cost   where the time of the study went
@@ -33,7 +34,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser bench problems fuzz fuzz-dialects lint format lock clean
+.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser docs bench problems fuzz fuzz-dialects lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -96,6 +97,10 @@ test-browser: $(VENV)/browser-installed
 	@chromium=$$(sh tests/support/chromium.sh) && \
 	  CHROMIUM=$$chromium $(BIN)/python -m pytest tests/browser && cat results/browser/report.txt
 
+docs: $(VENV)/docs-installed
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs results/docs
+	@echo "file://$(CURDIR)/results/docs/index.html"
+
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
@@ -146,6 +151,10 @@ $(VENV)/browser-installed: requirements-browser.lock $(VENV)/tests-installed
 	$(PIP) install --require-hashes --compile -r requirements-browser.lock
 	@touch $@
 
+$(VENV)/docs-installed: requirements-docs.lock $(VENV)/installed
+	$(PIP) install --require-hashes --compile -r requirements-docs.lock
+	@touch $@
+
 $(VENV)/slurm-installed: $(VENV)/installed
 	$(PIP) install snakemake-executor-plugin-slurm==2.8.0
 	@touch $@
@@ -159,9 +168,11 @@ $(VENV)/peers-installed: pyproject.toml $(VENV)/installed
 
 COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet
 lock:
-	$(COMPILE) pyproject.toml --extra install -o requirements.lock
-	$(COMPILE) pyproject.toml --extra install --extra test -c requirements.lock -o requirements-test.lock
+	$(COMPILE) pyproject.toml --extra study --extra install -o requirements.lock
+	$(COMPILE) pyproject.toml --extra study --extra install --extra test -c requirements.lock -o requirements-test.lock
 	$(COMPILE) --group browser -c requirements-test.lock -o requirements-browser.lock
+	$(COMPILE) --group docs -c requirements-test.lock -o requirements-docs.lock
+	grep -v '^ *--hash=' requirements.lock | sed 's/ *\\$$//' > requirements-conda.txt
 
 # Kills, damaged and replaced files, full disks, threads and forks: nothing may be wrong silently.
 faults: $(VENV)/tests-installed

@@ -58,6 +58,15 @@ class ContactState:
     hardness: float = np.inf
     _before: "ContactState | None" = dataclasses.field(default=None, repr=False, compare=False)
 
+    def __repr__(self):
+        cap = "" if self.hardness == np.inf else f", hardness={self.hardness:.6g} MPa"
+        nodes = np.count_nonzero(self.in_contact)
+        return (
+            f"<ContactState {self.pressure.shape[0]} x {self.pressure.shape[1]}: "
+            f"force={self.force:.6g} N, closure={self.closure:.6g} mm, area={self.area:.6g} mm2, "
+            f"{nodes} nodes in contact, residual={self.residual:.1g}{cap}>"
+        )
+
     @property
     def in_contact(self) -> np.ndarray:
         """Contact domain, (ny, nx) bool: the nodes that carry pressure."""

@@ -14,6 +14,7 @@ written counts as missing, and so does one that somebody else may have written.
 
 import contextlib
 import hashlib
+import logging
 import os
 import pickle
 import shutil
@@ -39,6 +40,7 @@ from . import sources
 PACKAGE = Path(__file__).absolute().parents[1]
 #: Kernels that come with the package; who can write there can write its code.
 OWN = PACKAGE / "__pycache__" / "kernels"
+LOG = logging.getLogger("fractalcontact")
 #: Versions of a module's kernels that are kept: to change between branches compiles nothing.
 VERSIONS_KEPT = 3
 #: Bytes of a file's SHA-256, with which it begins.
@@ -90,6 +92,7 @@ class KernelCache(FunctionCache):
     """
 
     _warned = False
+    _told = False
 
     def __init__(self, function: Callable, name: str):
         qualified = function.__qualname__.replace("<", "").replace(">", "")
@@ -120,7 +123,21 @@ class KernelCache(FunctionCache):
                 # The name is only a digest of how the types are written.
                 if saved == key:
                     return self._impl.rebuild(target_context, compiled)
+        self._tell()
         return None
+
+    def _tell(self):
+        """Say why nothing seems to happen: compiling all of them takes up to a minute.
+
+        Not of a kernel for other types, or one that was damaged, where the rest is on disk.
+        """
+        if not KernelCache._told and not any(path.is_dir() for path in self._paths):
+            KernelCache._told = True
+            LOG.warning(
+                "compiling kernels for this processor, once after an installation: up to a minute "
+                "(python -m fractalcontact.commands.compile_kernels does it beforehand)"
+            )
+        LOG.info("compiling %s", self._name)
 
     def _save_overload(self, sig, data):
         if not self._enabled or not self._impl.check_cachable(data):

@@ -3,13 +3,14 @@
 To read the workflow, or one scan file, neither xarray, numba nor matplotlib may be imported.
 """
 
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Collection, Mapping
 from importlib import import_module
 from typing import Any
 
 
 def exports(
-    package: str, homes: Mapping[str, str]
+    package: str, homes: Mapping[str, str], rooms: Collection[str] = ()
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """What an ``__init__`` needs to import its names when they are first asked for.
 
@@ -19,6 +20,8 @@ def exports(
         Its ``__name__``.
     homes : mapping of str to str
         Module of each name, relative to the package.
+    rooms : collection of str, optional
+        Packages inside it, each imported when it is first asked for.
 
     Returns
     -------
@@ -27,8 +30,16 @@ def exports(
     """
 
     def getattribute(name: str) -> Any:
+        if name in rooms:
+            return import_module(f".{name}", package)
         if name not in homes:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            module = sys.modules.get(package)
+            message = f"module {package!r} has no attribute {name!r}"
+            raise AttributeError(message, name=name, obj=module)
         return getattr(import_module(homes[name], package), name)
 
-    return getattribute, lambda: sorted(homes), sorted(homes)
+    def directory() -> list[str]:
+        own = (name for name in vars(sys.modules[package]) if name.startswith("__"))
+        return sorted({*homes, *rooms, *own})
+
+    return getattribute, directory, sorted(homes)

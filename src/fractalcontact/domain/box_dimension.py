@@ -56,6 +56,14 @@ class BoxDimension:
     means: MeanCounts = NO_MEANS
     ordinary: OrdinarySlope | None = None
 
+    def __repr__(self):
+        if self.reason:
+            return f"<BoxDimension: none ({self.reason})>"
+        return (
+            f"<BoxDimension {self.dimension:.4g} [{self.low:.4g}, {self.high:.4g}] from {self.n} "
+            f"sizes, {self.r_min:.4g} to {self.r_max:.4g} mm, by {self.estimator}>"
+        )
+
     @property
     def determined(self) -> bool:
         """Whether the dimension is determined: its interval is no wider than `WIDEST`."""

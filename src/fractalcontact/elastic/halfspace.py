@@ -4,7 +4,9 @@ Free space: the window stands alone on an infinite half-space, so the convolutio
 there are no periodic images.
 """
 
+import warnings
 from functools import partial
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -53,6 +55,19 @@ def rectangle_mean_displacement(a: float, b: float) -> float:
     ) / (np.pi * a * b)
 
 
+_E_STAR = "e_star of a HalfSpace is its modulus: write modulus, as e_star will go"
+
+
+def _one_modulus(modulus, e_star):
+    """The modulus of a call that may name it by either word."""
+    if (modulus is None) == (e_star is None):
+        raise TypeError("HalfSpace: expected one modulus=E*, in MPa (10 GPa are 10e3)")
+    if e_star is None:
+        return modulus
+    warnings.warn(_E_STAR, DeprecationWarning, stacklevel=3)
+    return e_star
+
+
 class HalfSpace:
     """The elastic operator on a grid of rectangular cells.
 
@@ -62,19 +77,23 @@ class HalfSpace:
     ----------
     shape : (int, int)
         Cells (ny, nx).
-    spacing : (float, float)
-        Cell sides (dy, dx), mm.
+    spacing : (float, float) or float
+        Cell sides (dy, dx), mm; one number of square cells.
     modulus : float
         E*, MPa: 1/E* = sum over both bodies of (1 - nu^2)/E.
     kernel : str
         ``"love"`` (default): uniform pressure on each cell, displacement at its centre. Or one of
         the readings of the paper's rigid plate, ``"rigid square"``, ``"equal-area disc"``,
         ``"inscribed disc"``: that self-term, and a point load on every other cell.
+    e_star : float, optional
+        Another word for ``modulus``, deprecated.
 
     Raises
     ------
     ValueError
         If the shape, spacing, modulus or kernel makes no sense.
+    TypeError
+        If there is not one modulus.
     """
 
     _FIXED = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
@@ -88,15 +107,18 @@ class HalfSpace:
     def __init__(
         self,
         shape: tuple[int, int],
-        spacing: tuple[float, float],
-        modulus: float,
+        spacing: tuple[float, float] | float,
+        modulus: float | None = None,
         *,
         kernel: str = "love",
+        e_star: float | None = None,
     ):
+        modulus = _one_modulus(modulus, e_star)
         ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MOST_CELLS))
         if ny * nx > MOST_CELLS:
             raise ValueError(f"shape {(ny, nx)}: expected no more than {MOST_CELLS} cells")
-        dy, dx = pair(spacing, "spacing", partial(_size, name="spacing", unit="mm"))
+        sides = (spacing, spacing) if isinstance(spacing, float | Real) else spacing
+        dy, dx = pair(sides, "spacing", partial(_size, name="spacing", unit="mm"))
         modulus = _size(modulus, "modulus", "MPa (10 GPa are 10e3)")
         names = ["love", *RIGID_PLATE_SELF_TERMS]
         if not isinstance(kernel, str) or kernel not in names:
@@ -129,6 +151,18 @@ class HalfSpace:
 
     def __getstate__(self):
         return {name: vars(self)[name] for name in self._FIXED}
+
+    def __repr__(self):
+        kernel = "" if self.kernel == "love" else f", kernel={self.kernel!r}"
+        return (
+            f"HalfSpace(shape={self.shape}, spacing={self.spacing}, modulus={self.modulus}{kernel})"
+        )
+
+    @property
+    def e_star(self) -> float:
+        """E*, MPa: another word for ``modulus``, deprecated."""
+        warnings.warn(_E_STAR, DeprecationWarning, stacklevel=2)
+        return self.modulus
 
     @property
     def cell_area(self) -> float:

@@ -47,8 +47,22 @@ def read_raw(path: Path, options: ScanOptions) -> RawScan:
     Raises
     ------
     InputError
-        If no format has the file's ending, or none takes its content; or as the reader.
+        If no format has the file's ending, or none takes its content; if the library of the format
+        is not installed; or as the reader.
     """
+    try:
+        return _read_by_format(path, options)
+    except ModuleNotFoundError as error:
+        library = (error.name or "").partition(".")[0]
+        if library in ("", "fractalcontact"):
+            raise
+        raise InputError(
+            f"{path}: to read this format takes {library}, which is not installed: "
+            "pip install 'fractalcontact[scans]' (in a checkout: pip install '.[scans]')"
+        ) from None
+
+
+def _read_by_format(path: Path, options: ScanOptions) -> RawScan:
     check_archive(path)
     extension = path.suffix.lower()
     for form in _declared(extension):

@@ -1,0 +1,40 @@
+"""What type checkers and editors see of the package, whose names are imported when asked for."""
+
+from . import accuracy as accuracy
+from . import commands as commands
+from . import contact as contact
+from . import core as core
+from . import domain as domain
+from . import elastic as elastic
+from . import experiments as experiments
+from . import figures as figures
+from . import mechanics as mechanics
+from . import methods as methods
+from . import pages as pages
+from . import roughness as roughness
+from . import scan as scan
+from . import size_effect as size_effect
+from . import stages as stages
+from . import statements as statements
+from . import study as study
+from . import surface as surface
+from .contact.solve import solve_contact as solve_contact
+from .contact.state import ContactState as ContactState
+from .core.errors import InputError as InputError
+from .core.errors import NotConverged as NotConverged
+from .domain.box_dimension import BoxDimension as BoxDimension
+from .domain.box_dimension import box_dimension as box_dimension
+from .elastic.halfspace import HalfSpace as HalfSpace
+from .mechanics.closure import bulk_settlement as bulk_settlement
+from .mechanics.closure import interface_closure as interface_closure
+from .mechanics.closure_laws import Hyperbola as Hyperbola
+from .mechanics.closure_laws import fit_hyperbola as fit_hyperbola
+from .roughness.dimension import surface_dimension as surface_dimension
+from .roughness.recommended import best_dimension as best_dimension
+from .scan.read import read_faces as read_faces
+from .scan.read import read_scan as read_scan
+from .study.atlas import read_atlas as read_atlas
+from .surface.synthesis import self_affine as self_affine
+
+__version__: str
+__all__: list[str]

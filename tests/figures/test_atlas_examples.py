@@ -1,0 +1,48 @@
+"""What the documentation reads of an atlas is there, and the script of the gallery draws it."""
+
+import re
+import runpy
+
+import numpy as np
+import pytest
+from places import ROOT
+
+DOCS = ROOT / "docs"
+
+
+@pytest.fixture(scope="module")
+def names(atlas_file):
+    """What the examples leave behind, of the sliding joint of the small atlas."""
+    text = (DOCS / "atlas_examples.md").read_text()
+    blocks = re.findall(r"^```python\n(.+?)^```$", text, re.MULTILINE | re.DOTALL)
+    program = "\n".join(blocks)
+    program = program.replace("results/paper/atlas.nc", str(atlas_file))
+    left = {}
+    exec(compile(program.replace("/concrete_twin", "/sliding"), "atlas_examples.md", "exec"), left)
+    yield left
+    left["atlas"].close()
+
+
+def test_examples_find_what_they_name(names):
+    assert np.isfinite(float(names["roughness"]["recommended_value"]))
+    assert names["touching"].sum() > 0
+    assert len(names["table"].dropna()) > 1
+    assert names["second_half"].size > 1
+    assert {"delta_sigma_box", "delta_sigma_area"} <= set(names["both"])
+
+
+def test_the_gallery_draws_the_states_of_the_atlas(names, atlas_file, tmp_path):
+    script = runpy.run_path(str(DOCS / "gallery/joint_at_a_glance.py"))
+    figure = script["draw"](names["atlas"], "sliding")
+    relief, domain, curves, *_ = figure.axes
+    assert len(domain.lines[0].get_xdata()) == int(names["touching"].sum())
+    np.testing.assert_array_equal(
+        relief.images[0].get_array(),
+        names["joint"]["composite"].sel(
+            offset=names["contact"].attrs["map_offset"], method="nearest"
+        ),
+    )
+    assert 2 <= len(curves.lines) <= 5
+    picture = tmp_path / "joint.png"
+    script["main"](str(atlas_file), "sliding", str(picture))
+    assert picture.stat().st_size > 10_000
