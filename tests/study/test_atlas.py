@@ -138,3 +138,30 @@ def test_no_string_of_variable_length_is_in_an_atlas(tmp_path):
         kinds = {variable.dtype for variable in file["specimens/rock"].variables.values()}
     assert kinds == {np.dtype("S1")}
     assert read_atlas(path)["specimens/rock"].to_dataset().equals(words)
+
+
+def test_fields_keep_four_digits_and_all_else_every_digit(tmp_path):
+    chance = np.random.default_rng(4)
+    attrs = {"units": "mm", "long_name": "height"}
+    heights = chance.normal(size=(200, 200))
+    heights[3, 5] = np.nan
+    parts = {
+        "specimens": {
+            "rock": xr.Dataset(
+                {
+                    "lower": (("y", "x"), heights, attrs),
+                    "profile": (("y",), heights[0], attrs),
+                    "none": (("y", "nothing"), heights[:, :0], attrs),
+                }
+            )
+        }
+    }
+    write_atlas(parts, tmp_path / "atlas.nc", study="s", configuration={})
+    found = read_atlas(tmp_path / "atlas.nc")["specimens/rock"]
+    np.testing.assert_array_equal(found["profile"], heights[0])
+    assert np.isnan(found["lower"].values[3, 5])
+    np.testing.assert_allclose(found["lower"], heights, rtol=5e-4)
+    assert not np.array_equal(found["lower"], heights, equal_nan=True)
+    plain = tmp_path / "plain.nc"
+    parts["specimens"]["rock"].to_netcdf(plain)
+    assert (tmp_path / "atlas.nc").stat().st_size < 0.6 * plain.stat().st_size

@@ -17,6 +17,11 @@ from .atomic import atomic_write
 _NUMBER_MAKERS = ("fractalcontact", "numpy", "scipy", "numba", "xarray")
 
 
+#: Bytes from which on compression gains more than the chunks it needs cost.
+COMPRESSED_FROM = 4096
+#: Bytes from which on floats are taken for a field over nodes.
+FIELD = 100_000
+
 #: Attribute of every part that says with which versions it was made.
 _VERSIONS = "made_with"
 
@@ -60,19 +65,34 @@ def versions() -> dict[str, str]:
     return {name: metadata.version(name) for name in _NUMBER_MAKERS}
 
 
-def encoding(dataset: xr.Dataset) -> dict[Any, dict[str, Any]]:
-    """How the variables of a dataset are kept: compressed, if they are numbers.
+def encoding(dataset: xr.Dataset, digits: int | None = None) -> dict[Any, dict[str, Any]]:
+    """How the variables of a dataset are kept: large numbers compressed, small ones as they are.
 
     Parameters
     ----------
     dataset : xr.Dataset
+    digits : int, optional
+        Significant decimal digits that are kept of fields, floats of at least :data:`FIELD` bytes;
+        all by default. The netCDF library rounds the bits
+        behind them (granular bit rounding) and says so in an attribute of the variable.
 
     Returns
     -------
     dict
+
+    Notes
+    -----
+    What is compressed is kept in chunks, whose index takes some 2 kB a variable: more than most
+    variables of an atlas hold.
     """
-    return {
-        name: {"zlib": True, "complevel": 4, "shuffle": True}
-        for name, variable in dataset.variables.items()
-        if variable.ndim > 0 and variable.dtype.kind in "fiub"
-    }
+    kept: dict[Any, dict[str, Any]] = {}
+    for name, variable in dataset.variables.items():
+        if variable.size == 0 or variable.ndim == 0 or variable.dtype.kind not in "fiub":
+            continue
+        if variable.nbytes < COMPRESSED_FROM:
+            kept[name] = {"contiguous": True}
+            continue
+        kept[name] = {"zlib": True, "complevel": 4, "shuffle": True}
+        if digits is not None and variable.dtype.kind == "f" and variable.nbytes >= FIELD:
+            kept[name] |= {"significant_digits": digits, "quantize_mode": "GranularBitRound"}
+    return kept

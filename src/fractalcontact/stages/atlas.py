@@ -48,8 +48,26 @@ def join_stages(
     everything = {**stages, **_judged(of_joints, configuration)}
     study = configuration["study"]["study"]
     return write_atlas(
-        everything, path, study=study, configuration=configuration, made_with=made_with
+        _without_remade_fields(everything),
+        path,
+        study=study,
+        configuration=configuration,
+        made_with=made_with,
     )
+
+
+def _without_remade_fields(stages):
+    """Stages without the composite topographies that no figure draws, the bulk of them.
+
+    They are missing, but for the largest offset; the file of the stage has all.
+    """
+    joints = {
+        name: joint.assign(
+            composite=joint["composite"].where(joint["offset"] == joint["offset"].max())
+        )
+        for name, joint in stages.get("joints", {}).items()
+    }
+    return {**stages, "joints": joints} if joints else stages
 
 
 def _judged(of_joints, configuration):

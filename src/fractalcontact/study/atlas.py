@@ -10,6 +10,9 @@ from ..core.atomic import atomic_write
 from ..core.netcdf import encoding, versions
 from .stages import STAGES
 
+#: Significant digits of heights, pressures and gaps in the atlas; the file of the stage has all.
+FIELD_DIGITS = 4
+
 
 def write_atlas(
     parts: Mapping[str, Mapping[str, xr.Dataset]],
@@ -113,7 +116,7 @@ def _write_groups(groups, path):
         for name, dataset in groups.items():
             group = file if name == "/" else file.createGroup(name)
             backend = xr.backends.NetCDF4DataStore(group)
-            stored_as = encoding(dataset) | _as_characters(dataset)
+            stored_as = encoding(dataset, FIELD_DIGITS) | _as_characters(dataset)
             dataset.dump_to_store(backend, encoding=stored_as, writer=writer)
         writer.write()
 
