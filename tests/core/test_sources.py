@@ -16,7 +16,7 @@ PACKAGE = Path(fractalcontact.__file__).parent
 SCRIPTS = PACKAGE.parents[1] / "workflow/scripts"
 CODE = sorted(PACKAGE.rglob("*.py"))
 #: Optional, and not installed everywhere.
-PEERS = {"ContactMechanics", "NuMPI", "muGrid", "tamaas"}
+PEERS = {"ContactMechanics", "NuMPI", "aspher", "muGrid", "tamaas"}
 
 
 def module_in(folder, name):

@@ -142,7 +142,9 @@ def test_a_small_closure_of_the_interface_is_as_exact_as_a_large_one():
     smooth = make_specimen(scan, window=4.0, name="smooth", multiple=4)
     found = curves_of(smooth, solver_settings({}, "study"))
     closure = found["interface_closure"].isel(direction=0).sel(resolution=1)
-    assert float((closure / found["closure"]).isel(normal_force=-1).min()) < 0.3
+    # At the heaviest load it cannot be told from that of a full window, and is missing.
+    assert closure.isel(normal_force=-1).isnull().all()
+    assert float((closure / found["closure"]).min()) < 0.3
     share = found["interface_closure_error"] / abs(found["interface_closure"])
     assert float(share.max()) <= 0.01
 

@@ -94,6 +94,8 @@ rule refused:
         f"{RESULTS}/refused/{{refused}}.txt",
     log:
         f"{RESULTS}/logs/refused/{{refused}}.log",
+    conda:
+        "../../environment.yml"
     params:
         reason=lambda wildcards: REFUSED[int(wildcards.refused)],
     message:
