@@ -214,7 +214,13 @@ WORKFLOW = crate.Workflow(
     main="Snakefile",
     parts=(
         *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py"),
-        *("config/schema/*.yaml", "environment.yml", "requirements.lock", "CITATION.cff", "LICENSE"),
+        *(
+            "config/schema/*.yaml",
+            "environment.yml",
+            "requirements.lock",
+            "CITATION.cff",
+            "LICENSE",
+        ),
     ),
     language="Snakemake",
     url="https://snakemake.github.io",

@@ -19,8 +19,6 @@ _NUMBER_MAKERS = ("fractalcontact", "numpy", "scipy", "numba", "xarray")
 
 #: Bytes from which on compression gains more than the chunks it needs cost.
 COMPRESSED_FROM = 4096
-#: Bytes from which on floats are taken for a field over nodes.
-FIELD = 100_000
 
 #: Attribute of every part that says with which versions it was made.
 _VERSIONS = "made_with"
@@ -72,9 +70,9 @@ def encoding(dataset: xr.Dataset, digits: int | None = None) -> dict[Any, dict[s
     ----------
     dataset : xr.Dataset
     digits : int, optional
-        Significant decimal digits that are kept of fields, floats of at least :data:`FIELD` bytes;
-        all by default. The netCDF library rounds the bits
-        behind them (granular bit rounding) and says so in an attribute of the variable.
+        Significant decimal digits that are kept of floats in single precision; all by default. The
+        netCDF library rounds the bits behind them (granular bit rounding) and says so in an
+        attribute of the variable.
 
     Returns
     -------
@@ -93,6 +91,6 @@ def encoding(dataset: xr.Dataset, digits: int | None = None) -> dict[Any, dict[s
             kept[name] = {"contiguous": True}
             continue
         kept[name] = {"zlib": True, "complevel": 4, "shuffle": True}
-        if digits is not None and variable.dtype.kind == "f" and variable.nbytes >= FIELD:
+        if digits is not None and variable.dtype == "float32":
             kept[name] |= {"significant_digits": digits, "quantize_mode": "GranularBitRound"}
     return kept

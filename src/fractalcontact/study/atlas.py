@@ -10,7 +10,7 @@ from ..core.atomic import atomic_write
 from ..core.netcdf import encoding, versions
 from .stages import STAGES
 
-#: Significant digits of heights, pressures and gaps in the atlas; the file of the stage has all.
+#: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
 FIELD_DIGITS = 4
 
 
