@@ -8,6 +8,7 @@
 # make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
+# make test-slurm   the smoke study on a real SLURM of one node, started for it: root on Debian alone
 # make test-browser   the pages in Debian's chromium, which it installs where it may
 # make docs   the documentation in results/docs, every warning and broken link an error
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
@@ -15,6 +16,7 @@
 # make cost   where the time of the study went
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make problems PROBLEMS=5000   so many random contact problems, each state verified
+# make extremes   made extremes and real scans through the whole chain, all figures: many minutes
 # make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
 # make fuzz-dialects FILES=5000  so many ways to write a known surface as text, each read right or refused
 # make lint   ruff, snakefmt, annotations and types, changing nothing; make format mends what it can
@@ -34,7 +36,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser docs bench problems fuzz fuzz-dialects lint format lock clean
+.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser test-slurm docs bench problems extremes fuzz fuzz-dialects lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -101,9 +103,19 @@ docs: $(VENV)/docs-installed
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs results/docs
 	@echo "file://$(CURDIR)/results/docs/index.html"
 
+# SLURM=accounting with slurmdbd and its database too.
+SLURM ?= yes
+test-slurm: $(VENV)/tests-installed $(VENV)/slurm-installed
+	@[ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "make test-slurm: root on Debian alone"; exit 1; }
+	@command -v slurmctld >/dev/null || apt-get install --yes --quiet=2 --no-install-recommends slurm-wlm munge
+	SLURM=$(SLURM) $(BIN)/python -m pytest -q tests/workflow/test_slurm.py
+
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
+
+extremes: $(VENV)/tests-installed
+	EXTREMES=all $(PYTEST) tests/figures/test_extremes.py
 
 PROBLEMS ?= 3000
 problems: $(VENV)/tests-installed

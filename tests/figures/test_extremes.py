@@ -1,5 +1,7 @@
 """Specimens at the edge of what a study can be given: every figure is drawn, or says why not."""
 
+import os
+
 import pytest
 from chain import atlas_of_scan, draw_scan
 from extremes import EXTREMES, write_extreme
@@ -16,6 +18,10 @@ from fractalcontact.study.figure_list import figures_of
 #: Of the made ones, those that no study can use; and those that may be taken for no scan.
 REFUSED = {"exactly_level"}
 DOUBTFUL = {"plane", "plane_against_plane", "plane_of_bits", "constant_of_bits", "huge_tilt"}
+#: The whole chain takes some ten seconds a specimen.
+in_full = pytest.mark.skipif(
+    os.environ.get("EXTREMES") != "all", reason="`make extremes` runs them: many minutes"
+)
 OF_THE_INTERFACE = ("fig04_05_closure", "compliance", "conductance")
 
 
@@ -76,7 +82,7 @@ def test_what_is_wrong_with_the_disk_is_no_fault_of_a_figure(atlas_file, tmp_pat
         draw_figures(atlas_file, "sliding", tmp_path / "figures", ["conductance"])
 
 
-@pytest.mark.full
+@in_full
 @pytest.mark.parametrize("name", EXTREMES)
 def test_an_extreme_specimen_has_all_its_figures_or_is_refused(name, tmp_path):
     files = write_extreme(tmp_path, EXTREMES[name](), name)
@@ -142,7 +148,7 @@ REAL["test.gwy"] = (
 )
 
 
-@pytest.mark.full
+@in_full
 @pytest.mark.scans
 @pytest.mark.skipif(not SCANS.is_dir(), reason="the folder of real scans is absent")
 @pytest.mark.parametrize("name", REAL)
