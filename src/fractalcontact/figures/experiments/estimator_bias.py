@@ -137,9 +137,14 @@ def _caption(bias):
     return (
         f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of "
         f"{errors[name]:.3f}, {_place(errors, name)}; its intervals hold H in "
-        f"{100 * least[name]:.0f} % or more, those of the worst estimator in "
+        f"{_at_least(least[name])}, those of the worst estimator in "
         f"{100 * least.min():.0f} %.{_rough_words(bias, start)}"
     )
+
+
+def _at_least(share):
+    """A share that is the least of several, in percent."""
+    return "100 %" if share >= 0.995 else f"{100 * share:.0f} % or more"
 
 
 def _place(errors, name):
