@@ -18,6 +18,8 @@ from fractalcontact.study.figure_list import figures_of
 #: Of the made ones, those that no study can use; and those that may be taken for no scan.
 REFUSED = {"exactly_level"}
 DOUBTFUL = {"plane", "plane_against_plane", "plane_of_bits", "constant_of_bits", "huge_tilt"}
+#: A smooth step half-way, as between two tables: taken for two unless the sidecar says otherwise.
+DOUBTFUL |= {"fine_step"}
 #: The whole chain takes some ten seconds a specimen.
 in_full = pytest.mark.skipif(
     os.environ.get("EXTREMES") != "all", reason="`make extremes` runs them: many minutes"

@@ -254,5 +254,6 @@ def stacked(where: str, count: int, rows: int) -> InputError:
     """The error of several tables in one file."""
     return InputError(
         f"{where}: {count} tables of {rows} rows stand one under the other; write each into a file "
-        "of its own, two faces as NAME.lower and NAME.upper"
+        "of its own, two faces as NAME.lower and NAME.upper; if it is one surface with a step, "
+        "write 'axes: none' into the sidecar"
     )
