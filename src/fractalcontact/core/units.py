@@ -26,12 +26,17 @@ _LONGEST = 60  # characters
 #: What an instrument means by a length; the library also knows points, picas and pixels as parts
 #: of an inch, and light years. By symbol, as written, and by name, in any case and number.
 _LENGTH_SYMBOLS = {
-    **{symbol: symbol for symbol in ("pm", "nm", "um", "mm", "cm", "dm", "m", "km", "in", "ft")},
+    **{
+        symbol: symbol
+        for symbol in ("fm", "pm", "nm", "um", "mm", "cm", "dm", "m", "km", "in", "ft")
+    },
     **{"µm": "um", "\u03bcm": "um", "Å": "angstrom", "\u212b": "angstrom"},
     # As programs that know capitals alone write them; a megametre measures no rock.
     **{"NM": "nm", "UM": "um", "MM": "mm", "CM": "cm"},
 }
-_METRE = re.compile(r"(pico|nano|micro|milli|centi|deci|kilo|)(?:metre|meter)s?", re.IGNORECASE)
+_METRE = re.compile(
+    r"(femto|pico|nano|micro|milli|centi|deci|kilo|)(?:metre|meter)s?", re.IGNORECASE
+)
 _LENGTH_NAMES = {
     **{"micron": "micrometer", "microns": "micrometer", "angstrom": "angstrom"},
     **{"angstroms": "angstrom", "ångström": "angstrom", "ångstrom": "angstrom"},
