@@ -6,11 +6,8 @@
 A file depends on the seed and its number alone. What failed is kept in results/dialects.
 """
 
-import argparse
 import re
-import sys
 import tempfile
-import time
 import traceback
 import warnings
 from collections import defaultdict
@@ -22,6 +19,7 @@ import dialects_of_matrices  # noqa: F401  # enter their dialects
 import dialects_of_points  # noqa: F401
 import numpy as np
 from dialects import Written, make
+from fuzzing import judge_from_command_line
 from places import ROOT
 
 from fractalcontact.core.errors import InputError
@@ -153,26 +151,6 @@ def table(judgements: list[Judgement]) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--files", type=int, default=5000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first file")
-    parser.add_argument("--only", type=int, help="number of one file")
-    arguments = parser.parse_args()
-    numbers = range(arguments.first, arguments.first + arguments.files)
-    if arguments.only is not None:
-        numbers = [arguments.only]
-    kept = ROOT / "results" / "dialects"
-    start = time.monotonic()
-    judgements = run(numbers, arguments.seed, kept)
-    print(table(judgements))
-    print(f"{time.monotonic() - start:.0f} s")
-    if arguments.only is not None:
-        print("\n".join(judgement.fault or judgement.message for judgement in judgements))
-    if faults := sum(bool(judgement.fault) for judgement in judgements):
-        sys.exit(f"{faults} of {len(judgements)} files failed; they are kept in {kept}")
-
-
 if __name__ == "__main__":
-    main()
+    kept = ROOT / "results" / "dialects"
+    judge_from_command_line(__doc__.splitlines()[0], kept, run, table)

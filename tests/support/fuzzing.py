@@ -19,6 +19,7 @@ import time
 import traceback
 import warnings
 from collections import defaultdict
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -253,8 +254,20 @@ def table(verdicts: list[Verdict]) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def judge_from_command_line(description: str, kept: Path, run: Callable, table: Callable) -> None:
+    """Judge the files that the command line asks for; exit with their number where some failed.
+
+    Parameters
+    ----------
+    description : str
+    kept : Path
+        Folder for the files that failed.
+    run : callable
+        (numbers, seed, kept) to judgements, each with a ``fault`` and, where known, ``message``.
+    table : callable
+        Judgements to what is printed of them.
+    """
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--files", type=int, default=5000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first file")
@@ -263,17 +276,15 @@ def main() -> None:
     numbers = range(arguments.first, arguments.first + arguments.files)
     if arguments.only is not None:
         numbers = [arguments.only]
-    kept = ROOT / "results" / "fuzzing"
     start = time.monotonic()
-    verdicts = run(numbers, arguments.seed, kept)
-    print(table(verdicts))
+    judged = run(numbers, arguments.seed, kept)
+    print(table(judged))
     print(f"{time.monotonic() - start:.0f} s")
-    faults = [verdict.fault for verdict in verdicts if verdict.fault]
     if arguments.only is not None:
-        print("\n".join(faults))
-    if faults:
-        sys.exit(f"{len(faults)} of {len(verdicts)} files failed; they are kept in {kept}")
+        print("\n".join(one.fault or getattr(one, "message", "") for one in judged))
+    if faults := sum(bool(one.fault) for one in judged):
+        sys.exit(f"{faults} of {len(judged)} files failed; they are kept in {kept}")
 
 
 if __name__ == "__main__":
-    main()
+    judge_from_command_line(__doc__.splitlines()[0], ROOT / "results" / "fuzzing", run, table)
