@@ -14,6 +14,7 @@ from fractalcontact.mechanics.joint import (
     prefractal,
     rigid_dilatancy,
 )
+from fractalcontact.mechanics.rigid_slide import slide
 from fractalcontact.surface.specimen import faces, largest_offset, make_specimen, window_slices
 from fractalcontact.surface.synthesis import self_affine
 
@@ -172,3 +173,9 @@ def test_a_plane_is_correlated_with_nothing(rough):
     joint = specimen(rough)
     joint["lower"] = ("y", "x"), 0.3 * x + 0.1 * y
     assert np.isnan(face_correlation(joint, "E", [0, 2])).all()
+
+
+def test_places_of_a_slide_lie_along_one_line():
+    heights = np.zeros((8, 8))
+    with pytest.raises(ValueError, match="along a row or along a column"):
+        slide(heights, heights[:4, :4], np.array([[0, 0], [1, 1]]))

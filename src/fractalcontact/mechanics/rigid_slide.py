@@ -1,16 +1,21 @@
-"""Rigid slide of a window, compiled: largest height, spread and correlation of the faces.
+"""Rigid slide of a window: largest height, spread and correlation of the faces at every offset.
 
 A joint of a thousand cells is slid through hundreds of offsets in four directions. With arrays of
-their own for every offset, that took longer than all else that is made of a specimen.
+their own for every offset, that took longer than all else that is made of a specimen. The largest
+height must look at every cell at every offset, and takes the spread along; the correlation of all
+offsets at once comes from Fourier transforms along the slide and from sums of one line.
 """
 
 from typing import NamedTuple
 
 import numpy as np
+import scipy.fft
 
 from ..core.kernel_cache import njit
 from ..core.mean_plane import without_mean_plane
 
+#: Values of a block of rows that is transformed at once.
+_BLOCK = 1 << 21
 #: Of what a face has about its mean, what its mean plane must leave to be more than rounding.
 _LEFT = 1e-13
 
@@ -36,64 +41,97 @@ def slide(lower: np.ndarray, upper: np.ndarray, corners: np.ndarray) -> Slide:
     upper : (my, mx) float64 ndarray
         Heights of the upper face in the window, mm.
     corners : (n, 2) int ndarray
-        Row and column of the lower face under the window's first cell.
+        Row and column of the lower face under the window's first cell, one of which is the same at
+        all places.
 
     Returns
     -------
     Slide
         Of h = lower - upper at each place.
+
+    Raises
+    ------
+    ValueError
+        If neither the rows nor the columns are all the same.
     """
-    my, mx = upper.shape
-    under = without_mean_plane(upper)
-    sums = np.empty((len(corners), 6))
-    for row, (top, left) in zip(sums, corners, strict=True):
-        _sums(lower[top : top + my, left : left + mx], upper, under, row)
-    highest, of_h, of_z, product, along_y, along_x = sums.T
-    # The plane's part of the sum of squares: rows are orthogonal to columns.
-    y, x = np.arange(my) - (my - 1) / 2, np.arange(mx) - (mx - 1) / 2
-    with np.errstate(divide="ignore", invalid="ignore"):  # one row, or one column
-        above = of_z - along_y**2 / (mx * np.sum(y * y)) - along_x**2 / (my * np.sum(x * x))
-        norm = np.sqrt(np.where(above > _LEFT * of_z, above, np.nan) * np.sum(under**2))
-        correlation = np.where(norm > 0, product / norm, np.nan)
-    return Slide(highest, np.sqrt(of_h / upper.size), correlation)
+    sums = np.zeros((len(corners), 2))
+    highest = np.full(len(corners), -np.inf)
+    _composite_sums(lower, upper, corners, highest, sums)
+    variance = np.maximum(sums[:, 1] - sums[:, 0] ** 2 / upper.size, 0.0) / upper.size
+    return Slide(highest, np.sqrt(variance), _correlation(lower, upper, corners))
 
 
-@njit(cache=True)
-def _sums(lower, upper, under, row):
-    """Largest h; sums of squares of h and of lower, z, about their means; of z times ``under``, row
-    and column, these from the middle.
+@njit(cache=True, fastmath={"reassoc", "nsz", "nnan"})
+def _composite_sums(lower, upper, corners, highest, sums):
+    """Largest h of each place, and its sum and sum of squares, less h of the first cell.
+
+    Row by row for all places, because a row of the window then stays in the processor's cache; and
+    rounding grows with a side and not with the area.
     """
-    ny, nx = lower.shape
-    middle_y, middle_x = (ny - 1) / 2, (nx - 1) / 2
-    # From the first cell: a height over sea level must not cost digits.
-    z0, h0 = lower[0, 0], lower[0, 0] - upper[0, 0]
-    highest = h0
-    total_h = total_hh = total_z = total_zz = total_zu = total_zy = total_zx = 0.0
+    ny, nx = upper.shape
     for i in range(ny):
-        # Row by row, so that rounding grows with a side and not with the area.
-        h_row = hh_row = z_row = zz_row = zu_row = zx_row = 0.0
-        for j in range(nx):
-            h = lower[i, j] - upper[i, j]
-            highest = max(highest, h)
-            h -= h0
-            z = lower[i, j] - z0
-            h_row += h
-            hh_row += h * h
-            z_row += z
-            zz_row += z * z
-            zu_row += z * under[i, j]
-            zx_row += z * (j - middle_x)
-        total_h += h_row
-        total_hh += hh_row
-        total_z += z_row
-        total_zz += zz_row
-        total_zu += zu_row
-        total_zx += zx_row
-        total_zy += z_row * (i - middle_y)
-    cells = ny * nx
-    row[0] = highest
-    row[1] = max(total_hh - total_h * total_h / cells, 0.0)
-    row[2] = max(total_zz - total_z * total_z / cells, 0.0)
-    row[3] = total_zu
-    row[4] = total_zy
-    row[5] = total_zx
+        above = upper[i]
+        for k in range(len(corners)):
+            top, left = corners[k]
+            below = lower[top + i, left : left + nx]
+            # From the first cell: a height over sea level must not cost digits.
+            first = lower[top, left] - upper[0, 0]
+            largest, total, squares = highest[k], 0.0, 0.0
+            for j in range(nx):
+                h = below[j] - above[j]
+                largest = h if h > largest else largest
+            for j in range(nx):
+                h = below[j] - above[j] - first
+                total += h
+                squares += h * h
+            highest[k] = largest
+            sums[k, 0] += total
+            sums[k, 1] += squares
+
+
+def _correlation(lower, upper, corners):
+    """Correlation of the faces at each place (n,), each less its mean plane under the window."""
+    (top, left), (last_top, last_left) = corners.min(axis=0), corners.max(axis=0)
+    strip = lower[top : last_top + upper.shape[0], left : last_left + upper.shape[1]]
+    under, places = without_mean_plane(upper), corners - (top, left)
+    if last_left == left:  # along the rows: slid along the last axis
+        strip, under, places = strip.T, under.T, places[:, ::-1]
+    elif last_top != top:
+        raise ValueError("places of a slide lie along a row or along a column")
+    strip = strip - strip.mean()
+    product, of_z, along_y, along_x = (sums[places[:, 1]] for sums in _sums(strip, under))
+    # The plane's part of the sum of squares: rows are orthogonal to columns.
+    my, mx = under.shape
+    with np.errstate(divide="ignore", invalid="ignore"):  # one row, or one column
+        planes = along_y**2 / (mx * np.sum(_middled(my) ** 2))
+        planes += along_x**2 / (my * np.sum(_middled(mx) ** 2))
+        norm = np.sqrt(np.where(of_z - planes > _LEFT * of_z, of_z - planes, np.nan))
+        norm *= np.sqrt(np.sum(under**2))
+        return np.where(norm > 0, product / norm, np.nan)
+
+
+def _sums(strip, under):
+    """Sums over each place (lag,) of a window along a strip: of z times ``under``, of z squared
+    about its mean, of z times row and times column, these from the middle.
+    """
+    my, mx = under.shape
+    length = scipy.fft.next_fast_len(strip.shape[1], real=True)
+    spectrum = np.zeros(length // 2 + 1, complex)
+    rows = max(1, _BLOCK // length)
+    for start in range(0, my, rows):
+        block = slice(start, start + rows)
+        of_under = scipy.fft.rfft(under[block], length)
+        spectrum += np.sum(scipy.fft.rfft(strip[block], length) * of_under.conj(), axis=0)
+    lags = strip.shape[1] - mx + 1
+    product = scipy.fft.irfft(spectrum, length)[:lags]
+    window = np.ones(mx)
+    column, square = strip.sum(axis=0), np.einsum("ij,ij->j", strip, strip)
+    total = np.correlate(column, window)
+    of_z = np.maximum(np.correlate(square, window) - total**2 / under.size, 0.0)
+    # A sum, not a matrix product: the last bit must not depend on the number of cores.
+    along_y = np.correlate(np.einsum("i,ij->j", _middled(my), strip), window)
+    return product, of_z, along_y, np.correlate(column, _middled(mx))
+
+
+def _middled(cells):
+    return np.arange(cells) - (cells - 1) / 2
