@@ -117,7 +117,7 @@ def test_every_figure_stands_on_its_specimen_s_page(results, pages):
         assert not any(address.endswith((".svg", ".pdf")) for address in addresses)
 
 
-def test_what_strangers_wrote_is_text(results, pages):
+def test_untrusted_input_is_shown_as_text(results, pages):
     """As the title of its page, in the table, in captions, and in the data of the script."""
     for path, parsed in pages.items():
         text = path.read_text(encoding="utf-8")
