@@ -45,7 +45,7 @@ def common_loads(chosen: Sequence[Chosen]) -> list[CommonLoad]:
             groups[-1].append(pressure)
         else:
             groups.append([pressure])
-    found = []
+    found: list[CommonLoad] = []
     for group in groups:
         middle = float(np.median(group))
         numbers = {one.name: i for one in chosen if (i := _number_at(one, middle)) is not None}

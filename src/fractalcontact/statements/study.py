@@ -56,8 +56,8 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=True),
         f"2 - Delta_sigma by A_r(s) {pairs}",
-        "at light load it is the growth of the slopes h'_rms of the surface with resolution; whether "
-        "strength follows that exponent as the size grows is what eq. 6 is judged for",
+        "at light load it is the growth of the slopes h'_rms of the surface with resolution; "
+        "whether strength follows that exponent as the size grows is what eq. 6 is judged for",
     )
 
 
@@ -118,8 +118,8 @@ STATEMENTS = (
     ),
     Statement(
         "sect. 7",
-        "The exponent 2 - Delta_sigma (not the strength itself) grows with Delta_g of the composite "
-        "topography",
+        "The exponent 2 - Delta_sigma (not the strength itself) grows with Delta_g of the "
+        "composite topography",
         size_exponent_grows_with_dimension,
     ),
 )
