@@ -60,9 +60,9 @@ class Validity:
 
     @property
     def sentence(self) -> str:
-        """Verdict and reason, for a caption."""
+        """Reason and verdict, for a caption."""
         verdict = "good in part" if self.verdict == PARTLY else self.verdict
-        return f"Elastic model {verdict}: {self.reason}."
+        return f"{self.reason}: elastic model {verdict}."
 
 
 def real_mean_pressure(force: float, area: float, area_corrected: float, nodes: float) -> float:
