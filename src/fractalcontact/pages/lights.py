@@ -136,4 +136,4 @@ def _grid(chosen):
 def _model(chosen):
     found = validity_at(chosen, chosen.map_load)
     reason = f"{found.reason}, under the load of the maps"
-    return Light("model", "Elastic model valid", found.verdict, reason)
+    return Light("model", "Validity of the elastic model", found.verdict, reason)

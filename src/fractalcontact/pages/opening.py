@@ -153,11 +153,9 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
             parts.append(f"{words} for {_listed(named)}")
     if not parts:
         return None
-    cells = [
-        (name, cell) for row in rows if row.name in _PLATEAUS for name, cell in row.cells.items()
-    ]
-    chosen = [name for name, cell in cells if cell.circular]
-    note = f", chosen so for {_listed(chosen)}" if chosen else ""
+    plateaus = [row.cells for row in rows if row.name in _PLATEAUS]
+    chosen = sorted(name for cells in plateaus for name in cells if cells[name].circular)
+    note = f"; no finding for {_listed(chosen)}, chosen for it" if chosen else ""
     text = f"As the faces slide, the rigid dilatancy {' and '.join(parts)}{note}."
     return Markup(escape(text))
 
