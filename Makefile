@@ -15,10 +15,10 @@
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make cost   where the time of the study went
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
-# make problems PROBLEMS=5000   so many random contact problems, each state verified
-# make extremes   made extremes and real scans through the whole chain, all figures: many minutes
-# make fuzz FILES=5000     so many spoilt scan files, each read or refused in one sentence
-# make fuzz-dialects FILES=5000  so many ways to write a known surface as text, each read right or refused
+# make problems PROBLEMS=5000   PROBLEMS random contact problems, each state verified
+# make extremes   synthetic extremes and real scans through the whole chain, all figures: many minutes
+# make fuzz FILES=5000     FILES damaged scan files, each read or refused in one sentence
+# make fuzz-dialects FILES=5000  FILES ways to write a known surface as text, each read right or refused
 # make lint   ruff, snakefmt, annotations and types, changing nothing; make format mends what it can
 # make lock   new pins for every package (needs uv)
 

@@ -232,7 +232,7 @@ class Trials:
         return next(content for content in self.references if content != now)
 
     def replace(self, content, age):
-        """Another file in the scan's place, so many seconds younger."""
+        """Another file in the scan's place, this many seconds younger."""
         times, other = self.scan.stat(), self.project / "other.npy"
         other.write_bytes(content)
         when = times.st_mtime_ns + int(age * 1e9)
@@ -262,7 +262,7 @@ class Trials:
             yield "WRONG" if self.at_work() else self.verdict(refusals=0)
 
     def full_disks(self, times):
-        """The disk of the results full after so many bytes; then there is room again."""
+        """The disk of the results full after this many bytes; then there is room again."""
         if os.geteuid():
             raise Skipped("only root mounts a small disk")
         shutil.rmtree(self.project / "results")

@@ -164,7 +164,7 @@ def test_what_a_user_holds_is_shown_in_a_line():
 
 
 def test_compiling_is_told_once(tmp_path, caplog, monkeypatch):
-    monkeypatch.setattr(kernel_cache.KernelCache, "_told", False)
+    monkeypatch.setattr(kernel_cache.KernelCache, "_announced", False)
     made = tmp_path / "made.py"
     made.write_text("def twice(x):\n    return 2 * x\n\n\ndef thrice(x):\n    return 3 * x\n")
     monkeypatch.syspath_prepend(tmp_path)

@@ -23,7 +23,7 @@ MOST_WARNINGS = 24
 _KEPT = 200
 #: Rules that make nothing themselves: what they ask for is made when they come.
 _TARGETS = ("all", "pages", "accuracy")
-#: A time left is said from so many seconds on.
+#: A time left is said from this many seconds on.
 _WORTH_SAYING = 5
 _FULL = ("No space left on device", "Disk quota exceeded", "no space left on its disk")
 #: What Snakemake's reasons begin with, and what is said of them; the first that fits.

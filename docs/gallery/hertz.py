@@ -12,7 +12,7 @@ CLOSURE = 0.01  # mm
 
 
 def force_on(nodes: int) -> float:
-    """Force, N, on a window of three contact radii with so many nodes per side."""
+    """Force, N, on a window of three contact radii with this many nodes per side."""
     side = 3 * np.sqrt(RADIUS * CLOSURE)
     spacing = side / nodes
     x = (np.arange(nodes) - (nodes - 1) / 2) * spacing

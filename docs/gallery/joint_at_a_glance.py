@@ -41,8 +41,16 @@ def draw(atlas: xr.DataTree, specimen: str) -> plt.Figure:
     )
     middle.set(xlim=(0, side), ylim=(0, height), aspect="equal")
     pressure = float(curves["nominal_pressure"].sel(normal_force=load, method="nearest"))
-    fraction = float((domain == 1).sum() / domain.notnull().sum())
-    middle.set_title(f"contact domain at {pressure:.3g} MPa:\n{fraction:.1%} touch", fontsize=9)
+    state = curves.sel(offset=offset, normal_force=load, method="nearest")
+    state = state.sel(resolution=resolution)
+    # Corrected for the perimeter, as everywhere, where enough nodes touch for that.
+    corrected = bool(state["area_corrected_resolved"])
+    fraction = 100 * float(state["area_corrected_share" if corrected else "area_share"])
+    middle.set_title(
+        f"contact domain at {pressure:.3g} MPa:\n$A_r/A_0$ = {fraction:.2g} %"
+        + ("" if corrected else " (raw)"),
+        fontsize=9,
+    )
     for axes in (left, middle):
         axes.set_xlabel("x (mm)")
     left.set_ylabel("y (mm)")

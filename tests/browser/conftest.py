@@ -1,4 +1,4 @@
-"""A small study from scans to pages, and a browser that tells what it was asked and what failed.
+"""A small study from scans to pages, and a browser that records what it was asked and what failed.
 
 ``RESULTS=results/paper`` takes the results of a study that was made already. What the tests see
 goes to ``results/browser``.

@@ -50,7 +50,7 @@ def rough_joint(n, slope=None, seed=3):
 @pytest.mark.parametrize("aim", [0.5, 0.9, 0.99, 0.999])
 def test_nearly_full_contact(aim, control):
     height, space = rough_joint(96)
-    # Between the load at which so many nodes touch and that at which all do.
+    # Between the load at which this many nodes touch and that at which all do.
     low, high, state = 0.0, 60 * np.ptp(height), None
     for _ in range(30):
         closure = (low + high) / 2

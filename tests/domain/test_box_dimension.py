@@ -82,7 +82,7 @@ def levy_dust(n, exact, seed):
       distributed (Blumenthal, Getoor & Ray, Trans. Am. Math. Soc. 99 (1961) 540), with the tail
       l^-D. All places are on the set; the circle lies in a cell that is marked, or it has the
       radius `LEAST_STEP`, so that next to nothing of the set is lost below a cell;
-    - it is followed until it will not come back, not for so many steps;
+    - it is followed until it will not come back, not for this many steps;
     - the window is about one of its places, which has others before and after it: two flights.
     """
     domain = np.zeros((n, n), dtype=bool)
@@ -290,7 +290,7 @@ def test_levy_dust(exact, n, seeds, within):
         box_dimension(levy_dust(n, exact, seed), 0.1, whole_cells=True) for seed in range(seeds)
     ]
     dimension = np.array([f.dimension for f in found])
-    # Flights differ by 0.1: so many are needed to know their mean.
+    # Flights differ by 0.1: this many are needed to know their mean.
     assert dimension.std(ddof=1) / np.sqrt(seeds) < 0.01
     assert dimension.mean() == pytest.approx(exact, abs=within)
     assert np.mean([f.low <= exact <= f.high for f in found]) >= 0.9

@@ -1,4 +1,4 @@
-"""Both estimators of Delta_sigma on made surfaces."""
+"""Both estimators of Delta_sigma on synthetic surfaces."""
 
 import numpy as np
 import pytest

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from made_stages import scan, stages_of
+from materials import ROCK
 
 from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.experiments.delta_g import estimator_bias
@@ -29,14 +30,7 @@ AREA_SLOPE = {
 }
 STUDY = {
     "study": "tiny",
-    "materials": {
-        "rock": {
-            "modulus": "20 GPa",
-            "poisson": 0.2,
-            "basic_friction_angle": "30 deg",
-            "joint_wall_strength": "80 MPa",
-        }
-    },
+    "materials": {"rock": ROCK},
     "defaults": {
         "material": "rock",
         "contact_directions": ["W"],

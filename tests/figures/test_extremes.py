@@ -45,7 +45,7 @@ def test_faces_in_full_contact_have_figures_that_say_so(tmp_path):
     path, _ = atlas_of_scan(lower, upper, options, tmp_path, settings)
     atlas = read_atlas(path)
     curves = atlas["closure/specimen"]
-    # Full contact at two loads of three: nothing of the interface is left to tell.
+    # Full contact at two loads of three: nothing of the interface is left to measure.
     heavy = curves["interface_closure"].sel(resolution=1)[:, :, 1:]
     assert heavy.isnull().all()
     assert "contact is so full" in curves.attrs["warning"]

@@ -1,4 +1,4 @@
-"""A small study with its result page: labels that are no friends, pictures that are one dot."""
+"""A small study with its result page: hostile labels, pictures of one dot."""
 
 import struct
 import zlib

@@ -10,6 +10,7 @@ from urllib.parse import unquote, urlsplit
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 import yaml
 from page_study import HOSTILE, STUDY
 
@@ -17,16 +18,21 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.cards import redrawn
 from fractalcontact.pages.chosen import Chosen
+from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
-from fractalcontact.pages.lights import lights_of
+from fractalcontact.pages.lights import lights_of, validity_at
 from fractalcontact.pages.matrix import (
+    Cell,
+    Row,
     counted,
     figure_of_statement,
     matrix_of,
     numbers_of,
     of_study,
 )
+from fractalcontact.pages.opening import opening_of
 from fractalcontact.pages.result_page import Place, write_result_page
+from fractalcontact.pages.words import with_unit
 from fractalcontact.statements.judge import all_statements
 from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.figure_list import figures_of
@@ -117,7 +123,7 @@ def test_every_figure_stands_on_its_specimen_s_page(results, pages):
         assert not any(address.endswith((".svg", ".pdf")) for address in addresses)
 
 
-def test_what_strangers_wrote_is_text(results, pages):
+def test_untrusted_input_is_shown_as_text(results, pages):
     """As the title of its page, in the table, in captions, and in the data of the script."""
     for path, parsed in pages.items():
         text = path.read_text(encoding="utf-8")
@@ -256,6 +262,104 @@ def test_lights_follow_what_the_stages_say(atlas):
     changed["closure/flat.1"].attrs["warning"] = ""
     changed["quality/flat.1"].attrs["warning"] = ""
     assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "good"
+
+
+def test_page_summary_and_figure_quote_one_verdict_on_the_elastic_model(results, pages):
+    """Under the load of the maps: the light, the column of the summary, the caption of Fig. 8."""
+    atlas = read_atlas(results / "atlas.nc")
+    table = pd.read_csv(results / "summary.csv")
+    for name in NAMES:
+        chosen = Chosen(atlas, name)
+        found = validity_at(chosen, chosen.map_load)
+        (light,) = [one for one in lights_of(chosen) if one.key == "model"]
+        assert light.word == found.verdict
+        assert light.reason.startswith(found.reason)
+        rows = table[table["specimen"] == name]
+        assert set(rows["light_model"]) == {found.verdict}
+        (row,) = rows[rows["load_of_maps"]].itertuples()
+        assert row.elastic_model == found.verdict
+        assert row.real_pressure_MPa == pytest.approx(found.pressure)
+        assert row.elastic_model_good_to_MPa == 80  # the joint wall strength of the study
+        assert found.reason in "".join(pages[results / f"pages/{name}.html"].texts).replace(
+            "σn", "sigma_n"
+        )
+        with print_style():
+            assert found.sentence in drawer_of("fig08_prefractals")(atlas, name).caption
+
+
+def test_specimens_are_compared_at_one_nominal_pressure(results, atlas):
+    """Each choice of the page is one pressure, within 5 %, and has all that were solved there."""
+    chosen = [Chosen(atlas, name) for name in NAMES]
+    loads = common_loads(chosen)
+    assert [load.pressure for load in loads] == pytest.approx([1, 12.5, 25])
+    for load in loads:
+        for one in chosen:
+            assert one.pressures[load.numbers[one.name]] == pytest.approx(load.pressure, rel=0.05)
+    assert main_load(loads, chosen).pressure == pytest.approx(12.5)
+    text = (results / "index.html").read_text(encoding="utf-8")
+    assert text.count(" selected>12.5 MPa (2 of 2)") == 1
+
+
+class Solved:
+    """What :func:`common_loads` reads of a specimen."""
+
+    def __init__(self, name, pressures, quoted, map_load, unsolved=()):
+        self.name, self.pressures, self.quoted = name, np.array(pressures), quoted
+        self.map_load, self.unsolved = map_load, list(unsolved)
+
+    def values(self, *names):
+        closure = np.ones(len(self.pressures))
+        closure[self.unsolved] = np.nan
+        return {"closure": xr.DataArray(closure)}
+
+
+def test_pressures_that_differ_by_their_windows_alone_are_one():
+    twin = Solved("twin", [2.5, 25, 75], [0, 1], 1)
+    other = Solved("other", [7.6, 25.4, 76.2], [1, 2], 2)
+    loads = common_loads([twin, other])
+    assert [load.numbers for load in loads] == [
+        {"twin": 0},
+        {"twin": 1, "other": 1},
+        {"twin": 2, "other": 2},
+    ]
+    assert main_load(loads, [twin, other]).pressure == pytest.approx(75.6)
+    unsolved = Solved("unsolved", [2.5, 25, 75], [1], 1, unsolved=[1])
+    assert common_loads([unsolved]) == []
+    assert main_load([], []) is None
+
+
+def test_the_page_opens_with_numbers_and_verdicts(results):
+    table = pd.read_csv(results / "summary.csv")
+    at_maps = table[table["load_of_maps"]]
+    html = (results / "index.html").read_text(encoding="utf-8")
+    opening = re.search(r'<div class="opening">(.*?)</div>', html, re.DOTALL)[1]
+    sentences = re.findall("<p>(.*?)</p>", opening)
+    assert 2 <= len(sentences) <= 5
+    assert html.index('opening">') < html.index('class="links"')
+    sure = at_maps[at_maps["suspect_load_share"] <= 0.5]
+    for closure in (sure["closure_mm"].min(), sure["closure_mm"].max()):
+        assert with_unit(closure, "mm") in opening
+    least = with_unit(at_maps["real_pressure_MPa"].min(), "MPa").split()[0]
+    assert f"at a real mean pressure of {least}" in opening
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "words"),
+    [
+        (["does not hold"], "does not hold for the specimen"),
+        (["holds"] * 3, "holds for all 3 specimens"),
+        (
+            ["undetermined", "does not hold", "does not hold", "holds"],
+            "holds for 1, does not hold for 2 and is undetermined for 1 of 4 specimens",
+        ),
+    ],
+)
+def test_verdicts_of_several_specimens_are_counted(verdicts, words):
+    cells = {str(i): Cell(one, "", "", "", "", "", "") for i, one in enumerate(verdicts)}
+    row = Row("size_effect_follows", "10", "", "", cells)
+    sentences = opening_of([], CommonLoad("p0", 25.0, {}), [row])
+    assert sentences[-1] == f"The size effect of eq. 6 {words} (windows within one joint)."
+    assert opening_of([], None, [row]) == []
 
 
 @pytest.mark.parametrize(

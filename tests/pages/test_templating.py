@@ -1,4 +1,4 @@
-"""Templates: what strangers write is shown, never run."""
+"""Templates: untrusted text is shown, never run."""
 
 import json
 

@@ -13,9 +13,11 @@ from fractalcontact.pages.thumbnails import png_address, reduced, shaded
 from fractalcontact.pages.words import (
     duration,
     in_table,
+    interval,
     measured,
     percent,
     short,
+    undetermined,
     with_unit,
 )
 
@@ -56,6 +58,13 @@ def test_a_label_is_one_line_and_no_formula():
     assert in_table("") == ""
     for start in ("=", "+", "-", "@", " ="):
         assert in_table(f"{start}1+1") == f"'{start}1+1"
+
+
+def test_what_is_undetermined_is_shown_with_its_error():
+    assert undetermined(interval(0.96, 0.02, 1.9)) == "undetermined (0.960 ± 0.94)"
+    assert undetermined(interval(212, 49.1, 914)) == "undetermined (212 [49.1, 914])"
+    assert undetermined(interval(1.4, None, None)) == "undetermined (1.40, error not known)"
+    assert interval(None, None, None) == "–"
 
 
 def quantity(unit="mm", **sources):

@@ -212,8 +212,8 @@ def test_natural_fault_has_the_exponents_its_authors_found(fault, method):
 
 @pytest.mark.scans
 def test_spectrum_of_the_fault_is_steeper_than_its_other_curves(fault):
-    # On this surface alone: with the same outline, made surfaces show no bias. Its authors' own
-    # spectra find more than the truth too, on made profiles.
+    # On this surface alone: with the same outline, synthetic surfaces show no bias. Its authors'
+    # own spectra find more than the truth too, on synthetic profiles.
     spectrum = fault.sel(estimator="power_spectrum")
     assert spectrum["hurst_x"] < spectrum["hurst_y"]
     assert spectrum["hurst_x_low"] < 0.59 < spectrum["hurst_x_high"]

@@ -1,4 +1,4 @@
-"""Noise floor, filter and roll-off of made surfaces: what was put in is found, nothing else is."""
+"""Noise floor, filter and roll-off of synthetic surfaces: what was put in is found, no more."""
 
 import numpy as np
 import pytest

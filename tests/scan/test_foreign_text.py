@@ -93,7 +93,7 @@ UNITS += [Case("units", PLAIN, FULL | {"unit_z": "-1 um"}, "'-1 um' is not above
 
 
 def esri(n_rows, n_columns, cells, top=Z[::-1]):
-    """An ESRI grid that says so many rows and columns."""
+    """An ESRI grid that says this many rows and columns."""
     head = f"ncols {n_columns}\nnrows {n_rows}\nxllcorner 0\nyllcorner 0\n{cells}\n"
     return head + "NODATA_value -9999\n" + rows(top, " ")
 

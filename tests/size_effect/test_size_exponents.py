@@ -92,7 +92,7 @@ def test_interval_covers_the_exponent(exponent):
     covered = np.mean([one.slope_low <= exponent <= one.slope_high for one in found])
     assert covered >= 0.93
     assert np.mean([one.slope for one in found]) == pytest.approx(exponent, abs=0.01)
-    # It does not say nothing: no effect and -0.5 are told apart.
+    # It does not say nothing: no effect and -0.5 are distinguished.
     assert np.mean([one.slope_high - one.slope_low for one in found]) < 0.5
 
 

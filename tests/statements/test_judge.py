@@ -464,6 +464,6 @@ def mathematical(values, monkeypatch):
         ((1.5, 1.9), UNDETERMINED),
     ],
 )
-def test_the_size_effect_over_the_dimension_of_surfaces(values, expected, monkeypatch):
+def test_the_size_exponent_over_the_dimension_of_surfaces(values, expected, monkeypatch):
     found = mathematical(values, monkeypatch)
-    assert found["size_effect_grows_with_dimension"] == expected
+    assert found["size_exponent_grows_with_dimension"] == expected

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from declared import Declared
+from materials import ROCK
 
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.specimen import specimen_stages
@@ -24,14 +25,7 @@ from fractalcontact.surface.synthesis import self_affine
 
 SOLVER = solver_settings({}, "study")
 STUDY = {
-    "materials": {
-        "rock": {
-            "modulus": "20 GPa",
-            "poisson": 0.2,
-            "basic_friction_angle": "30 deg",
-            "joint_wall_strength": "80 MPa",
-        }
-    },
+    "materials": {"rock": ROCK},
     "defaults": {
         "material": "rock",
         "directions": ["E", "W"],

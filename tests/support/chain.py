@@ -1,6 +1,7 @@
 """The whole chain of a specimen as calls: what the jobs of a study compute, one after the other."""
 
 from made_stages import read, stages_of_specimen
+from materials import ROCK
 
 from fractalcontact.figures.draw import draw_figures
 from fractalcontact.stages.atlas import join_stages
@@ -15,14 +16,7 @@ SOLVER = solver_settings({}, "tiny")
 #: As small as a study can be that still has every figure.
 SMALL_STUDY = {
     "study": "small",
-    "materials": {
-        "rock": {
-            "modulus": "20 GPa",
-            "poisson": 0.2,
-            "basic_friction_angle": "30 deg",
-            "joint_wall_strength": "80 MPa",
-        }
-    },
+    "materials": {"rock": ROCK},
     "defaults": {
         "material": "rock",
         "directions": ["E", "W"],

@@ -1,4 +1,4 @@
-"""Made specimens at the edge of what a study can be given: planes, spikes, steps, odd sizes.
+"""Synthetic specimens at the edge of what a study can be given: planes, spikes, steps, odd sizes.
 
 Each either goes through the whole chain with all its figures, or is refused in one sentence.
 """
@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from materials import ROCK
 
 from fractalcontact.surface.synthesis import self_affine
 
@@ -337,14 +338,7 @@ def soft_rock():
 
 def capped():
     """A hardness that the loads nearly reach everywhere."""
-    material = {
-        "modulus": "20 GPa",
-        "poisson": 0.2,
-        "basic_friction_angle": "30 deg",
-        "joint_wall_strength": "80 MPa",
-        "hardness": "150 MPa",
-    }
-    return Extreme(rough(), settings={"material": material})
+    return Extreme(rough(), settings={"material": ROCK | {"hardness": "150 MPa"}})
 
 
 def one_load():

@@ -159,7 +159,7 @@ def _listing(folder: Path) -> list:
 class _Watch(logging.Handler):
     """Processor time and most memory: of the reader, which logs them, and of this process.
 
-    Time by the clock would tell how busy the machine is.
+    Time by the clock would measure how busy the machine is.
     """
 
     def __init__(self):

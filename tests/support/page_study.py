@@ -1,16 +1,11 @@
-"""The study whose result page is tested: its label is no friend."""
+"""The study whose result page is tested: its label is hostile."""
+
+from materials import ROCK
 
 HOSTILE = "</script><script>alert(1)</script><img src='https://x.example/a.png'> $\\alpha$ \"q\""
 STUDY = {
     "study": "tiny",
-    "materials": {
-        "rock": {
-            "modulus": "20 GPa",
-            "poisson": 0.2,
-            "basic_friction_angle": "30 deg",
-            "joint_wall_strength": "80 MPa",
-        }
-    },
+    "materials": {"rock": ROCK},
     "defaults": {
         "material": "rock",
         "contact_directions": ["W"],

@@ -82,7 +82,7 @@ def rough_surface(generator: np.random.Generator) -> np.ndarray:
 def half_space(
     shape: tuple[int, int], *, cell: float = 0.1, stretch: float = 1.0, modulus: float = 1e4
 ) -> HalfSpace:
-    """The half-space under so many cells (mm), ``stretch`` times as long along y as along x."""
+    """The half-space under this many cells (mm), ``stretch`` times as long along y as along x."""
     return HalfSpace(shape, (cell * stretch, cell), modulus)
 
 

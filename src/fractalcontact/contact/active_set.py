@@ -33,7 +33,7 @@ from .safeguards import (
 # Iterations before the solver gives up: trials needed at most some twenty.
 MAX_ITERATIONS = 200
 # An inexact linear solve stops at a fraction of the scale of its numbers, as the set will change:
-# so many times the fraction of the set that changed last, within these limits. The scale is the
+# this many times the fraction of the set that changed last, within these limits. The scale is the
 # largest of the gaps on the set, of the changes of nodes put at a bound, and of the force that is
 # lacking, per node. A solve against cycling goes on nearly to the end.
 REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
@@ -43,7 +43,7 @@ EXACT_REDUCTION = 1e-3
 # No more than this fraction of the set is left out: where most nodes yield, the few others would
 # have to carry whatever a given force lacks.
 SET_PREDICTIONS, MOST_LEFT_OUT = 2, 0.5
-# Once, where the violation is no larger than so many tolerances, the preconditioned step is made
+# Once, where the violation is no larger than this many tolerances, the preconditioned step is made
 # alone and verified in double precision at once: it is expected to be the last.
 SINGLE_STEP_BELOW = 2.0
 # Where violations are no more than this fraction of the closure, single precision leaves a step

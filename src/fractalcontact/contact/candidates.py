@@ -41,18 +41,18 @@ LEAST_RTOL = 1e-8
 #: not touch within the tolerance are among them.
 MARGIN = 1.01
 #: The bound on the closure under a given force is that of the coarser grid, increased by the margin
-#: and by so many times what it increased by to there (on the coarsest, by a fraction). Or it is
+#: and by this many times what it increased by to there (on the coarsest, by a fraction). Or it is
 #: that of another load in proportion to the force, which rises faster than the closure, or of a
 #: solution beyond the bound, times a factor.
 GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.02, 1.1
 #: A load step on the whole window has help from coarser grids: it is restricted only if an
-#: application takes so many times less.
+#: application is this many times cheaper.
 STEP_GAIN = 2.0
 #: Where more of the nodes than this are candidates it is not asked what the operator would take.
 MOST_CANDIDATES = 0.15
-#: A batch of the operator takes as long as a convolution for so many (nodes times their log2), and
-#: solves on candidates take some more applications: measured from 512 x 512 to 2048 x 2048, at 1 to
-#: 5 % in contact.
+#: A batch of the operator takes as long as a convolution where nodes times their log2 is this many,
+#: and solves on candidates take some more applications: measured from 512 x 512 to 2048 x 2048, at
+#: 1 to 5 % in contact.
 BATCH = 900.0
 
 

@@ -142,7 +142,7 @@ def _basis_counts(coarse, cells):
 
 
 def _basis_functions(coarse, counts):
-    """(functions, coarse cells): piecewise bilinear functions, so many along y and x."""
+    """(functions, coarse cells): piecewise bilinear functions, this many along y and x."""
     along = []
     for n, k in zip(coarse.shape, counts, strict=True):
         at = (np.arange(n) + 0.5) / n * (k - 1)

@@ -35,7 +35,7 @@ CHUNK = 512
 #: cells, and falls slowly as they become longer than wide (0.1 where 1e8 times). A guard against a
 #: pivot that rounding in single precision would make zero or negative: its root is divided by.
 LEAST_CONDITIONAL_VARIANCE = np.float32(1e-3)
-#: Further away than so many cells a node is displaced as by a point load: no table is needed. On
+#: Further away than this many cells a node is displaced as by a point load: no table is needed. On
 #: cells more than `MOST_STRETCHED` times as long as wide that is not far.
 TABLE_SIDE, MOST_STRETCHED = 512, 16
 #: Where the nodes on all levels are more than this fraction of the window's cells, whole arrays are
@@ -124,7 +124,7 @@ class InverseCholesky:
         self._spare = representative, old[1], level, affected
 
     def _dense(self, nodes, fraction):
-        """Whether so many nodes are, on all levels, more than a fraction of the window's cells."""
+        """Whether the nodes are, on all levels, more than a fraction of the window's cells."""
         return nodes * len(self._shifts) > fraction * self._shape[0] * self._shape[1]
 
     def _empty_window(self):

@@ -130,7 +130,7 @@ def redistribute(
     Parameters
     ----------
     before, change : (ny, nx) ndarray
-        A pressure, and a first guess of its change, which tells the sums: positive or zero.
+        A pressure, and a first guess of its change, which gives the sums: positive or zero.
     gap : (ny, nx) ndarray
         What the pressure before leaves open.
     influence : (ny, nx) ndarray

@@ -17,11 +17,11 @@ from .dense import inverted, times
 from .inverse_cholesky import NARROW_NEIGHBOURHOOD, WIDE_NEIGHBOURHOOD, InverseCholesky
 from .node_sets import check_nodes, check_on_set
 
-#: Sets of at most so many nodes are inverted exactly.
+#: Sets of at most this many nodes are inverted exactly.
 DIRECT = 96
-#: Windows of at most so many cells along the longer side do without the coarse correction too.
+#: Windows of at most this many cells along the longer side do without the coarse correction too.
 SMALL = 160
-#: Sets of at most so many nodes among few candidates do without it as well: they are scattered, and
+#: Sets of at most this many nodes among few candidates do without it too: they are scattered, and
 #: what their nodes add up to is no smooth pressure. It would cost more applications than it saves.
 SCATTERED = 10_000
 

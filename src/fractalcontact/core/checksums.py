@@ -227,7 +227,7 @@ def _record_of(results, file):
 
 
 def _recorded_in(results, path):
-    """The files whose checksums a record holds, told by their names: those that are there."""
+    """The files whose checksums a record holds, identified by their names: those that are there."""
     folder = (results / path.relative_to(results / FOLDER)).parent
     stem = path.name.removesuffix(ENDING)
     found = (f for f in folder.glob("*") if f.stem == stem and f.suffix in RESULT_ENDINGS)

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from .intervals import t_quantile
 
-#: Two points always lie on a line: from three on its error can be told.
+#: Two points always lie on a line: from three on its error is known.
 FEWEST_POINTS = 3
 
 
@@ -42,7 +42,7 @@ def fit_line(x: ArrayLike, y: ArrayLike) -> LineFit:
     LineFit
         Slope and intercept with their 95 % intervals, range of x, number of points and coefficient
         of determination (NaN for a constant y). With fewer than three points, or all at one x,
-        everything but `n` is NaN: the error of such a line cannot be told.
+        everything but `n` is NaN: the error of such a line is not known.
     """
     x_all, y_all = np.asarray(x, float), np.asarray(y, float)
     finite = np.isfinite(x_all) & np.isfinite(y_all)

@@ -92,7 +92,7 @@ class KernelCache(FunctionCache):
     """
 
     _warned = False
-    _told = False
+    _announced = False
 
     def __init__(self, function: Callable, name: str):
         qualified = function.__qualname__.replace("<", "").replace(">", "")
@@ -123,16 +123,16 @@ class KernelCache(FunctionCache):
                 # The name is only a digest of how the types are written.
                 if saved == key:
                     return self._impl.rebuild(target_context, compiled)
-        self._tell()
+        self._announce()
         return None
 
-    def _tell(self):
+    def _announce(self):
         """Say why nothing seems to happen: compiling all of them takes up to a minute.
 
         Not of a kernel for other types, or one that was damaged, where the rest is on disk.
         """
-        if not KernelCache._told and not any(path.is_dir() for path in self._paths):
-            KernelCache._told = True
+        if not KernelCache._announced and not any(path.is_dir() for path in self._paths):
+            KernelCache._announced = True
             LOG.warning(
                 "compiling kernels for this processor, once after an installation: up to a minute "
                 "(python -m fractalcontact.commands.compile_kernels does it beforehand)"
@@ -156,7 +156,7 @@ class KernelCache(FunctionCache):
             self._warn(f"{self._cache_path}: {error.strerror or error}")
 
     def _key(self, sig, codegen):
-        """What tells a compiled kernel from all others, processors included."""
+        """What distinguishes a compiled kernel from all others, processors included."""
         return self._name, *self._index_key(sig, codegen)
 
     def _file_name(self, key):

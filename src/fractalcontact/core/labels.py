@@ -66,7 +66,7 @@ def percent(fraction: float) -> str:
 
 
 def plain(value: float, digits: int = 3) -> str:
-    """A number to so many digits without powers of ten where a person would write none."""
+    """A number to this many digits without powers of ten where a person would write none."""
     text = f"{float(value):.{digits}g}"
     if "e" in text and 1e-6 <= abs(value) < 1e9:
         text = f"{float(text):.{max(0, digits - 1 - math.floor(math.log10(abs(float(text)))))}f}"

@@ -9,7 +9,7 @@ _NUMBERS = 4_000_000
 
 
 def blocks(count: int, numbers: int = 1, most: int = _NUMBERS) -> Iterator[slice]:
-    """Consecutive slices of so many things that take ``numbers`` numbers each.
+    """Consecutive slices of this many things that take ``numbers`` numbers each.
 
     Parameters
     ----------

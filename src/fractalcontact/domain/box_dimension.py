@@ -349,7 +349,7 @@ def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def local_slopes(
     r: np.ndarray, count: np.ndarray, octaves: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Local slope -d log N / d log r of box counts, over so many octaves.
+    """Local slope -d log N / d log r of box counts, over this many octaves.
 
     Parameters
     ----------

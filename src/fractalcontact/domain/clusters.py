@@ -31,10 +31,10 @@ CLUSTER_FIELDS = {
     "half_share_random": ("1", "that fraction for as many random nodes"),
 }
 
-#: Contact is counted in so many by so many equal parts of the window (fewer if it has fewer cells).
+#: Contact is counted in equal parts of the window, this many each way (fewer where cells are few).
 QUADRATS = 8
 
-#: A power law is fitted to sizes over so many octaves that hold clusters, and to so many clusters:
+#: A power law is fitted to sizes over this many octaves that hold clusters, and this many clusters:
 #: Clauset et al. find estimates from fewer than about 50 untrustworthy.
 FEWEST_OCTAVES = 4
 FEWEST_CLUSTERS = 50

@@ -10,7 +10,7 @@ import numpy as np
 from ..core import threads
 from ..core.kernel_cache import njit
 
-#: From so many of the longer side of a cell on the expansion holds: its first missing term is
+#: From this many of the longer side of a cell on the expansion holds: its first missing term is
 #: below 1e-12 of the influence there.
 FAR = 32
 #: Rows that a thread takes at least.

@@ -27,7 +27,7 @@ _SINGLE, _DOUBLE = np.dtype(np.float32), np.dtype(np.float64)
 SEPARATION = {_SINGLE: 1, _DOUBLE: 2}
 ORDER = {_SINGLE: 8, _DOUBLE: 12}
 ERROR = {_SINGLE: 2e-5, _DOUBLE: 2e-11}
-#: Cells may be so much longer than wide: blocks are neighbours by number, not by distance.
+#: Cells are at most this many times as long as wide: blocks are neighbours by number, not distance.
 MOST_STRETCHED = 1.25
 #: Pairs of blocks with the same relative position that are worked on together.
 TOGETHER = 4

@@ -62,7 +62,7 @@ def interface_closure(closure: Numbers, settlement: Numbers, flush: Any = False)
 
 
 def determined_closure(closing: xr.DataArray, flush: xr.DataArray) -> xr.DataArray:
-    """Interface closure where it is determined: missing where the contact is too full to tell.
+    """Interface closure where it is determined: missing where contact is too full for one.
 
     Faces in full contact are loaded like a rigid punch, which settles less than the uniform
     pressure of w_b does: by some 0.08 F/(E* b) for a square. Where the rough faces close by less
@@ -84,7 +84,7 @@ def determined_closure(closing: xr.DataArray, flush: xr.DataArray) -> xr.DataArr
 
 
 def full_contact_warning(curves: xr.Dataset) -> str:
-    """Warning where contact is so full that no interface is left to tell, "" if nowhere.
+    """Warning where contact is so full that no interface is left to measure, "" if nowhere.
 
     Parameters
     ----------
@@ -165,7 +165,8 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
     curves["interface_closure"] = determined_closure(closing, flush).transpose(*order)
     curves["interface_closure"].attrs = cf_attrs(
-        "mm", "interface closure w_int = w - w_b; none where contact is too full to tell"
+        "mm",
+        "interface closure w_int = w - w_b; none where contact is too full for one",
     )
     for name, words in (
         ("area", "real contact area A_r / A_0"),

@@ -71,7 +71,7 @@ class PublicCode:
     sides : (float, float)
         Of the window along y and x, mm.
     max_iterations : int
-        After so many it gives up.
+        After this many it gives up.
     """
 
     def __init__(self, height: ArrayLike, space: HalfSpace):

@@ -115,7 +115,7 @@ def symbols(text: object) -> Markup:
     Parameters
     ----------
     text : object
-        Escaped first: it may be a stranger's.
+        Escaped first: it may be untrusted input.
     """
     safe = str(escape(text))
     safe = _SYMBOL.sub(_lowered, safe)

@@ -83,7 +83,7 @@ class Chosen:
         return self._nearest(self.settings["map_load"])
 
     @cached_property
-    def loads(self) -> list[int]:
+    def quoted(self) -> list[int]:
         """Numbers of the loads to quote: those of the dilatancy, and that of the maps."""
         wanted = {self._nearest(load) for load in self.settings["dilatancy_loads"]}
         return sorted(wanted | {self.map_load})

@@ -1,4 +1,4 @@
-"""Four lights of a specimen: scan, fit of the faces, nodes in contact, convergence in the grid.
+"""Five lights of a specimen: scan, fit of the faces, nodes, convergence in the grid, the model.
 
 Each repeats what a stage of the atlas says; the limits are those that the stages use.
 """
@@ -8,12 +8,20 @@ from dataclasses import dataclass
 
 from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..core.units import share
+from ..mechanics.model_validity import (
+    GOOD,
+    NOT_ASKED,
+    PARTLY,
+    POOR,
+    Validity,
+    elastic_model_validity,
+    real_mean_pressure,
+)
 from ..roughness.quality_words import overlap_words
 from ..statements.findings import NEARLY
 from ..study.configuration import ACCURACY, solver_settings
 from .chosen import Chosen, configuration_of
 
-GOOD, PARTLY, POOR, NOT_ASKED = "good", "in part", "poor", "not asked"
 #: A sign for each, so that no colour is needed.
 SIGNS = {GOOD: "●", PARTLY: "◐", POOR: "○", NOT_ASKED: "–"}
 
@@ -44,8 +52,17 @@ class Light:
 
 
 def lights_of(chosen: Chosen) -> list[Light]:
-    """The four lights of a specimen."""
-    return [_scan(chosen), _faces(chosen), _nodes(chosen), _grid(chosen)]
+    """The five lights of a specimen."""
+    return [_scan(chosen), _faces(chosen), _nodes(chosen), _grid(chosen), _model(chosen)]
+
+
+def validity_at(chosen: Chosen, number: int) -> Validity:
+    """Whether the elastic model is valid under the load of this number, with its real pressure."""
+    state = chosen.values("closure", "area", "area_corrected", "nodes").isel(normal_force=number)
+    areas = (float(state[name]) for name in ("area", "area_corrected", "nodes"))
+    slope = float(chosen.values("area", "rms_slope")["rms_slope"])
+    pressure = real_mean_pressure(float(chosen.forces[number]), *areas)
+    return elastic_model_validity(pressure, slope, chosen.settings["material"])
 
 
 def warnings_of(chosen: Chosen) -> list[str]:
@@ -114,3 +131,9 @@ def _grid(chosen):
         f"{100 * asked:.2g} %, of use up to {100 * NEARLY:.0f} %"
     )
     return Light(key, title, word, reason)
+
+
+def _model(chosen):
+    found = validity_at(chosen, chosen.map_load)
+    reason = f"{found.reason}, under the load of the maps"
+    return Light("model", "Validity of the elastic model", found.verdict, reason)

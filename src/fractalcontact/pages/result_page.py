@@ -28,14 +28,16 @@ from .budget import bars_of
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .chosen import STAGES, Chosen, configuration_of, specimens_of
+from .common_loads import common_loads, main_load
 from .curves import curves_table
 from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
 from .lights import warnings_of
 from .matrix import Row, counted, matrix_of, of_study
-from .summary import Specimen, summarised, summary_table
+from .opening import opening_of
+from .summary import AtLoad, Estimate, Quantity, Specimen, summarised, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
-from .words import duration, measured, percent, short, with_unit
+from .words import duration, interval, measured, percent, short, undetermined, with_unit
 
 #: Digits of the numbers in tables: more than any of them has.
 _FORMAT = "%.8g"
@@ -85,7 +87,8 @@ def write_result_page(place: Place) -> list[str]:
     """
     atlas = read_atlas(place.atlas, without=ALL_STAGES.keys() - set(STAGES))
     chosen = [Chosen(atlas, name) for name in specimens_of(atlas)]
-    specimens = [summarised(one) for one in chosen]
+    loads = common_loads(chosen)
+    specimens = [summarised(one, loads) for one in chosen]
     study = str(atlas.attrs["study"])
     curves = curves_table(study, chosen)
     _write_table(place.folder / SUMMARY, summary_table(study, specimens))
@@ -99,7 +102,13 @@ def write_result_page(place: Place) -> list[str]:
         path = place.folder / SPECIMEN_PAGE.format(specimen=one.name)
         write_page(path, "specimen.html", head | values)
     reliefs = {one.name: relief_thumbnail(one.stage("specimens")) for one in chosen}
-    values = _index_values(place, atlas, specimens, rows, curves) | {"reliefs": reliefs}
+    first = main_load(loads, chosen)
+    values = _index_values(place, atlas, specimens, rows, curves) | {
+        "reliefs": reliefs,
+        "loads": loads,
+        "first_load": first,
+        "opening": opening_of(specimens, first, rows),
+    }
     write_page(place.folder / INDEX, "index.html", head | values)
     return [one.name for one in chosen]
 
@@ -126,6 +135,10 @@ def _head(place, atlas):
         "percent": percent,
         "symbols": symbols,
         "estimate": _estimate,
+        "undetermined": undetermined,
+        "uncertain": lambda found: interval(found.value, found.low, found.high),
+        "sort_value": _sort_value,
+        "note_of": _note_of,
         "in_paper": _in_paper,
     }
 
@@ -140,9 +153,33 @@ def _estimate(found):
     if found.value is None:
         return short(None)
     if not found.determined:
-        return "undetermined"
+        return undetermined(interval(found.value, found.low, found.high))
     ends = f" [{measured(found.low)}, {measured(found.high)}]" if found.low is not None else ""
     return measured(found.value) + ends
+
+
+def _quoted(state, name):
+    """A quantity, an estimate or a number that is quoted under a load."""
+    return state.quantities[name] if name in state.quantities else getattr(state, name)
+
+
+def _sort_value(state: AtLoad | None, name: str) -> float | str:
+    """What a column is sorted by: a number, empty where it is missing or undetermined."""
+    if state is None:
+        return ""
+    found = _quoted(state, name)
+    if isinstance(found, Estimate) and not found.determined:
+        return ""
+    if isinstance(found, Quantity) and state.decided_by_scan:
+        return ""
+    value = found.value if isinstance(found, Estimate | Quantity) else found
+    return "" if value is None else value
+
+
+def _note_of(state: AtLoad | None, name: str) -> str:
+    """Why an estimate is missing, or what to know of it."""
+    found = None if state is None else _quoted(state, name)
+    return found.note if isinstance(found, Estimate) else ""
 
 
 def _in_paper(figures):

@@ -9,12 +9,14 @@ import xarray as xr
 
 from ..core.determined import determined
 from ..domain.box_dimension import WIDEST
+from ..mechanics.model_validity import Validity
 from ..mechanics.overlap import DECISIVE
 from ..statements.sliding import Plateaus
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
-from .lights import Light, lights_of
+from .common_loads import CommonLoad
+from .lights import Light, lights_of, validity_at
 from .words import in_table
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
@@ -90,16 +92,31 @@ class Quantity:
 
 @dataclass(frozen=True)
 class AtLoad:
-    """What is quoted of a specimen under one load."""
+    """What is quoted of a specimen under one load.
 
+    Attributes
+    ----------
+    number : int
+        Of the load among those of the study.
+    model : Validity
+        Whether the elastic model is valid, with the real mean pressure.
+    """
+
+    number: int
     normal_force: float
     nominal_pressure: float
     of_maps: bool
     contact_nodes: float | None
     suspect_share: float | None
+    model: Validity
     quantities: dict[str, Quantity]
     delta_sigma_boxes: Estimate
     delta_sigma_areas: Estimate
+
+    @property
+    def real_pressure(self) -> float | None:
+        """Real mean pressure F / A_r, MPa."""
+        return finite(self.model.pressure)
 
     @property
     def decided_by_scan(self) -> bool:
@@ -151,14 +168,21 @@ class Specimen:
         """The load of the contact maps."""
         return next(load for load in self.loads if load.of_maps)
 
+    def at(self, number: int | None) -> AtLoad | None:
+        """What is quoted under the load of this number."""
+        return next((load for load in self.loads if load.number == number), None)
 
-def summarised(chosen: Chosen) -> Specimen:
+
+def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
     """The row of a specimen.
 
     Parameters
     ----------
     chosen : Chosen
+    common : sequence of CommonLoad, optional
+        Loads at which it is compared with others: quoted too.
     """
+    compared = {load.numbers[chosen.name] for load in common if chosen.name in load.numbers}
     specimen = chosen.stage("specimens")
     side_y, side_x = window_sides(specimen)
     surface = chosen.stage("surface_dimension")
@@ -179,7 +203,7 @@ def summarised(chosen: Chosen) -> Specimen:
         k_ni=Estimate.of(curve, "hyperbola_k_ni", why),
         closure_law=str(curve["closure_law"].item()),
         dilatancy=dilatancy_of(chosen),
-        loads=[_at_load(chosen, curve, number) for number in chosen.loads],
+        loads=[_at_load(chosen, curve, i) for i in sorted(compared.union(chosen.quoted))],
         lights=lights_of(chosen),
     )
 
@@ -188,11 +212,13 @@ def _at_load(chosen, curve, number):
     """What stands in the table under the load of this number."""
     state = {"normal_force": number}
     return AtLoad(
+        number=number,
         normal_force=float(chosen.forces[number]),
         nominal_pressure=float(chosen.pressures[number]),
         of_maps=number == chosen.map_load,
         contact_nodes=finite(curve["nodes"].isel(state)),
         suspect_share=finite(curve["suspect_load_share"].isel(state)),
+        model=validity_at(chosen, number),
         quantities=quantities_at(chosen, number),
         delta_sigma_boxes=_dimension(chosen, "domains", state),
         delta_sigma_areas=_dimension(chosen, "scaling", state),
@@ -295,6 +321,10 @@ def _of_load(load):
         "load_of_maps": load.of_maps,
         "contact_nodes": load.contact_nodes,
         "suspect_load_share": load.suspect_share,
+        "real_pressure_MPa": load.real_pressure,
+        "elastic_model": load.model.verdict,
+        "elastic_model_good_to_MPa": load.model.good_to,
+        "elastic_model_poor_from_MPa": load.model.poor_from,
     }
     for name, quantity in load.quantities.items():
         if name == "delta_sigma":  # stands below, with its interval

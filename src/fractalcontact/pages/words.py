@@ -10,8 +10,11 @@ _PLAIN = (1e-4, 1e6)
 _LENGTHS = ((1.0, "mm", 1.0), (1e-3, "µm", 1e-3), (0.0, "nm", 1e-6))
 _STIFFNESS = ((1e3, "GPa/mm", 1e3), (0.0, "MPa/mm", 1.0))
 _FORCES = ((1e6, "MN", 1e6), (1e3, "kN", 1e3), (0.0, "N", 1.0))
-_SCALED = {"mm": _LENGTHS, "MPa/mm": _STIFFNESS, "N": _FORCES}
+_PRESSURES = ((1e3, "GPa", 1e3), (0.0, "MPa", 1.0))
+_SCALED = {"mm": _LENGTHS, "MPa/mm": _STIFFNESS, "N": _FORCES, "MPa": _PRESSURES}
 MISSING = "–"
+#: Ends of an interval that differ from even ones by less than this part of it are called even.
+_EVEN = 0.02
 
 
 def short(value: float | None, digits: int = 3) -> str:
@@ -55,6 +58,21 @@ def percent(fraction: float | None, digits: int = 2) -> str:
     if fraction is None or not math.isfinite(fraction):
         return MISSING
     return f"{short(100 * fraction, digits)} %"
+
+
+def interval(value: float | None, low: float | None, high: float | None) -> str:
+    """A value and its error: "0.96 ± 0.94", or its ends in brackets where they lie unevenly."""
+    if value is None or low is None or high is None:
+        return f"{measured(value)}, error not known" if value is not None else MISSING
+    up, down = high - value, value - low
+    if abs(up - down) <= _EVEN * (high - low):
+        return f"{measured(value)} ± {measured((up + down) / 2, 2)}"
+    return f"{measured(value)} [{measured(low)}, {measured(high)}]"
+
+
+def undetermined(value: str) -> str:
+    """What the data do not determine: the word, with the value and its error in brackets."""
+    return f"undetermined ({value})"
 
 
 def in_table(text: str) -> str:

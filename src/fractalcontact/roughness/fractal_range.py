@@ -43,8 +43,8 @@ VAGUE = 2.5
 NO_POWER_LAW = 2.0
 #: Features that lie at a wavelength.
 LENGTHS = ("noise", "filter", "roll_off")
-#: A strip of profiles with so many times the median strip's power holds a spike or a step, which is
-#: no noise of the instrument: it is left out.
+#: A strip of profiles with this many times the median strip's power holds a spike or a step, which
+#: is no noise of the instrument: it is left out.
 SPIKY = 3.0
 #: Spectra of fewer bins are not fitted.
 FEWEST_BINS = 7

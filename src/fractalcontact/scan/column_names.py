@@ -103,7 +103,7 @@ def has_record_names(names: list[str] | None) -> bool:
 
 
 def numbers_columns(names: list[str]) -> bool:
-    """Whether names only tell columns apart: X1, X2, ..., A, B, C, ..., or all the same word.
+    """Whether names only distinguish columns: X1, X2, ..., A, B, C, ..., or all the same word.
 
     Such are the columns of a matrix; names of different stems are different quantities.
     """

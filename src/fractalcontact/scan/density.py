@@ -9,10 +9,10 @@ from ..core.strips import blocks, strips
 from .points import Lattice
 from .triangles import circumradius, doubled_area, on_one_line
 
-#: So many points stand for all where a median is wanted: it is then known to 1 %.
+#: This many points stand for all where a median is wanted: it is then known to 1 %.
 SAMPLE = 50_000
-#: Triangles are looked at in so many patches of so many neighbouring points, or in the whole cloud
-#: if it has fewer points.
+#: Triangles are examined in this many patches of this many neighbouring points, or in the whole
+#: cloud if it has fewer points.
 PATCHES = 20
 PATCH_POINTS = 3_000
 #: Nothing was measured where a circle without points has a radius above this multiple of the usual
@@ -64,7 +64,7 @@ def plane_tree(points: np.ndarray) -> cKDTree:
 
 
 def sample_points(points: np.ndarray, size: int = SAMPLE) -> np.ndarray:
-    """All points, or so many of them taken at random (the same ones every time)."""
+    """All points, or this many of them taken at random (the same ones every time)."""
     if len(points) <= size:
         return points
     return points[np.random.default_rng(0).choice(len(points), size, replace=False)]

@@ -16,7 +16,7 @@ _PLANE = 1e-6
 MANY_MISSING = 0.5
 #: Rows differ more across a seam, in units of the median difference of neighbouring rows ...
 _SEAM = 10.0
-#: ... and by so many times the next largest difference: relief has no single cut right across.
+#: ... and by this many times the next largest difference: relief has no single cut right across.
 _NEXT = 3.0
 #: Fewer cells in a row that both rows have say nothing of a seam.
 _FEWEST_IN_ROW = 8

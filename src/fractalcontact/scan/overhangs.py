@@ -10,11 +10,11 @@ from .density import sample_points
 _NEIGHBOURS = 36
 #: A point lies above another if it is steeper towards it than this ...
 _STEEPEST = np.tan(np.radians(80.0))
-#: ... and higher by so many lower quartiles of the height differences between nearest neighbours:
+#: ... and higher by this many lower quartiles of the height differences between nearest neighbours:
 #: white noise alone reaches 16 of them once in a million pairs. The quartile is that of one layer,
 #: even where two of them lie over each other everywhere.
 _NOISE = 20.0
-#: So many neighbours make a layer, above a point or at its level; fewer are spikes.
+#: This many neighbours make a layer, above a point or at its level; fewer are spikes.
 _FEWEST = 6
 #: The points above lie on all sides if no sector wider than this is free of them. On one side of
 #: a line, at a step or at an upright wall, they leave half a circle free.

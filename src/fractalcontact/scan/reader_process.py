@@ -32,7 +32,7 @@ from .transfer import from_text, send_scan, to_text
 BASE_MEMORY = 1024**3
 #: Seconds of processor time, likewise.
 BASE_SECONDS = 8
-#: A machine shared with others, or a slow disc, may take so many times longer by the clock.
+#: A machine shared with others, or a slow disc, may take this many times as long by the clock.
 PATIENCE = 4
 _MOST_FILES = 64
 #: Characters; sentences of this program are far shorter, whatever they quote.
@@ -54,7 +54,7 @@ class Limits:
 
 
 def limits_for(size: int, formats: Sequence[Format]) -> Limits:
-    """Limits for a file of so many bytes, inflated where it is an archive.
+    """Limits for a file of this many bytes, inflated where it is an archive.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def _lower(limit: int, value: int) -> None:
 
 
 def _address_space() -> int:
-    """Bytes of address space this process has; 0 where the system does not tell."""
+    """Bytes of address space this process has; 0 where the system does not state it."""
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[0])
     except FileNotFoundError:  # macOS, which does not enforce RLIMIT_AS either

@@ -17,7 +17,7 @@ from .surface_motion import Motion, Surface, grid_nodes
 _CLEARLY_BETTER = 0.05
 #: Cells along the longer side of the finest grid the motion is sought on; finer scans are averaged.
 _FINEST, _COARSEST = 512, 64
-_FEWEST_CELLS = 64  # common to both faces, to tell a gap's spread
+_FEWEST_CELLS = 64  # common to both faces, to know a gap's spread
 _MOST_STEPS, _MOST_HALVINGS = 50, 8
 _SMALL_STEP = 1e-3  # of a cell: a step that moves no cell further ends the search
 #: A cell whose gap is further than this many robust standard deviations from that of most does not

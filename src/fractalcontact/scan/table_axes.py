@@ -16,7 +16,7 @@ FEW = 0.2
 OUTLYING = 10
 #: The same for a jump to a neighbour, which coordinates in uneven steps have.
 JUMP = 3
-#: Rows numbered with gaps reach up to so many times their count.
+#: Rows numbered with gaps reach up to this many times their count.
 MOST_GAPS = 4
 _SAMPLE = 64  # rows that the first one is compared with
 _RULER = 5  # fewer numbers rise evenly by chance

@@ -20,9 +20,9 @@ _WHOLE = (
     "x and y are whole numbers from 0 or 1 on, taken in the file's unit; if they count cells, "
     "write 'spacing: 0.1 mm'"
 )
-#: Numbered columns and rows may leave so many times more cells empty than they fill.
+#: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
 MOST_EMPTY = 20
-#: Points on a grid fill at least one of so many of its nodes.
+#: Points on a grid fill at least one node in this many.
 FULL = 5
 #: Larger tables are not searched for the columns that lie on a grid: it sorts them all.
 MOST_ORDERED = 1_000_000
@@ -32,7 +32,8 @@ FEW_COLUMNS = 32
 UNLIKE = 20
 #: Times the median step between rows that a line between two matrices must part.
 PARTED = 3
-#: Times the largest other step between rows that tells two matrices without a line between them.
+#: Two matrices follow each other without a line between them where a step between rows is this
+#: many times the largest other one.
 TORN = 8
 
 
@@ -127,7 +128,7 @@ def table_to_raw(
     Raises
     ------
     InputError
-        If neither its width nor its column names tell, they tell that it is no surface, a wanted
+        If neither its width nor its column names decide, they show that it is no surface, a wanted
         column is absent, or several tables stand under one another.
     """
     n_columns = table.shape[1]

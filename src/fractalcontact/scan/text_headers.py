@@ -21,7 +21,7 @@ _ADVICE = {
 def gwyddion_header(header: list[str], shape: tuple[int, int], where: str) -> dict | None:
     """Size and unit of Gwyddion's text export: "# Width: 10.0 um", "# Value units: m".
 
-    Gwyddion translates the keys, so the order of the lines tells, not their words: two sizes and
+    Gwyddion translates the keys, so the order of the lines decides, not their words: two sizes and
     the unit of the values right behind.
 
     Parameters

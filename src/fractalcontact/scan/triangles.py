@@ -12,7 +12,7 @@ from .points import MOST_CELLS, Lattice
 TILE_POINTS = 25_000
 #: A tile has no more places than this either.
 TILE_PLACES = 2_000_000
-#: Qhull takes about 1 GB for so many points; more of them around one cell, or within the largest
+#: Qhull takes about 1 GB for this many points; more of them around one cell, or within the largest
 #: circle, are no scan of a surface.
 _MOST_IN_TILE = 1_000_000
 #: Points on one line: they stray from it by less than this share of its length (root of rounding).

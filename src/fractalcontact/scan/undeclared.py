@@ -6,20 +6,20 @@ import numpy as np
 
 from ..core.errors import InputError
 
-#: A number is far outside if it is so many quartile distances of the others away from the nearest
+#: A number is far outside if it lies this many quartile distances of the others from the nearest
 #: of them: the extremes of any relief, level or tilted, lie within a few of each other.
 _FAR = 10.0
-#: ... and it stands in so many cells; a single one is a spike, unless it is a usual mark.
+#: ... and this many cells hold it; a single one is a spike, unless it is a usual mark.
 _FEWEST = 3
 _USUAL = (-9999.0, -99999.0, -999999.0, 9999.0, 99999.0, -999.0, -32768.0, -32767.0, 32767.0)
-#: A number among the others is suspected if it stands in so many cells, and in so many times as
-#: many as the next: heights of instruments repeat, but none so much more than all others.
+#: A number among the others is suspected if this many cells hold it, and this many times
+#: as many cells as hold the next one: heights of instruments repeat, but none that much more.
 _REPEATED, _DOMINANT = 30, 10.0
 #: Cells looked at for that: a fixed draw, so that a large scan costs no more than a small one.
 _SAMPLE = 500_000
-#: Fewer different heights are those of a made surface of a few levels.
+#: Fewer different heights are those of a synthetic surface of a few levels.
 _FEWEST_LEVELS = 16
-#: So many marks are looked for.
+#: This many marks are looked for.
 _MOST_MARKS = 4
 #: A mark comes back from text and single precision not quite the same.
 _SAME = 1e-6
@@ -196,7 +196,7 @@ def _flat(heights: np.ndarray) -> np.ndarray:
 
 
 def _drawn(values: np.ndarray) -> np.ndarray:
-    """So many of the values, drawn once and for all."""
+    """This many of the values, drawn once and for all."""
     if values.size <= _SAMPLE:
         return values
     return values[np.random.default_rng(0).integers(0, values.size, _SAMPLE)]

@@ -15,8 +15,8 @@ from .size_exponents import add_size_exponents, usable_sizes
 from .strength_laws import strength_by_size
 from .window_means import add_law, add_mean
 
-#: Eq. 2 is fitted from so many cells to this fraction of the window's side unless a range is given:
-#: the range of the roughness-length estimator of :mod:`roughness.dimension`.
+#: Eq. 2 is fitted from this many cells to this fraction of the window's side unless a range is
+#: given: the range of the roughness-length estimator of :mod:`roughness.dimension`.
 FIRST_FITTED_CELLS, LAST_FITTED_FRACTION = 8, 1 / 4
 
 #: Means over sub-windows that are fitted as powers of b: name of the exponent, fewest nodes in
@@ -139,7 +139,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
     for name, (exponent, fewest, words) in _OVER_LOADS.items():
         add_mean(result, name, states[name], states[f"{name}_error"])
         if name in _OF_INTERFACE:
-            # Where contact is too full to tell the interface from the bulk.
+            # Where contact is too full to separate the interface from the bulk.
             below = result[name] < 0
             for ending in (*INTERVAL, "_error"):
                 result[f"{name}{ending}"] = result[f"{name}{ending}"].where(~below)

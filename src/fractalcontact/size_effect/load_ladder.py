@@ -19,12 +19,12 @@ from ..mechanics.states import SOLVER_ERROR
 from ..mechanics.sweep import load_steps
 from .division import PARTS, solvable_parts, split
 
-#: A resolution is used if the smallest sub-windows keep so many nodes per side at it.
+#: A resolution is used if the smallest sub-windows keep this many nodes per side at it.
 FEWEST_NODES_PER_SIDE = 12
-#: The whole window is tested at the study's loads and at so many doublings of the largest: loads no
-#: rock would stand as an elastic body, but where small windows hold nodes enough.
+#: The whole window is tested at the study's loads and at this many doublings of the largest: loads
+#: no rock would stand as an elastic body, but where small windows hold nodes enough.
 TESTED_DOUBLINGS = 3
-#: So many more doublings may be needed for small windows to have the sigma* of the whole; see
+#: This many more doublings may be needed for small windows to have the sigma* of the whole; see
 #: :func:`solve_sub_windows` for when they are solved.
 SPARE_DOUBLINGS = 3
 #: Loads stay below this fraction of what the hardness lets a window carry.
@@ -180,7 +180,7 @@ class _LoadedSize:
                 self._states[j, k] = load_steps(h, space, self.loads, loading.solving, where)
 
     def extend(self, steps: int) -> None:
-        """Load every sub-window by so many steps more, as far as there are any."""
+        """Load every sub-window by this many steps more, as far as there are any."""
         following = range(self.solved, min(self.solved + steps, len(self.loads)))
         for (j, k), rising in self._states.items():
             for step, state in zip(following, rising, strict=False):

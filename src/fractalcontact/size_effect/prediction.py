@@ -24,7 +24,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
     delta_sigma : xr.DataArray (estimator, normal_force)
         Of the whole window.
     fewest_nodes : int
-        A size is used where its windows hold so many nodes on the average.
+        A size is used where its windows hold this many nodes on the average.
 
     Returns
     -------

@@ -36,11 +36,12 @@ def judge_study(
     return table_of([(asked, asked.check(joints)) for asked in STATEMENTS], {})
 
 
-def size_effect_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
+def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     """Exponent 2 - Delta_sigma by A_r(s) at the load of the maps, against Delta_g of the faces.
 
-    Of surfaces against a plane where there are three: their composite topography is the face, and
-    one study loads them alike.
+    The paper says that the size effect is more pronounced for larger Delta_g, and means this
+    exponent; no size is varied here. Of surfaces against a plane where there are three: their
+    composite topography is the face, and one study loads them alike.
     """
     flat = [joint for joint in joints.values() if joint.settings["opposite"] == "flat"]
     if len(flat) < 3:
@@ -55,7 +56,8 @@ def size_effect_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=True),
         f"2 - Delta_sigma by A_r(s) {pairs}",
-        "at light load it is the growth of the slopes h'_rms of the surface with resolution",
+        "at light load it is the growth of the slopes h'_rms of the surface with resolution; "
+        "whether strength follows that exponent as the size grows is what eq. 6 is judged for",
     )
 
 
@@ -116,7 +118,8 @@ STATEMENTS = (
     ),
     Statement(
         "sect. 7",
-        "The size effect is more pronounced for larger Delta_g of the composite topography",
-        size_effect_grows_with_dimension,
+        "The exponent 2 - Delta_sigma (not the strength itself) grows with Delta_g of the "
+        "composite topography",
+        size_exponent_grows_with_dimension,
     ),
 )

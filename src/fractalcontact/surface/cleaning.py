@@ -12,7 +12,7 @@ from .suspect import Suspects, find_suspects
 
 OUTLIERS = ("keep", "mask", "fill")
 #: A cell is compared with the 7 x 7 cells around it, of which a cluster of 3 x 3 spikes is a
-#: minority that can be set aside; so many must be present that some remain.
+#: minority that can be set aside; this many must be present that some remain.
 _SIDE = 7
 _LARGEST_CLUSTER = 9
 _FEWEST = 25

@@ -24,7 +24,7 @@ MISSING = "0.7"
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 
 #: Domains of fewer nodes than this get rings where the nodes are too small to be seen in print:
-#: more than so many along a side of the map.
+#: more than this many along a side of the map.
 FEW_NODES = 100
 FINE_NODES = 100
 
@@ -85,7 +85,7 @@ def draw_map(
     sides : (float, float)
         (y, x) in mm.
     ticks : int
-        About so many along each side.
+        About this many along each side.
     interpolation : str
         By default none, so that no missing cell is filled.
     **options
@@ -117,7 +117,7 @@ def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks
     sides : (float, float)
         Of the window (y, x), mm.
     ticks : int
-        About so many along each side.
+        About this many along each side.
 
     Returns
     -------

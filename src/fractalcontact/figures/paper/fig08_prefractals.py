@@ -8,6 +8,7 @@ from xarray import DataTree
 
 from ...core.resolved import CORRECTED_NODES
 from ...domain.renormalisation import RESOLUTION
+from ...mechanics.model_validity import elastic_model_validity
 from ..kit.domains import Loading, disagreement
 from ..kit.drawing import (
     COLOURS,
@@ -37,9 +38,6 @@ ORDER = 130
 #: Maps side by side.
 _COLUMNS = 4
 
-#: Rms slope of the composite topography up to which half-spaces are a fair model of its faces.
-SMALL_SLOPE = 0.3
-
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """Contact domains at all resolutions, with A_r and sigma_n = F / A_r."""
@@ -68,7 +66,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(axes, letters[len(table)], f"real mean pressure (rms slope {short(slope)})")
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     falls = claim(atlas, name, "fall of A_r as a power", "area_is_lacunar", numbers=False)
-    caption = _caption(loading, i, table, slope, limit, falls)
+    caption = _caption(loading, i, table, slope, falls)
     caption = sentences(caption, ENLARGED if larger else "")
     return Drawing(figure, table.assign(rms_slope=slope), caption)
 
@@ -136,24 +134,20 @@ def _draw_pressures(axes, table, limit):
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
 
 
-def _caption(loading, i, table, slope, limit, falls):
+def _caption(loading, i, table, slope, falls):
     # "no fit", "no dimension": the reasons stand in Figs. 9 and 10.
     by_area, by_box = (e.reason[i].split(":")[0] or e.text(i) for e in loading.estimates)
     return (
         f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}. "
-        f"{falls} {_model_words(table, slope, limit)} Delta_sigma: {by_area} by A_r(s), "
+        f"{falls} {_model_words(loading, table, slope)} Delta_sigma: {by_area} by A_r(s), "
         f"{by_box} by box counting. {disagreement(loading.scaling.isel(normal_force=i))}"
     )
 
 
-def _model_words(table, slope, limit):
+def _model_words(loading, table, slope):
     """Whether pressures and slopes are beyond what the model of elastic half-spaces can bear."""
     finest = table.iloc[0]
     pressure = finest["sigma_n_MPa"]
     if not np.isfinite(pressure):
         pressure = finest["sigma_n_raw_MPa"]
-    words = f"sigma_n reaches {pressure_label(pressure)}"
-    if limit is not None:
-        place = "beyond" if pressure > limit[0] else "within"
-        words += f", {place} the {limit[1]} ({pressure_label(limit[0])})"
-    return words + ("." if slope <= SMALL_SLOPE else f"; rms slope {short(slope)}, not small.")
+    return elastic_model_validity(pressure, slope, loading.settings["material"]).sentence

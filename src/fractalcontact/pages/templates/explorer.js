@@ -270,8 +270,8 @@ function valueWords(key, { states, place }, value) {
   if (!Number.isFinite(value)) return states.solved(place) ? states.reason(key, place) || "–" : "not solved";
   const [low, high] = ["_low", "_high"].map((end) => states.at(key + end, place));
   if (Number.isFinite(low) && Number.isFinite(high)) {
-    const words = `[${short(low, 3)}, ${short(high, 3)}]`;
-    return high - low > 1 ? `undetermined ${words}` : `${short(value)} ${words}`;
+    const words = `${short(value)} [${short(low, 3)}, ${short(high, 3)}]`;
+    return high - low > 1 ? `undetermined (${words})` : words;
   }
   const [total, solver] = [states.total(key, place), states.at(`${key}_error`, place)];
   let words = short(value);

@@ -6,7 +6,7 @@ const MARKS = {
   overlap: { colour: [213, 94, 0], rising: true, words: "faces overlap here as scanned" },
   suspect: { colour: [204, 121, 167], rising: false, words: "otherwise suspicious cell" },
 };
-// Pixels of a node's side where nodes are marked, up to so many pixels of the map's side.
+// Pixels of a node's side where nodes are marked, up to this many pixels of the map's side.
 const HATCHED = 3;
 const LARGEST_HATCHED = 2000;
 const DECADES_OF_PRESSURE = 3;

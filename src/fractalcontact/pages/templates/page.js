@@ -22,6 +22,14 @@ function sortValue(row, column) {
   return shown.dataset.sort === undefined ? cell.textContent.trim() : shown.dataset.sort;
 }
 
+// One nominal pressure for all rows, so that a column compares like with like.
+function showLoad(key) {
+  table.dataset.load = key;
+  for (const one of table.querySelectorAll("td > [data-load]")) one.hidden = one.dataset.load !== key;
+  const sorted = table.querySelector("th[aria-sort]");
+  if (sorted) order(sorted);
+}
+
 // Missing values stand last, whichever way.
 function compare(a, b, down) {
   if (a === "" || b === "") return (a === "") - (b === "");
@@ -34,6 +42,11 @@ function sortBy(header) {
   const down = header.getAttribute("aria-sort") === "ascending";
   for (const other of header.parentNode.children) other.removeAttribute("aria-sort");
   header.setAttribute("aria-sort", down ? "descending" : "ascending");
+  order(header);
+}
+
+function order(header) {
+  const down = header.getAttribute("aria-sort") === "descending";
   const body = table.querySelector("tbody");
   const rows = [...body.rows].map((row) => [sortValue(row, header.cellIndex), row]);
   rows.sort((a, b) => compare(a[0], b[0], down));
@@ -204,7 +217,7 @@ function openStatement(event) {
 }
 
 if (table) {
-  document.getElementById("load").addEventListener("change", (event) => { table.dataset.load = event.target.value; });
+  document.getElementById("load")?.addEventListener("change", (event) => showLoad(event.target.value));
   table.querySelector("thead").addEventListener("click", (event) => {
     const button = event.target.closest("button");
     if (button) sortBy(button.closest("th"));

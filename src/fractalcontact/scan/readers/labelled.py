@@ -38,7 +38,7 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
 
     Fill values, ``scale_factor`` and ``add_offset`` are applied (CF conventions); where a variable
     ``mask`` is not zero, cells are missing (SurfaceTopography's convention). Dimensions called x
-    and y, or with the attribute ``axis``, tell the axes apart; else rows are y. Coordinates give
+    and y, or with the attribute ``axis``, distinguish the axes; else rows are y. Coordinates give
     spacing and direction, attributes ``units`` (or ``unit``) the units.
 
     Raises

@@ -1,0 +1,203 @@
+"""The sentences that a result page opens with: what the study found, in numbers and verdicts.
+
+Numbers are those of the summary, verdicts those of the statements and of the elastic model.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+
+from markupsafe import Markup, escape
+
+from ..mechanics.model_validity import GOOD, PARTLY, POOR
+from ..statements.findings import FAILS, HOLDS, UNDETERMINED
+from ..statements.findings import PARTLY as IN_PART
+from ..statements.judge import all_statements
+from .captions import symbols
+from .common_loads import CommonLoad
+from .matrix import Row
+from .summary import AtLoad, Specimen
+from .words import measured, percent, short, with_unit
+
+#: Names listed one by one; more are counted.
+_LISTED = 3
+#: Statements that are quoted by name: on eq. 6, and on the plateau of the dilatancy.
+_EQ6 = "size_effect_follows"
+_PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
+_VERDICTS = {
+    HOLDS: "holds",
+    IN_PART: "holds in part",
+    FAILS: "does not hold",
+    UNDETERMINED: "is undetermined",
+}
+_MODEL = {GOOD: "good", PARTLY: "good in part", POOR: "poor"}
+_KINDS = {"level": "levels off", "rising": "keeps rising", "falling": "falls"}
+
+_At = Sequence[tuple[Specimen, AtLoad]]
+
+
+def opening_of(
+    specimens: Sequence[Specimen], load: CommonLoad | None, rows: Sequence[Row]
+) -> list[Markup]:
+    """Up to five sentences on what the study found; those without a number are left out.
+
+    Parameters
+    ----------
+    specimens : sequence of Specimen
+    load : CommonLoad or None
+        Under which they are compared.
+    rows : sequence of Row
+        Of the paper's statements.
+    """
+    if load is None:
+        return []
+    found = [(one, at) for one in specimens if (at := one.at(load.numbers.get(one.name)))]
+    under = f"Under {short(load.pressure)} MPa"
+    sentences = (
+        _closure(found, under),
+        _model(found, under),
+        _dilatancy(specimens, rows),
+        _dimensions(found, under),
+        _size_effect(rows),
+    )
+    return [sentence for sentence in sentences if sentence]
+
+
+def _closure(found: _At, under: str) -> Markup | None:
+    """Closure and tangent stiffness; what suspicious cells of a scan decide is not quoted."""
+    sure = [(one, at) for one, at in found if not at.decided_by_scan]
+    closure = _ends(sure, lambda at: at.quantities["closure"].value)
+    if not closure:
+        return None
+    ends = [
+        Markup("{} ({}{})").format(with_unit(value, "mm"), one.name, _error(at))
+        for value, one, at in closure
+    ]
+    text = Markup("{} the interface closes by {}").format(under, Markup(" to ").join(ends))
+    stiffness = _ends(sure, lambda at: at.quantities["stiffness"].value)
+    if stiffness:
+        text += Markup("; its tangent stiffness is {}").format(
+            _range([value for value, _, _ in stiffness], lambda v: with_unit(v, "MPa/mm"))
+        )
+    return text + "."
+
+
+def _error(at):
+    error = at.quantities["closure"].relative()
+    return "" if error is None else f", ± {percent(error)}"
+
+
+def _ends(found, value_of):
+    """Least and largest value with their specimens; one where there is one, none where none."""
+    known = [(value_of(at), one, at) for one, at in found if value_of(at) is not None]
+    if not known:
+        return []
+    known.sort(key=lambda entry: entry[0])
+    return known[:1] if len(known) == 1 else [known[0], known[-1]]
+
+
+def _range(values: Sequence[float], words: Callable[[float], str]) -> str:
+    """Least to largest value in words; a unit that both have stands once."""
+    low, high = words(min(values)), words(max(values))
+    if low == high:
+        return low
+    number, _, unit = low.partition(" ")
+    return f"{number if unit and high.endswith(f' {unit}') else low} to {high}"
+
+
+def _model(found: _At, under: str) -> Markup | None:
+    """How much of the window touches, at which real pressure, and what the elastic model bears."""
+    known = [(one, at) for one, at in found if at.model.verdict in _MODEL]
+    if not known:
+        return None
+    shares = [at.nominal_pressure / at.model.pressure for _, at in known]
+    verdicts = _counted([at.model.verdict for _, at in known], _MODEL)
+    slopes = [one.rms_slope for one, _ in known if one.rms_slope is not None]
+    bounds = _range([at.model.good_to for _, at in known], _pressure)
+    text = (
+        f"{under} {_range(shares, percent)} of the window is in contact, at a real mean pressure "
+        f"of {_range([at.model.pressure for _, at in known], _pressure)}: the elastic model is "
+        f"{verdicts} (strength or hardness {bounds}{_slopes(slopes)})."
+    )
+    return Markup(escape(text))
+
+
+def _pressure(value):
+    return with_unit(value, "MPa")
+
+
+def _slopes(values):
+    return f", rms slope {_range(values, short)}" if values else ""
+
+
+def _counted(verdicts: Sequence[str], words: Mapping[str, str]) -> str:
+    """Verdicts with the numbers of their specimens: "good for 1 and poor for 4 of 5 specimens"."""
+    total, counts = len(verdicts), Counter(verdicts)
+    given = [verdict for verdict in words if counts[verdict]]
+    if len(given) == 1:
+        return f"{words[given[0]]} for {f'all {total} specimens' if total > 1 else 'the specimen'}"
+    parts = [f"{words[verdict]} for {counts[verdict]}" for verdict in given]
+    return f"{_listed(parts, len(parts))} of {total} specimens"
+
+
+def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | None:
+    """Which joints level off; those that repeat another with a hardness are asked nothing new."""
+    asked = {name for row in rows if row.name in _of_the_surface() for name in row.cells}
+    parts = []
+    for kind, words in _KINDS.items():
+        named = [
+            f"{one.name} ({_level(one.dilatancy)})"
+            for one in specimens
+            if one.dilatancy.kind == kind and one.name in asked
+        ]
+        if named:
+            parts.append(f"{words} for {_listed(named)}")
+    if not parts:
+        return None
+    plateaus = [row.cells for row in rows if row.name in _PLATEAUS]
+    chosen = sorted(name for cells in plateaus for name in cells if cells[name].circular)
+    note = f"; no finding for {_listed(chosen)}, chosen for it" if chosen else ""
+    text = f"As the faces slide, the rigid dilatancy {' and '.join(parts)}{note}."
+    return Markup(escape(text))
+
+
+def _of_the_surface():
+    """Names of the statements that a hardness cannot change."""
+    return {one.check.__name__ for one in all_statements() if not one.plastic}
+
+
+def _level(dilatancy):
+    if dilatancy.kind == "level":
+        return with_unit(dilatancy.level, "mm")
+    return f"slope {short(dilatancy.slope)}"
+
+
+def _listed(names: Sequence[str], most: int = _LISTED) -> str:
+    """Some names one by one; more are counted."""
+    if len(names) > most:
+        return f"{len(names)} specimens"
+    return " and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else names[0]
+
+
+def _dimensions(found: _At, under: str) -> Markup:
+    """Delta_sigma by both estimators, of those specimens where it is determined."""
+    by_boxes = _determined([at.delta_sigma_boxes for _, at in found])
+    by_areas = _determined([at.delta_sigma_areas for _, at in found])
+    return symbols(f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s).")
+
+
+def _determined(estimates):
+    """Range of the estimates that are determined, and how many are."""
+    values = [one.value for one in estimates if one.determined]
+    if not values:
+        return "undetermined"
+    some = len(values) < len(estimates)
+    counted = f" ({len(values)} of {len(estimates)} determined)" if some else ""
+    return _range(values, measured) + counted
+
+
+def _size_effect(rows: Sequence[Row]) -> Markup | None:
+    cells = [cell for row in rows if row.name == _EQ6 for cell in row.cells.values()]
+    if not cells:
+        return None
+    verdicts = _counted([cell.verdict for cell in cells], _VERDICTS)
+    return symbols(f"The size effect of eq. 6 {verdicts} (windows within one joint).")

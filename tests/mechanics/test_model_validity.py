@@ -1,0 +1,82 @@
+"""The verdict on the elastic model: limits stated, limits assumed, and the worse of two counts."""
+
+import numpy as np
+import pytest
+
+from fractalcontact.mechanics.model_validity import (
+    GOOD,
+    NOT_ASKED,
+    PARTLY,
+    POOR,
+    elastic_model_validity,
+    real_mean_pressure,
+)
+
+NOTHING = {"modulus": 20e3, "hardness": np.inf, "joint_wall_strength": np.nan}
+STRENGTH = NOTHING | {"joint_wall_strength": 80.0}
+HARDNESS = STRENGTH | {"hardness": 1000.0}
+
+
+@pytest.mark.parametrize(
+    ("material", "pressure", "slope", "verdict"),
+    [
+        (STRENGTH, 80.0, 0.3, GOOD),
+        (STRENGTH, 81.0, 0.3, PARTLY),
+        (STRENGTH, 241.0, 0.1, POOR),
+        (STRENGTH, 10.0, 0.31, PARTLY),
+        (STRENGTH, 10.0, 0.76, POOR),
+        (STRENGTH, 10.0, np.nan, GOOD),
+        # Yielded all over, its mean pressure is the hardness, but for rounding.
+        (HARDNESS, 1000.0 * (1 + 1e-12), 0.1, GOOD),
+        (HARDNESS, 1001.0, 0.1, POOR),
+        # E/1000 and three times E/200 where nothing is stated.
+        (NOTHING, 20.0, 0.1, GOOD),
+        (NOTHING, 21.0, 0.1, PARTLY),
+        (NOTHING, 301.0, 0.1, POOR),
+        (STRENGTH, np.nan, 0.1, NOT_ASKED),
+    ],
+)
+def test_the_worse_of_pressure_and_slope_counts(material, pressure, slope, verdict):
+    assert elastic_model_validity(pressure, slope, material).verdict == verdict
+
+
+def test_no_larger_pressure_or_slope_makes_it_better():
+    order = (GOOD, PARTLY, POOR).index
+    for material in (NOTHING, STRENGTH, HARDNESS):
+        pressures, slopes = np.geomspace(1, 1e5, 30), np.linspace(0, 2, 30)
+        by_pressure = [elastic_model_validity(p, 0.1, material).verdict for p in pressures]
+        by_slope = [elastic_model_validity(1.0, slope, material).verdict for slope in slopes]
+        for verdicts in (by_pressure, by_slope):
+            ranks = [order(verdict) for verdict in verdicts]
+            assert ranks == sorted(ranks)
+            assert ranks[0] == 0
+            assert ranks[-1] == 2
+
+
+def test_a_stated_strength_within_the_assumed_range_is_judged_no_better_at_its_ends():
+    """An assumed verdict of good, or of poor, holds for every usual strength."""
+    order = (GOOD, PARTLY, POOR).index
+    for strength in np.geomspace(20e3 / 1000, 20e3 / 200, 9):
+        stated = NOTHING | {"joint_wall_strength": strength}
+        for pressure in np.geomspace(1, 1e4, 50):
+            assumed = elastic_model_validity(pressure, 0.1, NOTHING).verdict
+            if assumed != PARTLY:
+                found = elastic_model_validity(pressure, 0.1, stated).verdict
+                assert order(found) == order(assumed)
+
+
+def test_the_reason_names_the_limit_and_both_numbers():
+    found = elastic_model_validity(4880.0, 1.11, STRENGTH)
+    assert found.sentence == (
+        "sigma_n = 4.88 GPa, beyond the joint wall strength (80 MPa); rms slope 1.11, not small: "
+        "elastic model poor."
+    )
+    assumed = elastic_model_validity(5.0, 0.1, NOTHING)
+    assert "none being stated (E/1000 to E/200: 20 to 100 MPa)" in assumed.reason
+
+
+def test_the_real_pressure_balances_the_force():
+    assert real_mean_pressure(100.0, 4.0, 2.0, 30) == 50
+    assert real_mean_pressure(100.0, 4.0, 2.0, 29) == 25
+    assert np.isnan(real_mean_pressure(100.0, np.nan, np.nan, np.nan))
+    assert np.isnan(real_mean_pressure(0.0, 0.0, 0.0, 0))
