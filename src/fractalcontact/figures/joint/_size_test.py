@@ -80,6 +80,33 @@ def load_axis(axes: Axes, test: xr.Dataset) -> None:
     label_short_span(axes.xaxis)
 
 
+def load_columns(test: xr.Dataset, force: float) -> dict[str, float | bool]:
+    """Columns that say which load is meant, the same in every table of the size test.
+
+    Parameters
+    ----------
+    test : xr.Dataset
+    force : float
+        One of the loads of the test, N.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    KeyError
+        If the test has no such load.
+    """
+    load = test[["nominal_pressure", "beyond_study"]]
+    load = load.sel(normal_force=force, method="nearest", tolerance=1e-6 * force)
+    return {
+        "load_N": force,
+        "nominal_pressure_MPa": float(load["nominal_pressure"]),
+        "beyond_study": bool(load["beyond_study"]),
+    }
+
+
 def predicted_table(test: xr.Dataset, i: int, common: dict) -> pd.DataFrame:
     """What eq. 6 predicts under the i-th load by every estimate, and the verdicts on it."""
     return pd.DataFrame(

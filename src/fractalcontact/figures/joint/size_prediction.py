@@ -19,7 +19,7 @@ from ..kit.drawing import (
 )
 from ..kit.sizes import nothing_in, plain_decades
 from ..kit.words import SUPPLEMENTARY, percent, short
-from ._size_test import place_of, size_test_of
+from ._size_test import load_columns, place_of, size_test_of
 
 TITLE = "Closure and contact area of the whole window, predicted from its parts"
 SUBJECT = "specimen"
@@ -91,7 +91,7 @@ def _table(test):
         for j, force in enumerate(test[dim].values):
             columns = {
                 "quantity": f"predicted_{quantity}",
-                "load_N": force,
+                **load_columns(test, force),
                 "predictor": test["predictor"].values,
             }
             columns |= {

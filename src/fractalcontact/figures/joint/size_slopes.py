@@ -28,6 +28,7 @@ from ._size_test import (
     draw_predictions,
     first_loads,
     load_axis,
+    load_columns,
     place_of,
     predicted_table,
     pressure_words,
@@ -108,11 +109,7 @@ def _draw_slopes(axes, test):
 def _table(test):
     tables = []
     for i, force in enumerate(test["normal_force"].values):
-        common = {
-            "load_N": force,
-            "nominal_pressure_MPa": float(test["nominal_pressure"][i]),
-            "beyond_study": bool(test["beyond_study"][i]),
-        }
+        common = load_columns(test, force)
         equal = {
             "quantity": "equal_pressure",
             **common,

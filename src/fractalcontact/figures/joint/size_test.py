@@ -28,6 +28,7 @@ from ._size_test import (
     draw_predictions,
     first_loads,
     load_axis,
+    load_columns,
     place_of,
     predicted_table,
     pressure_words,
@@ -112,13 +113,8 @@ def _draw_exponents(axes, test):
 def _table(test):
     tables = []
     for i, force in enumerate(test["normal_force"].values):
-        common = {
-            "load_N": force,
-            "nominal_pressure_MPa": float(test["nominal_pressure"][i]),
-            "beyond_study": bool(test["beyond_study"][i]),
-        }
-        tables.append(_equal_pressure_table(test, i, common))
-        tables.append(predicted_table(test, i, common))
+        common = load_columns(test, force)
+        tables += [_equal_pressure_table(test, i, common), predicted_table(test, i, common)]
     return pd.concat(tables, ignore_index=True)
 
 

@@ -12,7 +12,7 @@ from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
 from ..kit.maps import ENLARGED, draw_domain
 from ..kit.verdicts import claim, sentences
-from ..kit.words import force_label, interval, opening, short
+from ..kit.words import force_label, interval, opening, short, undetermined
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
@@ -165,7 +165,5 @@ def _caption(loading, i, counts):
 
 def _ordinary(counts):
     """The ordinary dimension with its interval, or that it is undetermined."""
-    if not bool(counts["ordinary_determined"]):
-        return "undetermined"
-    name = "delta_sigma_ordinary"
-    return interval(*(counts[f"{name}{end}"].item() for end in ("", "_low", "_high")))
+    ends = [counts[f"delta_sigma_ordinary{end}"].item() for end in ("", "_low", "_high")]
+    return interval(*ends) if bool(counts["ordinary_determined"]) else undetermined(*ends)
