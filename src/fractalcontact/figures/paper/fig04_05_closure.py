@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.resolved import RESOLVED_NODES
@@ -50,6 +51,9 @@ NEARLY = 0.1
 #: An asymptote beyond this many times the largest closure is stated, not drawn.
 FARTHEST_ASYMPTOTE = 1.5
 
+#: Of the law that fits less well.
+_DASHES = (0, (4, 3))
+
 #: Marker of raw areas, and of states of too few nodes: open, and smaller than the others.
 _OPEN = {"mfc": "none", "ms": 3, "mew": 0.6}
 
@@ -70,12 +74,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.15, 1])
     area = nominal_area(specimen)
     _draw_closure(panels["a"], curves, drawn, direction, area)
-    _draw_light_loads(panels["b"], curves, drawn)
+    _draw_light_loads(panels["b"], curves, drawn, area)
     _draw_area(panels["c"], curves, drawn, direction, laws, area)
     draw_stiffness(panels["d"], stiffness)
-    legends_below(figure, entries(panels["a"]), entries(panels["c"]))
+    legends_below(
+        figure,
+        [*entries(panels["a"]), *_line_entries(panels["a"])],
+        [*entries(panels["c"]), _line("-", r"power law fitted (each its line)", lw=0.7)],
+    )
     letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
-    letter(panels["b"], "b", r"closure at light loads (dotted: $k_{ni}\,w_\mathrm{int}$)")
+    letter(panels["b"], "b", r"light loads: hyperbola, dotted down to its $k_{ni}$")
     letter(panels["c"], "c", "contact area (filled: corrected, hollow: raw)")
     letter(panels["d"], "d", f"stiffness over the spacing, {_state(direction, stiffness)}")
     headline(figure, settings["label"], place(direction))
@@ -133,8 +141,8 @@ def _draw_closure(axes, curves, drawn, direction, area):
     _second_axis(axes, size / area).set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
 
 
-def _draw_light_loads(axes, curves, drawn):
-    """The closure curves on logarithmic axes, with the line that k_ni gives each at light load."""
+def _draw_light_loads(axes, curves, drawn, area):
+    """The closure curves on logarithmic axes with their hyperbolas, down to k_ni at light load."""
     pressure = curves["nominal_pressure"].values
     for n, i in enumerate(drawn):
         curve = curves.isel(offset=i)
@@ -142,10 +150,12 @@ def _draw_light_loads(axes, curves, drawn):
         w, resolved = curve["interface_closure"].values, curve["resolved"].values
         axes.plot(w[resolved], pressure[resolved], MARKERS[n], **style)
         axes.plot(w[~resolved], pressure[~resolved], MARKERS[n], **style, **_OPEN)
-        k_ni = float(curve["hyperbola_k_ni"])
-        if np.isfinite(k_ni):
-            ends = np.array([pressure[0], pressure[-1]])
-            axes.plot(ends / k_ni, ends, ls=":", lw=0.9, **style)
+        if np.isfinite(float(curve["hyperbola_k_ni"])):
+            # Below the loads it is fitted to the hyperbola is all k_ni, and an extrapolation.
+            first, last = (float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max"))
+            for ends, line in (((first, last), "-"), ((pressure[0] / 2, first), ":")):
+                along = np.geomspace(*ends, 40)
+                axes.plot(_hyperbola(curve, along), along, ls=line, lw=0.8, **style)
     axes.set(xscale="log", yscale="log")
     closures = curves["interface_closure"].isel(offset=drawn)
     drawable = closures.where(closures > 0)
@@ -169,12 +179,12 @@ def _draw_laws(axes, curve, area, size, style):
             continue
         pressure = np.geomspace(*ends, 100)
         better = float(curve[f"{prefix}_misfit"]) == np.nanmin(misfits)
-        line = {"lw": 0.9} if better else {"lw": 0.7, "ls": (0, (4, 3))}
+        line = {"lw": 0.9} if better else {"lw": 0.7, "ls": _DASHES}
         axes.plot(of(curve, pressure), pressure * area / size, **line, **style)
 
 
 def _law_words(curve):
-    """The law named, and the misfits of both."""
+    """k_ni with its interval, in MPa/mm, and the misfits of both laws."""
     misfits = [
         f"{percent(float(curve[f'{prefix}_misfit']))} {words}"
         for words, prefix in (("log", "semi_logarithmic"), ("hyperbola", "hyperbola"))
@@ -183,12 +193,29 @@ def _law_words(curve):
     if not misfits:
         return f"no fit: {_no_law(curve)}"
     k_ni = float(curve["hyperbola_k_ni"])
-    initial = f"$k_{{ni}}$ {short(k_ni)} MPa/mm, " if np.isfinite(k_ni) else ""
+    ends = [float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")]
+    initial = f"$k_{{ni}}$ {estimate(*ends)}, " if np.isfinite(k_ni) else ""
     return f"{initial}misfit {', '.join(misfits)}"
 
 
 def _no_law(curve):
     return str(curve["closure_law_reason"].values)
+
+
+def _line(style, label, lw=0.9):
+    """Entry of a legend for a line of any curve."""
+    return Line2D([], [], color="0.3", ls=style, lw=lw, label=label)
+
+
+def _line_entries(axes):
+    """What the lines of (a) are, of those that are drawn."""
+    drawn = [line.get_linestyle() for line in axes.lines]
+    known = (
+        ("-", _line("-", "law that fits better")),
+        ("--", _line(_DASHES, "the other law", lw=0.7)),
+        (":", _line(":", "asymptote $w_m$", lw=0.8)),
+    )
+    return [entry for style, entry in known if style in drawn]
 
 
 def _offset(direction, offset):
@@ -288,8 +315,26 @@ def _table(curves, drawn, laws):
 def _caption(curves, stiffness):
     return (
         f"{opening('Figs. 4 and 5')} Closure, contact area and stiffness. "
-        f"{_laws_words(curves)} {stiffness_words(stiffness)}"
+        f"{_laws_words(curves)} {stiffness_words(stiffness)}{_initial_words(curves)}"
     )
+
+
+def _initial_words(curves):
+    """At how many offsets k_ni is stiffer than the curve itself at the lightest load fitted.
+
+    A hyperbola stiffens with load: sigma_0 / w can nowhere be below its k_ni. Where it is, the
+    curve is none, and k_ni an extrapolation that light loads do not follow.
+    """
+    k_ni = curves["hyperbola_k_ni"].values
+    fitted = np.isfinite(k_ni)
+    closure = curves["interface_closure"].sel(
+        normal_force=curves["closure_fit_min"].where(fitted, curves["normal_force"][0]),
+        method="nearest",
+    )
+    stiffer = fitted & (k_ni * closure.values > closure["nominal_pressure"].values)
+    if not stiffer.any():
+        return ""
+    return f" Light loads are less stiff than k_ni at {stiffer.sum()} of {fitted.sum()} offsets."
 
 
 def _laws_words(curves):
