@@ -145,8 +145,9 @@ def _band_words(slopes):
     below, above = int((corrected < low).sum()), int((corrected > high).sum())
     inside = corrected.size - below - above
     counts = ((below, "below"), (inside, "within"), (above, "above"))
-    lie = ", ".join(f"{n} {words}" for n, words in counts if n)
-    return f"Of the literature's computed {low:g} to {high:g} they lie {lie}."
+    lie = [f"{n} {words}" for n, words in counts if n]
+    every = f"All {lie[0]}" if len(lie) == 1 else f"Of {corrected.size} {', '.join(lie)}"
+    return f"{every} the literature's computed {low:g} to {high:g}."
 
 
 def _scatter_words(slopes):

@@ -340,8 +340,9 @@ def _explanation(synthetic, slides):
     drawn = [slide.ratio.mean(axis=0)[slide.v > 0] for slide in slides if slide.matched]
     ratios = np.concatenate(drawn)
     return (
-        f"delta_r / sigma_z stays {_span(ratios[np.isfinite(ratios)])}. With a roll-off delta_r {_level(with_it)} "
-        f"({_change(with_it)}), without it {_level(without)} ({_change(without)})."
+        f"delta_r / sigma_z stays {_span(ratios[np.isfinite(ratios)])}. "
+        f"With a roll-off delta_r {_level(with_it)} ({_change(with_it)}), "
+        f"without it {_level(without)} ({_change(without)})."
     )
 
 

@@ -61,7 +61,15 @@ def _draw_theories(axes, table, test) -> None:
     p = np.geomspace(table["p_over_E_slope"].min(), table["p_over_E_slope"].max(), 60)
     axes.plot(p, persson_area(p, 1.0, 1.0) / p, color="k", ls=":", label="Persson")
     low, high = (fudged_persson_area(p, 1.0, 1.0, g) / p for g in (0.45, 0.42))
-    axes.fill_between(p, low, high, color="0.7", alpha=0.6, lw=0, label="Persson, elastic energy\nlessened ($g$ 0.42 to 0.45)")
+    axes.fill_between(
+        p,
+        low,
+        high,
+        color="0.7",
+        alpha=0.6,
+        lw=0,
+        label="Persson, elastic energy\nlessened ($g$ 0.42 to 0.45)",
+    )
     published, share = test["published_pressure"].values, test["published_share"].values
     scatter = test.attrs["published_scatter"]
     axes.errorbar(

@@ -116,9 +116,7 @@ def _draw_summary(axes, strength):
             axes.plot(sigma[~held], known[key][~held], color=colour_of(n), label=words, **style)
         if held.any():
             label = f"{words}: {_NO_RESULT}"
-            axes.plot(
-                sigma[held], known[key][held], color="0.5", mfc="white", label=label, **style
-            )
+            axes.plot(sigma[held], known[key][held], color="0.5", mfc="white", label=label, **style)
     residual = [strength[f"residual_strength{end}"].values for end in ("", "_low", "_high")]
     draw_bars(axes, sigma, *residual, colour_of(1))
     axes.set(xscale="log")

@@ -70,7 +70,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         group(atlas, "closure", name).sel(direction=direction), settings, specimen
     )
 
-    figure = Figure(figsize=(WIDTH, 6.8))
+    figure = Figure(figsize=(WIDTH, 7.0))
     panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.15, 1])
     area = nominal_area(specimen)
     _draw_closure(panels["a"], curves, drawn, direction, area)
@@ -184,7 +184,7 @@ def _draw_laws(axes, curve, area, size, style):
 
 
 def _law_words(curve):
-    """k_ni with its interval, in MPa/mm, and the misfits of both laws."""
+    """k_ni with its interval, and the misfits of both laws."""
     misfits = [
         f"{percent(float(curve[f'{prefix}_misfit']))} {words}"
         for words, prefix in (("log", "semi_logarithmic"), ("hyperbola", "hyperbola"))
@@ -194,7 +194,7 @@ def _law_words(curve):
         return f"no fit: {_no_law(curve)}"
     k_ni = float(curve["hyperbola_k_ni"])
     ends = [float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")]
-    initial = f"$k_{{ni}}$ {estimate(*ends)}, " if np.isfinite(k_ni) else ""
+    initial = f"$k_{{ni}}$ {estimate(*ends, 'MPa/mm')}, " if np.isfinite(k_ni) else ""
     return f"{initial}misfit {', '.join(misfits)}"
 
 
@@ -320,21 +320,16 @@ def _caption(curves, stiffness):
 
 
 def _initial_words(curves):
-    """At how many offsets k_ni is stiffer than the curve itself at the lightest load fitted.
+    """At how many offsets the curve itself is less stiff than its k_ni.
 
     A hyperbola stiffens with load: sigma_0 / w can nowhere be below its k_ni. Where it is, the
     curve is none, and k_ni an extrapolation that light loads do not follow.
     """
-    k_ni = curves["hyperbola_k_ni"].values
-    fitted = np.isfinite(k_ni)
-    closure = curves["interface_closure"].sel(
-        normal_force=curves["closure_fit_min"].where(fitted, curves["normal_force"][0]),
-        method="nearest",
-    )
-    stiffer = fitted & (k_ni * closure.values > closure["nominal_pressure"].values)
-    if not stiffer.any():
-        return ""
-    return f" Light loads are less stiff than k_ni at {stiffer.sum()} of {fitted.sum()} offsets."
+    k_ni = curves["hyperbola_k_ni"]
+    fitted = int(np.isfinite(k_ni).sum())
+    less = k_ni * curves["interface_closure"] > curves["nominal_pressure"]
+    softer = int(less.any("normal_force").sum())
+    return f" Light loads are less stiff than k_ni at {softer} of {fitted}." if softer else ""
 
 
 def _laws_words(curves):
