@@ -294,6 +294,6 @@ def _over_load(joint, key):
         return Finding(UNDETERMINED, f"{line.n} of {FEWEST_POINTS} loads needed")
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=True),
-        f"{line.slope:+.2f} [{line.slope_low:+.2f}, {line.slope_high:+.2f}] a decade of F",
+        f"{line.slope:+z.2f} [{line.slope_low:+z.2f}, {line.slope_high:+z.2f}] a decade of F",
         f"{line.n} loads",
     )

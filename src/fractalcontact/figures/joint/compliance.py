@@ -266,7 +266,7 @@ def _last_words(table, force):
         return ""
     v, values = (points[key].values for key in ("offset_mm", "interface_compliance_mm_per_MPa"))
     most = int(np.argmax(values))
-    words = f"It is largest at v = {short(v[most])} mm"
+    words = f"Compliance at {force_label(force)} is largest at v = {short(v[most])} mm"
     if most == len(v) - 1:
         return f"{words}, the last."
     return f"{words}, {percent(1 - values[-1] / values[most])} less at {short(v[-1])} mm."

@@ -5,7 +5,7 @@ import textwrap
 import numpy as np
 import xarray as xr
 
-from ...core.determined import determined
+from ...core.determined import NO_WIDTH, determined
 from ...core.fitting import LineFit
 from ...domain.box_dimension import WIDEST
 
@@ -100,7 +100,7 @@ def undetermined(value: float, low: float, high: float, unit: str = "") -> str:
     if not np.isfinite(value):
         return UNDETERMINED
     up, down, half = high - value, value - low, (high - low) / 2
-    if not np.isfinite(half) or not half > 0:
+    if not half > NO_WIDTH * max(abs(value), 1e-300) or not np.isfinite(half):
         words = f"{short(value)}, error not known"
     else:
         # Two digits of the error, and two decimals where it is of the order of one.

@@ -19,6 +19,7 @@ from ..kit.drawing import (
     finest_curves,
     force_axis,
     group,
+    heading,
     headline,
     label_short_span,
     legends_below,
@@ -51,6 +52,9 @@ NEARLY = 0.1
 #: An asymptote beyond this many times the largest closure is stated, not drawn.
 FARTHEST_ASYMPTOTE = 1.5
 
+#: What the numbers of every curve are.
+_LEGEND = "(a), (b): $k_{ni}$ (MPa/mm); misfits of logarithmic law, hyperbola"
+
 #: Of the law that fits less well.
 _DASHES = (0, (4, 3))
 
@@ -79,8 +83,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     draw_stiffness(panels["d"], stiffness)
     legends_below(
         figure,
-        [*entries(panels["a"]), *_line_entries(panels["a"])],
-        [*entries(panels["c"]), _line("-", r"power law fitted (each its line)", lw=0.7)],
+        [heading(_LEGEND), *entries(panels["a"]), *_line_entries(panels["a"])],
+        [
+            heading("(c)"),
+            *entries(panels["c"]),
+            _line("-", r"power law fitted (each its line)", lw=0.7),
+        ],
     )
     letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
     letter(panels["b"], "b", r"light loads: hyperbola, dotted down to its $k_{ni}$")
@@ -184,18 +192,13 @@ def _draw_laws(axes, curve, area, size, style):
 
 
 def _law_words(curve):
-    """k_ni with its interval, and the misfits of both laws."""
-    misfits = [
-        f"{percent(float(curve[f'{prefix}_misfit']))} {words}"
-        for words, prefix in (("log", "semi_logarithmic"), ("hyperbola", "hyperbola"))
-        if np.isfinite(float(curve[f"{prefix}_misfit"]))
-    ]
-    if not misfits:
+    """k_ni with its interval, and the misfits of both laws, as the legend's heading says."""
+    misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
+    if not np.isfinite(misfits).any():
         return f"no fit: {_no_law(curve)}"
-    k_ni = float(curve["hyperbola_k_ni"])
     ends = [float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")]
-    initial = f"$k_{{ni}}$ {estimate(*ends, 'MPa/mm')}, " if np.isfinite(k_ni) else ""
-    return f"{initial}misfit {', '.join(misfits)}"
+    known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
+    return f"{estimate(*ends)}; {', '.join(known)}"
 
 
 def _no_law(curve):
@@ -329,7 +332,9 @@ def _initial_words(curves):
     fitted = int(np.isfinite(k_ni).sum())
     less = k_ni * curves["interface_closure"] > curves["nominal_pressure"]
     softer = int(less.any("normal_force").sum())
-    return f" Light loads are less stiff than k_ni at {softer} of {fitted}." if softer else ""
+    return (
+        f" Light loads are less stiff than k_ni at {softer} of {fitted} offsets." if softer else ""
+    )
 
 
 def _laws_words(curves):
