@@ -85,9 +85,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         figure,
         [heading(_LEGEND), *entries(panels["a"]), *_line_entries(panels["a"])],
         [
-            heading("(c)"),
+            heading(r"(c): exponent of $A_r$ over $F$"),
             *entries(panels["c"]),
-            _line("-", r"power law fitted (each its line)", lw=0.7),
+            _line("-", "power law fitted", lw=0.7),
         ],
     )
     letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
@@ -245,7 +245,7 @@ def _draw_area(axes, curves, drawn, direction, laws, area):
         law, curve = laws.isel(offset=i), curves.isel(offset=i)
         enough = curve["area_corrected_resolved"].values
         known = np.isfinite(float(law["corrected_exponent"]))
-        words = f"exponent {_exponent(law)}" if known else f"no fit: {law['corrected_n']:.0f} loads"
+        words = _exponent(law) if known else f"no fit: {law['corrected_n']:.0f} loads"
         style = {"color": colour_of(n), "ls": "none", "marker": MARKERS[n]}
         axes.plot(
             force[enough] / size,
