@@ -143,7 +143,7 @@ def _caption(state, table):
     force = force_label(float(state["normal_force"]))
     words = (
         "Local slopes of box counts, gliding-box lacunarity and dimensions of the pressure at F = "
-        f"{force}. {_law(state, table)}"
+        f"{force}."
     )
     dimensions = [
         f"{_interval(state, key)} from {label}"
@@ -159,7 +159,7 @@ def _caption(state, table):
         high = state["generalised_dimension_high"].sel(order=4.0).item()
         apart = "separated" if high < low else "not separated"
         spectrum = f"; D_0 = {span[0]:.2f}, D_4 = {span[1]:.2f}, {apart}"
-    return f"{words} Delta_sigma is {', '.join(dimensions)}{spectrum}."
+    return f"{words} {_law(state, table)} Delta_sigma is {', '.join(dimensions)}{spectrum}."
 
 
 def _interval(state, key):

@@ -81,14 +81,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_light_loads(panels["b"], curves, drawn, area)
     _draw_area(panels["c"], curves, drawn, direction, laws, area)
     draw_stiffness(panels["d"], stiffness)
+    area_line = [_line("-", "power law fitted", lw=0.7)] if _has_lines(panels["c"]) else []
     legends_below(
         figure,
-        [heading(_LEGEND), *entries(panels["a"]), *_line_entries(panels["a"])],
-        [
-            heading(r"(c): exponent of $A_r$ over $F$"),
-            *entries(panels["c"]),
-            _line("-", "power law fitted", lw=0.7),
-        ],
+        _keyed(_LEGEND, panels["a"], _line_entries(panels["a"])),
+        _keyed(r"(c): exponent of $A_r$ over $F$", panels["c"], area_line),
     )
     letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
     letter(panels["b"], "b", r"light loads: hyperbola, dotted down to its $k_{ni}$")
@@ -208,6 +205,16 @@ def _no_law(curve):
 def _line(style, label, lw=0.9):
     """Entry of a legend for a line of any curve."""
     return Line2D([], [], color="0.3", ls=style, lw=lw, label=label)
+
+
+def _has_lines(axes):
+    """Whether more than markers is drawn."""
+    return any(line.get_linestyle() != "None" for line in axes.lines)
+
+
+def _keyed(head, axes, lines):
+    """Entries of axes with a heading, and what their lines are; where none is fitted, no more."""
+    return [heading(head), *entries(axes), *lines] if lines else entries(axes)
 
 
 def _line_entries(axes):
