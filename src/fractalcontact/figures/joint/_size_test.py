@@ -99,7 +99,8 @@ def grey_beyond(axes: Axes, test: xr.Dataset) -> None:
     pressure = test["nominal_pressure"].values
     beyond = pressure[test["beyond_study"].values.astype(bool)]
     if len(beyond):
-        first = np.sqrt(beyond[0] * pressure[pressure < beyond[0]][-1])
+        below = pressure[pressure < beyond[0]]
+        first = np.sqrt(beyond[0] * below[-1]) if below.size else beyond[0] / 1.3
         style: dict[str, Any] = {"color": "0.93", "lw": 0, "zorder": 0}
         axes.axvspan(first, beyond[-1] * 1.3, label="beyond the study's loads", **style)
 
