@@ -8,7 +8,7 @@ import xarray as xr
 from cases import representative
 
 from fractalcontact.figures.experiments import dimension_difference, dimension_test
-from fractalcontact.figures.joint import size_prediction, size_slopes, size_test
+from fractalcontact.figures.joint import _size_test, size_prediction, size_slopes, size_test
 from fractalcontact.figures.kit.drawing import print_style, save, settings_of
 from fractalcontact.figures.paper import fig11_slope_angle
 
@@ -79,6 +79,43 @@ def test_direct_test_points_are_those_of_the_atlas(atlas, name):
     assert ("predicted_strength" in set(predicted["quantity"])) == (name != "flat")
     area = predicted[predicted["quantity"] == "predicted_area"]
     np.testing.assert_array_equal(area["predicted"], test["predicted_area"].T.values.ravel())
+
+
+@pytest.mark.parametrize("name", representative(SPECIMENS))
+def test_every_table_of_the_size_test_names_a_load_alike(atlas, name):
+    test = atlas[f"size_test/{name}"].to_dataset()
+    known = {
+        force: (pressure, beyond)
+        for force, pressure, beyond in zip(
+            *(test[v].values for v in ("normal_force", "nominal_pressure", "beyond_study")),
+            strict=True,
+        )
+    }
+    for module in (size_test, size_slopes, size_prediction):
+        for row in drawn(module, atlas, name).data.itertuples():
+            assert known[row.load_N] == (row.nominal_pressure_MPa, row.beyond_study)
+    with pytest.raises(KeyError):
+        _size_test.load_columns(test, 2.5 * float(test["normal_force"][-1]))
+
+
+def test_prediction_is_headed_by_the_heaviest_load_of_the_study(atlas):
+    def predicted(test, beyond):
+        for quantity in ("closure", "area"):
+            error = test[f"{quantity}_error"]
+            test[f"{quantity}_error"] = xr.full_like(error, 0.25)
+        test["beyond_study"] = test["beyond_study"].copy(data=beyond)
+        return test
+
+    pressure = atlas["size_test/sliding"]["nominal_pressure"].values
+    for first, shown in ((3, 2), (0, -1)):
+        beyond = np.arange(len(pressure)) >= first
+        tree = changed(
+            atlas, "size_test/sliding", lambda test, beyond=beyond: predicted(test, beyond)
+        )
+        caption = drawn(size_prediction, tree, "sliding").caption
+        assert f"At {pressure[shown]:.3g} MPa" in caption
+        assert ("beyond the study's loads" in caption) == (first == 0)
+        assert "closure is off by 25 %" in caption
 
 
 def test_direct_test_without_a_slope(atlas):

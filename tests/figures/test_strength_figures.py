@@ -175,3 +175,29 @@ def test_drawn_twice_the_files_are_the_same(atlas, specimen, figure, tmp_path):
         )
         assert once == twice
         assert once
+
+
+def test_strengths_of_angles_held_at_their_bound_are_marked_and_compared_with_nothing(atlas):
+    strength = atlas["strength/sliding"].to_dataset().isel(contact_direction=0)
+    table = drawn(atlas, "sliding", "strength").data
+    over = table[table["curve"] == "over the offsets"]
+    held = over["friction_angle_deg"] > LARGEST_FRICTION_ANGLE
+    assert (over["held"].astype(bool) == held).all()
+    counts = over[held].groupby("nominal_pressure_MPa").size()
+    stored = strength["held_high"].values[
+        np.isin(strength["nominal_pressure"], over["nominal_pressure_MPa"])
+    ]
+    assert counts.sum() == stored.sum() > 0
+    # Where any angle is held, the strength there is the largest that there can be.
+    peaks = table[table["curve"] == "peak and residual"].set_index("nominal_pressure_MPa")
+    assert (peaks["peak_held"].astype(bool).values == (strength["held_high"].values > 0)).all()
+    none = "no peak is below the bound" in drawn(atlas, "sliding", "strength").caption
+    assert none == peaks["peak_held"].all()
+
+
+def test_compliance_over_size_is_drawn_as_the_atlas_has_it(atlas):
+    laws = atlas["windows/sliding"].to_dataset()
+    table = drawn(atlas, "sliding", "window_size").data
+    rows = table[table["quantity"] == "interface_compliance"]
+    stored = laws["interface_compliance"].transpose("offset", "normal_force", "part").values
+    np.testing.assert_array_equal(rows["mean_mm_per_MPa"], stored.ravel())

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.statements import nulls
+from fractalcontact.statements import nulls, scaling
 from fractalcontact.statements.judge import (
     FAILS,
     HOLDS,
@@ -360,6 +360,11 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
 )
 def test_what_does_not_hold_is_said(name, changes, expected):
     assert found_by(name, **changes).verdict == expected
+
+
+def test_reasons_why_no_load_decides_on_eq_6_are_counted_the_most_frequent_first():
+    found = scaling._why_open(["too wide", "unknown", "too wide"])
+    assert found == "no load decides; 3 cases (load, estimate): too wide (2); unknown (1)"
 
 
 def test_numbers_stand_with_every_verdict():

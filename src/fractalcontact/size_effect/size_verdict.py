@@ -33,14 +33,14 @@ UNDECIDED, AMBIGUOUS, NOT_TESTED = "undecided", "ambiguous", "not tested"
 VERDICTS = (AGREES, STEEPER, FLATTER, UNDECIDED, AMBIGUOUS, NOT_TESTED)
 
 #: Why nothing is decided, or on what grounds it is.
-TOO_WIDE = f"the prediction is wider than {WIDEST_PREDICTION:g}"
-TOO_WIDE_MISSED = f"{TOO_WIDE}, and missed all the same"
-NOTHING_PREDICTED = "the prediction is next to no size effect"
-NEITHER = "neither eq. 6 nor no size effect is excluded"
-ILL_CONDITIONED = f"the condition number is larger than {WORST_CONDITION:g}"
-SLOPE_TOO_WIDE = f"the measured slope is known within {WIDEST_SLOPE:g} only or worse"
-SEVERAL = "sigma* does not determine sigma_0"
-NO_SIZES = "too few sizes whose windows hold nodes enough"
+TOO_WIDE = f"eq. 6 itself is not known within {WIDEST_PREDICTION:g}"
+TOO_WIDE_MISSED = f"{TOO_WIDE}, though what is measured lies outside"
+NOTHING_PREDICTED = "eq. 6 has next to no size effect"
+NEITHER = "eq. 6 and no size effect are both possible"
+ILL_CONDITIONED = f"sigma_0 is poorly known from sigma* (condition over {WORST_CONDITION:g})"
+SLOPE_TOO_WIDE = f"the measured slope is not known within {WIDEST_SLOPE:g}"
+SEVERAL = "one sigma* has several sigma_0"
+NO_SIZES = "too few sizes of window hold enough nodes"
 NO_PREDICTION = "Delta_sigma is unknown"
 
 

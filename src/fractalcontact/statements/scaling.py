@@ -1,5 +1,7 @@
 """What the paper says of the contact domain and of size (sects. 6 and 7, Figs. 1b and 8 to 13)."""
 
+from collections import Counter
+
 import numpy as np
 
 from ..core.fitting import FEWEST_POINTS, fit_line
@@ -143,28 +145,30 @@ def size_effect_follows(joint: Joint) -> Finding:
     value, low, high = (float(best[f"area_exponent{end}"]) for end in ("", "_low", "_high"))
     wanted = zip(ESTIMATES.values(), best["predicted_slope"].values, strict=True)
     numbers = (
-        f"A_r/A_0 ~ b^e, e = {value:.2f} [{low:.2f}, {high:.2f}] at "
-        f"{float(best['nominal_pressure']):.3g} MPa, against "
+        f"A_r/A_0 ~ b^e, e = {value:z.2f} [{low:z.2f}, {high:z.2f}] at "
+        f"{float(best['nominal_pressure']):.3g} MPa, eq. 6 has "
         + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
     )
     decided = test["verdict"].isin(DECIDED).values
     if not decided.any():
-        reasons = [str(words) for words in test["reason"].values[:, known].ravel()]
-        counts = {words: reasons.count(words) for words in dict.fromkeys(reasons)}
-        why = "; ".join(f"{words} ({n} of {len(reasons)})" for words, n in counts.items())
-        return Finding(
-            UNDETERMINED, numbers, f"e less -(2 - Delta_sigma) decides at no load: {why}"
-        )
+        return Finding(UNDETERMINED, numbers, _why_open(test["reason"].values[:, known].ravel()))
     agree = (test["verdict"] == DECIDED[0]).values
     words = ", ".join(
-        f"{by} at {agree[i].sum()} of {decided[i].sum()}" for i, by in enumerate(ESTIMATES.values())
+        f"{agree[i].sum()} of {decided[i].sum()} {by}" for i, by in enumerate(ESTIMATES.values())
     )
     return Finding(
         share(int(agree.sum()), int(decided.sum())),
         numbers,
-        f"e is the -(2 - Delta_sigma) wanted, {words} loads that decide, on windows within one "
-        "joint; where it is, the slope of log sigma_0 over log b at equal sigma* must agree too",
+        f"of the loads that decide e is eq. 6's at {words}, on windows within one joint; where it "
+        "is, the slope of sigma_0 over b at equal sigma* must agree, too",
     )
+
+
+def _why_open(reasons):
+    """Why no load decides about eq. 6; a reason a load and estimate, the most frequent first."""
+    counts = Counter(str(reason) for reason in reasons).most_common()
+    why = "; ".join(f"{reason} ({n})" for reason, n in counts)
+    return f"no load decides; {len(reasons)} cases (load, estimate): {why}"
 
 
 def larger_domains_are_less_dense(joint: Joint) -> Finding:
@@ -177,7 +181,7 @@ def larger_domains_are_less_dense(joint: Joint) -> Finding:
     none = max(abs(low), abs(high)) < NO_EFFECT
     return Finding(
         FAILS if none else by_sign(low, high, rising=False),
-        f"e = {value:.2f} [{low:.2f}, {high:.2f}]",
+        f"e = {value:z.2f} [{low:z.2f}, {high:z.2f}]",
         f"A_r/A_0 ~ b^e at {pressure:.3g} MPa",
     )
 
@@ -268,7 +272,7 @@ STATEMENTS = (
     ),
     Statement(
         "10, 13",
-        "Eq. 6: at one sigma*, sigma_0 goes as b^-(2 - Delta_sigma)",
+        "Eq. 6: at one sigma*, sigma_0 goes as b^(Delta_sigma - 2)",
         size_effect_follows,
         slides=False,
     ),
@@ -290,6 +294,6 @@ def _over_load(joint, key):
         return Finding(UNDETERMINED, f"{line.n} of {FEWEST_POINTS} loads needed")
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=True),
-        f"{line.slope:+.2f} [{line.slope_low:+.2f}, {line.slope_high:+.2f}] a decade of F",
+        f"{line.slope:+z.2f} [{line.slope_low:+z.2f}, {line.slope_high:+z.2f}] a decade of F",
         f"{line.n} loads",
     )

@@ -125,7 +125,7 @@ def _caption(slopes):
     return (
         f"{SUPPLEMENTARY} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces. "
         f"Corrected kappa is {with_one} with a roll-off and {without} without. Persson has "
-        f"{low}, Bush {high}. {_scatter_words(slopes)}"
+        f"{low}, Bush {high}. {_band_words(slopes)} {_scatter_words(slopes)}"
     )
 
 
@@ -136,6 +136,18 @@ def _range_words(chosen):
     within = int(np.sum((corrected >= low) & (corrected <= high)))
     verdict = "all" if within == corrected.size else f"{within} of {corrected.size}"
     return f"{number(corrected.min())} to {number(corrected.max())} ({verdict} between theories)"
+
+
+def _band_words(slopes):
+    """How many values lie beside those that others computed."""
+    low, high = slopes.attrs["computed_kappa"]
+    corrected = slopes["corrected_kappa"].values
+    below, above = int((corrected < low).sum()), int((corrected > high).sum())
+    inside = corrected.size - below - above
+    counts = ((below, "below"), (inside, "within"), (above, "above"))
+    lie = [f"{n} {words}" for n, words in counts if n]
+    every = f"All {lie[0]}" if len(lie) == 1 else f"Of {corrected.size} {', '.join(lie)}"
+    return f"{every} the literature's computed {low:g} to {high:g}."
 
 
 def _scatter_words(slopes):

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...domain.box_dimension import WIDEST
@@ -45,7 +46,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.axhline(1 + hurst, color="0.5", lw=0.8, ls=":", label="$1+H$")
         letter(axes, next(letters), f"$H$ = {hurst:g}")
     panels[0].set_ylabel("correlation dimension $D_2$ (1)")
-    handles = entries(panels[0])
+    undetermined = Line2D([], [], color="0.4", marker="o", ls="none", mfc="white")
+    undetermined.set_label(f"hollow: undetermined (interval wider than {WIDEST:g})")
+    handles = [*entries(panels[0]), undetermined]
     if constructions.size:
         others = np.atleast_1d(parts[1].subplots(1, len(constructions), sharey=True))
         for axes, name in zip(others, constructions, strict=True):
@@ -54,10 +57,10 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
                 _draw_curves(axes, one, _OTHERS, colours=(i + 3, i + 3), of=f", $H$ = {hurst:g}")
             letter(axes, next(letters), str(name))
         others[0].set_ylabel("correlation dimension $D_2$ (1)")
-        legends_below(parts[0], handles)
+        legends_below(parts[0], handles[:2], handles[2:])
         legends_below(parts[1], entries(others[0]))
     else:
-        legends_below(figure, handles)
+        legends_below(figure, handles[:2], handles[2:])
     return Drawing(figure, _table(test), _caption(test))
 
 
@@ -70,6 +73,8 @@ def _draw_curves(axes, one, curves, *, colours, of="") -> None:
         error = [(one[name] - low).where(narrow), (high - one[name]).where(narrow)]
         style = {"marker": marker, "ls": line, "color": colour_of(colour)}
         axes.errorbar(load, one[name], yerr=error, label=f"{label}{of}", **style)
+        hollow = style | {"ls": "none", "mfc": "white", "zorder": 3}
+        axes.plot(load, one[name].where(~narrow), **hollow)
     axes.axhline(2, color="k", lw=0.8, label="random nodes" if not of else None)
     load_axis(axes, load)
     axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$ (1)")
@@ -94,6 +99,6 @@ def _caption(test) -> str:
     return (
         f"{SUPPLEMENTARY} Correlation dimension of contact domains between cut-off and roll-off, "
         f"{count} synthetic surfaces of each H. It differs from the bearing-area cut's beyond both "
-        f"intervals at {int(beyond.sum())} of {int(known.sum())} states, and rises with load by "
-        f"{number(float(rising.mean()))}."
+        f"intervals at {int(beyond.sum())} of {known.size} states ({known.size - int(known.sum())} "
+        f"undetermined, hollow), and rises with load by {number(float(rising.mean()))}."
     )

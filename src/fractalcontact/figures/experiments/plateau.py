@@ -314,7 +314,7 @@ def _caption(slides, verdicts):
     synthetic = slides[: len(SURFACES)]
     words = (
         f"After Figs. 6a and 7a of {PAPER}. Rigid dilatancy delta_r beside the spread sigma_z of "
-        f"the composite topography. {_explanation(synthetic)}"
+        f"the composite topography. {_explanation(synthetic, slides)}"
     )
     return f"{words} The paper's plateaus: {verdicts}." if verdicts else words
 
@@ -334,13 +334,15 @@ def _verdicts(atlas, names):
     )
 
 
-def _explanation(synthetic):
+def _explanation(synthetic, slides):
     """Whether delta_r follows sigma_z, and what the roll-off does to both."""
     with_it, without = synthetic
-    ratios = np.concatenate([slide.ratio.mean(axis=0)[slide.v > 0] for slide in synthetic])
+    drawn = [slide.ratio.mean(axis=0)[slide.v > 0] for slide in slides if slide.matched]
+    ratios = np.concatenate(drawn)
     return (
-        f"delta_r / sigma_z stays {_span(ratios)}. With a roll-off delta_r {_level(with_it)} "
-        f"({_change(with_it)}), without it {_level(without)} ({_change(without)})."
+        f"delta_r / sigma_z stays {_span(ratios[np.isfinite(ratios)])}. "
+        f"With a roll-off delta_r {_level(with_it)} ({_change(with_it)}), "
+        f"without it {_level(without)} ({_change(without)})."
     )
 
 

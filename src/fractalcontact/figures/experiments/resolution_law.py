@@ -31,14 +31,14 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         for j, cut_off in enumerate(cut_offs):
             chosen = (table["hurst"] == hurst) & (table["cut_off_nodes"] == cut_off)
             one = table[chosen].groupby("p_over_E_slope")["kappa"].mean()
-            label = f"$H$ = {hurst:g}" if j == 0 else None
+            label = f"$H$ = {hurst:g}, cut-off {cut_off:g} nodes"
             style = {"marker": MARKERS[j % len(MARKERS)], "color": colour_of(i), "lw": 0.6}
             left.plot(one.index, one.values, label=label, ms=3.5, **style)
     _draw_theories(left, table, test)
     left.set_xscale("log")
     left.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms}(s))$ (1)")
     left.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}(s)/p$ (1)")
-    left.legend(fontsize=6.5, loc="lower left", bbox_to_anchor=(0, 0.1))
+    left.legend(fontsize=6.5, loc="lower left", bbox_to_anchor=(0, 0.06), labelspacing=0.3)
     letter(left, "a", f"cut-offs of {cut_offs[0]:g} to {cut_offs[-1]:g} nodes")
     _draw_exponents(right, test)
     return Drawing(figure, table, _caption(test, table))
@@ -59,9 +59,17 @@ def _table(fine: xr.Dataset):
 def _draw_theories(axes, table, test) -> None:
     """Persson's curve, with g, and published computations."""
     p = np.geomspace(table["p_over_E_slope"].min(), table["p_over_E_slope"].max(), 60)
-    axes.plot(p, persson_area(p, 1.0, 1.0) / p, color="k", ls=":", label="Persson, $g$ = 1")
+    axes.plot(p, persson_area(p, 1.0, 1.0) / p, color="k", ls=":", label="Persson")
     low, high = (fudged_persson_area(p, 1.0, 1.0, g) / p for g in (0.45, 0.42))
-    axes.fill_between(p, low, high, color="0.7", alpha=0.6, lw=0, label="$g$ = 0.42 to 0.45")
+    axes.fill_between(
+        p,
+        low,
+        high,
+        color="0.7",
+        alpha=0.6,
+        lw=0,
+        label="Persson, elastic energy\nlessened ($g$ 0.42 to 0.45)",
+    )
     published, share = test["published_pressure"].values, test["published_share"].values
     scatter = test.attrs["published_scatter"]
     axes.errorbar(

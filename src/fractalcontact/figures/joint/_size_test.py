@@ -9,6 +9,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from xarray import DataTree
 
+from ...domain.box_dimension import is_determined
 from ..kit.drawing import COLOURS, MARKERS, entries, group, label_short_span
 from ..kit.words import place, pressure_label
 
@@ -64,20 +65,83 @@ def draw_predictions(axes: Axes, test: xr.Dataset) -> list[Artist]:
     return entries(axes)
 
 
-def load_axis(axes: Axes, test: xr.Dataset) -> None:
-    """Axis of sigma_0 of the whole, loads beyond the study in grey."""
+def draw_measured(
+    axes: Axes, test: xr.Dataset, name: str, chosen: np.ndarray, label: str, face: str = "k"
+) -> None:
+    """Measured exponents over the load with their intervals, faint where these are too wide.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    test : xr.Dataset
+    name : str
+        Of the exponent.
+    chosen : (n_load,) bool ndarray
+        Which loads.
+    label : str
+        For the legend, "" for none.
+    face : str, optional
+        Colour within the markers.
+    """
+    pressure = test["nominal_pressure"].values
+    value, low, high = (test[f"{name}{end}"].values for end in ("", "_low", "_high"))
+    sure = np.array([is_determined(*ends) for ends in zip(low, high, strict=True)])
+    for which, alpha in ((chosen & sure, 1.0), (chosen & ~sure, 0.3)):
+        axes.vlines(pressure[which], low[which], high[which], color="k", lw=0.8, alpha=alpha)
+        axes.plot(pressure[which], value[which], "ko", mfc=face, ms=4, alpha=alpha)
+    if label:
+        faint = "; faint: undetermined" if (chosen & ~sure).any() else ""
+        axes.plot([], [], "ko", mfc=face, ms=4, label=f"{label}{faint}")
+
+
+def grey_beyond(axes: Axes, test: xr.Dataset) -> None:
+    """Grey ground under the loads beyond the study's, along an axis of sigma_0."""
     pressure = test["nominal_pressure"].values
     beyond = pressure[test["beyond_study"].values.astype(bool)]
     if len(beyond):
-        first = np.sqrt(beyond[0] * pressure[pressure < beyond[0]][-1])
+        below = pressure[pressure < beyond[0]]
+        first = np.sqrt(beyond[0] * below[-1]) if below.size else beyond[0] / 1.3
         style: dict[str, Any] = {"color": "0.93", "lw": 0, "zorder": 0}
         axes.axvspan(first, beyond[-1] * 1.3, label="beyond the study's loads", **style)
+
+
+def load_axis(axes: Axes, test: xr.Dataset) -> None:
+    """Axis of sigma_0 of the whole, loads beyond the study in grey."""
+    pressure = test["nominal_pressure"].values
+    grey_beyond(axes, test)
     axes.axhline(0, color="0.5", lw=0.6)
     axes.set_xscale("log")
     axes.set_xlim(pressure[0] / 1.3, pressure[-1] * 1.3)
     axes.set_ylim(-2.3, 0.8)
     axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
     label_short_span(axes.xaxis)
+
+
+def load_columns(test: xr.Dataset, force: float) -> dict[str, float | bool]:
+    """Columns that say which load is meant, the same in every table of the size test.
+
+    Parameters
+    ----------
+    test : xr.Dataset
+    force : float
+        One of the loads of the test, N.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    KeyError
+        If the test has no such load.
+    """
+    load = test[["nominal_pressure", "beyond_study"]]
+    load = load.sel(normal_force=force, method="nearest", tolerance=1e-6 * force)
+    return {
+        "load_N": force,
+        "nominal_pressure_MPa": float(load["nominal_pressure"]),
+        "beyond_study": bool(load["beyond_study"]),
+    }
 
 
 def predicted_table(test: xr.Dataset, i: int, common: dict) -> pd.DataFrame:

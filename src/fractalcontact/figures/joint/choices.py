@@ -7,7 +7,7 @@ from xarray import DataTree
 
 from ..kit.drawing import WIDTH, Drawing, group, headline, settings_of
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
-from ..kit.words import SUPPLEMENTARY, place
+from ..kit.words import SUPPLEMENTARY, place, short
 
 TITLE = "Solve plan: which states were solved, how exactly, and why"
 SUBJECT = "specimen"
@@ -15,8 +15,8 @@ NEEDS = ("choices",)
 ORDER = 220
 
 #: Columns of the table: where they begin, in fractions of the width, and the letters they hold.
-COLUMNS = {"choice": (0.0, 18), "value": (0.16, 34), "reason": (0.45, 62), "error": (0.93, 9)}
-HEADS = {"choice": "Quantity", "value": "Value", "reason": "Reason", "error": "Error"}
+COLUMNS = {"choice": (0.0, 18), "value": (0.155, 32), "reason": (0.42, 56), "error": (0.86, 18)}
+HEADS = {"choice": "Quantity", "value": "Value", "reason": "Reason", "error": "Largest error"}
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -39,12 +39,13 @@ def _table(plan):
     rows = []
     for i, choice in enumerate(plan["choice"].values):
         error = float(plan["error"][i])
+        of = str(plan["error_of"].values[i]).split(",")[0]
         rows.append(
             {
                 "choice": str(choice),
                 "value": str(plan["value"].values[i]),
                 "reason": str(plan["reason"].values[i]),
-                "error": f"{float(f'{error:.1g}'):g}" if np.isfinite(error) else "–",
+                "error": f"{short(100 * error, 2)} % of the {of}" if np.isfinite(error) else "–",
             }
         )
     return rows

@@ -93,7 +93,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         heading("(a) to (c); hollow: few nodes; +: random nodes, ×: bearing-area cut"),
         *entries(number),
     ]
-    at = f"(d) $F$ = {force_label(loads[mapped])}; lines are fits"
+    law = r"; lines: $N \sim a^{-\beta}$" if np.isfinite(sizes["exponent"]).any() else ""
+    at = f"(d) at $F$ = {force_label(loads[mapped])}, by the offset{law}"
     legends_below(figure, by_load, [heading(at), *entries(distribution)])
     headline(figure, settings["label"], place(direction))
     clustered = claim(atlas, name, "growing clustering with v", "domains_cluster")
@@ -183,9 +184,11 @@ def _draw_sizes(axes, sizes):
         exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
         area, at_least = points["cluster_area_mm2"], points["clusters_at_least"]
         style = {"color": colour_of(n), "marker": MARKERS[n], "mfc": "white", "ls": "none"}
-        name = rf"$v$ = {short(offset)} mm: $\beta$ = {exponent}"
+        fits = np.isfinite(law["exponent"])
+        words = rf"$\beta$ = {exponent}" if fits else "too few for a law"
+        name = f"$v$ = {short(offset)} mm: {words}"
         axes.plot(area, at_least, label=name, **style)
-        if np.isfinite(law["exponent"]):
+        if fits:
             # From the octave that holds the smallest cluster fitted.
             first = area[area <= law["fit_min_mm2"] * (1 + 1e-9)].max()
             ends = np.array([first, law["fit_max_mm2"]])

@@ -22,8 +22,9 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.empty import TOO_FULL, say_empty
+from ..kit.sizes import draw_bars
 from ..kit.verdicts import sentences, verdict_words
-from ..kit.words import TOWARDS, force_label, opening, place, pressure_label, short
+from ..kit.words import TOWARDS, force_label, opening, percent, place, pressure_label, short
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
 SUBJECT = "joint"
@@ -68,7 +69,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         words: verdict_words(atlas, name, said, numbers=False) for said, words in STAGES.items()
     }
     force = group(atlas, "statements", name).attrs["force"]
-    caption = sentences(_caption(direction, joint), _stage_words(verdicts, force))
+    caption = sentences(
+        _caption(direction, joint), _stage_words(verdicts, force), _last_words(closures, force)
+    )
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
@@ -101,12 +104,28 @@ def _closure_table(curves, shown):
                 "interface_closure_mm": curves["interface_closure"][:, j].values,
                 "seating_pressure_MPa": pressure,
                 "seated_closure_mm": (curves["interface_closure"][:, j] - at_seat).values,
-                "interface_compliance_mm_per_MPa": 1 / curves["interface_stiffness"][:, j].values,
+                **_compliance(curves.isel(normal_force=j)),
             }
         )
         for j in shown
     ]
     return pd.concat(rows, ignore_index=True)
+
+
+def _compliance(states):
+    """Compliance of the interface, and how far the solver may have it off either way."""
+    stiffness, error = (
+        states[f"interface_stiffness{of}"].transpose("offset").values for of in ("", "_error")
+    )
+    name, unit = "interface_compliance", "mm_per_MPa"
+    low, high = stiffness + error, stiffness - error
+    return {
+        f"{name}_{unit}": 1 / stiffness,
+        f"{name}_low_{unit}": 1 / low,
+        f"{name}_high_{unit}": np.divide(
+            1.0, high, out=np.full(high.shape, np.inf), where=high > 0
+        ),
+    }
 
 
 def _correlation_table(joint):
@@ -172,7 +191,10 @@ def _draw_closures(closed, compliance, table):
         if (points["seated_closure_mm"] > 0).any():
             closed.plot(v, points["seated_closure_mm"], **style, ls=LINES[n % 4])
         closed.plot(v, points["interface_closure_mm"], **style, mfc="none", ms=3, lw=0.5)
-        compliance.plot(v, points["interface_compliance_mm_per_MPa"], **style, **line)
+        compliances = points["interface_compliance_mm_per_MPa"]
+        compliance.plot(v, compliances, **style, **line)
+        ends = (points[f"interface_compliance_{end}_mm_per_MPa"] for end in ("low", "high"))
+        draw_bars(compliance, v, compliances, *ends, style["color"])
         hollow = points[few]
         compliance.plot(
             hollow["offset_mm"],
@@ -196,7 +218,10 @@ def _draw_closures(closed, compliance, table):
     if not np.isfinite(pressure):
         seated = "from first touch"
     letter(closed, "b", f"closure {seated}, {direction}")
-    letter(compliance, "c", f"compliance of the interface, {direction}")
+    high = table["interface_compliance_high_mm_per_MPa"] / table["interface_compliance_mm_per_MPa"]
+    most = high.max() - 1
+    bars = f" (bars: the solver alone, up to {percent(most)})" if np.isfinite(most) else ""
+    letter(compliance, "c", f"compliance of the interface, {direction}{bars}")
 
 
 def _mark_offsets(panels, joint, direction):
@@ -232,6 +257,19 @@ def _stage_words(verdicts, force):
     """What the paper says of the compliance as v grows, and the verdicts that were asked for."""
     said = ", ".join(f"{words} ({verdict})" for words, verdict in verdicts.items() if verdict)
     return f"The paper's compliance at {force_label(force)}: {said}." if said else ""
+
+
+def _last_words(table, force):
+    """Where the compliance is largest, and what the last offset has of that."""
+    points = table[table["force_N"] == force].dropna(subset="interface_compliance_mm_per_MPa")
+    if len(points) < 2:
+        return ""
+    v, values = (points[key].values for key in ("offset_mm", "interface_compliance_mm_per_MPa"))
+    most = int(np.argmax(values))
+    words = f"Compliance at {force_label(force)} is largest at v = {short(v[most])} mm"
+    if most == len(v) - 1:
+        return f"{words}, the last."
+    return f"{words}, {percent(1 - values[-1] / values[most])} less at {short(v[-1])} mm."
 
 
 def _correlation_words(ends, decidable):

@@ -140,9 +140,10 @@ def _draw_spectrum(axes, table, mapped):
 
 
 def _caption(state, table):
+    force = force_label(float(state["normal_force"]))
     words = (
-        "Local slopes of box counts, gliding-box lacunarity and dimensions of the pressure. At F = "
-        f"{force_label(float(state['normal_force']))} "
+        "Local slopes of box counts, gliding-box lacunarity and dimensions of the pressure at F = "
+        f"{force}."
     )
     dimensions = [
         f"{_interval(state, key)} from {label}"
@@ -150,7 +151,7 @@ def _caption(state, table):
         if np.isfinite(state[key])
     ]
     if not dimensions:
-        return f"{words}the domain is too small for a dimension."
+        return f"{words} The domain is too small for a dimension."
     span = state["generalised_dimension"].sel(order=[0.0, 4.0]).values
     spectrum = ""
     if np.isfinite(span).all():
@@ -158,7 +159,7 @@ def _caption(state, table):
         high = state["generalised_dimension_high"].sel(order=4.0).item()
         apart = "separated" if high < low else "not separated"
         spectrum = f"; D_0 = {span[0]:.2f}, D_4 = {span[1]:.2f}, {apart}"
-    return f"{words}Delta_sigma is {', '.join(dimensions)}{spectrum}. {_law(state, table)}"
+    return f"{words} {_law(state, table)} Delta_sigma is {', '.join(dimensions)}{spectrum}."
 
 
 def _interval(state, key):
@@ -174,4 +175,7 @@ def _law(state, table):
     inside = points[(points["box_side_mm"] >= low) & (points["box_side_mm"] <= high)]["value"]
     if inside.size < 2:
         return "Too few local slopes to test for one power law."
-    return f"Local slopes go from {inside.min():.2f} to {inside.max():.2f}."
+    return (
+        f"Slopes of one contact domain range from {inside.min():.2f} to {inside.max():.2f} over "
+        "the box side, where a fractal has one."
+    )

@@ -19,7 +19,7 @@ from ..kit.drawing import (
 )
 from ..kit.sizes import nothing_in, plain_decades
 from ..kit.words import SUPPLEMENTARY, percent, short
-from ._size_test import place_of, size_test_of
+from ._size_test import grey_beyond, load_columns, place_of, size_test_of
 
 TITLE = "Closure and contact area of the whole window, predicted from its parts"
 SUBJECT = "specimen"
@@ -51,7 +51,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for axes, which, quantity in zip(panels, "ab", ("closure", "area"), strict=True):
         _draw_errors(axes, test, quantity, which)
     handles = entries(panels[0])
-    legends_below(figure, handles[:2], handles[2:4], handles[4:])
+    # First those of this window, then eq. 6's.
+    legends_below(figure, handles[::4] + handles[5:], handles[1:3], handles[3:4])
     headline(figure, settings_of(atlas, name)["label"], place_of(test))
     return Drawing(figure, _table(test), _caption(test))
 
@@ -68,6 +69,7 @@ def _draw_errors(axes, test, quantity, which):
         style = {"color": colour_of(i), "marker": MARKERS[i], "ms": 3}
         axes.plot(pressure[known], ratio[known], lw=0.8, label=label, **style)
     axes.axhline(1, color="0.5", lw=0.6)
+    grey_beyond(axes, test)
     axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
     axes.set_ylabel(f"{words}: predicted / solved (1)")
     letter(axes, which, f"{words} (1: right)")
@@ -79,6 +81,8 @@ def _draw_errors(axes, test, quantity, which):
     axes.set_yscale("log")
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, 0.5), max(high, 2))
+    shown = pressure[np.isfinite(test[f"{quantity}_error"]).any("predictor").values]
+    axes.set_xlim(shown[0] / 1.3, shown[-1] * 1.3)
     plain_decades(axes.yaxis)
     label_short_span(axes.xaxis)
 
@@ -91,7 +95,7 @@ def _table(test):
         for j, force in enumerate(test[dim].values):
             columns = {
                 "quantity": f"predicted_{quantity}",
-                "load_N": force,
+                **load_columns(test, force),
                 "predictor": test["predictor"].values,
             }
             columns |= {
@@ -106,15 +110,22 @@ def _table(test):
 
 def _caption(test):
     words = f"{SUPPLEMENTARY} What parts of the window predict of the whole, over what was solved."
-    error = abs(test["area_error"].sel(predictor=list(PREDICTORS)))
-    known = error.dropna("normal_force")
-    if not known.sizes["normal_force"]:
-        return f"{words} No load lets all of them predict the contact area."
-    last = known.isel(normal_force=-1)
-    best, worst = (str(last["predictor"][int(last.values.argmin())].values), float(last.max()))
-    names = {key: text.replace("$", "") for key, text in PREDICTORS.items()}
-    pressure = short(float(test["nominal_pressure"].sel(normal_force=last["normal_force"])))
-    return (
-        f"{words} At {pressure} MPa the contact area is off by {percent(float(last.min()))} "
-        f"({names[best]}) to {percent(worst)}."
-    )
+    errors = abs(test[["closure_error", "area_error"]].sel(predictor=list(PREDICTORS)))
+    known = np.isfinite(errors.to_dataarray()).all(("variable", "predictor")).values
+    of_study = known & ~test["beyond_study"].values.astype(bool)
+    if not known.any():
+        return f"{words} No load lets all of them predict closure and contact area."
+    # The heaviest load of the study says most: more nodes touch. One beyond it matters to nobody.
+    load = np.flatnonzero(of_study if of_study.any() else known)[-1]
+    beyond = "" if of_study.any() else ", beyond the study's loads,"
+    here = errors.isel(normal_force=load)
+    pressure = short(float(test["nominal_pressure"][load]))
+    closure, area = (_range_words(here[f"{name}_error"]) for name in ("closure", "area"))
+    return f"{words} At {pressure} MPa{beyond} closure is off by {closure}, contact area by {area}."
+
+
+def _range_words(errors):
+    """Least and largest error, each with its predictor."""
+    ends = (int(errors.values.argmin()), int(errors.values.argmax()))
+    names = [PREDICTORS[key].replace("$", "") for key in errors["predictor"].values]
+    return " to ".join(f"{percent(float(errors[i]))} ({names[i]})" for i in dict.fromkeys(ends))

@@ -21,13 +21,15 @@ from ..kit.drawing import (
 )
 from ..kit.sizes import nothing_in, plain_decades, size_axis
 from ..kit.verdicts import claim, sentences
-from ..kit.words import SUPPLEMENTARY, interval
+from ..kit.words import SUPPLEMENTARY, interval, number, pressure_label
 from ._size_test import (
     ESTIMATORS,
     MOST_LOADS,
+    draw_measured,
     draw_predictions,
     first_loads,
     load_axis,
+    load_columns,
     place_of,
     predicted_table,
     pressure_words,
@@ -51,8 +53,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = sentences(
         f"{SUPPLEMENTARY} Nominal pressure at equal sigma* over the side b of parts of the window, "
         "and its slope.",
-        claim(atlas, name, "eq. 6", "size_effect_follows", numbers=False),
         _found_words(test),
+        claim(atlas, name, "eq. 6", "size_effect_follows", numbers=False),
     )
     return Drawing(figure, _table(test), caption)
 
@@ -88,17 +90,14 @@ def _draw_equal(axes, test):
 
 def _draw_slopes(axes, test):
     """Slopes at equal sigma*, measured and predicted, over the load; legend entries."""
-    pressure = test["nominal_pressure"].values
     draw_predictions(axes, test)
-    slope, low, high = (test[f"slope{end}"].values for end in ("", "_low", "_high"))
-    known = np.isfinite(slope)
-    axes.vlines(pressure[known], low[known], high[known], color="k", lw=0.8)
+    known = np.isfinite(test["slope"].values)
     determined = known & test["well_conditioned"].values.astype(bool)
     for chosen, face, words in (
         (determined, "k", "measured"),
         (known & ~determined, "white", "measured, ill-conditioned"),
     ):
-        axes.plot(pressure[chosen], slope[chosen], "ko", mfc=face, ms=4, label=words)
+        draw_measured(axes, test, "slope", chosen, words, face)
     load_axis(axes, test)
     axes.set_ylabel(r"slope of $\log\sigma_0$ over $\log b$ (1)")
     letter(axes, "b", "slopes, measured and by eq. 6")
@@ -108,11 +107,7 @@ def _draw_slopes(axes, test):
 def _table(test):
     tables = []
     for i, force in enumerate(test["normal_force"].values):
-        common = {
-            "load_N": force,
-            "nominal_pressure_MPa": float(test["nominal_pressure"][i]),
-            "beyond_study": bool(test["beyond_study"][i]),
-        }
+        common = load_columns(test, force)
         equal = {
             "quantity": "equal_pressure",
             **common,
@@ -135,9 +130,23 @@ def _table(test):
 
 
 def _found_words(test):
-    """How many of the measured slopes are well conditioned."""
+    """Best known slope of the study's loads beside eq. 6's; how many are well conditioned."""
     known = np.isfinite(test["slope"].values)
     if not known.any():
         return "Parts hold too few nodes in contact."
-    good = int((known & test["well_conditioned"].values.astype(bool)).sum())
-    return f"Slopes are measured at {int(known.sum())} loads, well-conditioned at {good}."
+    sure = known & test["well_conditioned"].values.astype(bool)
+    loads = first_loads(test, "slope")
+    loads = loads[sure[loads]] if sure[loads].any() else loads
+    width = (test["slope_high"] - test["slope_low"]).values[loads]
+    best = test.isel(normal_force=loads[np.argmin(np.where(np.isfinite(width), width, np.inf))])
+    wanted = [
+        f"{number(best['predicted_slope'].sel(estimator=estimator))} by {words.replace('$', '')}"
+        for estimator, (_, words) in ESTIMATORS.items()
+        if np.isfinite(best["predicted_slope"].sel(estimator=estimator))
+    ]
+    measured = interval(*(float(best[f"slope{end}"]) for end in ("", "_low", "_high")))
+    beside = f", eq. 6 has {', '.join(wanted)}" if wanted else ""
+    return (
+        f"At {pressure_label(float(best['nominal_pressure']))} the slope is {measured}{beside}. "
+        f"Of {int(known.sum())} slopes {int(sure.sum())} are well-conditioned."
+    )

@@ -25,9 +25,11 @@ from ..kit.words import SUPPLEMENTARY, interval, short
 from ._size_test import (
     ESTIMATORS,
     MOST_LOADS,
+    draw_measured,
     draw_predictions,
     first_loads,
     load_axis,
+    load_columns,
     place_of,
     predicted_table,
     pressure_words,
@@ -97,12 +99,9 @@ def _draw_area(axes, test):
 
 def _draw_exponents(axes, test):
     """Exponent of A_r/A_0 over b, and those of eq. 6, over the load; legend entries."""
-    pressure = test["nominal_pressure"].values
     draw_predictions(axes, test)
-    value, low, high = (test[f"area_exponent{end}"].values for end in ("", "_low", "_high"))
-    known = np.isfinite(low)
-    axes.vlines(pressure[known], low[known], high[known], color="k", lw=0.8)
-    axes.plot(pressure[known], value[known], "ko", ms=4, label="measured (0: no size effect)")
+    known = np.isfinite(test["area_exponent_low"].values)
+    draw_measured(axes, test, "area_exponent", known, "measured (0: no size effect)")
     load_axis(axes, test)
     axes.set_ylabel("exponent of $A_r/A_0$ over $b$ (1)")
     letter(axes, "b", "exponents, measured and by eq. 6")
@@ -112,13 +111,8 @@ def _draw_exponents(axes, test):
 def _table(test):
     tables = []
     for i, force in enumerate(test["normal_force"].values):
-        common = {
-            "load_N": force,
-            "nominal_pressure_MPa": float(test["nominal_pressure"][i]),
-            "beyond_study": bool(test["beyond_study"][i]),
-        }
-        tables.append(_equal_pressure_table(test, i, common))
-        tables.append(predicted_table(test, i, common))
+        common = load_columns(test, force)
+        tables += [_equal_pressure_table(test, i, common), predicted_table(test, i, common)]
     return pd.concat(tables, ignore_index=True)
 
 

@@ -47,7 +47,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_strength(curves, strength, shown)
     _draw_summary(summary, strength)
     legends.axis("off")
-    legends.add_artist(legends.legend(handles=entries(angles), loc="upper left", title="(a), (b)"))
+    shared = [*entries(angles), *entries(curves)]
+    legends.add_artist(legends.legend(handles=shared, loc="upper left", title="(a), (b)"))
     if entries(summary):
         legends.legend(handles=entries(summary), loc="lower left", title="(c)")
     headline(figure, settings["label"], place(direction))
@@ -81,13 +82,17 @@ def _held():
 def _draw_strength(axes, strength, shown):
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     letter(axes, "b", "strength by nominal pressure")
-    v = strength["midpoint"]
+    v = strength["midpoint"].values
     if not np.isfinite(strength["shear_strength"]).any():
         axes.set_xlabel(_OFFSET)
         nothing_in(axes, _NO_STRENGTH)
         return
     for n, j in enumerate(shown):
-        axes.plot(v, strength["shear_strength"][:, j], **_style(n))
+        tau, held = strength["shear_strength"].values[:, j], _held_at(strength)[:, j]
+        axes.plot(v, tau, **_style(n))
+        axes.plot(v[held], tau[held], **_style(n), ls="none", mfc="white", zorder=3)
+    if _held_at(strength)[:, shown].any():
+        axes.plot([], [], "o", color="0.4", mfc="white", label=_NO_RESULT)
     _offset_axis(axes, v)
     logarithmic(axes, strength["shear_strength"].values[:, shown])
 
@@ -106,12 +111,33 @@ def _draw_summary(axes, strength):
             continue
         law = key.startswith("barton")
         style = {"ls": LINES[n - 1]} if law else {"ls": "none", "marker": MARKERS[n]}
-        axes.plot(sigma, known[key], color=colour_of(n), label=words, **style)
+        held = _peak_held(strength) if key == "peak_strength" else np.zeros(sigma.shape, bool)
+        if not held.all():
+            axes.plot(sigma[~held], known[key][~held], color=colour_of(n), label=words, **style)
+        if held.any():
+            label = f"{words}: {_NO_RESULT}"
+            axes.plot(sigma[held], known[key][held], color="0.5", mfc="white", label=label, **style)
     residual = [strength[f"residual_strength{end}"].values for end in ("", "_low", "_high")]
     draw_bars(axes, sigma, *residual, colour_of(1))
     axes.set(xscale="log")
     logarithmic(axes, np.array(list(known.values())))
 
+
+def _held_at(strength):
+    """Which angles (interval, load) were held at their upper bound."""
+    return strength["friction_angle"].values > LARGEST_FRICTION_ANGLE
+
+
+def _peak_held(strength):
+    """Whether the peak under each load is one of an angle that was held: that is no result."""
+    peak = strength["peak_offset"].values
+    at = np.abs(np.subtract.outer(strength["midpoint"].values, peak))
+    at[~np.isfinite(at)] = np.inf
+    return _held_at(strength)[at.argmin(axis=0), np.arange(peak.size)] & np.isfinite(peak)
+
+
+#: Of strengths whose angle was held at its bound.
+_NO_RESULT = f"angle held at {LARGEST_FRICTION_ANGLE:g}°, no result"
 
 _NO_STRENGTH = "no strength: the study states no\nbasic friction angle, or one offset alone"
 
@@ -129,7 +155,7 @@ _OFFSET = "offset $v$, middle of the interval (mm)"
 
 def _offset_axis(axes, v):
     """Offsets along x; drawn last, because its ticks follow the range of what was drawn."""
-    offset_axis(axes, v.values)
+    offset_axis(axes, np.asarray(v))
     if axes.get_xscale() == "log":
         plain_decades(axes.xaxis)
     axes.set_xlabel(_OFFSET)
@@ -153,6 +179,7 @@ def _table(strength, shown):
                 "rigid_dilatancy_angle_deg": strength["rigid_dilatancy_angle"].values,
                 "dilatancy_angle_deg": strength["dilatancy_angle"].values[:, j],
                 "friction_angle_deg": strength["friction_angle"].values[:, j],
+                "held": _held_at(strength)[:, j],
                 "shear_strength_MPa": strength["shear_strength"].values[:, j],
             }
         )
@@ -168,6 +195,7 @@ def _summary_table(strength):
             "curve": "peak and residual",
             "nominal_pressure_MPa": strength["nominal_pressure"].values,
             "peak_offset_mm": strength["peak_offset"].values,
+            "peak_held": _peak_held(strength),
             **{f"{key}_MPa": strength[key].values for key in columns},
         }
     )
@@ -231,7 +259,9 @@ def _barton_words(strength):
     if float(strength["jrc_used"]) != float(jrc):
         words += f", {short(strength['jrc_used'])} used"
     ratio = (strength["peak_strength"] / strength["barton_strength"]).values
-    ratio = ratio[np.isfinite(ratio)]
-    if not ratio.size:
+    if not np.isfinite(ratio).any():
         return f"{words}; no Barton's law without friction angle and wall strength."
+    ratio = ratio[np.isfinite(ratio) & ~_peak_held(strength)]
+    if not ratio.size:
+        return f"{words}: no peak is below the bound, to be compared with Barton's."
     return f"{words}: peaks {short(ratio.min())} to {short(ratio.max())} times Barton's."

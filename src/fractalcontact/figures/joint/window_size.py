@@ -1,4 +1,6 @@
-"""Roughness (eq. 2) and closure (sect. 5) against the size of the window."""
+"""Roughness (eq. 2), closure and compliance (sect. 5) against the size of the window."""
+
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -9,32 +11,62 @@ from ...core.ranges import within
 from ...mechanics.states import chosen_offset
 from ..kit.drawing import (
     MARKERS,
+    WEAK,
     WIDTH,
     Drawing,
     colour_of,
     entries,
     group,
+    heading,
     headline,
-    legends_below,
     letter,
     settings_of,
     spread,
 )
-from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
+from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, nothing_in, size_axis
 from ..kit.verdicts import claim, sentences
-from ..kit.words import estimate, opening, place, short
+from ..kit.words import UNDETERMINED, estimate, opening, place, short
 
-TITLE = "Roughness (eq. 2) and closure (section 5) against the size of the window"
+TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
 SUBJECT = "specimen"
 NEEDS = ("windows", "statements")
 ORDER = 90
+
+
+class Quantity(NamedTuple):
+    """What a panel draws of the contact of sub-windows: variables, letter and words."""
+
+    name: str
+    exponent: str
+    letter: str
+    words: str
+    label: str
+    symbol: str
+
+
+CLOSURE = Quantity(
+    "interface_closure",
+    "closure_exponent",
+    "b",
+    "closure",
+    r"interface closure $w_\mathrm{int}$ (mm)",
+    r"w_\mathrm{int}",
+)
+COMPLIANCE = Quantity(
+    "interface_compliance",
+    "compliance_exponent",
+    "c",
+    "compliance",
+    r"compliance $c=\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)",
+    "c",
+)
 
 #: Offsets whose composite topography is shown in (a).
 _OFFSETS = 3
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
-    """sigma_z and interface closure against the side b of sub-windows.
+    """sigma_z, closure and compliance of the interface against the side b of sub-windows.
 
     Its data are the means over sub-windows with their intervals.
     """
@@ -45,14 +77,28 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     mapped = int(np.argmin(np.abs(offsets - chosen_offset(settings["map_offset"], offsets))))
     shown = [] if flat else [int(i) for i in spread(len(offsets), _OFFSETS)]
 
-    figure = Figure(figsize=(WIDTH, 4.6))
-    roughness, closure = figure.subplots(1, 2)
+    figure = Figure(figsize=(WIDTH, 5.8))
+    (roughness, closure), (compliance, legends) = figure.subplots(2, 2)
     _draw_roughness(roughness, laws, shown)
-    _draw_closure(closure, laws, mapped)
-    legends_below(figure, entries(roughness), entries(closure))
+    for axes, quantity in ((closure, CLOSURE), (compliance, COMPLIANCE)):
+        _draw_contact(axes, laws, mapped, quantity)
+    legends.axis("off")
+    handles = [
+        entry
+        for axes, words in (
+            (roughness, "(a)"),
+            (closure, "(b), thin: undetermined"),
+            (compliance, "(c), thin: undetermined"),
+        )
+        for entry in (heading(words), *entries(axes))
+    ]
+    legends.legend(handles=handles, loc="center left", labelspacing=0.4)
     headline(figure, settings["label"])
     table = pd.concat(
-        [_roughness_table(laws, shown), _closure_table(laws)],
+        [
+            _roughness_table(laws, shown),
+            *(_contact_table(laws, quantity) for quantity in (CLOSURE, COMPLIANCE)),
+        ],
         ignore_index=True,
     )
     larger = claim(atlas, name, "more compliant larger samples", "larger_samples_close_more")
@@ -88,28 +134,33 @@ def _draw_roughness(axes, laws, shown):
     letter(axes, "a", "roughness")
 
 
-def _draw_closure(axes, laws, mapped):
+def _draw_contact(axes, laws, mapped, quantity):
+    """Closure or compliance over b under every pressure, with the power law of each."""
     b = laws["side"].values
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
-        _with_intervals(axes, b, laws, "interface_closure", (mapped, j), **style, ls="none")
-        exponent = interval_text(laws, "closure_exponent", (mapped, j))
-        label = rf"$\sigma_0$ = {short(pressure)} MPa: $w_{{int}} \sim b^x$, $x$ = {exponent}"
-        axes.plot([], [], **style, ls="-", lw=0.8, label=label)
-        slope = float(laws["closure_exponent"][mapped, j])
-        closure = laws["interface_closure"].values[:, mapped, j]
-        if np.isfinite(slope):
-            b_min, b_max = (laws[f"closure_exponent_b_{end}"][mapped, j] for end in ("min", "max"))
-            fitted = (closure > 0) & within(b, float(b_min), float(b_max))
-            level = np.exp(np.mean(np.log(closure[fitted]) - slope * np.log(b[fitted])))
-            axes.plot(b[fitted], level * b[fitted] ** slope, color=style["color"], lw=0.8)
+        _with_intervals(axes, b, laws, quantity.name, (mapped, j), **style, ls="none")
+        law = quantity.exponent
+        ends = [float(laws[f"{law}{end}"][mapped, j]) for end in ("", "_low", "_high")]
+        weak = WEAK if estimate(*ends).startswith(UNDETERMINED) else {}
+        label = f"{short(pressure)} MPa: ${quantity.symbol} \\sim b^x$, $x$ = {estimate(*ends)}"
+        axes.plot([], [], **style, ls="none", label=label)
+        values = laws[quantity.name].values[:, mapped, j]
+        if np.isfinite(ends[0]):
+            b_min, b_max = (float(laws[f"{law}_b_{end}"][mapped, j]) for end in ("min", "max"))
+            fitted = (values > 0) & within(b, b_min, b_max)
+            level = np.exp(np.mean(np.log(values[fitted]) - ends[0] * np.log(b[fitted])))
+            line = {"color": style["color"], "linewidth": 0.8} | weak
+            axes.plot(b[fitted], level * b[fitted] ** ends[0], **line)
     size_axis(axes, b, "sub-windows")
-    closures = laws["interface_closure"].values[:, mapped]
-    if (closures > 0).any():
-        logarithmic(axes, closures)
-    axes.set_ylabel(r"interface closure $w_{int}$ (mm)")
+    values = laws[quantity.name].values[:, mapped]
+    if (values > 0).any():
+        logarithmic(axes, values)
+    else:
+        nothing_in(axes, "no size holds ten nodes in contact")
+    axes.set_ylabel(quantity.label)
     where = place(str(laws["direction"].values), float(laws["offset"][mapped]))
-    letter(axes, "b", f"closure, {where}")
+    letter(axes, quantity.letter, f"{quantity.words}, {where}")
 
 
 def _with_intervals(axes, b, laws, name, index, **style):
@@ -141,21 +192,24 @@ def _roughness_table(laws, shown):
     return pd.concat(tables, ignore_index=True)
 
 
-def _closure_table(laws):
+def _contact_table(laws, quantity):
+    name, law = quantity.name, quantity.exponent
+    unit = "mm" if quantity is CLOSURE else "mm_per_MPa"
     tables = [
         pd.DataFrame(
             {
-                "quantity": "interface_closure",
+                "quantity": name,
                 "offset_mm": float(laws["offset"][i]),
                 "nominal_pressure_MPa": float(laws["nominal_pressure"][j]),
                 "b_mm": laws["side"].values,
                 "windows": laws["windows"].values,
-                "mean_mm": laws["interface_closure"].values[:, i, j],
-                "low_mm": laws["interface_closure_low"].values[:, i, j],
-                "high_mm": laws["interface_closure_high"].values[:, i, j],
-                "exponent": float(laws["closure_exponent"][i, j]),
-                "exponent_low": float(laws["closure_exponent_low"][i, j]),
-                "exponent_high": float(laws["closure_exponent_high"][i, j]),
+                f"mean_{unit}": laws[name].values[:, i, j],
+                f"low_{unit}": laws[f"{name}_low"].values[:, i, j],
+                f"high_{unit}": laws[f"{name}_high"].values[:, i, j],
+                **{
+                    f"exponent{end}": float(laws[f"{law}{end}"][i, j])
+                    for end in ("", "_low", "_high")
+                },
             }
         )
         for i in range(laws.sizes["offset"])
@@ -169,8 +223,8 @@ def _closure_table(laws):
 
 def _caption(laws):
     return (
-        f"{opening('eq. 2 and section 5')} Roughness sigma_z and interface closure of sub-windows "
-        f"against their side b. {_hurst_words(laws)}"
+        f"{opening('eq. 2 and section 5')} Roughness sigma_z, closure and compliance of "
+        f"sub-windows against their side b. {_hurst_words(laws)}"
     )
 
 

@@ -57,7 +57,7 @@ class Estimate:
         if self.reason[i]:
             return self.reason[i].split(":")[0]
         text = self.text(i)
-        return rf"$\Delta_\sigma$ {text}" if text == UNDETERMINED else rf"$\Delta_\sigma$ = {text}"
+        return rf"$\Delta_\sigma$ {'' if text.startswith(UNDETERMINED) else '= '}{text}"
 
     @property
     def style(self) -> dict:

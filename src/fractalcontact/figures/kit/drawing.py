@@ -40,6 +40,9 @@ COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#5
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 LINES = ("-", "--", "-.", ":")
 
+#: A line whose slope is undetermined: thin and faint beside those that are determined.
+WEAK: dict[str, Any] = {"linewidth": 0.6, "alpha": 0.5}
+
 #: Width of a figure across two columns of a journal, inches.
 WIDTH = 7.2
 #: Pixels of an inch, in the PNG and of the maps inside the SVG.

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
@@ -27,6 +28,9 @@ HALO = [withStroke(linewidth=2.5, foreground="white")]
 #: more than this many along a side of the map.
 FEW_NODES = 100
 FINE_NODES = 100
+
+_RING: dict[str, Any] = {"marker": "o", "ls": "none", "ms": 4, "mfc": "none", "mew": 0.7}
+_RING["mec"] = COLOURS[2]
 
 #: Points that a node in contact is wide at least, so that print shows it, as long as no more than
 #: this fraction of the map becomes black.
@@ -131,8 +135,13 @@ def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks
     nodes = np.argwhere(domain)
     if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
         y, x = node_position(nodes.T, domain.shape, sides)
-        axes.plot(x, y, "o", ms=4, mfc="none", mec=COLOURS[2], mew=0.7, clip_on=False)
+        axes.plot(x, y, clip_on=False, **_RING)
     return drawn is not domain
+
+
+def ring_entry(label: str) -> Line2D:
+    """Entry of a legend for the rings round few nodes."""
+    return Line2D([], [], label=label, **_RING)
 
 
 def enlarged(domain: np.ndarray, points: float) -> np.ndarray:

@@ -13,8 +13,8 @@ from .words import estimate, length_unit, short
 MOSTLY = 0.5
 #: Why no strength is drawn.
 NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
-#: Over more decades than this, 1, 2 and 5 would crowd.
-_FEW_DECADES = 2.5
+#: Numbers of a decade that stand at an axis whose ends are up to this factor apart.
+_TICKS = ((3.0, (1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)), (10.0, (1, 2, 3, 5, 7)), (300.0, (1, 2, 5)))
 #: The frame ends at this part of the smallest mean; a bar as much shorter leaves it for certain.
 _MARGIN, _OUT_OF_FRAME = 3.0, 1e-3
 #: Pressures at one b are set apart by this part of b, so that their bars do not hide each other.
@@ -24,8 +24,9 @@ _APART = 0.03
 def plain_decades(axis: Axis) -> None:
     """Ticks of a logarithmic axis as plain numbers: 1, 2, 5, 10 ... where it is short."""
     low, high = axis.get_view_interval()
-    short = 0 < low < high < low * 10**_FEW_DECADES
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if short else (1,)))
+    span = high / low if 0 < low < high else np.inf
+    places = next((subs for most, subs in _TICKS if span < most), (1,))
+    axis.set_major_locator(LogLocator(subs=places))
     axis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axis.set_minor_formatter(NullFormatter())
 
@@ -86,7 +87,12 @@ def logarithmic(axes: Axes, values: np.ndarray) -> None:
     """Logarithmic axis along y, which ends below the smallest of the positive values drawn."""
     axes.set_yscale("log")
     smallest = np.min(values, where=values > 0, initial=np.inf)
-    axes.set_ylim(bottom=max(axes.get_ylim()[0], smallest / _MARGIN))
+    bottom = max(axes.get_ylim()[0], smallest / _MARGIN)
+    if np.isfinite(smallest):
+        # With a number at or below the smallest mean.
+        places = np.outer(10.0 ** np.floor(np.log10(smallest)), (1, 2, 5))
+        bottom = min(bottom, 0.95 * places[places <= smallest].max())
+    axes.set_ylim(bottom=bottom)
     plain_decades(axes.yaxis)
 
 

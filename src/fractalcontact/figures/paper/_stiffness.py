@@ -80,7 +80,7 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
             ls="--",
             lw=0.8,
             capsize=2,
-            label="$k_{ni}$ ($F$ = 0)",
+            label="$k_{ni}$ of the hyperbola ($F$ = 0)",
         )
     axes.set_xscale("log")
     if len(known):

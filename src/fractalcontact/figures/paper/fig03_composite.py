@@ -213,6 +213,8 @@ def _draw_profile(axes, slid, profiles):
     axes.set_ylabel(f"height ({height_unit})")
     axes.margins(x=0, y=0.15)
     floor, ceiling = axes.get_ylim()
+    # The word below the arrow stays clear of the axis.
+    floor = min(floor, bottom - 0.25 * (ceiling - bottom))
     axes.fill_between(x, lower, floor, color="0.9", lw=0, zorder=0)
     axes.set_ylim(floor, ceiling)
     return axes.get_legend_handles_labels()[0]

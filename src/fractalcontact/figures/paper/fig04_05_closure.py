@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.resolved import RESOLVED_NODES
@@ -18,6 +19,7 @@ from ..kit.drawing import (
     finest_curves,
     force_axis,
     group,
+    heading,
     headline,
     label_short_span,
     legends_below,
@@ -50,6 +52,12 @@ NEARLY = 0.1
 #: An asymptote beyond this many times the largest closure is stated, not drawn.
 FARTHEST_ASYMPTOTE = 1.5
 
+#: What the numbers of every curve are.
+_LEGEND = "(a), (b): $k_{ni}$ (MPa/mm); misfits of logarithmic law, hyperbola"
+
+#: Of the law that fits less well.
+_DASHES = (0, (4, 3))
+
 #: Marker of raw areas, and of states of too few nodes: open, and smaller than the others.
 _OPEN = {"mfc": "none", "ms": 3, "mew": 0.6}
 
@@ -66,16 +74,21 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         group(atlas, "closure", name).sel(direction=direction), settings, specimen
     )
 
-    figure = Figure(figsize=(WIDTH, 6.8))
+    figure = Figure(figsize=(WIDTH, 7.0))
     panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.15, 1])
     area = nominal_area(specimen)
     _draw_closure(panels["a"], curves, drawn, direction, area)
-    _draw_light_loads(panels["b"], curves, drawn)
+    _draw_light_loads(panels["b"], curves, drawn, area)
     _draw_area(panels["c"], curves, drawn, direction, laws, area)
     draw_stiffness(panels["d"], stiffness)
-    legends_below(figure, entries(panels["a"]), entries(panels["c"]))
+    area_line = [_line("-", "power law fitted", lw=0.7)] if _has_lines(panels["c"]) else []
+    legends_below(
+        figure,
+        _keyed(_LEGEND, panels["a"], _line_entries(panels["a"])),
+        _keyed(r"(c): exponent of $A_r$ over $F$", panels["c"], area_line),
+    )
     letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
-    letter(panels["b"], "b", r"closure at light loads (dotted: $k_{ni}\,w_\mathrm{int}$)")
+    letter(panels["b"], "b", r"light loads: hyperbola, dotted down to its $k_{ni}$")
     letter(panels["c"], "c", "contact area (filled: corrected, hollow: raw)")
     letter(panels["d"], "d", f"stiffness over the spacing, {_state(direction, stiffness)}")
     headline(figure, settings["label"], place(direction))
@@ -133,8 +146,8 @@ def _draw_closure(axes, curves, drawn, direction, area):
     _second_axis(axes, size / area).set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
 
 
-def _draw_light_loads(axes, curves, drawn):
-    """The closure curves on logarithmic axes, with the line that k_ni gives each at light load."""
+def _draw_light_loads(axes, curves, drawn, area):
+    """The closure curves on logarithmic axes with their hyperbolas, down to k_ni at light load."""
     pressure = curves["nominal_pressure"].values
     for n, i in enumerate(drawn):
         curve = curves.isel(offset=i)
@@ -142,10 +155,12 @@ def _draw_light_loads(axes, curves, drawn):
         w, resolved = curve["interface_closure"].values, curve["resolved"].values
         axes.plot(w[resolved], pressure[resolved], MARKERS[n], **style)
         axes.plot(w[~resolved], pressure[~resolved], MARKERS[n], **style, **_OPEN)
-        k_ni = float(curve["hyperbola_k_ni"])
-        if np.isfinite(k_ni):
-            ends = np.array([pressure[0], pressure[-1]])
-            axes.plot(ends / k_ni, ends, ls=":", lw=0.9, **style)
+        if np.isfinite(float(curve["hyperbola_k_ni"])):
+            # Below the loads it is fitted to the hyperbola is all k_ni, and an extrapolation.
+            first, last = (float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max"))
+            for ends, line in (((first, last), "-"), ((pressure[0] / 2, first), ":")):
+                along = np.geomspace(*ends, 40)
+                axes.plot(_hyperbola(curve, along), along, ls=line, lw=0.8, **style)
     axes.set(xscale="log", yscale="log")
     closures = curves["interface_closure"].isel(offset=drawn)
     drawable = closures.where(closures > 0)
@@ -169,26 +184,48 @@ def _draw_laws(axes, curve, area, size, style):
             continue
         pressure = np.geomspace(*ends, 100)
         better = float(curve[f"{prefix}_misfit"]) == np.nanmin(misfits)
-        line = {"lw": 0.9} if better else {"lw": 0.7, "ls": (0, (4, 3))}
+        line = {"lw": 0.9} if better else {"lw": 0.7, "ls": _DASHES}
         axes.plot(of(curve, pressure), pressure * area / size, **line, **style)
 
 
 def _law_words(curve):
-    """The law named, and the misfits of both."""
-    misfits = [
-        f"{percent(float(curve[f'{prefix}_misfit']))} {words}"
-        for words, prefix in (("log", "semi_logarithmic"), ("hyperbola", "hyperbola"))
-        if np.isfinite(float(curve[f"{prefix}_misfit"]))
-    ]
-    if not misfits:
+    """k_ni with its interval, and the misfits of both laws, as the legend's heading says."""
+    misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
+    if not np.isfinite(misfits).any():
         return f"no fit: {_no_law(curve)}"
-    k_ni = float(curve["hyperbola_k_ni"])
-    initial = f"$k_{{ni}}$ {short(k_ni)} MPa/mm, " if np.isfinite(k_ni) else ""
-    return f"{initial}misfit {', '.join(misfits)}"
+    ends = [float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")]
+    known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
+    return f"{estimate(*ends)}; {', '.join(known)}"
 
 
 def _no_law(curve):
     return str(curve["closure_law_reason"].values)
+
+
+def _line(style, label, lw=0.9):
+    """Entry of a legend for a line of any curve."""
+    return Line2D([], [], color="0.3", ls=style, lw=lw, label=label)
+
+
+def _has_lines(axes):
+    """Whether more than markers is drawn."""
+    return any(line.get_linestyle() != "None" for line in axes.lines)
+
+
+def _keyed(head, axes, lines):
+    """Entries of axes with a heading, and what their lines are; where none is fitted, no more."""
+    return [heading(head), *entries(axes), *lines] if lines else entries(axes)
+
+
+def _line_entries(axes):
+    """What the lines of (a) are, of those that are drawn."""
+    drawn = [line.get_linestyle() for line in axes.lines]
+    known = (
+        ("-", _line("-", "law that fits better")),
+        ("--", _line(_DASHES, "the other law", lw=0.7)),
+        (":", _line(":", "asymptote $w_m$", lw=0.8)),
+    )
+    return [entry for style, entry in known if style in drawn]
 
 
 def _offset(direction, offset):
@@ -215,7 +252,7 @@ def _draw_area(axes, curves, drawn, direction, laws, area):
         law, curve = laws.isel(offset=i), curves.isel(offset=i)
         enough = curve["area_corrected_resolved"].values
         known = np.isfinite(float(law["corrected_exponent"]))
-        words = f"exponent {_exponent(law)}" if known else f"no fit: {law['corrected_n']:.0f} loads"
+        words = _exponent(law) if known else f"no fit: {law['corrected_n']:.0f} loads"
         style = {"color": colour_of(n), "ls": "none", "marker": MARKERS[n]}
         axes.plot(
             force[enough] / size,
@@ -288,7 +325,22 @@ def _table(curves, drawn, laws):
 def _caption(curves, stiffness):
     return (
         f"{opening('Figs. 4 and 5')} Closure, contact area and stiffness. "
-        f"{_laws_words(curves)} {stiffness_words(stiffness)}"
+        f"{_laws_words(curves)} {stiffness_words(stiffness)}{_initial_words(curves)}"
+    )
+
+
+def _initial_words(curves):
+    """At how many offsets the curve itself is less stiff than its k_ni.
+
+    A hyperbola stiffens with load: sigma_0 / w can nowhere be below its k_ni. Where it is, the
+    curve is none, and k_ni an extrapolation that light loads do not follow.
+    """
+    k_ni = curves["hyperbola_k_ni"]
+    fitted = int(np.isfinite(k_ni).sum())
+    less = k_ni * curves["interface_closure"] > curves["nominal_pressure"]
+    softer = int(less.any("normal_force").sum())
+    return (
+        f" Light loads are less stiff than k_ni at {softer} of {fitted} offsets." if softer else ""
     )
 
 

@@ -139,7 +139,7 @@ def _caption(loading, i, table, slope, falls):
     by_area, by_box = (e.reason[i].split(":")[0] or e.text(i) for e in loading.estimates)
     return (
         f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}. "
-        f"{falls} {_model_words(loading, table, slope)} Delta_sigma: {by_area} by A_r(s), "
+        f"{_model_words(loading, table, slope)} {falls} Delta_sigma: {by_area} by A_r(s), "
         f"{by_box} by box counting. {disagreement(loading.scaling.isel(normal_force=i))}"
     )
 

@@ -3,16 +3,17 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.ranges import within
-from ...domain.box_dimension import local_slopes, spans
+from ...domain.box_dimension import is_determined, local_slopes, spans
 from ...domain.count_law import LawTerms, law_count
 from ..kit.domains import Loading
-from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
+from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, headline, label_short_span, letter
 from ..kit.maps import ENLARGED, draw_domain
 from ..kit.verdicts import claim, sentences
-from ..kit.words import force_label, interval, opening, short
+from ..kit.words import force_label, interval, opening, short, undetermined
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
@@ -41,6 +42,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_counts(middle, table, counts)
     _draw_slopes(right, table, counts)
     handles, _ = middle.get_legend_handles_labels()
+    handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) shaded: 95 % intervals"))
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     caption = sentences(
@@ -116,14 +118,26 @@ def _draw_counts(axes, table, counts):
         axes.loglog(
             r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
         )
-    axes.loglog(r, table["ordinary_count"], "--", color=COLOURS[0], zorder=1)
+    if np.isfinite(table["ordinary_count"]).any():
+        weak = {} if bool(counts["ordinary_determined"]) else WEAK
+        label = "ordinary slope" + (", undetermined" if weak else "")
+        axes.loglog(
+            r, table["ordinary_count"], "--", color=COLOURS[0], zorder=1, label=label, **weak
+        )
     axes.loglog(r, table["mean_count"], "x", ms=4, color=COLOURS[2], label="mean over origins")
     if np.isfinite(table["law_count"]).any():
-        axes.loglog(r, table["law_count"], color=COLOURS[2], label=str(counts["estimator"].item()))
+        weak = {} if _law_determined(counts) else WEAK
+        label = str(counts["estimator"].item()) + (", undetermined" if weak else "")
+        axes.loglog(r, table["law_count"], color=COLOURS[2], label=label, **weak)
     axes.set_ylim(0.7, table["box_count"].max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
     label_short_span(axes.xaxis)
     letter(axes, "b", "box counts")
+
+
+def _law_determined(counts):
+    """Whether the count law has a dimension that is narrow enough to be one."""
+    return is_determined(*(counts[f"delta_sigma_{end}"].item() for end in ("low", "high")))
 
 
 def _draw_slopes(axes, table, counts):
@@ -136,13 +150,20 @@ def _draw_slopes(axes, table, counts):
     ):
         if np.isfinite(null[column]).all() and len(null) > 1:
             axes.plot(*local_slopes(null["box_side_mm"], null[column]), lw=1, **style)
-    for name, fit, colour, style in (
-        ("delta_sigma", "fit", COLOURS[2], "-"),
-        ("delta_sigma_ordinary", "ordinary_fit", COLOURS[0], "--"),
+    for name, fit, colour, style, sure in (
+        ("delta_sigma", "fit", COLOURS[2], "-", _law_determined(counts)),
+        (
+            "delta_sigma_ordinary",
+            "ordinary_fit",
+            COLOURS[0],
+            "--",
+            bool(counts["ordinary_determined"]),
+        ),
     ):
         ends = [counts[f"{fit}_min"].item(), counts[f"{fit}_max"].item()]
         if np.isfinite(counts[name].item()):
-            axes.plot(ends, [counts[name].item()] * 2, color=colour, ls=style)
+            weak = {} if sure else WEAK
+            axes.plot(ends, [counts[name].item()] * 2, color=colour, ls=style, **weak)
             low, high = (counts[f"{name}_{end}"].item() for end in ("low", "high"))
             axes.fill_between(ends, low, high, color=colour, alpha=0.12, lw=0)
     axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
@@ -158,14 +179,12 @@ def _caption(loading, i, counts):
     if reason:
         return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
     return (
-        f"{start}Delta_sigma = {loading.estimates[1].text(i)} (r = {short(counts['fit_min'])}–"
+        f"{start}Delta_sigma is {loading.estimates[1].text(i)} (r = {short(counts['fit_min'])}–"
         f"{short(counts['fit_max'])} mm); ordinary slope {ordinary}."
     )
 
 
 def _ordinary(counts):
     """The ordinary dimension with its interval, or that it is undetermined."""
-    if not bool(counts["ordinary_determined"]):
-        return "undetermined"
-    name = "delta_sigma_ordinary"
-    return interval(*(counts[f"{name}{end}"].item() for end in ("", "_low", "_high")))
+    ends = [counts[f"delta_sigma_ordinary{end}"].item() for end in ("", "_low", "_high")]
+    return interval(*ends) if bool(counts["ordinary_determined"]) else undetermined(*ends)

@@ -8,7 +8,17 @@ from xarray import DataTree
 
 from ...domain.renormalisation import RESOLUTION
 from ..kit.domains import Loading
-from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, entries, headline, legends_below, letter
+from ..kit.drawing import (
+    COLOURS,
+    MARKERS,
+    WEAK,
+    WIDTH,
+    Drawing,
+    entries,
+    headline,
+    legends_below,
+    letter,
+)
 from ..kit.verdicts import claim
 from ..kit.words import force_label, opening, short
 from ._size_effect import draw_axes, size_effect
@@ -77,20 +87,22 @@ def _draw_areas(axes, loading, map_load, table):
         hollow = axes.plot(rows["spacing_mm"], rows["area_mm2"], **(style | raw))
         full = axes.plot(used["spacing_mm"], used["area_corrected_mm2"], **style)
         (hollow if used.empty else full)[0].set_label(label)
-        axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=COLOURS[n])
+        weak = {} if by_area.determined[i] else WEAK
+        axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=COLOURS[n], **weak)
     spacings = loading.scaling["spacing"].sortby(RESOLUTION).values
     axes.set(xscale="log", yscale="log")
     axes.set_xticks(spacings, [short(s) for s in spacings])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
-    letter(axes, "a", "contact area (filled: corrected, hollow: raw)")
+    letter(axes, "a", "contact area (filled: corrected, hollow: raw; lines: fits)")
 
 
 def _draw_pressures(axes, loading, i, table):
     for estimate in loading.estimates:
         rows = table[table["estimator"] == estimate.label]
         style = {"color": estimate.style["color"], "linestyle": estimate.style["linestyle"]}
+        style |= {} if estimate.determined[i] else WEAK
         label = f"{estimate.symbol}: {estimate.entry(i)}"
         axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style, label=label)
     own = table.iloc[0]
@@ -102,7 +114,9 @@ def _draw_pressures(axes, loading, i, table):
     for estimate in loading.estimates:
         rows = table[table["estimator"] == estimate.label]
         ends = rows["sigma_0_low_MPa"], rows["sigma_0_high_MPa"]
-        axes.fill_between(rows["b_mm"], *ends, color=estimate.style["color"], alpha=0.15, lw=0)
+        faint = 0.15 if estimate.determined[i] else 0.06
+        axes.fill_between(rows["b_mm"], *ends, color=estimate.style["color"], alpha=faint, lw=0)
+    axes.plot([], [], lw=5, color="0.85", label="shaded: 95 % interval")
     letter(axes, "b", f"eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
 
 

@@ -7,8 +7,8 @@ from xarray import DataTree
 
 from ...core.resolved import CORRECTED_NODES
 from ..kit.domains import Loading, departures, rise_words
-from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, letter
-from ..kit.maps import ENLARGED, draw_domain
+from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
+from ..kit.maps import ENLARGED, draw_domain, ring_entry
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
 from ..kit.verdicts import sentences
 from ..kit.words import force_label, opening, percent, wrapped
@@ -55,6 +55,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_nulls(axes, loading)
     _draw_dimensions(axes, loading)
     _draw_measured(axes, measured, nominal)
+    handles = entries(axes)
+    ringed = [ring_entry(f"ring: one node ({which})") for which in [_ringed(maps)] if which]
+    axes.legend(
+        handles=[*handles, *ringed], loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0
+    )
     letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
     _pressure_axis(axes, nominal)
     headline(figure, *loading.title)
@@ -63,6 +68,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = f"{_caption(loading, rises)}{_measured_words(measured)}"
     caption = sentences(caption, ENLARGED if larger else "")
     return Drawing(figure, table.reset_index(drop=True), caption)
+
+
+def _ringed(maps):
+    """Letters of the maps whose nodes have rings, "a to d"; empty where none has."""
+    letters = [which for axes, which in zip(maps, "abcdef", strict=False) if axes.lines]
+    return " to ".join(dict.fromkeys((letters[0], letters[-1]))) if letters else ""
 
 
 def _measured_rows(series):
@@ -88,7 +99,6 @@ def _draw_measured(axes, series, nominal):
             axes.axhline(value, color=each.style["color"], ls="-.", lw=0.9, label=name)
     if series:
         axes.autoscale(axis="x")
-        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
 
 
 def _pressure_axis(axes, nominal):
@@ -186,13 +196,12 @@ def _draw_dimensions(axes, loading):
     if not any(np.isfinite(estimate.value).any() for estimate in loading.estimates):
         first = "\n".join(wrapped(estimate.reason[0]) for estimate in loading.estimates)
         axes.text(0.5, 0.5, first, transform=axes.transAxes, ha="center")
-    axes.axhline(1, color="0.6", ls=":", lw=0.8, zorder=0)
+    axes.axhline(1, color="0.6", ls=":", lw=0.8, zorder=0, label="dimension of a line")
     axes.set_xscale("log")
     axes.set_xlim(loading.forces.min() / 1.5, loading.forces.max() * 1.5)
     axes.set_ylim(-0.05, 2.05)
     axes.set_xlabel("normal force $F$ (N)")
     axes.set_ylabel(r"dimension $\Delta_\sigma$ (1)")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
 
 
 def _caption(loading, rises):

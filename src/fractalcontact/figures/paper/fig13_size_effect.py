@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ..kit.domains import Loading, rise_words
-from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, heading, headline, legends_below
+from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing, heading, headline, legends_below
 from ..kit.words import force_label, interval, opening
 from ._size_effect import draw_axes, size_effect
 
@@ -44,7 +44,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     lines = [_draw_lines(axes, loading, estimate, shown, table) for estimate in loading.estimates]
     legends_below(figure, *lines)
     draw_axes(axes)
-    axes.set_title("lines: eq. 6; markers: the specimen")
+    axes.set_title("lines: eq. 6 (thin: undetermined); markers: the specimen")
     headline(figure, *loading.title)
     return Drawing(figure, table, _caption(rise_words(atlas, name, loading, numbers=False)))
 
@@ -59,6 +59,7 @@ def _draw_lines(axes, loading, estimate, shown, table):
         force = loading.forces[i]
         rows = table[(table["load_N"] == force) & (table["estimator"] == estimate.label)]
         style = {"color": COLOURS[n], "linestyle": line}
+        style |= {} if estimate.determined[i] else WEAK
         axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style)
         slope = interval(*(d[i] for d in _slope(estimate)))
         label = f"{force_label(force)}: {slope}"
