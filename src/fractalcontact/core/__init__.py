@@ -22,6 +22,7 @@ __getattr__, __dir__, __all__ = exports(
         "MOST_RESULT": ".arguments",
         "Mean": ".intervals",
         "NO_SLOPE": ".slope_of_sums",
+        "NO_WIDTH": ".determined",
         "NotConverged": ".errors",
         "OutputError": ".errors",
         "RESOLVED_NODES": ".resolved",
