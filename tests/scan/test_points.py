@@ -1,5 +1,6 @@
 """Clouds and meshes onto grids: tiles, levelling, overhangs, density, far coordinates."""
 
+import re
 import subprocess
 import sys
 
@@ -335,8 +336,21 @@ def test_lines_far_apart_choose_the_area_of_a_point(tmp_path):
     assert heights.attrs["spacing_x"] == pytest.approx(np.sqrt(0.05), rel=0.03)
     assert "unevenly" in heights.attrs["notes"]
     assert heights.attrs["missing_share"] < 0.03  # between the lines nothing is missing
-    even = read(tmp_path, cloud(len(x)))
-    assert "unevenly" not in even.attrs["notes"]
+
+
+@pytest.mark.parametrize("uneven", [False, True])
+def test_points_at_random_choose_the_area_of_a_point(tmp_path, uneven):
+    rng = np.random.default_rng(8)
+    at = np.arange(0, 20, 0.1) + 0.05
+    x, y = (axis.ravel() for axis in np.meshgrid(at, at))
+    if uneven:
+        x, y = rng.uniform(0, 20, (2, x.size))
+    else:  # a lattice that is not quite one, as scanners leave it
+        x, y = np.array([x, y]) + rng.uniform(-0.02, 0.02, (2, x.size))
+    heights = read(tmp_path, np.column_stack([x, y, waves(x, y)]))
+    assert ("unevenly" in heights.attrs["notes"]) == uneven
+    # Many cells a point would hold nothing measured: 4.4 at the nearest distance of random points.
+    assert 0.7 < x.size / heights.size < 1.1
 
 
 def test_what_was_read_stands_in_the_attributes(tmp_path):
@@ -391,11 +405,12 @@ def test_large_clouds_are_sampled_to_the_same_density(monkeypatch):
 # --- bad input ---------------------------------------------------------------------------------
 
 
-def test_points_on_one_line_are_refused(tmp_path):
+def test_points_on_one_line_are_no_surface(tmp_path):
     x = np.random.default_rng(0).uniform(0, 10, 500)
     line = np.column_stack([x, 3 * x + 1, 0.01 * np.sin(x)])
-    with pytest.raises(InputError, match=r"rock\.npy.*constant surface"):  # a plane, but upright
-        read(tmp_path, line)
+    notes = read(tmp_path, line).attrs["notes"]  # an upright plane has points, and hardly any area
+    assert "stood upright" in notes
+    assert re.search(r"NOTE: 99\.\d+ % of the cells are missing", notes)
     lattice = points.covering_lattice(line, 0.5, "rock")
     with pytest.raises(InputError, match=r"rock: the points span no area"):
         tri.interpolate_points(line, lattice, 1.0, 1, "rock")

@@ -245,8 +245,8 @@ def _look_beneath(cloud: Cloud) -> Cloud:
     if density.uneven:
         notes += (
             f"the points lie unevenly: the nearest is {density.distance:.4g} mm away, but each has "
-            f"{density.area:.4g} mm2 to itself (lines or clumps); the root of it is the spacing, "
-            "and much between them is interpolated",
+            f"{density.area:.4g} mm2 to itself (random, lines, clumps); the root of it is the "
+            "spacing, and much between them is interpolated",
         )
     return replace(cloud, points=points, density=density, notes=notes)
 

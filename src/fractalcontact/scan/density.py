@@ -20,10 +20,10 @@ PATCH_POINTS = 3_000
 #: for lattices and random clouds alike, and half the distance of the lines where a scanner's lines
 #: lie far apart; chance leaves a circle of the multiple once in 10^5 points.
 HOLE_FACTOR = 3.0
-#: The root of the area per point is 1.0 to 1.1 nearest distances on a lattice, 2.1 in a random
-#: cloud. Above this the points lie along lines or in clumps, and the nearest distance says nothing
-#: about the distance across.
-UNEVEN = 3.0
+#: The root of the area per point is 1.0 to 1.1 nearest distances on a lattice, 1.1 to 1.2 in clouds
+#: of scanners and 2.1 in a random cloud. Above this the points lie at random, along lines or in
+#: clumps: a grid at the nearest distance would have many cells a point, none of them measured.
+UNEVEN = 1.5
 #: A cell lies far from all points at this many times the side of the square that a point, or the
 #: cell, has to itself: on a regular lattice none is farther than 0.71 of it.
 FAR = 1.5
@@ -49,7 +49,7 @@ class Density:
 
     @property
     def uneven(self) -> bool:
-        """Whether the points lie much closer along one direction, or in clumps."""
+        """Whether the points lie at random, much closer along one direction, or in clumps."""
         return np.sqrt(self.area) > UNEVEN * self.distance
 
     @property
