@@ -4,6 +4,7 @@ Only for tests, and only as root: the configuration has to stand in /etc/slurm, 
 job drops the variable that would name another place. What stood there before is put back.
 """
 
+import contextlib
 import ctypes
 import os
 import pwd
@@ -12,6 +13,7 @@ import signal
 import socket
 import subprocess
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 CONFIGURATION = Path("/etc/slurm")
@@ -84,6 +86,21 @@ def missing(accounting: bool = False) -> str:
     return f"no {', '.join(absent)}: apt-get install {' '.join(packages)}"
 
 
+@dataclass(frozen=True)
+class Job:
+    """What SLURM says of a job: its rule, what it asked for, what became of it."""
+
+    number: str
+    rule: str
+    state: str
+    megabytes: int
+    minutes: int
+
+    @property
+    def is_left(self):
+        return self.state in ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING")
+
+
 class Node:
     """A SLURM of one node, from :meth:`start` to :meth:`stop`.
 
@@ -125,7 +142,8 @@ class Node:
 
     def restart_slurmd(self, seconds=1.0):
         """Kill the daemon of the node, and start it again after a while."""
-        os.killpg(self.slurmd.pid, signal.SIGKILL)
+        if self.slurmd.poll() is None:
+            os.killpg(self.slurmd.pid, signal.SIGKILL)
         self.slurmd.wait()
         self.daemons.remove(self.slurmd)
         time.sleep(seconds)
@@ -136,6 +154,45 @@ class Node:
         """Jobs that wait or run, a line each."""
         done = subprocess.run(["squeue", "-h"], capture_output=True, text=True)
         return done.stdout.strip().splitlines()
+
+    def jobs(self, rule=""):
+        """All jobs that it knows, of one rule or of all, in the order in which they came."""
+        command = ["squeue", "-h", "--states=all", "--sort=i", "--format=%i|%k|%T|%m|%l"]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        lines = (line.split("|") for line in done.stdout.splitlines())
+        jobs = (
+            Job(
+                number=number,
+                rule=comment.removeprefix("rule_").partition("_wildcards_")[0],
+                state=state,
+                megabytes=_megabytes(memory),
+                minutes=_minutes(limit),
+            )
+            for number, comment, state, memory, limit in lines
+        )
+        return [job for job in jobs if rule in ("", job.rule)]
+
+    @staticmethod
+    def let_time_be_over(number):
+        """Let the time of a running job be over in a second: SLURM then ends it itself."""
+        _require("scontrol", "update", f"JobId={number}", "EndTime=now+1")
+
+    def end_steps(self, folder):
+        """Kill all that a node does with its jobs in a folder, as a loss of power would.
+
+        Returns
+        -------
+        list of int
+            The processes.
+        """
+        os.killpg(self.slurmd.pid, signal.SIGKILL)
+        numbers = [
+            n for n in map(int, filter(str.isdigit, os.listdir("/proc"))) if _is_of(n, folder)
+        ]
+        for number in numbers:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
+        return numbers
 
     def stop(self):
         """End what was started, by process id, last first; put back what stood in /etc/slurm."""
@@ -224,6 +281,29 @@ class Node:
                 logs = "\n".join(_tail(path) for path in sorted((self.folder / "log").iterdir()))
                 raise RuntimeError(f"{what} does not answer after {PATIENCE} s:\n{logs}")
             time.sleep(0.2)
+
+
+def _megabytes(text):
+    """Of a size as squeue writes it: 2000M, 4G."""
+    return round(float(text[:-1]) * {"K": 1 / 1024, "M": 1, "G": 1024}[text[-1]])
+
+
+def _minutes(text):
+    """Of a time limit as squeue writes it: 5:00, 1:30:00, 1-00:00:00."""
+    days, _, rest = text.rpartition("-")
+    hours, minutes, seconds = ([0, 0, 0] + [int(word) for word in rest.split(":")])[-3:]
+    return int(days or 0) * 1440 + hours * 60 + minutes + seconds // 60
+
+
+def _is_of(number, folder):
+    """Whether a process is a step of a job of SLURM, or works in it in a folder."""
+    try:
+        if Path(f"/proc/{number}/comm").read_text().startswith("slurmstepd"):
+            return True
+        environment = Path(f"/proc/{number}/environ").read_bytes()
+        return b"SLURM_JOB_ID=" in environment and os.readlink(f"/proc/{number}/cwd") == str(folder)
+    except OSError:  # it has ended
+        return False
 
 
 def _end_with_parent():
