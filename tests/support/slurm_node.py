@@ -119,6 +119,7 @@ class Node:
         self.host = socket.gethostname().split(".")[0]
         self.daemons: list[subprocess.Popen] = []
         self.kept: Path | None = None
+        self.before = _alive()
 
     def start(self):
         """Write the configuration and start all daemons, in the foreground, as children."""
@@ -205,8 +206,13 @@ class Node:
             shutil.move(self.kept, CONFIGURATION)
 
     def left(self):
-        """Processes of the daemons that still live: none after :meth:`stop`."""
-        return [str(daemon.args) for daemon in self.daemons if daemon.poll() is None]
+        """Processes of SLURM that live and did not before :meth:`start`: none after :meth:`stop`.
+
+        Returns
+        -------
+        list of str
+        """
+        return sorted(_alive() - self.before)
 
     def _configure(self):
         if CONFIGURATION.exists():
@@ -281,6 +287,17 @@ class Node:
                 logs = "\n".join(_tail(path) for path in sorted((self.folder / "log").iterdir()))
                 raise RuntimeError(f"{what} does not answer after {PATIENCE} s:\n{logs}")
             time.sleep(0.2)
+
+
+def _alive():
+    """All processes of SLURM, of munge and of a database on this machine: id and name."""
+    found = set()
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        with contextlib.suppress(OSError):  # it has ended
+            name = Path(f"/proc/{entry}/comm").read_text().strip()
+            if name.startswith(("slurm", "munged", "mariadbd")):
+                found.add(f"{entry} {name}")
+    return found
 
 
 def _megabytes(text):
