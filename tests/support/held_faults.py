@@ -295,7 +295,8 @@ class HeldStudy:
         """All of the node killed with its job, as by a loss of power, and started again."""
         with self.held("contact") as running:
             numbers = self.node.end_steps(self.project)
-            self.wait(lambda: not self.node.is_idle())  # its jobs are given up then, and not before
+            # Only when the node is missed are its jobs given up.
+            self.wait(lambda: not any(job.state == "RUNNING" for job in self.node.jobs()))
             self.node.restart_slurmd(seconds=1)
             self.notes.append(
                 f"slurmd, its steps and {len(numbers)} processes of jobs: killed (-9)"

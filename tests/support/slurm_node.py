@@ -12,6 +12,7 @@ import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -119,11 +120,13 @@ class Node:
         self.host = socket.gethostname().split(".")[0]
         self.daemons: list[subprocess.Popen] = []
         self.kept: Path | None = None
+        self.configured = False
         self.before = _alive()
+        self.database: Path | None = None
 
     def start(self):
         """Write the configuration and start all daemons, in the foreground, as children."""
-        for name in ("state", "spool", "log", "database"):
+        for name in ("state", "spool", "log"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         # slurmd and munged look at who owns the folders above theirs.
         os.chmod(self.folder, 0o755)
@@ -201,7 +204,10 @@ class Node:
         for daemon in reversed(self.daemons):
             _end(daemon)
         self.daemons.clear()
-        shutil.rmtree(CONFIGURATION, ignore_errors=True)
+        if self.database is not None:
+            shutil.rmtree(self.database, ignore_errors=True)
+        if self.configured:
+            shutil.rmtree(CONFIGURATION, ignore_errors=True)
         if self.kept is not None:
             shutil.move(self.kept, CONFIGURATION)
 
@@ -218,6 +224,7 @@ class Node:
         if CONFIGURATION.exists():
             self.kept = self.folder / "etc-slurm-before"
             shutil.move(CONFIGURATION, self.kept)
+        self.configured = True
         CONFIGURATION.mkdir()
         pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
         words = {
@@ -249,33 +256,36 @@ class Node:
         self._wait("munged", lambda: _succeeds("munge", "-n"))
 
     def _start_accounting(self):
-        data, socket_of = self.folder / "database/data", "/run/mysqld/mysqld.sock"
+        # Not below the others' folder, into which its user may not look.
+        self.database = Path(tempfile.mkdtemp(prefix="slurm-database-"))
+        data, self.socket = self.database / "data", self.database / "socket"
         owner = pwd.getpwnam("mysql")
-        Path("/run/mysqld").mkdir(exist_ok=True)
-        os.chown("/run/mysqld", owner.pw_uid, owner.pw_gid)
-        os.chown(self.folder / "database", owner.pw_uid, owner.pw_gid)
-        if not _succeeds("mariadb-admin", f"--socket={socket_of}", "ping"):
-            _require("mariadb-install-db", f"--datadir={data}", "--user=mysql")
-            self._run(
-                "mariadbd",
-                "mariadbd",
-                "--no-defaults",
-                "--user=mysql",
-                f"--datadir={data}",
-                f"--socket={socket_of}",
-                "--skip-networking",
-            )
-            self._wait(
-                "the database", lambda: _succeeds("mariadb-admin", f"--socket={socket_of}", "ping")
-            )
-        self._run("slurmdbd", "slurmdbd", "-D")
+        os.chown(self.database, owner.pw_uid, owner.pw_gid)
+        _require(
+            *("mariadb-install-db", "--no-defaults", "--user=mysql"),
+            *(f"--datadir={data}", "--skip-test-db"),
+        )
+        self._run(
+            "mariadbd",
+            *("mariadbd", "--no-defaults", "--user=mysql", "--skip-networking"),
+            *(f"--datadir={data}", f"--socket={self.socket}", f"--pid-file={self.database}/pid"),
+            "--innodb-lock-wait-timeout=900",  # slurmdbd wants it so
+        )
+        alive = ("mariadb-admin", "--no-defaults", f"--socket={self.socket}", "ping")
+        self._wait("the database", lambda: _succeeds(*alive))
+        self._run("slurmdbd", "slurmdbd", "-D", MYSQL_UNIX_PORT=str(self.socket))
         self._wait("slurmdbd", lambda: _succeeds("sacctmgr", "-i", "list", "cluster"))
         _require("sacctmgr", "-i", "add", "cluster", "fractalcontact")
 
-    def _run(self, name, *command):
+    def _run(self, name, *command, **environment):
         with open(self.folder / f"log/{name}.out", "ab") as log:
             daemon = subprocess.Popen(
-                command, stdout=log, stderr=log, start_new_session=True, preexec_fn=_end_with_parent
+                command,
+                stdout=log,
+                stderr=log,
+                env=os.environ | environment,
+                start_new_session=True,
+                preexec_fn=_end_with_parent,
             )
         self.daemons.append(daemon)
         return daemon

@@ -22,7 +22,7 @@ DRAWN = (".svg", ".png", ".html")
 @pytest.fixture(scope="module")
 def node(tmp_path_factory):
     if reason := missing(ACCOUNTING):
-        pytest.skip(reason)
+        (pytest.skip if ACCOUNTING else pytest.fail)(reason)
     node = Node(tmp_path_factory.mktemp("slurm"), accounting=ACCOUNTING)
     try:
         yield node.start()
