@@ -7,11 +7,9 @@ from pathlib import Path
 
 #: Seconds that the cluster gets to say what is in its queue.
 PATIENCE = 60
-#: Where the executor keeps what jobs wrote past their own logs, until they have succeeded.
-LOGS = Path(".snakemake/slurm_logs")
 _MORE = "the next attempt, if one is left (retries in the profile), asks for twice as much"
 _MEMORY = f"the cluster ended it, it took more memory than asked for; {_MORE}"
-#: What SLURM writes there when it ends a job.
+#: What SLURM writes when it ends a job, into the log that its executor names beside the job's own.
 ENDED = {
     "DUE TO TIME LIMIT": f"the cluster ended it, its time was over; {_MORE}",
     "Exceeded job memory limit": _MEMORY,
@@ -52,30 +50,6 @@ def left_in_queue(profile):
     return sorted({number for number, _, folder in jobs if folder == os.getcwd()}, key=int)
 
 
-def last_words(rule, since):
-    """What jobs of a rule wrote past their logs on a cluster, the last one last.
-
-    Parameters
-    ----------
-    rule : str
-    since : float
-        Seconds since the epoch; what is older is of another run.
-
-    Returns
-    -------
-    list of str
-        Lines.
-    """
-    lines = []
-    for path in sorted(LOGS.glob(f"rule_{rule}/**/*.log"), key=_age):
-        try:
-            if path.stat().st_mtime >= since:
-                lines += path.read_text(encoding="utf-8", errors="replace").splitlines()
-        except OSError:
-            continue
-    return lines
-
-
 def ended_by_cluster(lines):
     """Why the cluster ended a job, in words for its user; nothing if it did not say so."""
     for line in reversed(lines):
@@ -83,10 +57,3 @@ def ended_by_cluster(lines):
             if sign in line and "slurm" in line:
                 return why
     return ""
-
-
-def _age(path):
-    try:
-        return path.stat().st_mtime
-    except OSError:
-        return 0.0

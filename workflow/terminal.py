@@ -15,7 +15,7 @@ import time
 from collections import deque
 from pathlib import Path
 
-from cluster import ended_by_cluster, last_words
+from cluster import ended_by_cluster
 
 #: Columns of the terminal.
 WIDTH = 120
@@ -216,10 +216,9 @@ class Terminal:
             return None
         if _is_full([*lines, *self.past]):
             return f"{self.results}: no space left on its disk; make room there and run again"
-        past = last_words(job["rule_name"], self.began_at)
-        if why := ended_by_cluster(past):
+        if why := ended_by_cluster(lines):
             return why
-        said = [line for line in [*past, *self.past] if line.startswith("error: ")]
+        said = [line for line in self.past if line.startswith("error: ")]
         if said and not lines:  # it could not write into its log
             return said[-1].removeprefix("error: ")
         last = next((line for line in reversed(lines) if line.strip()), "")
