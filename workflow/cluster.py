@@ -13,7 +13,8 @@ _MEMORY = f"the cluster ended it, it took more memory than asked for; {_MORE}"
 ENDED = {
     "DUE TO TIME LIMIT": f"the cluster ended it, its time was over; {_MORE}",
     "Exceeded job memory limit": _MEMORY,
-    "oom": _MEMORY,
+    "oom_kill": _MEMORY,
+    "oom-kill": _MEMORY,
     "DUE TO NODE FAILURE": "its node failed; SLURM begins it again",
     "DUE TO PREEMPTION": "the cluster had other jobs before it; SLURM begins it again",
 }
