@@ -356,6 +356,8 @@ def replay(names, accounting=False):
     if reason := missing(accounting):
         sys.exit(f"error: {reason}")
     names = names or [*HERE, *SLURM]
+    # Told to end, it ends its daemons too, and puts back what stood in /etc/slurm.
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     wrong = 0
     with tempfile.TemporaryDirectory() as folder:
         places = [Path(folder).resolve() / name for name in ("study", "node")]
