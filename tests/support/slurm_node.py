@@ -60,7 +60,8 @@ PartitionName={partition} Nodes={host} Default=YES MaxTime=120 DefMemPerCPU=256 
 NO_ACCOUNTING = "AccountingStorageType=accounting_storage/none"
 WITH_ACCOUNTING = """\
 AccountingStorageType=accounting_storage/slurmdbd
-AccountingStorageHost=127.0.0.1"""
+AccountingStorageHost=127.0.0.1
+AccountingStoreFlags=job_comment"""
 SLURMDBD_CONF = """\
 AuthType=auth/munge
 DbdHost={host}
