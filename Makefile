@@ -5,10 +5,11 @@
 # make slurm    the same on a cluster
 # make report   the result page alone, and what it is made of
 # make verify   every result against its checksum
-# make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each
+# make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each, FAULTS=--slurm on a SLURM
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
 # make test-slurm   the smoke study on a real SLURM of one node, started for it: root on Debian alone
+# make test-slurm-accounting   the same on one that keeps accounts, which says what jobs asked for and used
 # make test-browser   the pages in Debian's chromium, which it installs where it may
 # make docs   the documentation in results/docs, every warning and broken link an error
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
@@ -36,7 +37,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser test-slurm docs bench problems extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -103,12 +104,18 @@ docs: $(VENV)/docs-installed
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs results/docs
 	@echo "file://$(CURDIR)/results/docs/index.html"
 
-# SLURM=accounting with slurmdbd and its database too.
-SLURM ?= yes
+# Its daemons, where Debian has them: who is not root, or elsewhere, is told what is missing.
+HAVE_DAEMON = command -v $(1) >/dev/null || { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && \
+  DEBIAN_FRONTEND=noninteractive apt-get install --yes --quiet=2 --no-install-recommends $(2) >/dev/null; } || true
+
 test-slurm: $(VENV)/tests-installed $(VENV)/slurm-installed
-	@[ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "make test-slurm: root on Debian alone"; exit 1; }
-	@command -v slurmctld >/dev/null || apt-get install --yes --quiet=2 --no-install-recommends slurm-wlm munge
-	SLURM=$(SLURM) $(BIN)/python -m pytest -q tests/workflow/test_slurm.py
+	@$(call HAVE_DAEMON,slurmctld,slurm-wlm munge)
+	SLURM=yes $(BIN)/python -m pytest -q tests/workflow/test_slurm.py
+
+test-slurm-accounting: $(VENV)/tests-installed $(VENV)/slurm-installed
+	@$(call HAVE_DAEMON,slurmctld,slurm-wlm munge)
+	@$(call HAVE_DAEMON,slurmdbd,slurmdbd mariadb-server)
+	SLURM=accounting $(BIN)/python -m pytest -q -s tests/workflow/test_slurm.py
 
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
@@ -187,7 +194,8 @@ lock:
 	grep -v '^ *--hash=' requirements.lock | sed 's/ *\\$$//' > requirements-conda.txt
 
 # Kills, damaged and replaced files, full disks, threads and forks: nothing may be wrong silently.
-faults: $(VENV)/tests-installed
+faults: $(VENV)/tests-installed $(if $(findstring --slurm,$(FAULTS)),$(VENV)/slurm-installed)
+	$(if $(findstring --slurm,$(FAULTS)),@$(call HAVE_DAEMON,slurmctld,slurm-wlm munge))
 	$(BIN)/python tests/faults.py $(FAULTS)
 
 clean:

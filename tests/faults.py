@@ -3,6 +3,7 @@
     make faults                     all of it, some 40 minutes on two cores
     make faults FAULTS=--quick      a few of each, some minutes
     make faults FAULTS='--only kills damage --seed 3'
+    make faults FAULTS=--slurm      jobs caught in mid-work on a real SLURM (root on Debian)
 
 Each fault ends in one of four ways: the results are the same to the last bit as those of an
 undisturbed run (`same`); the fault was refused in a sentence, after which the same command gives
@@ -27,6 +28,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "src")]
 from ensembles import ENSEMBLES
+from held_faults import HERE, SLURM, HeldStudy, Skipped, replay
 from projects import copy_project, made, rough_heights, small_study, write_scan
 
 from fractalcontact.core.checksums import check
@@ -45,6 +47,7 @@ FAULTS = (
     "forks",
     "interrupts",
     "kernels",
+    "held",
 )
 DAMAGES = {
     "truncate": lambda content, chance: content[: chance.randrange(max(len(content), 1))],
@@ -75,10 +78,6 @@ cases = [(n, k) for k in range(4) for n in sizes]
 def _flipped(content, chance):
     at = chance.randrange(len(content))
     return content[:at] + bytes([content[at] ^ (1 << chance.randrange(8))]) + content[at + 1 :]
-
-
-class Skipped(Exception):
-    """A fault that cannot be tried on this machine."""
 
 
 class Trials:
@@ -292,6 +291,14 @@ class Trials:
                 subprocess.run(["umount", "-l", self.project / "results"], check=True)
         self.make()
 
+    def held(self, times):
+        """Faults in the middle of a job that stands still meanwhile."""
+        folder = self.project.with_name("held")
+        folder.mkdir(exist_ok=True)
+        study = HeldStudy(folder)
+        for name in HERE[:times]:
+            yield study.fault(name)[0]
+
     def two_runs(self, times):
         """A second run beside a living one is refused, and the first is not disturbed."""
         for _ in range(times):
@@ -390,12 +397,20 @@ def main():
     """Replay faults and print what became of them; 1 if anything was wrong."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--quick", action="store_true", help="a few of each")
-    parser.add_argument("--only", nargs="+", choices=FAULTS, help="these faults alone")
+    parser.add_argument("--only", nargs="+", help="these faults alone")
+    parser.add_argument("--slurm", action="store_true", help="held ones on a SLURM of one node")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
+    names = (*HERE, *SLURM) if options.slurm else FAULTS
+    if unknown := set(options.only or ()) - set(names):
+        parser.error(f"no fault {', '.join(unknown)}; there are {', '.join(names)}")
+    if options.slurm:
+        return replay(options.only)
     wrong = 0
     with tempfile.TemporaryDirectory() as folder:
-        trials = Trials(Path(folder).resolve(), options.seed)
+        place = Path(folder).resolve() / "study"
+        place.mkdir()
+        trials = Trials(place, options.seed)
         faults = {
             "damage": trials.damaged,
             **{

@@ -29,6 +29,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
 sys.path.append(str(ROOT / "workflow/scripts"))
 import _running
+from cluster import left_in_queue
 from terminal import Terminal, put
 
 from fractalcontact.core import checksums
@@ -66,6 +67,7 @@ def main():
                 "another run is at work in this folder (or jobs that a killed one left, which end "
                 "by themselves); wait for it, or end it first"
             )
+        _require_empty_queue(options.profile)
         if has_locks:
             _unlock(_command(options, name), options)
             _clean(results)
@@ -129,6 +131,15 @@ def _require_room(results):
         raise InputError(
             f"{folder}: {free / 2**20:.0f} MB free on its disk, less than the "
             f"{LEAST_ROOM / 2**20:.0f} MB that a study needs at least; make room"
+        )
+
+
+def _require_empty_queue(profile):
+    """Jobs of a killed run that wait on a cluster would write beside those of this one."""
+    if left := left_in_queue(f"workflow/profiles/{profile}"):
+        raise InputError(
+            f"jobs of a run that was killed are still in the cluster's queue ({', '.join(left)}); "
+            f"wait until they have ended, or end them: scancel {' '.join(left)}"
         )
 
 

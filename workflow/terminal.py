@@ -15,6 +15,8 @@ import time
 from collections import deque
 from pathlib import Path
 
+from cluster import ended_by_cluster
+
 #: Columns of the terminal.
 WIDTH = 120
 #: Lines of warnings at the end; the result page has all.
@@ -214,6 +216,11 @@ class Terminal:
             return None
         if _is_full([*lines, *self.past]):
             return f"{self.results}: no space left on its disk; make room there and run again"
+        if why := ended_by_cluster(lines):
+            return why
+        said = [line for line in self.past if line.startswith("error: ")]
+        if said and not lines:  # it could not write into its log
+            return said[-1].removeprefix("error: ")
         last = next((line for line in reversed(lines) if line.strip()), "")
         if "error in the program" in lines:
             return f"a fault of the program, not of the input: {last}"

@@ -98,6 +98,7 @@ ENSEMBLES: dict[str, tuple] = {
     "faults: forks": (1, 10),
     "faults: interrupts": (20, 300),
     "faults: kernels": (2, 12),
+    "faults: held": (2, 6),
     # Figures of accuracy: nodes per side, and Hurst exponents, of their test problems.
     "accuracy_figure_sizes": ([12, 16], [16, 24, 32]),
     "accuracy_figure_hurst": ([0.8], [0.5, 0.8]),

@@ -4,6 +4,7 @@ Only for tests, and only as root: the configuration has to stand in /etc/slurm, 
 job drops the variable that would name another place. What stood there before is put back.
 """
 
+import contextlib
 import ctypes
 import os
 import pwd
@@ -11,7 +12,9 @@ import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 CONFIGURATION = Path("/etc/slurm")
@@ -57,7 +60,8 @@ PartitionName={partition} Nodes={host} Default=YES MaxTime=120 DefMemPerCPU=256 
 NO_ACCOUNTING = "AccountingStorageType=accounting_storage/none"
 WITH_ACCOUNTING = """\
 AccountingStorageType=accounting_storage/slurmdbd
-AccountingStorageHost=127.0.0.1"""
+AccountingStorageHost=127.0.0.1
+AccountingStoreFlags=job_comment"""
 SLURMDBD_CONF = """\
 AuthType=auth/munge
 DbdHost={host}
@@ -84,6 +88,21 @@ def missing(accounting: bool = False) -> str:
     return f"no {', '.join(absent)}: apt-get install {' '.join(packages)}"
 
 
+@dataclass(frozen=True)
+class Job:
+    """What SLURM says of a job: its rule, what it asked for, what became of it."""
+
+    number: str
+    rule: str
+    state: str
+    megabytes: int
+    minutes: int
+
+    @property
+    def is_left(self):
+        return self.state in ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING")
+
+
 class Node:
     """A SLURM of one node, from :meth:`start` to :meth:`stop`.
 
@@ -102,10 +121,13 @@ class Node:
         self.host = socket.gethostname().split(".")[0]
         self.daemons: list[subprocess.Popen] = []
         self.kept: Path | None = None
+        self.configured = False
+        self.before = _alive()
+        self.database: Path | None = None
 
     def start(self):
         """Write the configuration and start all daemons, in the foreground, as children."""
-        for name in ("state", "spool", "log", "database"):
+        for name in ("state", "spool", "log"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         # slurmd and munged look at who owns the folders above theirs.
         os.chmod(self.folder, 0o755)
@@ -125,7 +147,8 @@ class Node:
 
     def restart_slurmd(self, seconds=1.0):
         """Kill the daemon of the node, and start it again after a while."""
-        os.killpg(self.slurmd.pid, signal.SIGKILL)
+        if self.slurmd.poll() is None:
+            os.killpg(self.slurmd.pid, signal.SIGKILL)
         self.slurmd.wait()
         self.daemons.remove(self.slurmd)
         time.sleep(seconds)
@@ -137,24 +160,72 @@ class Node:
         done = subprocess.run(["squeue", "-h"], capture_output=True, text=True)
         return done.stdout.strip().splitlines()
 
+    def jobs(self, rule=""):
+        """All jobs that it knows, of one rule or of all, in the order in which they came."""
+        command = ["squeue", "-h", "--states=all", "--sort=i", "--format=%i|%k|%T|%m|%l"]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        lines = (line.split("|") for line in done.stdout.splitlines())
+        jobs = (
+            Job(
+                number=number,
+                rule=comment.removeprefix("rule_").partition("_wildcards_")[0],
+                state=state,
+                megabytes=_megabytes(memory),
+                minutes=_minutes(limit),
+            )
+            for number, comment, state, memory, limit in lines
+        )
+        return [job for job in jobs if rule in ("", job.rule)]
+
+    @staticmethod
+    def let_time_be_over(number):
+        """Let the time of a running job be over in a second: SLURM then ends it itself."""
+        _require("scontrol", "update", f"JobId={number}", "EndTime=now+1")
+
+    def end_steps(self, folder):
+        """Kill all that a node does with its jobs in a folder, as a loss of power would.
+
+        Returns
+        -------
+        list of int
+            The processes.
+        """
+        os.killpg(self.slurmd.pid, signal.SIGKILL)
+        numbers = [
+            n for n in map(int, filter(str.isdigit, os.listdir("/proc"))) if _is_of(n, folder)
+        ]
+        for number in numbers:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
+        return numbers
+
     def stop(self):
         """End what was started, by process id, last first; put back what stood in /etc/slurm."""
         subprocess.run(["scancel", "--user", "root"], capture_output=True)
         for daemon in reversed(self.daemons):
             _end(daemon)
         self.daemons.clear()
-        shutil.rmtree(CONFIGURATION, ignore_errors=True)
+        if self.database is not None:
+            shutil.rmtree(self.database, ignore_errors=True)
+        if self.configured:
+            shutil.rmtree(CONFIGURATION, ignore_errors=True)
         if self.kept is not None:
             shutil.move(self.kept, CONFIGURATION)
 
     def left(self):
-        """Processes of the daemons that still live: none after :meth:`stop`."""
-        return [str(daemon.args) for daemon in self.daemons if daemon.poll() is None]
+        """Processes of SLURM that live and did not before :meth:`start`: none after :meth:`stop`.
+
+        Returns
+        -------
+        list of str
+        """
+        return sorted(_alive() - self.before)
 
     def _configure(self):
         if CONFIGURATION.exists():
             self.kept = self.folder / "etc-slurm-before"
             shutil.move(CONFIGURATION, self.kept)
+        self.configured = True
         CONFIGURATION.mkdir()
         pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
         words = {
@@ -186,33 +257,36 @@ class Node:
         self._wait("munged", lambda: _succeeds("munge", "-n"))
 
     def _start_accounting(self):
-        data, socket_of = self.folder / "database/data", "/run/mysqld/mysqld.sock"
+        # Not below the others' folder, into which its user may not look.
+        self.database = Path(tempfile.mkdtemp(prefix="slurm-database-"))
+        data, self.socket = self.database / "data", self.database / "socket"
         owner = pwd.getpwnam("mysql")
-        Path("/run/mysqld").mkdir(exist_ok=True)
-        os.chown("/run/mysqld", owner.pw_uid, owner.pw_gid)
-        os.chown(self.folder / "database", owner.pw_uid, owner.pw_gid)
-        if not _succeeds("mariadb-admin", f"--socket={socket_of}", "ping"):
-            _require("mariadb-install-db", f"--datadir={data}", "--user=mysql")
-            self._run(
-                "mariadbd",
-                "mariadbd",
-                "--no-defaults",
-                "--user=mysql",
-                f"--datadir={data}",
-                f"--socket={socket_of}",
-                "--skip-networking",
-            )
-            self._wait(
-                "the database", lambda: _succeeds("mariadb-admin", f"--socket={socket_of}", "ping")
-            )
-        self._run("slurmdbd", "slurmdbd", "-D")
+        os.chown(self.database, owner.pw_uid, owner.pw_gid)
+        _require(
+            *("mariadb-install-db", "--no-defaults", "--user=mysql"),
+            *(f"--datadir={data}", "--skip-test-db"),
+        )
+        self._run(
+            "mariadbd",
+            *("mariadbd", "--no-defaults", "--user=mysql", "--skip-networking"),
+            *(f"--datadir={data}", f"--socket={self.socket}", f"--pid-file={self.database}/pid"),
+            "--innodb-lock-wait-timeout=900",  # slurmdbd wants it so
+        )
+        alive = ("mariadb-admin", "--no-defaults", f"--socket={self.socket}", "ping")
+        self._wait("the database", lambda: _succeeds(*alive))
+        self._run("slurmdbd", "slurmdbd", "-D", MYSQL_UNIX_PORT=str(self.socket))
         self._wait("slurmdbd", lambda: _succeeds("sacctmgr", "-i", "list", "cluster"))
         _require("sacctmgr", "-i", "add", "cluster", "fractalcontact")
 
-    def _run(self, name, *command):
+    def _run(self, name, *command, **environment):
         with open(self.folder / f"log/{name}.out", "ab") as log:
             daemon = subprocess.Popen(
-                command, stdout=log, stderr=log, start_new_session=True, preexec_fn=_end_with_parent
+                command,
+                stdout=log,
+                stderr=log,
+                env=os.environ | environment,
+                start_new_session=True,
+                preexec_fn=_end_with_parent,
             )
         self.daemons.append(daemon)
         return daemon
@@ -224,6 +298,40 @@ class Node:
                 logs = "\n".join(_tail(path) for path in sorted((self.folder / "log").iterdir()))
                 raise RuntimeError(f"{what} does not answer after {PATIENCE} s:\n{logs}")
             time.sleep(0.2)
+
+
+def _alive():
+    """All processes of SLURM, of munge and of a database on this machine: id and name."""
+    found = set()
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        with contextlib.suppress(OSError):  # it has ended
+            name = Path(f"/proc/{entry}/comm").read_text().strip()
+            if name.startswith(("slurm", "munged", "mariadbd")):
+                found.add(f"{entry} {name}")
+    return found
+
+
+def _megabytes(text):
+    """Of a size as squeue writes it: 2000M, 4G."""
+    return round(float(text[:-1]) * {"K": 1 / 1024, "M": 1, "G": 1024}[text[-1]])
+
+
+def _minutes(text):
+    """Of a time limit as squeue writes it: 5:00, 1:30:00, 1-00:00:00."""
+    days, _, rest = text.rpartition("-")
+    hours, minutes, seconds = ([0, 0, 0] + [int(word) for word in rest.split(":")])[-3:]
+    return int(days or 0) * 1440 + hours * 60 + minutes + seconds // 60
+
+
+def _is_of(number, folder):
+    """Whether a process is a step of a job of SLURM, or works in it in a folder."""
+    try:
+        if Path(f"/proc/{number}/comm").read_text().startswith("slurmstepd"):
+            return True
+        environment = Path(f"/proc/{number}/environ").read_bytes()
+        return b"SLURM_JOB_ID=" in environment and os.readlink(f"/proc/{number}/cwd") == str(folder)
+    except OSError:  # it has ended
+        return False
 
 
 def _end_with_parent():

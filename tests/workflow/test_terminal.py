@@ -3,11 +3,13 @@
 import importlib.util
 import io
 import os
+import sys
 import time
 
 import pytest
 from places import ROOT
 
+sys.path.append(str(ROOT / "workflow"))
 SPEC = importlib.util.spec_from_file_location("terminal", ROOT / "workflow/terminal.py")
 terminal = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(terminal)

@@ -39,8 +39,8 @@ rule speed:
         "../../environment.yml"
     threads: lambda wildcards: workflow.cores
     resources:
-        mem_mb=4000,
-        runtime=30,
+        mem_mb=doubled(4000),
+        runtime=doubled(30),
     params:
         recipe=config.get("speed"),
         peers=PEERS,
@@ -63,8 +63,8 @@ rule speed_growth:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=doubled(1000),
+        runtime=doubled(10),
     params:
         error=config.get("speed", {}).get("error"),
         code=code("speed_growth"),
@@ -86,8 +86,8 @@ rule convergence:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=30,
+        mem_mb=doubled(1000),
+        runtime=doubled(30),
     params:
         recipe=config.get("convergence"),
         code=code("convergence"),
@@ -107,8 +107,8 @@ rule stability_part:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1500,
-        runtime=60,
+        mem_mb=doubled(1500),
+        runtime=doubled(60),
     params:
         kinds=lambda wc: list(KINDS)[int(wc.part) : int(wc.part) + KINDS_A_JOB],
         draws=config.get("stability", {}).get("draws"),
@@ -132,8 +132,8 @@ rule stability:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=doubled(1000),
+        runtime=doubled(10),
     params:
         code=code("stability"),
     message:
@@ -152,8 +152,8 @@ rule elimination:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=30,
+        mem_mb=doubled(1000),
+        runtime=doubled(30),
     params:
         draws=config.get("stability", {}).get("elimination"),
         code=code("elimination", *METHOD_MODULES),
@@ -185,8 +185,8 @@ rule accuracy_atlas:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=doubled(1000),
+        runtime=doubled(10),
     params:
         configuration={"study": config, "settings": {}},
         code=code("atlas"),

@@ -24,8 +24,8 @@ rule atlas:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=4000,
-        runtime=10,
+        mem_mb=doubled(4000),
+        runtime=doubled(10),
     params:
         configuration={"study": config, "settings": SETTINGS},
         code=code("atlas"),

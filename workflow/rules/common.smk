@@ -125,6 +125,14 @@ def solver_read_by(stage):
     return stages.solver_read_by(stages.STAGES[stage].function, SOLVER)
 
 
+def doubled(amount):
+    """Megabytes or minutes that a job asks for, twice as many at every further attempt.
+
+    So what a cluster has ended for its memory or its time is done by the next.
+    """
+    return lambda wildcards, attempt: amount * 2 ** (attempt - 1)
+
+
 def is_pair(specimen):
     """Whether both faces of a specimen were scanned."""
     return specimen in SCANS and SCANS[specimen].upper is not None

@@ -13,8 +13,8 @@ rule roll_off:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=doubled(2000),
+        runtime=doubled(30),
     params:
         # Without the words for it: a new label makes no new joints.
         **stages.without_label(resolve_roll_off(config, SOURCE) or {}),
@@ -38,8 +38,8 @@ rule area_slope:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=60,
+        mem_mb=doubled(2000),
+        runtime=doubled(60),
     params:
         **calling("area_slope"),
         recipe=config.get("area_slope"),
@@ -63,9 +63,9 @@ rule dimension_test:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: 4000 * attempt,
+        mem_mb=doubled(4000),
         # A partition may allow no more than an hour; who needs more gets it at the second attempt.
-        runtime=lambda wc, attempt: 60 * attempt,
+        runtime=doubled(60),
     params:
         **calling("dimension_test"),
         recipe=config.get("dimension_test"),
@@ -89,8 +89,8 @@ rule estimator_bias:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=60,
+        mem_mb=doubled(2000),
+        runtime=doubled(60),
     params:
         **calling("estimator_bias"),
         recipe=config.get("estimator_bias"),
@@ -113,8 +113,8 @@ rule size_strength:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: 4000 * attempt,
-        runtime=lambda wc, attempt: 120 * attempt,
+        mem_mb=doubled(4000),
+        runtime=doubled(120),
     params:
         **calling("size_strength"),
         recipe=config.get("size_strength"),

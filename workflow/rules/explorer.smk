@@ -13,8 +13,8 @@ rule explorer:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=3000,
-        runtime=10,
+        mem_mb=doubled(3000),
+        runtime=doubled(10),
     params:
         code=code("explorer"),
         templates=sources.digest(

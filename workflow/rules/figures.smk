@@ -80,8 +80,8 @@ rule figures:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=doubled(2000),
+        runtime=doubled(10),
     params:
         names=figures_of("match"),
         configuration=configuration_of,
@@ -130,8 +130,8 @@ rule study_figures:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=4000,
-        runtime=10,
+        mem_mb=doubled(4000),
+        runtime=doubled(10),
     params:
         specimens=SPECIMENS,
         names=STUDY_FIGURES,
@@ -161,8 +161,8 @@ rule all_drawn:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=500,
-        runtime=5,
+        mem_mb=doubled(500),
+        runtime=doubled(5),
     params:
         logs=f"the logs in {RESULTS}/logs/figures",
         code=code("all_drawn"),

@@ -25,8 +25,8 @@ rule result_page:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=doubled(2000),
+        runtime=doubled(10),
     params:
         code=code("result_page"),
         templates=sources.digest(PACKAGE.glob("pages/templates/*"), root=workflow.basedir),

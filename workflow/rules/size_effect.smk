@@ -17,8 +17,8 @@ rule windows:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=60,
+        mem_mb=doubled(2000),
+        runtime=doubled(60),
     params:
         **calling("window_states"),
         settings=settings_read_by("window_states"),
@@ -53,8 +53,8 @@ rule size_effect_part:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: (1000 + largest_side(wc.job) ** 2 // 4000) * attempt,
-        runtime=lambda wc, attempt: 60 * attempt,
+        mem_mb=lambda wc, attempt: (1000 + largest_side(wc.job) ** 2 // 4000) * 2 ** (attempt - 1),
+        runtime=doubled(60),
     params:
         tasks=lambda wc: [list(task) for task in SIZE_JOBS[wc.job]],
         loads=config.get("size_effect", {}).get("loads"),
@@ -78,8 +78,8 @@ rule size_effect:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=20,
+        mem_mb=doubled(2000),
+        runtime=doubled(20),
     params:
         **calling("size_effect"),
         recipe=config.get("size_effect"),

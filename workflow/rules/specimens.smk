@@ -18,8 +18,8 @@ rule embedded:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=doubled(1000),
+        runtime=doubled(10),
     params:
         recipe=recipe_of,
         code=code("embedded"),
@@ -75,8 +75,8 @@ rule specimen:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: memory_of(wc) * attempt,
-        runtime=15,
+        mem_mb=lambda wc, attempt: memory_of(wc) * 2 ** (attempt - 1),
+        runtime=doubled(15),
     params:
         settings=settings_read_by("specimens"),
         options=options_of,

@@ -34,9 +34,13 @@ def job(snakemake):
     ------
     logging.Logger
     """
-    logging.basicConfig(
-        filename=snakemake.log[0], filemode="w", level=logging.INFO, format="%(message)s"
-    )
+    try:
+        logging.basicConfig(
+            filename=snakemake.log[0], filemode="w", level=logging.INFO, format="%(message)s"
+        )
+    except PermissionError:
+        why = "cannot be written, no permission; allow writing there and run again"
+        sys.exit(f"error: {snakemake.log[0]}: {why}")
     log = logging.getLogger("fractalcontact")
     results = Path("results") / snakemake.config["study"]
     signal.signal(signal.SIGTERM, _stop)

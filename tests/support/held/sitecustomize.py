@@ -1,0 +1,35 @@
+"""On the PYTHONPATH of a study whose jobs are to be caught in mid-work: see held_faults.py.
+
+A script of the workflow that has an order in the folder HELD_JOBS stands still for as long as the
+order says "hold"; "memory 2000" makes it take 2000 MB more than it needs, and go on.
+"""
+
+import os
+import sys
+import time
+from pathlib import Path
+
+MB = 2**20
+#: Seconds for which the memory is held alone: whoever measures it has to see it.
+SEEN = 5
+
+
+def _obey(order):
+    order.with_suffix(".begun").write_text(str(os.getpid()))
+    while order.exists():
+        verb, *words = order.read_text().split() or ["hold"]
+        if verb == "memory":
+            _ballast.append(bytearray(b"x") * (int(words[0]) * MB))
+            time.sleep(SEEN)
+            return
+        time.sleep(0.1)
+
+
+_ballast = []
+if "HELD_JOBS" in os.environ:
+    for _word in sys.orig_argv:
+        if (
+            "/.snakemake/scripts/" in _word
+            and (_order := Path(os.environ["HELD_JOBS"], Path(_word).name.split(".")[-2])).exists()
+        ):
+            _obey(_order)

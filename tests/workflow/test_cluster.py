@@ -1,0 +1,107 @@
+"""What can be said of a cluster without one: the profile, and jobs that a killed run left."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+import yaml
+import yte
+from places import ROOT
+from projects import project  # noqa: F401
+
+sys.path.append(str(ROOT / "workflow"))
+from cluster import ended_by_cluster, left_in_queue
+
+PROFILE = ROOT / "workflow/profiles/slurm"
+FAKE = """#!/bin/sh
+cat <<'END'
+{}
+END
+"""
+
+
+@pytest.fixture
+def answers(tmp_path, monkeypatch):
+    """Let commands of SLURM say something; those that are not told are as on a machine without."""
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    monkeypatch.setenv("PATH", f"{tools}:/usr/bin:/bin")
+
+    def say(name, text):
+        (tools / name).write_text(FAKE.format(text))
+        (tools / name).chmod(0o755)
+
+    for name in ("scontrol", "squeue"):
+        say(name, "")
+    return say
+
+
+def settings():
+    with open(PROFILE / "config.yaml") as file:
+        return yte.process_yaml(file, require_use_yte=True)
+
+
+def test_profile_asks_who_knows_of_jobs_that_ended(answers):
+    answers("scontrol", "AccountingStorageType   = accounting_storage/none")
+    assert settings()["slurm-status-command"] == "squeue"
+    assert settings()["slurm-efficiency-report"] is None
+    answers("scontrol", "ClusterName = x\nAccountingStorageType   = accounting_storage/slurmdbd")
+    assert settings()["slurm-status-command"] == "sacct"
+    assert settings()["slurm-efficiency-report"] is True
+
+
+def test_profiles_agree_where_the_cluster_makes_no_difference():
+    here = yaml.safe_load((ROOT / "workflow/profiles/default/config.yaml").read_text())
+    there = settings()
+    assert {key for key in here if there.get(key) != here[key]} <= {"printshellcmds"}
+
+
+def test_jobs_of_this_folder_alone_are_left_in_the_queue(answers, tmp_path, monkeypatch):
+    answers("squeue", f"12|{tmp_path}\n7|{tmp_path}\n9|/home/other\n12|{tmp_path}")
+    monkeypatch.chdir(tmp_path)
+    assert left_in_queue(PROFILE) == ["7", "12"]
+    assert left_in_queue(ROOT / "workflow/profiles/default") == []
+
+
+def test_no_cluster_has_no_queue(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    assert left_in_queue(PROFILE) == []
+
+
+def test_run_beside_jobs_of_a_killed_one_is_refused(answers, project):  # noqa: F811
+    answers("squeue", f"7|{project}")
+    words = ("workflow/run.py", "config/smoke.yaml", "--profile", "slurm")
+    done = subprocess.run(
+        [sys.executable, *words], cwd=project, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 1
+    assert "Traceback" not in done.stderr
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
+    assert "scancel 7" in line
+    assert not (project / "results").exists()
+
+
+def test_every_rule_asks_for_more_at_a_second_attempt():
+    files = [ROOT / "Snakefile", *sorted((ROOT / "workflow/rules").glob("*.smk"))]
+    found = [
+        (path.name, line)
+        for path in files
+        for line in re.findall(r"^        ((?:mem_mb|runtime)=.*)$", path.read_text(), re.MULTILINE)
+    ]
+    assert len(found) > 30
+    assert not [f for f in found if "attempt" not in f[1] and "doubled(" not in f[1]]
+
+
+def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():
+    """The lines are those that SLURM 22.05 wrote, and one of a kernel that counts memory."""
+    lines = {
+        "slurmstepd-vm: error: *** JOB 31 ON vm CANCELLED AT now DUE TO TIME LIMIT ***": "its time",
+        "slurmstepd-vm: error: Exceeded job memory limit": "more memory",
+        "slurmstepd: error: Detected 1 oom_kill event in StepId=7.batch.": "more memory",
+    }
+    for line, why in lines.items():
+        assert why in ended_by_cluster(["Building DAG of jobs...", line, ""])
+    assert not ended_by_cluster(["a room DUE TO TIME LIMIT", "Finished jobid: 0"])
+    assert not ended_by_cluster([])
