@@ -1,7 +1,6 @@
 # What every rule file uses: the checked study, its specimens, files of its stages, and digests of
 # scans and code.
 import os
-import re
 import sys
 from pathlib import Path
 
@@ -25,10 +24,11 @@ import _running
 from fractalcontact.core import checksums, sources
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
-from fractalcontact.study import crate, guards, stages
+from fractalcontact.core.patterns import one_of
+from fractalcontact.study import campaign, crate, guards, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
-from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
+from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.scan_files import folder_notes
 from fractalcontact.study.memory import specimen_memory
 from fractalcontact.study.sidecar import sidecar_of_matrix
@@ -96,13 +96,10 @@ if workflow.is_main_process:
     DIGESTS.save()
 
 
-def one_of(names):
-    """Pattern that matches these names and no others; no specimen at all matches nothing."""
-    return "|".join(map(re.escape, names)) or "(?!)"
-
-
+# Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
+# asks for a specimen that is none is told so by `known`.
 wildcard_constraints:
-    specimen=one_of(SPECIMENS),
+    specimen="[^/]+",
     map=one_of(MAPS),
     directions=r"\d+",
     offsets=r"\d+",
@@ -111,13 +108,20 @@ wildcard_constraints:
     refused=r"\d+",
 
 
+def known(wildcards):
+    """Name of a specimen, which must be one of the study."""
+    if wildcards.specimen not in SETTINGS:
+        raise WorkflowError(f"{SOURCE}: the study has no specimen '{wildcards.specimen}'")
+    return wildcards.specimen
+
+
 def settings_read_by(stage):
     """Settings of a specimen that the function of a stage reads: a change of others is no change.
 
     A friction angle or a label solves nothing again.
     """
     function = stages.STAGES[stage].function
-    return lambda wildcards: stages.read_by(function, SETTINGS[wildcards.specimen])
+    return lambda wildcards: stages.read_by(function, SETTINGS[known(wildcards)])
 
 
 def solver_read_by(stage):
@@ -132,7 +136,17 @@ def is_pair(specimen):
 
 #: Surfaces against a plane, which cannot slide, and all others.
 FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and not is_pair(name)]
-SLIDING = [name for name in SPECIMENS if name not in FLAT]
+SLIDING = sorted(set(SPECIMENS) - set(FLAT))
+SLIDING_NAMES = set(SLIDING)
+
+
+def kind_of(some, others):
+    """Pattern of the names of one kind of specimens; any name where there is no other kind."""
+    return one_of(some) if others else "[^/]+" if some else one_of([])
+
+
+#: Whether the atlas has a file a specimen: then nothing asks for all that was made of each of them.
+IN_PARTS = campaign.in_parts(config, SPECIMENS)
 
 
 def files_of(paths):

@@ -101,7 +101,7 @@ rule strength:
     benchmark:
         f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
-        specimen=one_of(SLIDING),
+        specimen=kind_of(SLIDING, FLAT),
     conda:
         "../../environment.yml"
     resources:
@@ -125,7 +125,7 @@ use rule strength as size_laws_against_plane with:
     benchmark:
         f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
-        specimen=one_of(FLAT),
+        specimen=kind_of(FLAT, SLIDING),
     message:
         "{wildcards.specimen}: size laws"
 

@@ -3,7 +3,7 @@
 
 def recipe_of(wildcards):
     """Recipe of an embedded specimen, without what is only words: that makes no new surface."""
-    recipe = resolve_embedded(config["embedded"][wildcards.specimen], "embedded")
+    recipe = resolve_embedded(config["embedded"][known(wildcards)], "embedded")
     return {key: value for key, value in recipe.items() if key != "label"}
 
 

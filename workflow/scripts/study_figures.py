@@ -1,7 +1,5 @@
 """Draw the figures of the whole study from its atlas."""
 
-from pathlib import Path
-
 from _drawn import report
 from _job import job
 
@@ -11,7 +9,7 @@ with job(snakemake) as log:
     drawn = draw_study_figures(
         snakemake.input[0],
         snakemake.params.specimens,
-        Path(snakemake.output[0]).parent,
+        snakemake.params.folder,
         snakemake.params.names,
     )
     report(drawn, "", snakemake.output.undrawn, log)
