@@ -29,7 +29,7 @@ from fractalcontact.study import campaign, crate, guards, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, study_figures_of
-from fractalcontact.study.scan_files import folder_notes
+from fractalcontact.study.scan_groups import grouped_notes
 from fractalcontact.study.memory import specimen_memory
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.study.size_tasks import size_jobs
@@ -52,7 +52,7 @@ try:
         if SCAN_FOLDER and not STUDY.scans:
             made_alone = "no scan files there; only what the study itself makes is used"
             logger.warning(f"{SCAN_FOLDER}: {made_alone}")
-        for note in folder_notes(SCAN_FOLDER) if SCAN_FOLDER else ():
+        for note in grouped_notes(SCAN_FOLDER, config.get("groups")) if SCAN_FOLDER else ():
             logger.warning(note)
         guards.refuse_unknown_origin(RESULTS)
         # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged

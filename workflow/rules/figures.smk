@@ -5,7 +5,7 @@ STUDY_FIGURES = study_figures_of(
     [*config, *MAP_FILES, *([campaign.COMPARISON] if len(SPECIMENS) > 1 else [])]
 )
 if IN_PARTS:
-    STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES, stages.paths_of(stages.SPECIMEN))
+    STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES)
 
 
 def drawn_of(opposite):

@@ -23,3 +23,10 @@ def join_stages(stages, made_with, path, configuration, log):
     differing = atlas.join_stages(stages, path, configuration, made_with)
     for versions, parts in differing.items():
         log.warning("warning: made with %s: %s", versions, ", ".join(parts))
+
+
+def join_parts(parts, stages, made_with, path, configuration, log):
+    """Write what the atlases of specimens have together, and warn as :func:`join_stages` does."""
+    differing = atlas.join_parts(parts, stages, path, configuration, made_with)
+    for versions, names in differing.items():
+        log.warning("warning: made with %s: %s", versions, ", ".join(names))

@@ -21,6 +21,9 @@ def write_atlas(
     study: str,
     configuration: Mapping,
     made_with: Mapping[str, Mapping[str, dict]] | None = None,
+    parts_in: Mapping[str, str] | None = None,
+    checksums: Mapping[str, Mapping[str, str]] | None = None,
+    differing: Mapping[str, list[str]] | None = None,
 ) -> dict[str, list[str]]:
     """Write all results of a study into one file.
 
@@ -36,6 +39,12 @@ def write_atlas(
     made_with : mapping of str to mapping of str to dict, optional
         Stage to specimen to the versions each part was made with, from
         :func:`core.netcdf.read_with_versions`; those in use by default.
+    parts_in : mapping of str to str, optional
+        Files with the stages of each specimen, if they are not in this one: below its folder.
+    checksums : mapping of str to mapping of str to str, optional
+        SHA-256 of the scans of these, by specimen and face.
+    differing : mapping of str to list of str, optional
+        Of these, those by versions that differ from those in use.
 
     Returns
     -------
@@ -48,16 +57,20 @@ def write_atlas(
     ValueError
         If a variable has no unit or no long name: nothing unlabelled enters the atlas.
     """
-    differing = _by_versions(made_with or {})
+    differing = {**(differing or {}), **_by_versions(made_with or {})}
     root = xr.Dataset(
         attrs={
             "title": f"fractalcontact study {study}",
             "study": study,
             "configuration": json.dumps(configuration, sort_keys=True),
             "versions": json.dumps(versions()),
-            "scan_checksums": json.dumps(_checksums(parts.get("specimens", {})), sort_keys=True),
+            "scan_checksums": json.dumps(
+                {**_checksums(parts.get("specimens", {})), **(checksums or {})}, sort_keys=True
+            ),
         }
     )
+    if parts_in:
+        root.attrs["parts"] = json.dumps(dict(parts_in), sort_keys=True)
     if differing:
         root.attrs["versions_differ"] = json.dumps(differing, sort_keys=True)
     groups = {"/": root}

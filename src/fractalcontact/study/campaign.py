@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from .figure_list import all_figures, figures_of
+from .stages import JOINT, SPECIMEN, STAGES, STUDY
 
 #: Specimens up to which an atlas is one file unless the study says otherwise. A file of many takes
 #: memory for all of them to write, and time for all of them to open.
@@ -12,6 +13,8 @@ MOST_WHOLE = 30
 WHOLE, PARTS = "whole", "parts"
 #: Word for all figures, and for none.
 ALL, NONE = "all", "none"
+#: The one stage of all specimens together that such an atlas has: it takes one row of each.
+KEPT_WHOLE = "study_comparison"
 #: Key that the figures over several specimens ask for: every study of more than one has it.
 COMPARISON = "comparison"
 
@@ -48,14 +51,16 @@ def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: st
     return [] if asked == NONE else [name for name in known if name in asked]
 
 
-def of_study_alone(names: Collection[str], specimen_stages: Collection[str]) -> list[str]:
-    """Figures of a study that read nothing of its specimens one by one.
+def of_study_alone(names: Collection[str]) -> list[str]:
+    """Figures of a study that read no stage of its specimens one by one.
+
+    Those stages are not in the atlas of all specimens where that is in parts.
 
     Parameters
     ----------
     names : collection of str
         From :func:`study.figure_list.study_figures_of`.
-    specimen_stages : collection of str
-        Stages that every specimen has for itself, which are not in the atlas of all of them.
     """
-    return [name for name in names if not set(all_figures()[name].needs) & set(specimen_stages)]
+    in_parts = {name for name, stage in STAGES.items() if stage.grain in (SPECIMEN, JOINT, STUDY)}
+    in_parts -= {KEPT_WHOLE}
+    return [name for name in names if not set(all_figures()[name].needs) & in_parts]
