@@ -1,13 +1,13 @@
 """Campaigns of small synthetic twins, and what the workflow takes for so many specimens.
 
 python benchmarks/campaign.py 1000            writes the scans and the study of 1,000 twins
-python benchmarks/campaign.py 1000 --measure  and measures dry run, rerun without work, gather and figures
+python benchmarks/campaign.py 1000 --measure  measures dry run, rerun without work and gather too
 
-Everything goes to results/campaigns/N: `scans/GROUP/twin_00001.npy`, a sidecar for each group, `study.yaml`. The
-first twins of each group are computed as any specimen is. To measure what only depends on how many
-there are, the others then get copies of these under their own names (links to the same file, but for
-the atlas of each, in which the names of its groups are changed): their numbers are those of
-the first, and say nothing.
+Everything goes to results/campaigns/N: `scans/GROUP/twin_00001.npy`, a sidecar for each group,
+`study.yaml`. One twin of each group is computed as any specimen is. To measure what only depends on
+how many there are, the others then get copies of it under their own names (links to the same file,
+but for the atlas of each, in which the names of its groups are changed): their numbers are
+those of the first, and say nothing.
 """
 
 import argparse
@@ -25,12 +25,11 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "src"))
 from fractalcontact.core import checksums
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.surface.synthesis import self_affine
 
+ROOT = Path(__file__).resolve().parents[1]
 SPACING, NODES = 0.1, 80  # mm, nodes along a side
 #: Groups of twins and the surface dimension of each.
 GROUPS = {"smooth": 2.2, "rough": 2.4}

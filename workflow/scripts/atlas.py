@@ -1,4 +1,4 @@
-"""Write all stages of all specimens into one file, the atlas; or what atlases of each have together."""
+"""Write all stages of all specimens into one file; or what the atlases of each have together."""
 
 from pathlib import Path
 

@@ -1,6 +1,5 @@
 """Regular expressions that match many names quickly."""
 
-import os
 import re
 from collections.abc import Iterable
 
@@ -23,7 +22,12 @@ def one_of(names: Iterable[str]) -> str:
 
 def _branches(words: list[str]) -> str:
     """Sorted, different words behind what they have in common."""
-    common = os.path.commonprefix([words[0], words[-1]])
+    first, last = words[0], words[-1]
+    same = next(
+        (i for i, (a, b) in enumerate(zip(first, last, strict=False)) if a != b),
+        min(len(first), len(last)),
+    )
+    common = first[:same]
     rest = [word[len(common) :] for word in words]
     if rest == [""]:
         return re.escape(common)

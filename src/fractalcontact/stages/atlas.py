@@ -7,11 +7,11 @@ from pathlib import Path
 import xarray as xr
 
 from ..core.netcdf import versions
+from ..statements.comparison import UNGROUPED, compare_specimens, specimen_row
 from ..statements.judge import judge
 from ..statements.study import judge_study
-from ..study.atlas import write_atlas
+from ..study.atlas import words_of, write_atlas
 from ..study.atlas_parts import read_group
-from .comparison import UNGROUPED, compare_specimens, specimen_row
 
 #: Name of the one group of what is judged for the study as a whole.
 WHOLE = "study"
@@ -89,13 +89,14 @@ def join_parts(
         As :func:`study.atlas.write_atlas` gives it; of parts those that differ from the versions in
         use.
     """
-    rows, checksums, differing = {}, {}, {}
+    rows: dict[str, xr.Dataset] = {}
+    checksums: dict[str, dict[str, str]] = {}
+    differing: dict[str, list[str]] = {}
     for name, part in sorted(parts.items()):
         rows[name], attrs = read_group(part, f"comparison/{name}")
         checksums |= json.loads(attrs["scan_checksums"])
         if attrs["versions"] != json.dumps(versions()):
-            words = ", ".join(f"{key} {v}" for key, v in sorted(json.loads(attrs["versions"]).items()))
-            differing.setdefault(words, []).append(name)
+            differing.setdefault(words_of(json.loads(attrs["versions"])), []).append(name)
         for words, names in json.loads(attrs.get("versions_differ", "{}")).items():
             differing.setdefault(words, []).extend(names)
     folder = Path(path).parent

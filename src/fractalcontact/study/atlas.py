@@ -89,11 +89,12 @@ def _by_versions(made_with):
     parts: dict[str, list[str]] = {}
     for stage, specimens in made_with.items():
         for name, used in specimens.items():
-            parts.setdefault(_words(used) or "unknown versions", []).append(f"{stage}/{name}")
-    return {} if set(parts) <= {_words(versions())} else parts
+            parts.setdefault(words_of(used) or "unknown versions", []).append(f"{stage}/{name}")
+    return {} if set(parts) <= {words_of(versions())} else parts
 
 
-def _words(used):
+def words_of(used: Mapping[str, str]) -> str:
+    """Versions of libraries, by their names, in a line."""
     return ", ".join(f"{library} {version}" for library, version in sorted(used.items()))
 
 

@@ -70,11 +70,12 @@ class Atlas:
 
     def __repr__(self) -> str:
         where = f"in {len(self._parts)} parts" if self._parts else "in one file"
-        return f"<Atlas of the study {self.attrs['study']}: {len(self.specimens)} specimens, {where}>"
+        study, n = self.attrs["study"], len(self.specimens)
+        return f"<Atlas of the study {study}: {n} specimens, {where}>"
 
     @property
     def stages(self) -> tuple[str, ...]:
-        """Stages of the study and, of the first specimen, of specimens, in the order of an atlas."""
+        """Stages of the study and those of its first specimen, in the order of an atlas."""
         held = set(self._own)
         if self._parts:
             held |= set(_contents(self._file(self.specimens[0]))[1])

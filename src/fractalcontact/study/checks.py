@@ -79,7 +79,8 @@ def resolve_study(
         raise InputError(
             f"{source}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
         )
-    sidecars, shared = {}, {}
+    sidecars: dict[str, tuple[dict, dict]] = {}
+    shared: dict[Path, tuple[dict, dict]] = {}
     for name, scan in list(scans.items()):
         with _refusing(refused, name):
             sidecars[name] = _stated_of(scan, schema, shared)

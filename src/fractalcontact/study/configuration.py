@@ -27,7 +27,7 @@ def resolve_settings(
     source: str,
     *,
     pair: bool = False,
-    sidecar_file: Path | None = None,
+    sidecar_file: Path | str | None = None,
     group: str = "",
 ) -> dict:
     """Settings of one specimen: the defaults, then the study's own for it, then its sidecar's.

@@ -200,7 +200,7 @@ def _require_columns(table: Path, head: Sequence[str]) -> None:
         raise InputError(f"{table}: two columns are called {printable(twice[0], 60)!r}; rename one")
     if "file" not in head and not {"lower", "upper"} <= set(head):
         raise InputError(
-            f"{table}: its first line names no files; expected a column 'file', or two, 'lower' and "
+            f"{table}: its first line names no files; expected a column 'file', or 'lower' and "
             "'upper', with paths below the folder of the scans"
         )
 
@@ -230,11 +230,11 @@ def _scan_of_row(folder: Path, cells: Mapping[str, str], where: str) -> ScanFile
 def _path(folder: Path, text: str, where: str) -> Path:
     relative = PurePosixPath(text)
     if relative.is_absolute() or ".." in relative.parts:
-        raise InputError(f"{where}: {printable(text, 80)!r} leads out of {folder}; write a path below it")
+        shown = printable(text, 80)
+        raise InputError(f"{where}: {shown!r} leads out of {folder}; write a path below it")
     path = folder / relative
     refuse_misleading(path)
     if not path.exists() and not path.is_symlink():
         raise InputError(f"{where}: no file {printable(path, 120)}")
     refuse_outside_link(path, folder)
     return path
-

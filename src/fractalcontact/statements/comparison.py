@@ -164,7 +164,9 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
 def _filled(values, n):
     """Values over loads with NaN behind the last; a number is handed back as it is."""
     values = np.asarray(values, float)
-    return values if values.ndim == 0 else np.pad(values, (0, n - values.size), constant_values=np.nan)
+    return (
+        values if values.ndim == 0 else np.pad(values, (0, n - values.size), constant_values=np.nan)
+    )
 
 
 def rounded_pressures(pressures: np.ndarray) -> np.ndarray:
@@ -189,7 +191,9 @@ def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
     groups = sorted(set(rows["group"].values))
     rounded = rounded_pressures(rows["nominal_pressure"].values)
     known = np.unique(rounded[np.isfinite(rounded)])
-    pressures = known[np.concatenate([[True], np.diff(known) > 1e-9 * known[1:]])] if known.size else known
+    pressures = (
+        known[np.concatenate([[True], np.diff(known) > 1e-9 * known[1:]])] if known.size else known
+    )
     member = rows["group"].values[:, None] == np.array(groups, dtype=object)[None, :]
     table, values = {}, {}
     for name, (unit, words) in QUANTITIES.items():
@@ -203,7 +207,11 @@ def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
             values[f"{name}{ending}"] = np.array([found[i] for found in statistics])
     coords = {
         "group_name": groups,
-        "pressure": ("pressure", pressures, {"units": "MPa", "long_name": "nominal pressure sigma_0"}),
+        "pressure": (
+            "pressure",
+            pressures,
+            {"units": "MPa", "long_name": "nominal pressure sigma_0"},
+        ),
     }
     return labelled_dataset(table, values, coords)
 
