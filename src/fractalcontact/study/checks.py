@@ -9,10 +9,11 @@ from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..scan.options import coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
+from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
 from .scan_files import ScanFiles
 from .scan_groups import list_grouped
-from .schema import shortened, validate
+from .schema import nearest, shortened, validate
 from .sidecar import is_contact_map, read_yaml
 
 #: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
@@ -200,6 +201,17 @@ def check_study(config: Mapping, schema: Mapping, source: str) -> None:
     for name, recipe in config.get("embedded", {}).items():
         resolve_embedded(recipe, f"{source}: embedded.{name}")
     resolve_roll_off(config, source)
+    _check_figures(config.get("figures", ()), source)
+
+
+def _check_figures(names, source: str) -> None:
+    """Refuse figures that are none of a specimen."""
+    known = figures_of("match")
+    for name in () if isinstance(names, str) else names:
+        if name not in known:
+            raise InputError(
+                f"{source}: figures: no figure {name!r} of specimens{nearest(name, known)}"
+            )
 
 
 def check_names(

@@ -69,7 +69,7 @@ def _draw_strip(axes, name, values, at_load):
     for i, of_group in enumerate(at_load["group_name"].values):
         members = values[values["group"] == of_group].dropna(subset=column.format(""))
         found, low, high = (members[column.format(end)].values for end in ("", "_low", "_high"))
-        place = i + HALF_WIDTH * np.linspace(-1, 1, len(members)) if len(members) > 1 else [i]
+        place = i + HALF_WIDTH * _spread(len(members))
         colour = colour_of(i + 1)
         if len(members) <= MOST_BARS:
             bars = np.nan_to_num([found - low, high - found])
@@ -119,3 +119,8 @@ def _caption(comparison, at_load, pressure, n):
         f"{pressure_label(pressure)}. "
         f"Mean Delta_g {means_in_words(comparison, 'delta_g', at_load)}."
     )
+
+
+def _spread(n):
+    """Places of n points from -1 to 1, of one in the middle."""
+    return np.linspace(-1, 1, n) if n > 1 else np.zeros(n)
