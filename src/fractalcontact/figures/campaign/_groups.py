@@ -4,8 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
 from ...core.labels import printable
+from ..kit.drawing import label_short_span
+from ..kit.empty import say_empty
 from ..kit.words import estimate, interval, short
 
 #: What each quantity is on an axis.
@@ -16,6 +19,16 @@ AXES = {
     "dilatancy": r"elastic dilatancy $\delta$ (mm)",
     "size_exponent": r"exponent of $A_r/A_0$ against $b$ (1)",
 }
+#: What it is above a panel.
+TITLES = {
+    "delta_g": "surface dimension",
+    "stiffness": "stiffness of the interface",
+    "delta_sigma": "dimension of the contact",
+    "dilatancy": "dilatancy",
+    "size_exponent": "size effect",
+}
+#: Ends of what can only lie between: a mean of few specimens has an interval far beyond.
+BETWEEN = {"delta_sigma": (-0.05, 2.05)}
 #: Those drawn over decades.
 LOGARITHMIC = ("stiffness",)
 #: Letters of the name of a group that are shown, and groups that a caption names.
@@ -27,6 +40,27 @@ def group_labels(comparison: xr.Dataset) -> list[str]:
     return [
         printable(name, LONGEST).replace("$", r"\$") for name in comparison["group_name"].values
     ]
+
+
+def settle_axis(axes: Axes, name: str, *, drawn: bool) -> None:
+    """Scale and ends of the axis of a quantity, once it is drawn; words where nothing is.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    name : str
+    drawn : bool
+        Whether any specimen has a value.
+    """
+    axes.set_ylabel(AXES[name])
+    if not drawn:
+        say_empty(axes, "no specimen\nhas a value")
+        axes.set_yticks([])
+    elif name in LOGARITHMIC:
+        axes.set_yscale("log", nonpositive="mask")
+        label_short_span(axes.yaxis)
+    elif name in BETWEEN:
+        axes.set_ylim(*BETWEEN[name])
 
 
 def common_pressure(comparison: xr.Dataset) -> int:

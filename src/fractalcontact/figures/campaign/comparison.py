@@ -9,10 +9,9 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...statements.comparison import ONCE, QUANTITIES, rounded_pressures
-from ..kit.drawing import WIDTH, Drawing, colour_of, group, letter
-from ..kit.empty import say_empty
+from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, group, letter
 from ..kit.words import SUPPLEMENTARY, pressure_label
-from ._groups import AXES, LOGARITHMIC, common_pressure, group_labels, means_in_words
+from ._groups import TITLES, common_pressure, group_labels, means_in_words, settle_axis
 
 TITLE = "Specimens and groups compared: surface, stiffness, contact, dilatancy and size effect"
 SUBJECT = "study"
@@ -38,9 +37,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels = figure.subplots(2, 3).ravel()
     for axes, name, which in zip(panels, QUANTITIES, "abcde", strict=False):
         _draw_strip(axes, name, values, at_load)
-        where = "" if name in ONCE else rf"$\sigma_0$ = {pressure_label(pressure)}"
-        letter(axes, which, where)
+        letter(axes, which, TITLES[name])
     _draw_key(panels[-1], values)
+    figure.suptitle(
+        rf"at the map offset, under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE
+    )
     return Drawing(figure, values, _caption(comparison, at_load, pressure, len(values)))
 
 
@@ -94,18 +95,14 @@ def _draw_strip(axes, name, values, at_load):
             )
     axes.set_xticks(range(len(labels)), labels, rotation=20 if len(labels) > 2 else 0)
     axes.set_xlim(-0.6, len(labels) - 0.4)
-    axes.set_ylabel(AXES[name])
-    if not np.isfinite(values[column.format("")]).any():
-        say_empty(axes, "no specimen has a value under this load")
-    elif name in LOGARITHMIC:
-        axes.set_yscale("log")
+    settle_axis(axes, name, drawn=bool(np.isfinite(values[column.format("")]).any()))
 
 
 def _draw_key(axes, values):
     """What the signs are, in the last panel."""
     axes.set_axis_off()
     many = values.groupby("group").size().max() > MOST_BARS
-    of_each = "one specimen" if many else "one specimen with its 95 % interval"
+    of_each = "one specimen" if many else "one specimen with its\n95 % interval"
     axes.errorbar([0.1], [0.7], [0 if many else 0.06], fmt="o", ms=2.5, lw=0.5, color=colour_of(1))
     axes.text(0.2, 0.7, of_each, va="center")
     axes.errorbar([0.1], [0.45], [0.06], fmt="D", color="k", capsize=3)

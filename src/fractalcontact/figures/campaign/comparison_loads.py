@@ -9,9 +9,8 @@ from xarray import DataTree
 
 from ...statements.comparison import UNDER_LOAD
 from ..kit.drawing import WIDTH, Drawing, colour_of, entries, group, letter
-from ..kit.empty import say_empty
 from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, pressure_label
-from ._groups import AXES, LOGARITHMIC, common_pressure, group_labels, means_in_words
+from ._groups import TITLES, common_pressure, group_labels, means_in_words, settle_axis
 
 TITLE = "Groups of specimens over the nominal pressure"
 SUBJECT = "study"
@@ -32,7 +31,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels = figure.subplots(2, 2, sharex=True)
     for axes, name, which in zip(panels.ravel(), UNDER_LOAD, "abcd", strict=True):
         _draw_quantity(axes, comparison, name)
-        letter(axes, which, "")
+        letter(axes, which, TITLES[name])
     for axes in panels[1]:
         axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
     figure.legend(handles=entries(panels[0, 0]), loc="outside lower center", ncols=3)
@@ -56,12 +55,9 @@ def _draw_quantity(axes, comparison, name):
         low, high = one[f"{name}_mean_low"].values, one[f"{name}_mean_high"].values
         bars = np.nan_to_num([mean - low, high - mean])
         axes.errorbar(pressure, mean, bars, fmt="none", ecolor=colour, capsize=2, lw=0.8)
-    axes.set_ylabel(AXES[name])
-    if not np.isfinite(comparison[f"{name}_mean"]).any():
-        say_empty(axes, "no specimen has a value under any load")
-    elif name in LOGARITHMIC:
-        axes.set_yscale("log", nonpositive="mask")
-    if name == "size_exponent":
+    drawn = bool(np.isfinite(comparison[f"{name}_mean"]).any())
+    settle_axis(axes, name, drawn=drawn)
+    if name == "size_exponent" and drawn:
         axes.axhline(0, color="0.5", lw=0.6)
 
 
