@@ -1,13 +1,13 @@
 """Campaigns of small synthetic twins, and what the workflow takes for so many specimens.
 
 python benchmarks/campaign.py 1000            writes the scans and the study of 1,000 twins
+python benchmarks/campaign.py 6 --run         computes six, which the next needs once
 python benchmarks/campaign.py 1000 --measure  measures dry run, rerun without work and gather too
 
 Everything goes to results/campaigns/N: `scans/GROUP/twin_00001.npy`, a sidecar for each group,
-`study.yaml`. One twin of each group is computed as any specimen is. To measure what only depends on
-how many there are, the others then get copies of it under their own names (links to the same file,
-but for the atlas of each, in which the names of its groups are changed): their numbers are
-those of the first, and say nothing.
+`study.yaml`. To measure what only depends on how many specimens there are, each gets copies of the
+results of one of the six under its own name (links to the same file, but for its atlas, in which
+the names of groups are changed): their numbers are those of six twins, and say nothing.
 """
 
 import argparse
@@ -33,8 +33,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SPACING, NODES = 0.1, 80  # mm, nodes along a side
 #: Groups of twins and the surface dimension of each.
 GROUPS = {"smooth": 2.2, "rough": 2.4}
-#: Twins of each group that are computed.
-COMPUTED = 1
+#: Twins of the campaign whose results the others get copies of.
+COMPUTED = 6
 STUDY = {
     "materials": {
         "sandstone": {
@@ -154,66 +154,71 @@ def _watched(child):
 
 def measure(folder: Path, names: list[str], database: bool) -> None:
     """Dry run, rerun without work, gather and comparison, and files and bytes: a table in JSON."""
-    results = folder / f"results/campaign_{len(names)}"
+    study = f"campaign_{len(names)}"
+    results, donors = folder / f"results/{study}", ROOT / f"results/campaigns/{COMPUTED}"
+    made_by = sorted((donors / f"results/campaign_{COMPUTED}/atlas").glob("*.nc"))
+    if len(made_by) < COMPUTED:
+        raise SystemExit(f"run first: python {Path(__file__).name} {COMPUTED} --run")
     found = {"specimens": len(names), "database": database}
-    found["dry run"] = snakemake(folder, "--dry-run", "--quiet", database=database)
-    donors = {
-        group: [name for name in names if name.startswith(f"{group}_")][:COMPUTED]
-        for group in GROUPS
-    }
-    parts = [f"results/{results.name}/atlas/{name}.nc" for some in donors.values() for name in some]
-    found["computed"] = snakemake(folder, *parts, database=database) | {"specimens": len(parts)}
+    found["dry run"] = snakemake(folder, "--dry-run", "--quiet", "all", database=database)
     begin = time.perf_counter()
-    for name in names:
-        group = name.partition("_")[0]
-        if name not in donors[group]:
-            _copy(results, donors[group][0], name)
+    for number, name in enumerate(names):
+        of_group = [path.stem for path in made_by if path.stem.startswith(name.partition("_")[0])]
+        _copy(made_by[0].parents[1], results, of_group[number % len(of_group)], name)
     found["copies"] = {"s": time.perf_counter() - begin}
-    undrawn = [f"results/{results.name}/undrawn/{name}.txt" for name in names]
-    _write(folder / "targets.txt", "\n".join(undrawn))
-    found["touch"] = snakemake(folder, "--touch", *undrawn, database=database)
+    # Else a study is refused whose results are there but nothing that says how they were made.
+    (folder / ".snakemake/copied.db").touch()
+    found["touch"] = snakemake(folder, "--touch", "--until", "figures", database=database)
     found["gather and figures"] = snakemake(folder, database=database)
     for job in ("atlas", "study_figures"):
         found[job] = _benchmark(results / f"benchmarks/{job}.tsv")
-    found["rerun without work"] = snakemake(folder, "--quiet", database=database)
-    found["results"] = _files(results)
-    found["metadata"] = _files(folder / ".snakemake")
+    found["rerun without work"] = snakemake(folder, "--quiet", "all", database=database)
+    found["results"], found["metadata"] = _files(results), _files(folder / ".snakemake")
+    found["one more"] = _one_more(folder, len(names), database)
     text = json.dumps(found, indent=1)
     _write(folder / ("database.json" if database else "measured.json"), text + "\n")
     print(text)
 
 
-def _copy(results, donor, name):
-    """Give a specimen the files of another: links, but for the atlas, whose groups are renamed."""
-    import netCDF4
+def _one_more(folder, n, database):
+    """Jobs that a dry run names once a specimen is added, by rule."""
+    extra = folder / "scans/rough/added.npy"
+    shutil.copyfile(folder / "scans/rough/twin_00001.npy", extra)
+    try:
+        cost = snakemake(folder, "--dry-run", "--quiet", "progress", database=database)
+        told = (folder / "log.txt").read_text(encoding="utf-8").rpartition("Job stats:")[2]
+    finally:
+        extra.unlink()
+    return cost | {"jobs": dict(re.findall(r"^(\w+) +(\d+)$", told, re.MULTILINE))}
 
-    # Snakemake's --touch asks for what is drawn of nobody and for logs too.
-    for path in [*results.glob(f"*/{donor}.*"), *results.glob(f"checksums/*/{donor}.sha256")]:
-        target = path.with_name(path.name.replace(donor, name))
+
+def _copy(origin, results, donor, name):
+    """Give a specimen the files of another: links, but for the atlas, whose groups are renamed."""
+    import h5py
+
+    paths = [*origin.glob(f"*/{donor}.*"), *origin.glob(f"contact/{donor}/*")]
+    for path in paths:
+        target = results / str(path.relative_to(origin)).replace(donor, name)
         if target.exists():
             continue
-        if path.suffix == ".sha256":
-            _write(target, path.read_text().replace(donor, name))
-        elif path.parent.name == "atlas":
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if path.parent.name == "atlas":
             shutil.copyfile(path, target)
-            with netCDF4.Dataset(target, "a") as file:
-                for stage in file.groups.values():
-                    if donor in stage.groups:
-                        stage.renameGroup(donor, name)
+            with h5py.File(target, "a") as file:
+                for stage in file.values():
+                    if donor in stage and donor != name:
+                        stage.move(donor, name)
+            record = results / f"checksums/atlas/{name}.sha256"
+            _write(record, f"{checksums.sha256(target)}  atlas/{name}.nc\n")
         else:
             os.link(path, target)
-    for folder in (results / "contact", results / "checksums/contact"):
-        for path in (folder / donor).glob("*"):
-            target = folder / name / path.name
-            target.parent.mkdir(parents=True, exist_ok=True)
-            if not target.exists():
-                if path.suffix == ".sha256":
-                    _write(target, path.read_text().replace(donor, name))
-                else:
-                    os.link(path, target)
-    atlas = results / f"atlas/{name}.nc"
-    record = results / f"checksums/atlas/{name}.sha256"
-    _write(record, f"{checksums.sha256(atlas)}  atlas/{name}.nc\n")
+    for path in [
+        *origin.glob(f"checksums/*/{donor}.sha256"),
+        *origin.glob(f"checksums/*/{donor}/*"),
+    ]:
+        target = results / str(path.relative_to(origin)).replace(donor, name)
+        if path.parent.name != "atlas":
+            _write(target, path.read_text().replace(donor, name))
 
 
 def _benchmark(path):

@@ -1,5 +1,7 @@
 # All stages of the study: in one file, or in one a specimen and one of what they have together.
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
+# What of a specimen is compared with others, beside its atlas, which takes long to open.
+SPECIMEN_ROW = f"{RESULTS}/comparison/{{specimen}}.nc"
 
 
 def stages_of(wildcards):
@@ -9,9 +11,9 @@ def stages_of(wildcards):
 
 
 def atlas_inputs():
-    """What the atlas of the study is made of: all stages, or the atlas of each specimen."""
+    """What the atlas of the study is made of: all stages, or a row of each specimen."""
     if IN_PARTS:
-        return {"parts": expand(SPECIMEN_ATLAS, specimen=SPECIMENS)}
+        return {"rows": expand(SPECIMEN_ROW, specimen=SPECIMENS)}
     specimens = {stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()}
     sliding = {stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()}
     return specimens | sliding

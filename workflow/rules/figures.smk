@@ -79,6 +79,7 @@ rule figures:
         *beside("match"),
         atlas=SPECIMEN_ATLAS,
         undrawn=UNDRAWN,
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
@@ -108,6 +109,7 @@ use rule figures as figures_against_plane with:
         *beside("flat"),
         atlas=SPECIMEN_ATLAS,
         undrawn=UNDRAWN,
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:

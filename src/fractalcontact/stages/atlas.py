@@ -63,8 +63,27 @@ def join_stages(
     )
 
 
-def join_parts(
-    parts: Mapping[str, Path],
+def row_of(path: Path | str, name: str) -> xr.Dataset:
+    """Row of the comparison of a specimen, from an atlas of its own.
+
+    Parameters
+    ----------
+    path : path-like
+        From :func:`join_stages`.
+    name : str
+
+    Returns
+    -------
+    xr.Dataset
+        With what the atlas of all must know: attributes ``scan_checksums``, ``versions_differ``.
+    """
+    row, attrs = read_group(path, f"comparison/{name}")
+    known = {key: attrs[key] for key in ("scan_checksums", "versions_differ") if key in attrs}
+    return row.drop_encoding().assign_attrs(known)
+
+
+def join_rows(
+    rows: Mapping[str, tuple[xr.Dataset, Mapping[str, str]]],
     stages: Mapping[str, Mapping[str, xr.Dataset]],
     path: Path | str,
     configuration: Mapping,
@@ -72,12 +91,11 @@ def join_parts(
 ) -> dict[str, list[str]]:
     """Write what specimens whose atlases are files of their own have together.
 
-    Of each only its row of the comparison is read, one after the other.
-
     Parameters
     ----------
-    parts : mapping of str to Path
-        Atlas of each specimen, from :func:`join_stages`, below the folder of ``path``.
+    rows : mapping of str to (xr.Dataset, mapping)
+        From :func:`row_of` by specimen, with the versions each was made with. Their atlases are
+        ``atlas/SPECIMEN.nc`` below the folder of ``path``.
     stages : mapping of str to mapping of str to xr.Dataset
         Of the study: what it has once, and measured contact maps.
     path, configuration, made_with
@@ -86,28 +104,24 @@ def join_parts(
     Returns
     -------
     dict of str to list of str
-        As :func:`study.atlas.write_atlas` gives it; of parts those that differ from the versions in
-        use.
+        As :func:`study.atlas.write_atlas` gives it, specimens by their names alone.
     """
-    rows: dict[str, xr.Dataset] = {}
     checksums: dict[str, dict[str, str]] = {}
     differing: dict[str, list[str]] = {}
-    for name, part in sorted(parts.items()):
-        rows[name], attrs = read_group(part, f"comparison/{name}")
-        checksums |= json.loads(attrs["scan_checksums"])
-        if attrs["versions"] != json.dumps(versions()):
-            differing.setdefault(words_of(json.loads(attrs["versions"])), []).append(name)
-        for words, names in json.loads(attrs.get("versions_differ", "{}")).items():
-            differing.setdefault(words, []).extend(names)
-    folder = Path(path).parent
-    compared = {"study_comparison": {WHOLE: compare_specimens(rows)}}
+    for name, (row, used) in sorted(rows.items()):
+        checksums |= json.loads(row.attrs["scan_checksums"])
+        if used != versions():
+            differing.setdefault(words_of(used), []).append(name)
+        for words, parts in json.loads(row.attrs.get("versions_differ", "{}")).items():
+            differing.setdefault(words, []).extend(parts)
+    compared = compare_specimens({name: row for name, (row, _) in rows.items()})
     return write_atlas(
-        {**stages, **compared},
+        {**stages, "study_comparison": {WHOLE: compared}},
         path,
         study=configuration["study"]["study"],
         configuration=configuration,
         made_with=made_with,
-        parts_in={name: part.relative_to(folder).as_posix() for name, part in parts.items()},
+        parts_in={name: f"atlas/{name}.nc" for name in rows},
         checksums=checksums,
         differing=differing,
     )

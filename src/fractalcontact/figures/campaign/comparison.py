@@ -39,9 +39,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         _draw_strip(axes, name, values, at_load)
         letter(axes, which, TITLES[name])
     _draw_key(panels[-1], values)
-    figure.suptitle(
-        rf"at the map offset, under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE
-    )
+    figure.suptitle(rf"under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE)
     return Drawing(figure, values, _caption(comparison, at_load, pressure, len(values)))
 
 
