@@ -77,9 +77,9 @@ rule figures:
     output:
         *pictures("match"),
         *beside("match"),
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
         atlas=SPECIMEN_ATLAS,
         undrawn=UNDRAWN,
-        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
@@ -107,9 +107,9 @@ use rule figures as figures_against_plane with:
     output:
         *pictures("flat"),
         *beside("flat"),
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
         atlas=SPECIMEN_ATLAS,
         undrawn=UNDRAWN,
-        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
     log:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     benchmark:
@@ -146,7 +146,6 @@ rule study_figures:
         runtime=10,
     params:
         specimens=SPECIMENS,
-        folder=f"{RESULTS}/figures",
         names=STUDY_FIGURES,
         code=code("study_figures", *figure_modules(STUDY_FIGURES)),
     message:

@@ -1,5 +1,7 @@
 """Draw the figures of the whole study from its atlas."""
 
+from pathlib import Path
+
 from _drawn import report
 from _job import job
 
@@ -9,7 +11,7 @@ with job(snakemake) as log:
     drawn = draw_study_figures(
         snakemake.input[0],
         snakemake.params.specimens,
-        snakemake.params.folder,
+        Path(snakemake.input[0]).parent / "figures",
         snakemake.params.names,
     )
     report(drawn, "", snakemake.output.undrawn, log)
