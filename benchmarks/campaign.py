@@ -210,7 +210,8 @@ def _copy(origin, results, donor, name):
                     if donor in stage and donor != name:
                         stage.move(donor, name)
             record = results / f"checksums/atlas/{name}.sha256"
-            _write(record, f"{checksums.sha256(target)}  atlas/{name}.nc\n")
+            record.parent.mkdir(parents=True, exist_ok=True)
+            record.write_text(f"{checksums.sha256(target)}  atlas/{name}.nc\n")
         else:
             os.link(path, target)
     for path in [
@@ -219,7 +220,8 @@ def _copy(origin, results, donor, name):
     ]:
         target = results / str(path.relative_to(origin)).replace(donor, name)
         if path.parent.name != "atlas":
-            _write(target, path.read_text().replace(donor, name))
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(path.read_text().replace(donor, name))
 
 
 def _copy_records(origin, folder, donor, name, study):
@@ -238,7 +240,8 @@ def _copy_records(origin, folder, donor, name, study):
             text, made = text.replace(old, new), made.replace(old, new)
         target = folder / ".snakemake/metadata" / base64.urlsafe_b64encode(made.encode()).decode()
         if not target.exists():
-            _write(target, text)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text)
 
 
 @cache

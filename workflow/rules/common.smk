@@ -1,5 +1,6 @@
 # What every rule file uses: the checked study, its specimens, files of its stages, and digests of
 # scans and code.
+import functools
 import os
 import sys
 from pathlib import Path
@@ -25,12 +26,11 @@ from fractalcontact.core import checksums, sources
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import one_of
-from fractalcontact.study import campaign, crate, guards, stages
+from fractalcontact.study import campaign, crate, guards, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.scan_groups import grouped_notes
-from fractalcontact.study.memory import specimen_memory
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.study.size_tasks import size_jobs
 
@@ -72,6 +72,47 @@ REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 #: Measured contact maps, which have no settings.
 MAPS = {name: SCANS[name] for name in LABELS}
 SPECIMENS = sorted(SETTINGS)
+
+
+def recipe_named(name):
+    """Recipe of an embedded specimen, its lengths in mm."""
+    return resolve_embedded(config["embedded"][name], f"{SOURCE}: embedded.{name}")
+
+
+@functools.cache
+def nodes_of(name):
+    """Most nodes of a face of a specimen, and of its window: what its jobs take follows from them."""
+    if name in SCANS:
+        face, spacing = resources.nodes_of_files(SCANS[name].files), OPTIONS[name].get("spacing")
+    else:
+        recipe = recipe_named(name)
+        face, spacing = resources.nodes_of_recipe(recipe), recipe["spacing"]
+    return face, resources.nodes_of_window(SETTINGS[name], spacing, face)
+
+
+def states_of(name):
+    """Most contact states that are kept of a specimen at its finest resolution."""
+    settings = SETTINGS[name]
+    # How many offsets "auto" finds is known only later.
+    n_offsets = len(settings["offsets"]) if settings["offsets"] else AUTOMATIC_OFFSETS + 1
+    return resources.states_of(settings, n_offsets)
+
+
+def memory_for(job):
+    """Megabytes that the job of a rule asks for, twice as many at every further attempt."""
+    return lambda wildcards, attempt: resources.memory(
+        job,
+        nodes_of(known(wildcards))[1],
+        attempt,
+        states=states_of(wildcards.specimen),
+    )
+
+
+def minutes_for(job):
+    """Minutes that the job of a rule asks for, likewise."""
+    return lambda wildcards, attempt: resources.minutes(
+        job, nodes_of(known(wildcards))[1], states_of(wildcards.specimen), attempt
+    )
 
 
 def digest_of(path):

@@ -32,8 +32,8 @@ rule contact:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=60,
+        mem_mb=memory_for("contact"),
+        runtime=minutes_for("contact"),
     params:
         settings=lambda wc: stages.read_by(stages.CONTACT, SETTINGS[wc.specimen]),
         solver=stages.solver_read_by(stages.CONTACT, SOLVER),
@@ -78,8 +78,8 @@ rule analysis:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: 2000 * attempt,
-        runtime=60,
+        mem_mb=memory_for("analysis"),
+        runtime=minutes_for("analysis"),
     params:
         **calling("closure"),
         settings=settings_read_by("closure"),
@@ -105,8 +105,8 @@ rule strength:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory_for("strength"),
+        runtime=minutes_for("strength"),
     params:
         **calling("windows"),
         settings=settings_read_by("windows"),

@@ -89,8 +89,8 @@ rule figures:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=memory_for("figures"),
+        runtime=minutes_for("figures"),
     params:
         names=drawn_of("match"),
         folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",

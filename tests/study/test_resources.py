@@ -1,0 +1,66 @@
+"""Memory and time that jobs ask for: more for larger grids and at a retry, and enough."""
+
+import os
+
+import pytest
+
+from fractalcontact.study.resources import (
+    COSTS,
+    LEAST_MEMORY,
+    memory,
+    minutes,
+    nodes_of_files,
+    nodes_of_window,
+    reading_memory,
+    states_of,
+)
+
+#: Largest resident memory, MB, of jobs that ran alone: rule, nodes a side, states, MB. The last
+#: column of the table in docs/scaling.md.
+MEASURED = []
+
+
+def sized(path, size):
+    path.touch()
+    os.truncate(path, size)  # a file with nothing in it takes no room
+    return path
+
+
+@pytest.mark.parametrize(("rule", "side", "states", "used"), MEASURED)
+def test_what_is_asked_for_is_between_1_2_and_3_times_what_was_used(rule, side, states, used):
+    asked = memory(rule, side**2, states=states)
+    assert 1.2 <= asked / used <= 3
+
+
+@pytest.mark.parametrize("rule", COSTS)
+def test_more_is_asked_for_larger_grids_and_twice_as_much_at_a_retry(rule):
+    assert memory(rule, 4096**2) >= memory(rule, 128**2) >= LEAST_MEMORY
+    assert minutes(rule, 4096**2, 10) >= minutes(rule, 128**2, 10)
+    assert [memory(rule, 10**6, n) / memory(rule, 10**6) for n in (1, 2, 3)] == [1, 2, 4]
+    assert [minutes(rule, 10**6, 3, n) / minutes(rule, 10**6, 3) for n in (1, 2, 3)] == [1, 2, 4]
+
+
+def test_more_is_asked_for_large_files_and_for_two_faces(tmp_path):
+    small = sized(tmp_path / "rock.npy", 10**5)
+    assert reading_memory([small]) == reading_memory([tmp_path / "absent.npy"])
+    text = sized(tmp_path / "rock.xyz", 315 * 10**6)
+    assert reading_memory([text]) > 2700
+    packed = sized(tmp_path / "rock.x3p", 10**8)
+    assert reading_memory([packed]) > 5000  # packed heights unfold to many times the file
+    assert reading_memory([packed, packed]) >= reading_memory([packed])
+    assert reading_memory([packed], 2) == 2 * reading_memory([packed])
+
+
+def test_nodes_follow_from_files_and_windows(tmp_path):
+    file = sized(tmp_path / "rock.npy", 4 * 128**2)
+    assert nodes_of_files([file]) == 128**2
+    settings = {"window": 5.0}
+    assert nodes_of_window(settings, 0.1, 1e6) == pytest.approx(2500)
+    assert nodes_of_window(settings, "100 um", 1e6) == pytest.approx(2500)
+    assert nodes_of_window({"window": [5.0, 10.0]}, 0.1, 1e6) == pytest.approx(5000)
+    for window, spacing in ((None, 0.1), (5.0, None), (5.0, ["1 mm", "2 mm"]), (500.0, 0.1)):
+        assert nodes_of_window({"window": window}, spacing, 4000.0) == 4000
+
+
+def test_states_are_directions_offsets_and_loads():
+    assert states_of({"contact_directions": ["W", "E"], "loads": [1, 2, 3]}, 5) == 30
