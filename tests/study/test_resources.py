@@ -42,7 +42,8 @@ def test_more_is_asked_for_larger_grids_and_twice_as_much_at_a_retry(rule):
 
 def test_more_is_asked_for_large_files_and_for_two_faces(tmp_path):
     small = sized(tmp_path / "rock.npy", 10**5)
-    assert reading_memory([small]) == reading_memory([tmp_path / "absent.npy"])
+    absent = reading_memory([tmp_path / "absent.npy"])
+    assert absent <= reading_memory([small]) <= 1.05 * absent
     text = sized(tmp_path / "rock.xyz", 315 * 10**6)
     assert reading_memory([text]) > 2700
     packed = sized(tmp_path / "rock.x3p", 10**8)

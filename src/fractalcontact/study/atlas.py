@@ -4,14 +4,18 @@ import json
 from collections.abc import Collection, Hashable, Mapping
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from ..core.atomic import atomic_write
-from ..core.netcdf import encoding, versions
+from ..core.netcdf import COMPRESSED_FROM, encoding, versions
 from .stages import STAGES
 
 #: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
 FIELD_DIGITS = 4
+#: Heights, which the atlas has in steps, and the steps to either side of their middle.
+HEIGHTS = {"lower", "upper", "composite"}
+_MOST_STEPS = 32767 - 1
 
 
 def write_atlas(
@@ -131,8 +135,34 @@ def _write_groups(groups, path):
             group = file if name == "/" else file.createGroup(name)
             backend = xr.backends.NetCDF4DataStore(group)
             stored_as = encoding(dataset, FIELD_DIGITS) | _as_characters(dataset)
+            stored_as |= _in_steps(dataset)
             dataset.dump_to_store(backend, encoding=stored_as, writer=writer)
         writer.write()
+
+
+def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
+    """How heights are kept: in 65 534 equal steps between the lowest and the highest.
+
+    A step is some nanometres, below what any instrument resolves of such a range; of the 64 bits of
+    a height most are noise that no compression removes.
+    """
+    kept: dict[Hashable, dict] = {}
+    for name in HEIGHTS & dataset.variables.keys():
+        values = dataset[name].values
+        known = values[np.isfinite(values)]
+        if values.nbytes < COMPRESSED_FROM or not known.size or known.min() == known.max():
+            continue
+        low, high = float(known.min()), float(known.max())
+        kept[name] = {
+            "dtype": "int16",
+            "scale_factor": (high - low) / (2 * _MOST_STEPS),
+            "add_offset": (high + low) / 2,
+            "_FillValue": -_MOST_STEPS - 1,
+            "zlib": True,
+            "complevel": 4,
+            "shuffle": True,
+        }
+    return kept
 
 
 def _as_characters(dataset: xr.Dataset) -> dict[Hashable, dict]:

@@ -62,7 +62,7 @@ _PLAIN = 8
 #: Bytes of memory for each byte of any other file: heights in two bytes, or packed to one.
 _PACKED = 60
 _PLAIN_ENDINGS = {".asc", ".csv", ".dat", ".npy", ".obj", ".ply", ".stl", ".tsv", ".txt", ".xyz"}
-#: Bytes of a file for each of its nodes, by ending: points of text are three numbers each; of others.
+#: Bytes of a file for each of its nodes, by ending (points are three numbers each), and of others.
 _NODE = {".npy": 4, ".xyz": 20, ".ply": 12, ".stl": 25, ".obj": 25}
 _PLAIN_NODE, _PACKED_NODE = 6, 4
 
