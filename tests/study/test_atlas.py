@@ -166,22 +166,22 @@ def test_single_precision_keeps_four_digits_and_all_else_every_digit(tmp_path):
     assert kept < 0.65 * rock["map_gap"].nbytes
 
 
-def test_heights_are_kept_in_steps_far_below_their_range(tmp_path):
+def test_composites_are_kept_in_steps_far_below_their_range(tmp_path):
     generator = np.random.default_rng(1)
     heights = np.cumsum(generator.normal(size=(80, 90)), axis=0)
     heights[3, 5] = np.nan
     attrs = {"units": "mm", "long_name": "height"}
     data = xr.Dataset(
-        {"lower": (("y", "x"), heights, attrs), "other": (("y", "x"), heights, attrs)}
+        {"composite": (("y", "x"), heights, attrs), "other": (("y", "x"), heights, attrs)}
     )
-    flat = xr.Dataset({"lower": (("y", "x"), np.full((80, 90), 2.5), attrs)})
+    flat = xr.Dataset({"composite": (("y", "x"), np.full((80, 90), 2.5), attrs)})
     path = tmp_path / "atlas.nc"
     write_atlas({"specimens": {"a": data, "b": flat}}, path, study="t", configuration={})
     atlas = read_atlas(path)
-    found = atlas["specimens/a/lower"].values
+    found = atlas["specimens/a/composite"].values
     step = np.ptp(heights[np.isfinite(heights)]) / 65532
     assert np.nanmax(np.abs(found - heights)) <= 0.51 * step + 1e-6 * np.nanmax(np.abs(heights))
     assert np.array_equal(np.isnan(found), np.isnan(heights))
     assert np.array_equal(atlas["specimens/a/other"], heights, equal_nan=True)
-    assert (atlas["specimens/b/lower"] == 2.5).all()
-    assert atlas["specimens/a/lower"].attrs == attrs
+    assert (atlas["specimens/b/composite"] == 2.5).all()
+    assert atlas["specimens/a/composite"].attrs == attrs

@@ -17,7 +17,36 @@ from fractalcontact.study.resources import (
 
 #: Largest resident memory, MB, of jobs that ran alone: rule, nodes a side, states, MB. The last
 #: column of the table in docs/scaling.md.
-MEASURED = []
+MEASURED = [
+    ("specimen", 128, 3, 306),
+    ("specimen", 256, 3, 307),
+    ("specimen", 512, 3, 352),
+    ("contact", 128, 3, 248),
+    ("contact", 256, 3, 263),
+    ("contact", 512, 3, 410),
+    ("analysis", 128, 3, 253),
+    ("analysis", 256, 3, 525),
+    ("analysis", 512, 3, 581),
+    ("windows", 128, 3, 259),
+    ("windows", 256, 3, 276),
+    ("windows", 512, 3, 763),
+    ("strength", 128, 3, 184),
+    ("strength", 512, 3, 195),
+    ("atlas_part", 128, 3, 214),
+    ("atlas_part", 512, 3, 251),
+    # The paper's study, whose joints slide in four directions, at 13 offsets, under ten loads.
+    ("contact", 248, 560, 289),
+    ("contact", 512, 10, 357),
+    ("analysis", 248, 560, 459),
+    ("analysis", 200, 33, 373),
+    ("analysis", 512, 10, 557),
+    ("windows", 512, 10, 434),
+    ("figures", 248, 560, 656),
+    ("figures", 200, 33, 406),
+    ("figures", 512, 10, 446),
+    ("size_effect_part", 512, 1, 519),
+    ("size_effect_part", 512, 1, 314),
+]
 
 
 def sized(path, size):

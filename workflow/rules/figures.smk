@@ -89,8 +89,8 @@ rule figures:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=memory_for("figures"),
-        runtime=minutes_for("figures"),
+        mem_mb=memory_for("figures" if drawn_of("match") else "atlas_part"),
+        runtime=minutes_for("figures" if drawn_of("match") else "atlas_part"),
     params:
         names=drawn_of("match"),
         folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",

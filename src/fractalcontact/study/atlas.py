@@ -13,8 +13,9 @@ from .stages import STAGES
 
 #: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
 FIELD_DIGITS = 4
-#: Heights, which the atlas has in steps, and the steps to either side of their middle.
-HEIGHTS = {"lower", "upper", "composite"}
+#: Heights that follow from others, the faces, and so are kept in steps; steps to either side of
+#: their middle.
+HEIGHTS = {"composite"}
 _MOST_STEPS = 32767 - 1
 
 
@@ -141,10 +142,10 @@ def _write_groups(groups, path):
 
 
 def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
-    """How heights are kept: in 65 534 equal steps between the lowest and the highest.
+    """How composites are kept: in 65 532 equal steps between the lowest and the highest height.
 
-    A step is some nanometres, below what any instrument resolves of such a range; of the 64 bits of
-    a height most are noise that no compression removes.
+    Faces, of which they are the difference, keep every digit. Of the 64 bits of a height most are
+    noise that no compression removes.
     """
     kept: dict[Hashable, dict] = {}
     for name in HEIGHTS & dataset.variables.keys():
