@@ -46,19 +46,19 @@ class Cost:
 #: By rule, fitted to grids of 128 to 1024 nodes a side (``docs/scaling.md``). Of ``specimen`` the
 #: nodes are those of a face, else those of the window; ``atlas_part`` is ``figures`` without any.
 COSTS = {
-    "embedded": Cost(130, 150, 3, 1),
-    "specimen": Cost(260, 260, 6, 15),
-    "contact": Cost(210, 700, 4, 4, 1),
-    "analysis": Cost(190, 320, 8, 8, 5),
-    "windows": Cost(200, 1500, 6, 60),
+    "embedded": Cost(80, 130, 3, 1),
+    "specimen": Cost(270, 200, 6, 15),
+    "contact": Cost(210, 450, 4, 4, 1),
+    "analysis": Cost(190, 450, 8, 8, 5),
+    "windows": Cost(420, 620, 6, 60),
     "strength": Cost(190, 10, 4, 0),
     "figures": Cost(380, 300, 40, 10, 8),
     "atlas_part": Cost(190, 180, 5, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
-#: The analysis solves some states again on finer grids: up to four times as fine, and up to so many
-#: nodes (:mod:`mechanics.error_budget`).
-FINER, MOST_FINER = 16, 1024**2
+#: The analysis solves some states again on finer grids: up to four times as fine, up to so many
+#: nodes, of so many bytes each.
+FINER, MOST_FINER, OF_FINER = 16, 1024**2, 320
 
 #: Bytes of memory for each byte of a file of plain numbers: 12 million points
 #: x, y, z (315 MB as text, 288 MB as they are) take some 2 GB, those of a scattered cloud more.
@@ -86,8 +86,8 @@ def memory(rule: str, nodes: float, attempt: int = 1, *, states: int = 1) -> int
         Contact states that it keeps.
     """
     cost = COSTS[rule]
-    solved = max(nodes, min(FINER * nodes, MOST_FINER)) if rule == "analysis" else nodes
-    needed = cost.start + (solved * cost.node + nodes * cost.state * states) / 1e6
+    finer = OF_FINER * min(FINER * nodes, MOST_FINER) if rule == "analysis" else 0.0
+    needed = cost.start + (finer + nodes * (cost.node + cost.state * states)) / 1e6
     return max(LEAST_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
 
 
