@@ -40,6 +40,8 @@ MEASURED = [
     ("windows", 1024, 3, 977),
     ("strength", 1024, 3, 217),
     ("atlas_part", 1024, 3, 360),
+    ("specimen", 2048, 3, 599),
+    ("contact", 2048, 3, 1249),
     ("embedded", 1024, 1, 196),
     ("embedded", 2048, 1, 581),
     # The paper's study, whose joints slide in four directions, at 13 offsets, under ten loads.

@@ -43,12 +43,12 @@ class Cost:
     state: float = 0.0
 
 
-#: By rule, fitted to grids of 128 to 1024 nodes a side (``docs/scaling.md``). Of ``specimen`` the
+#: By rule, fitted to grids of 128 to 2048 nodes a side (``docs/scaling.md``). Of ``specimen`` the
 #: nodes are those of a face, else those of the window; ``atlas_part`` is ``figures`` without any.
 COSTS = {
     "embedded": Cost(80, 130, 3, 1),
-    "specimen": Cost(270, 200, 6, 15),
-    "contact": Cost(210, 450, 4, 4, 1),
+    "specimen": Cost(270, 100, 6, 15),
+    "contact": Cost(210, 380, 4, 4, 1),
     "analysis": Cost(190, 450, 8, 8, 5),
     "windows": Cost(420, 620, 6, 60),
     "strength": Cost(190, 10, 4, 0),
