@@ -15,6 +15,7 @@
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make cost   where the time of the study went
+# make campaign SPECIMENS=1000   the scans and the study of that many small twins, in results/campaigns
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make problems PROBLEMS=5000   PROBLEMS random contact problems, each state verified
 # make extremes   synthetic extremes and real scans through the whole chain, all figures: many minutes
@@ -37,7 +38,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -120,6 +121,11 @@ test-slurm-accounting: $(VENV)/tests-installed $(VENV)/slurm-installed
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
+
+# CAMPAIGN=--measure: what the workflow takes for so many (after SPECIMENS=6 CAMPAIGN=--run).
+SPECIMENS ?= 100
+campaign: $(VENV)/installed
+	$(BIN)/python benchmarks/campaign.py $(SPECIMENS) $(CAMPAIGN)
 
 extremes: $(VENV)/tests-installed
 	EXTREMES=all $(PYTEST) tests/figures/test_extremes.py

@@ -22,6 +22,7 @@ __getattr__, __dir__, __all__ = exports(
         "box_dimension": ".domain.box_dimension",
         "fit_hyperbola": ".mechanics.closure_laws",
         "interface_closure": ".mechanics.closure",
+        "open_atlas": ".study.atlas_parts",
         "read_atlas": ".study.atlas",
         "read_faces": ".scan.read",
         "read_scan": ".scan.read",

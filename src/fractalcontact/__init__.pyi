@@ -34,6 +34,7 @@ from .roughness.recommended import best_dimension as best_dimension
 from .scan.read import read_faces as read_faces
 from .scan.read import read_scan as read_scan
 from .study.atlas import read_atlas as read_atlas
+from .study.atlas_parts import open_atlas as open_atlas
 from .surface.synthesis import self_affine as self_affine
 
 __version__: str

@@ -23,7 +23,8 @@ SPECIMENS = [
     for figure in figures_of(opposite)
 ]
 STUDY = [
-    (figure, list(SUBJECTS)) for figure in study_figures_of([*paths_of(EXPERIMENT), "defaults"])
+    (figure, list(SUBJECTS))
+    for figure in study_figures_of([*paths_of(EXPERIMENT), "defaults", "comparison"])
 ]
 #: Half of the captions of a study have fewer words than this.
 MEDIAN_WORDS = 45

@@ -147,7 +147,7 @@ def test_single_precision_keeps_four_digits_and_all_else_every_digit(tmp_path):
     heights[3, 5] = np.nan
     rock = xr.Dataset(
         {
-            "lower": (("y", "x"), heights, attrs),
+            "other": (("y", "x"), heights, attrs),
             "map_gap": (("y", "x"), heights.astype("f4"), attrs),
             "profile": (("y",), heights[0], attrs),
             "none": (("y", "nothing"), heights[:, :0], attrs),
@@ -156,7 +156,7 @@ def test_single_precision_keeps_four_digits_and_all_else_every_digit(tmp_path):
     path = tmp_path / "atlas.nc"
     write_atlas({"specimens": {"rock": rock}}, path, study="s", configuration={})
     found = read_atlas(path)["specimens/rock"]
-    for name in ("lower", "profile", "none"):
+    for name in ("other", "profile", "none"):
         np.testing.assert_array_equal(found[name], rock[name])
     np.testing.assert_allclose(found["map_gap"], heights, rtol=5e-4)
     assert not np.array_equal(found["map_gap"], rock["map_gap"], equal_nan=True)
@@ -164,3 +164,24 @@ def test_single_precision_keeps_four_digits_and_all_else_every_digit(tmp_path):
     write_atlas({"specimens": {"rock": bare}}, tmp_path / "bare.nc", study="s", configuration={})
     kept = path.stat().st_size - (tmp_path / "bare.nc").stat().st_size
     assert kept < 0.65 * rock["map_gap"].nbytes
+
+
+def test_composites_are_kept_in_steps_far_below_their_range(tmp_path):
+    generator = np.random.default_rng(1)
+    heights = np.cumsum(generator.normal(size=(80, 90)), axis=0)
+    heights[3, 5] = np.nan
+    attrs = {"units": "mm", "long_name": "height"}
+    data = xr.Dataset(
+        {"composite": (("y", "x"), heights, attrs), "other": (("y", "x"), heights, attrs)}
+    )
+    flat = xr.Dataset({"composite": (("y", "x"), np.full((80, 90), 2.5), attrs)})
+    path = tmp_path / "atlas.nc"
+    write_atlas({"specimens": {"a": data, "b": flat}}, path, study="t", configuration={})
+    atlas = read_atlas(path)
+    found = atlas["specimens/a/composite"].values
+    step = np.ptp(heights[np.isfinite(heights)]) / 65532
+    assert np.nanmax(np.abs(found - heights)) <= 0.51 * step + 1e-6 * np.nanmax(np.abs(heights))
+    assert np.array_equal(np.isnan(found), np.isnan(heights))
+    assert np.array_equal(atlas["specimens/a/other"], heights, equal_nan=True)
+    assert (atlas["specimens/b/composite"] == 2.5).all()
+    assert atlas["specimens/a/composite"].attrs == attrs

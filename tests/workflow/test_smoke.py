@@ -33,7 +33,7 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
         drawn = {path.stem for path in (results / "figures" / name).glob("*.png")}
         assert drawn == set(figures_of(opposite))
     drawn = {path.stem for path in (results / "figures").glob("*.svg")}
-    assert drawn == set(study_figures_of([*paths_of(EXPERIMENT), "defaults"]))
+    assert drawn == set(study_figures_of([*paths_of(EXPERIMENT), "defaults", "comparison"]))
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
 

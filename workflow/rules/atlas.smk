@@ -1,16 +1,28 @@
-# All stages of the study in one file.
+# All stages of the study: in one file, or in one a specimen and one of what they have together.
+SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
+# What of a specimen is compared with others, beside its atlas, which takes long to open.
+SPECIMEN_ROW = f"{RESULTS}/comparison/{{specimen}}.nc"
 
 
 def stages_of(wildcards):
     """Files of all stages that an atlas of one specimen has."""
-    return STAGE_FILES | MAP_FILES | (SLIDING_FILES if wildcards.specimen in SLIDING else {})
+    maps = {} if IN_PARTS else MAP_FILES
+    return STAGE_FILES | maps | (SLIDING_FILES if wildcards.specimen in SLIDING_NAMES else {})
+
+
+def atlas_inputs():
+    """What the atlas of the study is made of: all stages, or a row of each specimen."""
+    if IN_PARTS:
+        return {"rows": expand(SPECIMEN_ROW, specimen=SPECIMENS)}
+    specimens = {stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()}
+    sliding = {stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()}
+    return specimens | sliding
 
 
 # All stages, and what the paper says compared with them.
 rule atlas:
     input:
-        **{stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()},
-        **{stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()},
+        **atlas_inputs(),
         **MAP_FILES,
         **STUDY_FILES,
     output:

@@ -1,7 +1,7 @@
 # What every rule file uses: the checked study, its specimens, files of its stages, and digests of
 # scans and code.
+import functools
 import os
-import re
 import sys
 from pathlib import Path
 
@@ -25,12 +25,12 @@ import _running
 from fractalcontact.core import checksums, sources
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
-from fractalcontact.study import crate, guards, stages
+from fractalcontact.core.patterns import one_of
+from fractalcontact.study import campaign, crate, guards, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
-from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
-from fractalcontact.study.scan_files import folder_notes
-from fractalcontact.study.memory import specimen_memory
+from fractalcontact.study.figure_list import all_figures, study_figures_of
+from fractalcontact.study.scan_groups import grouped_notes
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.study.size_tasks import size_jobs
 
@@ -52,7 +52,7 @@ try:
         if SCAN_FOLDER and not STUDY.scans:
             made_alone = "no scan files there; only what the study itself makes is used"
             logger.warning(f"{SCAN_FOLDER}: {made_alone}")
-        for note in folder_notes(SCAN_FOLDER) if SCAN_FOLDER else ():
+        for note in grouped_notes(SCAN_FOLDER, config.get("groups")) if SCAN_FOLDER else ():
             logger.warning(note)
         guards.refuse_unknown_origin(RESULTS)
         # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
@@ -72,6 +72,47 @@ REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 #: Measured contact maps, which have no settings.
 MAPS = {name: SCANS[name] for name in LABELS}
 SPECIMENS = sorted(SETTINGS)
+
+
+def recipe_named(name):
+    """Recipe of an embedded specimen, its lengths in mm."""
+    return resolve_embedded(config["embedded"][name], f"{SOURCE}: embedded.{name}")
+
+
+@functools.cache
+def nodes_of(name):
+    """Most nodes of a face of a specimen, and of its window: what its jobs take follows from them."""
+    if name in SCANS:
+        face, spacing = resources.nodes_of_files(SCANS[name].files), OPTIONS[name].get("spacing")
+    else:
+        recipe = recipe_named(name)
+        face, spacing = resources.nodes_of_recipe(recipe), recipe["spacing"]
+    return face, resources.nodes_of_window(SETTINGS[name], spacing, face)
+
+
+def states_of(name):
+    """Most contact states that are kept of a specimen at its finest resolution."""
+    settings = SETTINGS[name]
+    # How many offsets "auto" finds is known only later.
+    n_offsets = len(settings["offsets"]) if settings["offsets"] else AUTOMATIC_OFFSETS + 1
+    return resources.states_of(settings, n_offsets)
+
+
+def memory_for(job):
+    """Megabytes that the job of a rule asks for, twice as many at every further attempt."""
+    return lambda wildcards, attempt: resources.memory(
+        job,
+        nodes_of(known(wildcards))[1],
+        attempt,
+        states=states_of(wildcards.specimen),
+    )
+
+
+def minutes_for(job):
+    """Minutes that the job of a rule asks for, likewise."""
+    return lambda wildcards, attempt: resources.minutes(
+        job, nodes_of(known(wildcards))[1], states_of(wildcards.specimen), attempt
+    )
 
 
 def digest_of(path):
@@ -96,13 +137,10 @@ if workflow.is_main_process:
     DIGESTS.save()
 
 
-def one_of(names):
-    """Pattern that matches these names and no others; no specimen at all matches nothing."""
-    return "|".join(map(re.escape, names)) or "(?!)"
-
-
+# Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
+# asks for a specimen that is none is told so by `known`.
 wildcard_constraints:
-    specimen=one_of(SPECIMENS),
+    specimen="[^/]+",
     map=one_of(MAPS),
     directions=r"\d+",
     offsets=r"\d+",
@@ -111,13 +149,20 @@ wildcard_constraints:
     refused=r"\d+",
 
 
+def known(wildcards):
+    """Name of a specimen, which must be one of the study."""
+    if wildcards.specimen not in SETTINGS:
+        raise WorkflowError(f"{SOURCE}: the study has no specimen '{wildcards.specimen}'")
+    return wildcards.specimen
+
+
 def settings_read_by(stage):
     """Settings of a specimen that the function of a stage reads: a change of others is no change.
 
     A friction angle or a label solves nothing again.
     """
     function = stages.STAGES[stage].function
-    return lambda wildcards: stages.read_by(function, SETTINGS[wildcards.specimen])
+    return lambda wildcards: stages.read_by(function, SETTINGS[known(wildcards)])
 
 
 def solver_read_by(stage):
@@ -140,7 +185,17 @@ def is_pair(specimen):
 
 #: Surfaces against a plane, which cannot slide, and all others.
 FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and not is_pair(name)]
-SLIDING = [name for name in SPECIMENS if name not in FLAT]
+SLIDING = sorted(set(SPECIMENS) - set(FLAT))
+SLIDING_NAMES = set(SLIDING)
+
+
+def kind_of(some, others):
+    """Pattern of the names of one kind of specimens; any name where there is no other kind."""
+    return one_of(some) if others else "[^/]+" if some else one_of([])
+
+
+#: Whether the atlas has a file a specimen: then nothing asks for all that was made of each of them.
+IN_PARTS = campaign.in_parts(config, SPECIMENS)
 
 
 def files_of(paths):

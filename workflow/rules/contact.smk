@@ -32,8 +32,8 @@ rule contact:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=doubled(2000),
-        runtime=doubled(60),
+        mem_mb=memory_for("contact"),
+        runtime=minutes_for("contact"),
     params:
         settings=lambda wc: stages.read_by(stages.CONTACT, SETTINGS[wc.specimen]),
         solver=stages.solver_read_by(stages.CONTACT, SOLVER),
@@ -78,8 +78,8 @@ rule analysis:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=doubled(2000),
-        runtime=doubled(60),
+        mem_mb=memory_for("analysis"),
+        runtime=minutes_for("analysis"),
     params:
         **calling("closure"),
         settings=settings_read_by("closure"),
@@ -101,12 +101,12 @@ rule strength:
     benchmark:
         f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
-        specimen=one_of(SLIDING),
+        specimen=kind_of(SLIDING, FLAT),
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=doubled(1000),
-        runtime=doubled(10),
+        mem_mb=memory_for("strength"),
+        runtime=minutes_for("strength"),
     params:
         **calling("windows"),
         settings=settings_read_by("windows"),
@@ -125,7 +125,7 @@ use rule strength as size_laws_against_plane with:
     benchmark:
         f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
-        specimen=one_of(FLAT),
+        specimen=kind_of(FLAT, SLIDING),
     message:
         "{wildcards.specimen}: size laws"
 

@@ -1,12 +1,21 @@
 # Figures of every specimen: PNG, SVG, numbers as CSV, caption as text.
 
-# Measured contact maps ask for their figures themselves.
-STUDY_FIGURES = study_figures_of([*config, *MAP_FILES])
+# Measured contact maps ask for their figures themselves, and so do several specimens.
+STUDY_FIGURES = study_figures_of(
+    [*config, *MAP_FILES, *([campaign.COMPARISON] if len(SPECIMENS) > 1 else [])]
+)
+if IN_PARTS:
+    STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES)
+
+
+def drawn_of(opposite):
+    """Names of the figures of each specimen that the study asks for."""
+    return campaign.drawn_of(config, SPECIMENS, opposite)
 
 
 def pictures(opposite):
     """The PNG files of a specimen, each with its place in the report."""
-    return [picture(name) for name in figures_of(opposite)]
+    return [picture(name) for name in drawn_of(opposite)]
 
 
 def picture(name, folder="{specimen}/", category="{specimen}"):
@@ -40,7 +49,7 @@ def beside(opposite):
     """Vector drawings, numbers and captions that go with the pictures."""
     return expand(
         f"{RESULTS}/figures/{{{{specimen}}}}/{{name}}.{{ending}}",
-        name=figures_of(opposite),
+        name=drawn_of(opposite),
         ending=("svg", "csv", "txt"),
     )
 
@@ -50,12 +59,11 @@ def configuration_of(wildcards):
 
     So a change of those draws nothing of it again.
     """
-    name = wildcards.specimen
+    name = known(wildcards)
     stated = {key: config[key] for key in ("study", "accuracy", "solver") if key in config}
     return {"study": stated, "settings": {name: SETTINGS[name]}}
 
 
-SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
 #: Names of the figures that failed, which is empty but for an error of the program.
 UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
@@ -69,6 +77,7 @@ rule figures:
     output:
         *pictures("match"),
         *beside("match"),
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
         atlas=SPECIMEN_ATLAS,
         undrawn=UNDRAWN,
     log:
@@ -76,16 +85,17 @@ rule figures:
     benchmark:
         f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
     wildcard_constraints:
-        specimen=one_of(SLIDING),
+        specimen=kind_of(SLIDING, FLAT),
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=doubled(2000),
-        runtime=doubled(10),
+        mem_mb=memory_for("figures" if drawn_of("match") else "atlas_part"),
+        runtime=minutes_for("figures" if drawn_of("match") else "atlas_part"),
     params:
-        names=figures_of("match"),
+        names=drawn_of("match"),
+        folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
         configuration=configuration_of,
-        code=code("figures", *figure_modules(figures_of("match"))),
+        code=code("figures", *figure_modules(drawn_of("match"))),
     message:
         "{wildcards.specimen}: figures"
     script:
@@ -97,6 +107,7 @@ use rule figures as figures_against_plane with:
     output:
         *pictures("flat"),
         *beside("flat"),
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
         atlas=SPECIMEN_ATLAS,
         undrawn=UNDRAWN,
     log:
@@ -104,11 +115,12 @@ use rule figures as figures_against_plane with:
     benchmark:
         f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
     wildcard_constraints:
-        specimen=one_of(FLAT),
+        specimen=kind_of(FLAT, SLIDING),
     params:
-        names=figures_of("flat"),
+        names=drawn_of("flat"),
+        folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
         configuration=configuration_of,
-        code=code("figures", *figure_modules(figures_of("flat"))),
+        code=code("figures", *figure_modules(drawn_of("flat"))),
 
 
 # What only the whole study shows.
@@ -177,7 +189,7 @@ def figures_of_specimens(opposite, specimens):
     return expand(
         f"{RESULTS}/figures/{{specimen}}/{{name}}.{{ending}}",
         specimen=specimens,
-        name=figures_of(opposite),
+        name=drawn_of(opposite),
         ending=("png", "svg", "csv", "txt"),
     )
 
@@ -193,16 +205,21 @@ def all_figure_files():
 
 
 def collect_everything(wildcards):
-    """Every file of the study: what was removed, or damaged and so removed, is made again."""
-    stages = [
+    """Every file of the study: what was removed, or damaged and so removed, is made again.
+
+    Of a campaign what its atlas is made of is not asked for, file by file: it would take minutes to
+    find that nothing is to be done.
+    """
+    made = [*STUDY_FILES.values(), *rules.all_drawn.output, *all_figure_files(), *RESULT_PAGE]
+    if IN_PARTS:
+        return made
+    return [
         *expand(list(STAGE_FILES.values()), specimen=SPECIMENS),
         *expand(list(SLIDING_FILES.values()), specimen=SLIDING),
         *expand(list(rules.embedded.output), specimen=set(SPECIMENS) - set(SCANS)),
         *(path for paths in MAP_FILES.values() for path in paths),
-        *STUDY_FILES.values(),
         *expand(rules.size_effect_part.output[0], job=SIZE_JOBS),
         *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
-        *rules.all_drawn.output,
+        *made,
     ]
-    return [*stages, *all_figure_files(), *RESULT_PAGE]

@@ -2,12 +2,17 @@
 from fractalcontact.pages import files as page_files
 
 # Measured contact maps alone have no states to explore.
-EXPLORER = list(rules.explorer.output) if SPECIMENS else []
-RESULT_PAGE = [
-    *(f"{RESULTS}/{name}" for name in page_files.FILES),
-    *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
-    *EXPLORER,
-]
+EXPLORER = list(rules.explorer.output) if SPECIMENS and not IN_PARTS else []
+# The pages show specimens side by side, from an atlas that is one file.
+RESULT_PAGE = (
+    []
+    if IN_PARTS
+    else [
+        *(f"{RESULTS}/{name}" for name in page_files.FILES),
+        *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
+        *EXPLORER,
+    ]
+)
 
 
 rule result_page:

@@ -17,8 +17,8 @@ rule windows:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=doubled(2000),
-        runtime=doubled(60),
+        mem_mb=memory_for("windows"),
+        runtime=minutes_for("windows"),
     params:
         **calling("window_states"),
         settings=settings_read_by("window_states"),
@@ -53,7 +53,9 @@ rule size_effect_part:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: (1000 + largest_side(wc.job) ** 2 // 4000) * 2 ** (attempt - 1),
+        mem_mb=lambda wc, attempt: resources.memory(
+            "size_effect_part", largest_side(wc.job) ** 2, attempt
+        ),
         runtime=doubled(60),
     params:
         tasks=lambda wc: [list(task) for task in SIZE_JOBS[wc.job]],

@@ -3,7 +3,7 @@
 
 def recipe_of(wildcards):
     """Recipe of an embedded specimen, without what is only words: that makes no new surface."""
-    recipe = resolve_embedded(config["embedded"][wildcards.specimen], "embedded")
+    recipe = recipe_named(known(wildcards))
     return {key: value for key, value in recipe.items() if key != "label"}
 
 
@@ -18,8 +18,10 @@ rule embedded:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=doubled(1000),
-        runtime=doubled(10),
+        mem_mb=lambda wc, attempt: resources.memory("embedded", nodes_of(known(wc))[0], attempt),
+        runtime=lambda wc, attempt: resources.minutes(
+            "embedded", nodes_of(wc.specimen)[0], 1, attempt
+        ),
     params:
         recipe=recipe_of,
         code=code("embedded"),
@@ -50,14 +52,12 @@ def options_of(wildcards):
     return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_of(wildcards)["spacing"])
 
 
-def memory_of(wildcards):
-    """Megabytes that the job of a specimen takes, by the size of its scan files."""
-    scan = SCANS.get(wildcards.specimen)
-    if scan is not None:
-        return specimen_memory(scan.files)
-    recipe = recipe_of(wildcards)
-    nodes = round(recipe["size"] / recipe["spacing"])
-    return max(2000, 700 + nodes**2 // 5000)  # 200 bytes a node
+def memory_of(wildcards, attempt):
+    """Megabytes that the job of a specimen asks for, by the size of its scan files."""
+    name = known(wildcards)
+    if name in SCANS:
+        return resources.reading_memory(SCANS[name].files, attempt)
+    return resources.memory("specimen", nodes_of(name)[0], attempt)
 
 
 # The levelled specimen, and its joint before contact is solved: the dimension of its face, what the
@@ -75,8 +75,10 @@ rule specimen:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: memory_of(wc) * 2 ** (attempt - 1),
-        runtime=doubled(15),
+        mem_mb=memory_of,
+        runtime=lambda wc, attempt: resources.minutes(
+            "specimen", nodes_of(wc.specimen)[0], 1, attempt
+        ),
     params:
         settings=settings_read_by("specimens"),
         options=options_of,

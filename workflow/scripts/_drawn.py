@@ -11,15 +11,17 @@ def report(drawn, specimen, path, log):
 
     Parameters
     ----------
-    drawn : fractalcontact.figures.draw.Drawn
+    drawn : fractalcontact.figures.draw.Drawn or None
+        None where nothing was to be drawn.
     specimen : str
         Empty for figures of the whole study.
     path : str
     log : logging.Logger
     """
-    for name, caption in drawn.captions.items():
+    captions, failures = (drawn.captions, drawn.failures) if drawn else ({}, {})
+    for name, caption in captions.items():
         log.info("%s: %s", name, caption)
-    for name, trace in drawn.failures.items():
+    for name, trace in failures.items():
         log.error("error in the program: figure %s was not drawn\n%s", name, trace)
     with atomic_write(path) as file:
-        file.write_text("".join(f"{specimen}/{name}\n".lstrip("/") for name in drawn.failures))
+        file.write_text("".join(f"{specimen}/{name}\n".lstrip("/") for name in failures))

@@ -23,3 +23,16 @@ def join_stages(stages, made_with, path, configuration, log):
     differing = atlas.join_stages(stages, path, configuration, made_with)
     for versions, parts in differing.items():
         log.warning("warning: made with %s: %s", versions, ", ".join(parts))
+
+
+def write_row(path, specimen, row_path):
+    """Keep what of a specimen is compared with others in a file of its own."""
+    netcdf.write(atlas.row_of(path, specimen), row_path)
+
+
+def join_rows(rows, stages, made_with, path, configuration, log):
+    """Write what specimens have together, and warn as :func:`join_stages` does."""
+    read = {Path(row).stem: netcdf.read_with_versions(row) for row in rows}
+    differing = atlas.join_rows(read, stages, path, configuration, made_with)
+    for versions, names in differing.items():
+        log.warning("warning: made with %s: %s", versions, ", ".join(names))

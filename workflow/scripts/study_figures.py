@@ -11,7 +11,7 @@ with job(snakemake) as log:
     drawn = draw_study_figures(
         snakemake.input[0],
         snakemake.params.specimens,
-        Path(snakemake.output[0]).parent,
+        Path(snakemake.input[0]).parent / "figures",
         snakemake.params.names,
     )
     report(drawn, "", snakemake.output.undrawn, log)

@@ -3,7 +3,7 @@
 import contextlib
 import math
 import re
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import pint
@@ -76,31 +76,43 @@ def quantity(text: Any, kind: str, where: str) -> float:
     InputError
         If the unit is missing, unknown, or of another kind, or the value too small or too large.
     """
-    unit = PROGRAM_UNITS[kind]
-    wanted = f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
     if not isinstance(text, str):
-        raise InputError(f"{where}: {text!r} has no unit; {wanted}")
+        raise InputError(f"{where}: {text!r} has no unit; {_wanted(kind)}")
+    try:
+        return _magnitude(text, kind)
+    except InputError as error:
+        raise type(error)(f"{where}: {error}") from None
+
+
+@lru_cache(maxsize=4096)
+def _magnitude(text: str, kind: str) -> float:
+    """A quantity, kept: a campaign states the same few hundreds of times over."""
+    unit, wanted = PROGRAM_UNITS[kind], _wanted(kind)
     if len(text) > _LONGEST or not _QUANTITY.fullmatch(text):
-        raise InputError(f"{where}: {text[:_LONGEST]!r} is not a number with a unit; {wanted}")
+        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; {wanted}")
     if kind == "length":
-        text = _with_known_length(text, where, wanted)
+        text = _with_known_length(text, wanted)
     try:
         value = _registry()(text)
     except Exception as error:  # pint raises half a dozen unrelated types for malformed text
-        raise InputError(f"{where}: cannot read {text!r} ({error}); {wanted}") from None
+        raise InputError(f"cannot read {text!r} ({error}); {wanted}") from None
     if not isinstance(value, pint.Quantity) or value.unitless:
-        raise InputError(f"{where}: {text!r} has no unit; {wanted}")
+        raise InputError(f"{text!r} has no unit; {wanted}")
     if not value.check(_DIMENSIONS.get(kind, f"[{kind}]")):
-        raise InputError(f"{where}: {text!r} is not {_article(kind)} {kind}; {wanted}")
+        raise InputError(f"{text!r} is not {_article(kind)} {kind}; {wanted}")
     magnitude = float(value.to(unit).magnitude)
     if not math.isfinite(magnitude):
-        raise _OutOfRange(f"{where}: {text!r} is not finite; {wanted}")
+        raise _OutOfRange(f"{text!r} is not finite; {wanted}")
     if magnitude and not LEAST_INPUT <= abs(magnitude) <= MOST_INPUT:
         raise _OutOfRange(
-            f"{where}: {text!r} is beyond what can be computed with, {LEAST_INPUT:g} to "
+            f"{text!r} is beyond what can be computed with, {LEAST_INPUT:g} to "
             f"{MOST_INPUT:g} {unit}; {wanted}"
         )
     return magnitude
+
+
+def _wanted(kind: str) -> str:
+    return f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
 
 
 def length_unit(text: str) -> str | None:
@@ -116,7 +128,7 @@ def length_unit(text: str) -> str | None:
     return _LENGTH_NAMES.get(text.lower())
 
 
-def _with_known_length(text: str, where: str, wanted: str) -> str:
+def _with_known_length(text: str, wanted: str) -> str:
     """A quantity with its unit as the library names it, if that is one word and a length.
 
     Raises
@@ -134,7 +146,7 @@ def _with_known_length(text: str, where: str, wanted: str) -> str:
         is_length = _registry()(f"1 {match[2]}").check("[length]")
     if is_length:
         raise InputError(
-            f"{where}: {text!r} is in {match[2]!r}, no unit of length known here; {wanted} "
+            f"{text!r} is in {match[2]!r}, no unit of length known here; {wanted} "
             f"({_KNOWN_LENGTHS})"
         )
     return text
@@ -158,17 +170,27 @@ def load(text: Any, where: str) -> tuple[float, str]:
     InputError
         If it is neither.
     """
-    for kind in ("force", "pressure"):
+    if isinstance(text, str):
         try:
-            return quantity(text, kind, where), kind
-        except _OutOfRange:
-            raise
+            return _value_and_kind(text)
+        except _OutOfRange as error:
+            raise type(error)(f"{where}: {error}") from None
         except InputError:
-            continue
+            pass
     raise InputError(
         f"{where}: {text!r} is neither a force nor a nominal pressure; "
         "write for example '10 kN' or '25 MPa'"
     )
+
+
+@lru_cache(maxsize=4096)
+def _value_and_kind(text: str) -> tuple[float, str]:
+    try:
+        return _magnitude(text, "force"), "force"
+    except _OutOfRange:
+        raise
+    except InputError:
+        return _magnitude(text, "pressure"), "pressure"
 
 
 def share(value: Any, where: str) -> float:

@@ -1,13 +1,17 @@
 """The atlas of a study from its stages, with the paper's statements judged."""
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 
 import xarray as xr
 
+from ..core.netcdf import versions
+from ..statements.comparison import UNGROUPED, compare_specimens, specimen_row
 from ..statements.judge import judge
 from ..statements.study import judge_study
-from ..study.atlas import write_atlas
+from ..study.atlas import words_of, write_atlas
+from ..study.atlas_parts import read_group
 
 #: Name of the one group of what is judged for the study as a whole.
 WHOLE = "study"
@@ -39,13 +43,16 @@ def join_stages(
     """
     # A label is only words: no job before this one has it, so that a new one solves nothing again.
     for name, dataset in stages.get("specimens", {}).items():
-        dataset.attrs["label"] = configuration["settings"][name]["label"]
+        settings = configuration["settings"][name]
+        dataset.attrs["label"] = settings["label"]
+        dataset.attrs["group"] = settings.get("group") or UNGROUPED
     # Measured contact maps, the study's, stand under names of their own.
     of_joints = {
         name: {stage: parts[name] for stage, parts in stages.items() if name in parts}
         for name in configuration["settings"]
     }
-    everything = {**stages, **_judged(of_joints, configuration)}
+    compared = _compared(of_joints, configuration["settings"])
+    everything = {**stages, **_judged(of_joints, configuration), **compared}
     study = configuration["study"]["study"]
     return write_atlas(
         _without_remade_fields(everything),
@@ -53,6 +60,70 @@ def join_stages(
         study=study,
         configuration=configuration,
         made_with=made_with,
+    )
+
+
+def row_of(path: Path | str, name: str) -> xr.Dataset:
+    """Row of the comparison of a specimen, from an atlas of its own.
+
+    Parameters
+    ----------
+    path : path-like
+        From :func:`join_stages`.
+    name : str
+
+    Returns
+    -------
+    xr.Dataset
+        With what the atlas of all must know: attributes ``scan_checksums``, ``versions_differ``.
+    """
+    row, attrs = read_group(path, f"comparison/{name}")
+    known = {key: attrs[key] for key in ("scan_checksums", "versions_differ") if key in attrs}
+    return row.drop_encoding().assign_attrs(known)
+
+
+def join_rows(
+    rows: Mapping[str, tuple[xr.Dataset, Mapping[str, str]]],
+    stages: Mapping[str, Mapping[str, xr.Dataset]],
+    path: Path | str,
+    configuration: Mapping,
+    made_with: Mapping[str, Mapping[str, dict]] | None = None,
+) -> dict[str, list[str]]:
+    """Write what specimens whose atlases are files of their own have together.
+
+    Parameters
+    ----------
+    rows : mapping of str to (xr.Dataset, mapping)
+        From :func:`row_of` by specimen, with the versions each was made with. Their atlases are
+        ``atlas/SPECIMEN.nc`` below the folder of ``path``.
+    stages : mapping of str to mapping of str to xr.Dataset
+        Of the study: what it has once, and measured contact maps.
+    path, configuration, made_with
+        As of :func:`join_stages`.
+
+    Returns
+    -------
+    dict of str to list of str
+        As :func:`study.atlas.write_atlas` gives it, specimens by their names alone.
+    """
+    checksums: dict[str, dict[str, str]] = {}
+    differing: dict[str, list[str]] = {}
+    for name, (row, used) in sorted(rows.items()):
+        checksums |= json.loads(row.attrs["scan_checksums"])
+        if used != versions():
+            differing.setdefault(words_of(used), []).append(name)
+        for words, parts in json.loads(row.attrs.get("versions_differ", "{}")).items():
+            differing.setdefault(words, []).extend(parts)
+    compared = compare_specimens({name: row for name, (row, _) in rows.items()})
+    return write_atlas(
+        {**stages, "study_comparison": {WHOLE: compared}},
+        path,
+        study=configuration["study"]["study"],
+        configuration=configuration,
+        made_with=made_with,
+        parts_in={name: f"atlas/{name}.nc" for name in rows},
+        checksums=checksums,
+        differing=differing,
     )
 
 
@@ -68,6 +139,15 @@ def _without_remade_fields(stages):
         for name, joint in stages.get("joints", {}).items()
     }
     return {**stages, "joints": joints} if joints else stages
+
+
+def _compared(of_joints, settings):
+    """The row of every specimen and, where there are several, all of them side by side."""
+    if not of_joints:
+        return {}
+    rows = {name: specimen_row(stages, settings[name]) for name, stages in of_joints.items()}
+    several = {"study_comparison": {WHOLE: compare_specimens(rows)}} if len(rows) > 1 else {}
+    return {"comparison": rows, **several}
 
 
 def _judged(of_joints, configuration):

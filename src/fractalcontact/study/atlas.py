@@ -4,14 +4,19 @@ import json
 from collections.abc import Collection, Hashable, Mapping
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from ..core.atomic import atomic_write
-from ..core.netcdf import encoding, versions
+from ..core.netcdf import COMPRESSED_FROM, encoding, versions
 from .stages import STAGES
 
 #: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
 FIELD_DIGITS = 4
+#: Heights that follow from others, the faces, and so are kept in steps; steps to either side of
+#: their middle.
+HEIGHTS = {"composite"}
+_MOST_STEPS = 32767 - 1
 
 
 def write_atlas(
@@ -21,6 +26,9 @@ def write_atlas(
     study: str,
     configuration: Mapping,
     made_with: Mapping[str, Mapping[str, dict]] | None = None,
+    parts_in: Mapping[str, str] | None = None,
+    checksums: Mapping[str, Mapping[str, str]] | None = None,
+    differing: Mapping[str, list[str]] | None = None,
 ) -> dict[str, list[str]]:
     """Write all results of a study into one file.
 
@@ -36,6 +44,12 @@ def write_atlas(
     made_with : mapping of str to mapping of str to dict, optional
         Stage to specimen to the versions each part was made with, from
         :func:`core.netcdf.read_with_versions`; those in use by default.
+    parts_in : mapping of str to str, optional
+        Files with the stages of each specimen, if they are not in this one: below its folder.
+    checksums : mapping of str to mapping of str to str, optional
+        SHA-256 of the scans of these, by specimen and face.
+    differing : mapping of str to list of str, optional
+        Of these, those by versions that differ from those in use.
 
     Returns
     -------
@@ -48,16 +62,20 @@ def write_atlas(
     ValueError
         If a variable has no unit or no long name: nothing unlabelled enters the atlas.
     """
-    differing = _by_versions(made_with or {})
+    differing = {**(differing or {}), **_by_versions(made_with or {})}
     root = xr.Dataset(
         attrs={
             "title": f"fractalcontact study {study}",
             "study": study,
             "configuration": json.dumps(configuration, sort_keys=True),
             "versions": json.dumps(versions()),
-            "scan_checksums": json.dumps(_checksums(parts.get("specimens", {})), sort_keys=True),
+            "scan_checksums": json.dumps(
+                {**_checksums(parts.get("specimens", {})), **(checksums or {})}, sort_keys=True
+            ),
         }
     )
+    if parts_in:
+        root.attrs["parts"] = json.dumps(dict(parts_in), sort_keys=True)
     if differing:
         root.attrs["versions_differ"] = json.dumps(differing, sort_keys=True)
     groups = {"/": root}
@@ -76,11 +94,12 @@ def _by_versions(made_with):
     parts: dict[str, list[str]] = {}
     for stage, specimens in made_with.items():
         for name, used in specimens.items():
-            parts.setdefault(_words(used) or "unknown versions", []).append(f"{stage}/{name}")
-    return {} if set(parts) <= {_words(versions())} else parts
+            parts.setdefault(words_of(used) or "unknown versions", []).append(f"{stage}/{name}")
+    return {} if set(parts) <= {words_of(versions())} else parts
 
 
-def _words(used):
+def words_of(used: Mapping[str, str]) -> str:
+    """Versions of libraries, by their names, in a line."""
     return ", ".join(f"{library} {version}" for library, version in sorted(used.items()))
 
 
@@ -117,8 +136,34 @@ def _write_groups(groups, path):
             group = file if name == "/" else file.createGroup(name)
             backend = xr.backends.NetCDF4DataStore(group)
             stored_as = encoding(dataset, FIELD_DIGITS) | _as_characters(dataset)
+            stored_as |= _in_steps(dataset)
             dataset.dump_to_store(backend, encoding=stored_as, writer=writer)
         writer.write()
+
+
+def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
+    """How composites are kept: in 65 532 equal steps between the lowest and the highest height.
+
+    Faces, of which they are the difference, keep every digit. Of the 64 bits of a height most are
+    noise that no compression removes.
+    """
+    kept: dict[Hashable, dict] = {}
+    for name in HEIGHTS & dataset.variables.keys():
+        values = dataset[name].values
+        known = values[np.isfinite(values)]
+        if values.nbytes < COMPRESSED_FROM or not known.size or known.min() == known.max():
+            continue
+        low, high = float(known.min()), float(known.max())
+        kept[name] = {
+            "dtype": "int16",
+            "scale_factor": (high - low) / (2 * _MOST_STEPS),
+            "add_offset": (high + low) / 2,
+            "_FillValue": -_MOST_STEPS - 1,
+            "zlib": True,
+            "complevel": 4,
+            "shuffle": True,
+        }
+    return kept
 
 
 def _as_characters(dataset: xr.Dataset) -> dict[Hashable, dict]:

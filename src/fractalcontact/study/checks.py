@@ -9,9 +9,11 @@ from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..scan.options import coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
+from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
-from .scan_files import ScanFiles, list_scans
-from .schema import shortened, validate
+from .scan_files import ScanFiles
+from .scan_groups import list_grouped
+from .schema import nearest, shortened, validate
 from .sidecar import is_contact_map, read_yaml
 
 #: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
@@ -70,7 +72,7 @@ def resolve_study(
     """
     check_study(config, schema, source)
     folder = config.get("scans", "scans")
-    scans, refused = list_scans(folder) if folder else ({}, {})
+    scans, refused = list_grouped(folder, config.get("groups")) if folder else ({}, {})
     check_names(scans, config, folder, source)
     embedded = config.get("embedded", {})
     unknown = sorted(set(config.get("specimens", {})) - {*scans, *embedded, *refused})
@@ -78,11 +80,11 @@ def resolve_study(
         raise InputError(
             f"{source}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
         )
-    sidecars = {}
+    sidecars: dict[str, tuple[dict, dict]] = {}
+    shared: dict[Path, tuple[dict, dict]] = {}
     for name, scan in list(scans.items()):
         with _refusing(refused, name):
-            sidecars[name] = read_sidecar(scan.sidecar, schema)
-            refuse_idle_keys(scan, *sidecars[name])
+            sidecars[name] = _stated_of(scan, schema, shared)
             with_coordinates(scans, {name: sidecars[name][0]})
     scans = with_coordinates(
         scans, {name: keys for name, (keys, _) in sidecars.items() if name not in refused}
@@ -101,7 +103,8 @@ def resolve_study(
                     own,
                     source,
                     pair=scan.upper is not None,
-                    sidecar_file=scan.sidecar,
+                    sidecar_file=scan.sidecar or scan.row_of or scan.shared,
+                    group=scan.group,
                 )
             options[name] = keys
     if refused and not leave_out:
@@ -110,6 +113,23 @@ def resolve_study(
     for name in embedded:
         settings[name] = resolve_settings(config, name, {}, source)
     return Study(scans, settings, options, labels, solver_settings(config, source), refused)
+
+
+def _stated_of(
+    scan: ScanFiles, schema: Mapping, shared: dict[Path, tuple[dict, dict]]
+) -> tuple[dict, dict]:
+    """Scan keys and settings of a specimen: of its group, then its sidecar's, then its table's.
+
+    What its group says is read once, and may have no meaning for some of the group.
+    """
+    if scan.shared is not None and scan.shared not in shared:
+        shared[scan.shared] = read_sidecar(scan.shared, schema)
+    of_group = shared[scan.shared] if scan.shared is not None else ({}, {})
+    of_file = read_sidecar(scan.sidecar, schema)
+    of_row = _split(dict(scan.row), schema, scan.row_of) if scan.row else ({}, {})
+    own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})
+    refuse_idle_keys(scan, *own)
+    return {**of_group[0], **own[0]}, {**of_group[1], **own[1]}
 
 
 @contextmanager
@@ -138,16 +158,19 @@ def with_coordinates(
     InputError
         If a sidecar names a file that is not there, or one that is no plain name.
     """
-    listed = {scan.lower.name: name for name, scan in scans.items() if scan.upper is None}
+    listed = {scan.lower: name for name, scan in scans.items() if scan.upper is None}
     found, taken = dict(scans), set()
     for name, scan in scans.items():
         if not is_contact_map(options.get(name, {})):
             continue
         files = coordinate_files(scan.lower, options[name])
         for key, path in files.items():
-            if path.name not in listed:
-                raise InputError(f"{scan.sidecar}: {key}: no file {path.name} beside it")
-            taken.add(listed[path.name])
+            if path in listed:
+                taken.add(listed[path])
+            # A table names maps alone, not what goes with them.
+            elif not (scan.row_of and path.is_file() and not path.is_symlink()):
+                where = scan.sidecar or scan.row_of
+                raise InputError(f"{where}: {key}: no file {path.name} beside it")
         found[name] = replace(scan, coordinates=tuple(files.values()))
     return {name: scan for name, scan in found.items() if name not in taken}
 
@@ -178,6 +201,17 @@ def check_study(config: Mapping, schema: Mapping, source: str) -> None:
     for name, recipe in config.get("embedded", {}).items():
         resolve_embedded(recipe, f"{source}: embedded.{name}")
     resolve_roll_off(config, source)
+    _check_figures(config.get("figures", ()), source)
+
+
+def _check_figures(names, source: str) -> None:
+    """Refuse figures that are none of a specimen."""
+    known = figures_of("match")
+    for name in () if isinstance(names, str) else names:
+        if name not in known:
+            raise InputError(
+                f"{source}: figures: no figure {name!r} of specimens{nearest(name, known)}"
+            )
 
 
 def check_names(
@@ -243,7 +277,11 @@ def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
     """
     if path is None:
         return {}, {}
-    document = read_yaml(path)
+    return _split(read_yaml(path), schema, str(path))
+
+
+def _split(document: dict, schema: Mapping, source: str) -> tuple[dict, dict]:
+    """Scan keys and settings of what a sidecar, or a row of a table, says."""
     definitions = schema["$defs"]
     scan_keys = definitions[_SCAN_DEFINITION]["properties"]
     properties = {**scan_keys, **definitions[_SETTINGS_DEFINITION]["properties"]}
@@ -253,7 +291,7 @@ def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
         "additionalProperties": False,
         "properties": properties,
     }
-    validate(document, sidecar_schema, str(path))
+    validate(document, sidecar_schema, source)
     if document.get("kind") == "surface":  # what it is without
         del document["kind"]
     scan = {key: value for key, value in document.items() if key in scan_keys}

@@ -27,7 +27,8 @@ def resolve_settings(
     source: str,
     *,
     pair: bool = False,
-    sidecar_file: Path | None = None,
+    sidecar_file: Path | str | None = None,
+    group: str = "",
 ) -> dict:
     """Settings of one specimen: the defaults, then the study's own for it, then its sidecar's.
 
@@ -45,6 +46,8 @@ def resolve_settings(
         Whether both faces were scanned: then ``opposite`` has nothing to say.
     sidecar_file : Path, optional
         Of these settings, for errors.
+    group : str, optional
+        Group of the specimen unless its settings say otherwise: of its folder.
 
     Returns
     -------
@@ -70,6 +73,7 @@ def resolve_settings(
     recipe = config.get("embedded", {}).get(name, {})
     settings = {
         "label": stated.get("label", recipe.get("label", name)),
+        "group": stated.get("group", group),
         "known_dimension": float(recipe.get("dimension", math.nan)),
         "chosen_for": chosen_for(config, name),
         "capped_variant": is_capped_variant(config, name),

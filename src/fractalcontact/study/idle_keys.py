@@ -32,12 +32,12 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
     InputError
         For the first of them.
     """
-    if scan.sidecar is None:
+    if scan.sidecar is None and not scan.row:
         return
     if is_contact_map(keys):
         if scan.upper is not None:
             raise InputError(
-                f"{scan.sidecar}: a contact map is one file, here are two faces; remove "
+                f"{_where(scan)}: a contact map is one file, here are two faces; remove "
                 "'kind: contact-map', or one of the files"
             )
         idle = _first(_NOT_OF_MAPS, keys) or next(
@@ -67,6 +67,11 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
         _refuse(scan, _first(("variable",), keys), f"for a {ending} file, which names no arrays")
 
 
+def _where(scan: ScanFiles) -> object:
+    """What says it: a table comes last, and so says it where there is one."""
+    return scan.row_of or scan.sidecar
+
+
 def _first(names: Sequence[str], stated: Mapping) -> str:
     return next((name for name in names if name in stated), "")
 
@@ -74,4 +79,4 @@ def _first(names: Sequence[str], stated: Mapping) -> str:
 def _refuse(scan: ScanFiles, key: str, why: str, otherwise: str = "") -> None:
     if key:
         hint = f" ({otherwise})" if otherwise else ""
-        raise InputError(f"{scan.sidecar}: key '{key}' has no meaning {why}; remove it{hint}")
+        raise InputError(f"{_where(scan)}: key '{key}' has no meaning {why}; remove it{hint}")

@@ -2,9 +2,10 @@
 
 import re
 import unicodedata
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ..core.errors import InputError
 from ..core.file_names import SIDECAR_SUFFIXES, specimen_name, split_file_name
@@ -42,6 +43,14 @@ class ScanFiles:
         The name as the files spell it.
     coordinates : tuple of Path
         Files of x and y of a contact map, where its sidecar names them.
+    group : str
+        Folder of a group that it stands in; empty where there are none.
+    shared : Path or None
+        Sidecar of that folder.
+    row : mapping of str to object
+        What a table says of it, as a sidecar would.
+    row_of : str
+        Table and line of that, for errors.
     """
 
     name: str
@@ -50,6 +59,10 @@ class ScanFiles:
     sidecar: Path | None
     original_name: str
     coordinates: tuple[Path, ...] = ()
+    group: str = ""
+    shared: Path | None = None
+    row: Mapping[str, Any] = field(default_factory=dict)
+    row_of: str = ""
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -87,12 +100,16 @@ def find_scans(folder: Path | str) -> dict[str, ScanFiles]:
     return scans
 
 
-def list_scans(folder: Path | str) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
+def list_scans(
+    folder: Path | str, group_folders: Collection[str] = ()
+) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
     """List the specimens of a folder, and what is wrong with those that have none.
 
     Parameters
     ----------
     folder : path-like
+    group_folders : collection of str, optional
+        Its folders that are groups of specimens: a sidecar NAME.yaml of one is no scan's.
 
     Returns
     -------
@@ -115,12 +132,12 @@ def list_scans(folder: Path | str) -> tuple[dict[str, ScanFiles], dict[str, Inpu
     roles: dict[str, dict[str, Path]] = {}
     refused: dict[str, InputError] = {}
     for path in sorted(folder.iterdir()):
-        if path.name.startswith(".") or path.name.upper().startswith(_IGNORED):
+        if is_passed_over(path.name):
             continue
-        if _is_left_behind(path.name):
+        if path.stem in group_folders and path.suffix.lower() in SIDECAR_SUFFIXES:
             continue
         if path.is_dir():
-            if _is_named_like_a_scan(path):
+            if path.name not in group_folders and _is_named_like_a_scan(path):
                 refused[path.name] = InputError(
                     f"{path}: a folder, not a file; put the scan file itself here, or rename it"
                 )
@@ -128,16 +145,16 @@ def list_scans(folder: Path | str) -> tuple[dict[str, ScanFiles], dict[str, Inpu
         original_name, role = split_file_name(path.name)
         name = specimen_name(original_name)
         try:
-            _refuse_misleading(path)
-            _refuse_outside_link(path, folder)
-            _refuse_unusable(name, path)
+            refuse_misleading(path)
+            refuse_outside_link(path, folder)
+            refuse_unusable(name, path)
             of_specimen = roles.setdefault(name, {})
             if role in of_specimen:
                 raise _two_claims(name, of_specimen[role], path)
             of_specimen[role] = path
         except InputError as error:
             refused.setdefault(name or path.name, error)
-    refused |= _case_alone(roles)
+    refused |= case_alone(roles)
     scans = {}
     for name in sorted(roles.keys() - refused.keys()):
         try:
@@ -177,6 +194,12 @@ def folder_notes(folder: Path | str) -> list[str]:
     return notes
 
 
+def is_passed_over(name: str) -> bool:
+    """Whether a file or folder of this name is looked at: hidden ones and README* are not."""
+    hidden = name.startswith(".") or name.upper().startswith(_IGNORED)
+    return hidden or _is_left_behind(name)
+
+
 def _is_left_behind(name: str) -> bool:
     name = name.lower()
     return name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
@@ -208,8 +231,13 @@ def _is_named_like_a_scan(folder: Path) -> bool:
     return folder.suffix.lower() in known_extensions()
 
 
-def _refuse_misleading(path: Path) -> None:
-    """Names that look like others, or do things to a terminal, are not repeated anywhere."""
+def refuse_misleading(path: Path) -> None:
+    """Refuse names that look like others, or do things to a terminal; they are not repeated.
+
+    Raises
+    ------
+    InputError
+    """
     if any(unicodedata.category(character) in _INVISIBLE for character in path.name):
         raise InputError(
             f"{path.parent}: the file name {path.name!a} has invisible characters (line "
@@ -219,7 +247,13 @@ def _refuse_misleading(path: Path) -> None:
         raise InputError(f"{path}: a study fills in what stands in braces; rename the file")
 
 
-def _refuse_unusable(name: str, path: Path) -> None:
+def refuse_unusable(name: str, path: Path) -> None:
+    """Refuse a specimen's name that is empty, or too long for the files of its results.
+
+    Raises
+    ------
+    InputError
+    """
     if not name:
         raise InputError(f"{path}: give the file a name with letters or digits in it")
     if len(name) > LONGEST_NAME:
@@ -229,8 +263,11 @@ def _refuse_unusable(name: str, path: Path) -> None:
         )
 
 
-def _case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
-    """On many discs Rock.nc and rock.nc are one file: one result would overwrite the other."""
+def case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
+    """What is wrong with names that differ in upper and lower case alone, by name.
+
+    On many discs Rock.nc and rock.nc are one file: one result would overwrite the other.
+    """
     spelled: dict[str, str] = {}
     refused = {}
     for name in roles:
@@ -270,7 +307,12 @@ def _without_scan(sidecar: Path) -> InputError:
             f"{sidecar}: one sidecar serves both faces of a joint; rename it {stem}.yaml"
         )
     folders = [path.name for path in sidecar.parent.glob("*/") if path.stem == sidecar.stem]
-    hint = f"; {folders[0]} is a folder, which is not looked into" if folders else ""
+    hint = (
+        f"; {folders[0]} is a folder, which is looked into only where the study says 'groups: "
+        "folders'"
+        if folders
+        else ""
+    )
     names = sorted(path.name for path in sidecar.parent.iterdir())
     for lower, upper, new_lower, new_upper in _likely_pairs(names):
         if new_lower == f"{sidecar.stem}.lower{Path(lower).suffix}":
@@ -282,8 +324,13 @@ def _without_scan(sidecar: Path) -> InputError:
     )
 
 
-def _refuse_outside_link(path: Path, folder: Path) -> None:
-    """Untrusted folders must not make the program read other files."""
+def refuse_outside_link(path: Path, folder: Path) -> None:
+    """Refuse links out of a folder: untrusted folders must not make the program read other files.
+
+    Raises
+    ------
+    InputError
+    """
     try:
         target = path.resolve(strict=True)
     except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python

@@ -8,7 +8,7 @@ are refused; so is a file far longer than any sidecar.
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import yaml
 
@@ -80,6 +80,26 @@ def read_yaml(path: Path | str) -> dict:
     if not isinstance(document, dict):
         raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
     return document
+
+
+def plain_value(text: str, where: str) -> Any:
+    """One value as a sidecar would have it behind its key: "20 mm", "[1, 2]", "true".
+
+    Parameters
+    ----------
+    text : str
+    where : str
+        For errors.
+
+    Raises
+    ------
+    InputError
+        If it is no such value.
+    """
+    try:
+        return yaml.load(text[:LARGEST_SIDECAR], _Loader)
+    except yaml.YAMLError as error:
+        raise unreadable(where, error) from error
 
 
 def unreadable(path: Path | str, error: yaml.YAMLError) -> InputError:

@@ -196,6 +196,21 @@ _TABLE = (
         filed=False,
     ),
     Stage(
+        "comparison",
+        "what of a specimen is compared with others, with its errors",
+        SPECIMEN,
+        "statements.comparison:specimen_row",
+        filed=False,
+    ),
+    Stage(
+        "study_comparison",
+        "specimens side by side, and how groups of them spread",
+        STUDY,
+        "statements.comparison:compare_specimens",
+        member="study",
+        filed=False,
+    ),
+    Stage(
         "speed",
         "error against time of solvers and cheaper models, one group per test problem",
         PROBLEM,

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...mechanics.joint import DIRECTION_STEPS
+from ...mechanics.joint import DIRECTION_STEPS, composite_topography
 from ...surface.specimen import faces, window_sides, window_slices
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
@@ -60,12 +60,14 @@ class Slid:
         cells = int(joint["offset_cells"].values[0, last])
         # The n-th rigid offset is n cells along the first contact direction.
         slid = joint.sel(direction=direction).isel(rigid_offset=cells)
+        specimen = group(atlas, "specimens", name)
         return cls(
-            group(atlas, "specimens", name),
+            specimen,
             direction,
             float(joint["offset"].values[last]),
             float(slid["rigid_dilatancy"]),
-            joint["composite"].values[last],
+            # The atlas has it in steps; of the faces it is such that they touch in one node.
+            composite_topography(specimen, direction, cells),
             float(slid["face_correlation"]),
             float(joint["correlation_limit"]),
         )

@@ -1,0 +1,1 @@
+"""Figures over the specimens and groups of a study."""

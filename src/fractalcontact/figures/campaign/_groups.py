@@ -1,0 +1,90 @@
+"""What the figures over specimens and groups share: words, colours, the load they are drawn at."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from ...core.labels import printable
+from ..kit.drawing import label_short_span
+from ..kit.empty import say_empty
+from ..kit.words import estimate, interval, short
+
+#: What each quantity is on an axis.
+AXES = {
+    "delta_g": r"surface dimension $\Delta_g$ (1)",
+    "stiffness": r"tangent stiffness d$\sigma_0$/d$w_{int}$ (MPa/mm)",
+    "delta_sigma": r"$\Delta_\sigma$ by box counting (1)",
+    "dilatancy": r"elastic dilatancy $\delta$ (mm)",
+    "size_exponent": r"exponent of $A_r/A_0$ against $b$ (1)",
+}
+#: What it is above a panel.
+TITLES = {
+    "delta_g": "surface dimension",
+    "stiffness": "stiffness of the interface",
+    "delta_sigma": "dimension of the contact",
+    "dilatancy": "dilatancy",
+    "size_exponent": "size effect",
+}
+#: Ends of what can only lie between: a mean of few specimens has an interval far beyond.
+BETWEEN = {"delta_sigma": (-0.05, 2.05)}
+#: Those drawn over decades.
+LOGARITHMIC = ("stiffness",)
+#: Letters of the name of a group that are shown, and groups that a caption names.
+LONGEST, MOST_NAMED = 24, 3
+
+
+def group_labels(comparison: xr.Dataset) -> list[str]:
+    """Names of the groups as they are shown."""
+    return [
+        printable(name, LONGEST).replace("$", r"\$") for name in comparison["group_name"].values
+    ]
+
+
+def settle_axis(axes: Axes, name: str, *, drawn: bool) -> None:
+    """Scale and ends of the axis of a quantity, once it is drawn; words where nothing is.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    name : str
+    drawn : bool
+        Whether any specimen has a value.
+    """
+    axes.set_ylabel(AXES[name])
+    if not drawn:
+        say_empty(axes, "no specimen\nhas a value")
+        axes.set_yticks([])
+    elif name in LOGARITHMIC:
+        axes.set_yscale("log", nonpositive="mask")
+        label_short_span(axes.yaxis)
+    elif name in BETWEEN:
+        axes.set_ylim(*BETWEEN[name])
+
+
+def common_pressure(comparison: xr.Dataset) -> int:
+    """Number of the nominal pressure under which most specimens are; of several, the largest."""
+    counts = comparison[["stiffness_n", "delta_sigma_n"]].sum("group_name")
+    values = (counts["stiffness_n"] + counts["delta_sigma_n"]).values
+    return int(len(values) - 1 - np.argmax(values[::-1]))
+
+
+def means_in_words(comparison: xr.Dataset, name: str, state: xr.Dataset, unit: str = "") -> str:
+    """Means of the first groups with their intervals: "rough 2.41 [2.38, 2.44] of 50"."""
+    found = []
+    for group, label in zip(state["group_name"].values, _plain(comparison), strict=True):
+        one = state.sel(group_name=group)
+        ends = [float(one[f"{name}_mean{end}"]) for end in ("", "_low", "_high")]
+        value, low, high = ends
+        n = int(one[f"{name}_n"])
+        words = estimate(value, low, high, unit) if unit else interval(value, low, high)
+        if n == 1:
+            words = short(value)
+        found.append(f"{label} {words} of {n}")
+    more = len(found) - MOST_NAMED
+    return "; ".join(found[:MOST_NAMED]) + (f"; {more} more groups" if more > 0 else "")
+
+
+def _plain(comparison: xr.Dataset) -> Sequence[str]:
+    return [printable(name, LONGEST) for name in comparison["group_name"].values]

@@ -1,0 +1,121 @@
+"""Specimens and groups of them compared under one nominal pressure, each with its errors."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from ...statements.comparison import ONCE, QUANTITIES, rounded_pressures
+from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, group, letter
+from ..kit.words import SUPPLEMENTARY, pressure_label
+from ._groups import TITLES, common_pressure, group_labels, means_in_words, settle_axis
+
+TITLE = "Specimens and groups compared: surface, stiffness, contact, dilatancy and size effect"
+SUBJECT = "study"
+NEEDS = ("study_comparison",)
+KEY = "comparison"
+ORDER = 6
+
+#: Specimens of a group up to which each has its own error bar.
+MOST_BARS = 40
+#: Half the width that the specimens of a group take, of the distance between groups; where the
+#: mean stands.
+HALF_WIDTH, MEAN_AT = 0.25, 0.38
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """A strip of specimens for each group, and the mean of the group with its interval."""
+    comparison = group(atlas, "study_comparison", "study")
+    number = common_pressure(comparison)
+    pressure = float(comparison["pressure"][number])
+    at_load = comparison.isel(pressure=number)
+    values = _values_at(comparison, pressure)
+    figure = Figure(figsize=(WIDTH, 5.2))
+    panels = figure.subplots(2, 3).ravel()
+    for axes, name, which in zip(panels, QUANTITIES, "abcde", strict=False):
+        _draw_strip(axes, name, values, at_load)
+        letter(axes, which, TITLES[name])
+    _draw_key(panels[-1], values)
+    figure.suptitle(rf"under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE)
+    return Drawing(figure, values, _caption(comparison, at_load, pressure, len(values)))
+
+
+def _values_at(comparison: xr.Dataset, pressure: float) -> pd.DataFrame:
+    """Every specimen with its quantities under one pressure, NaN where it was not loaded so."""
+    rounded = rounded_pressures(comparison["nominal_pressure"].values)
+    same = np.isclose(rounded, pressure, rtol=1e-9)
+    columns = {"specimen": comparison["specimen"].values, "group": comparison["group"].values}
+    for name, (unit, _) in QUANTITIES.items():
+        for end in ("", "_low", "_high"):
+            found = comparison[f"{name}{end}"].values
+            if name not in ONCE:
+                known = np.where(same, found, np.nan)
+                found = np.where(np.isfinite(known).any(axis=1), np.nansum(known, axis=1), np.nan)
+            columns[f"{name}{end}_{unit.replace('/', '_per_')}"] = found
+    return pd.DataFrame(columns).assign(nominal_pressure_MPa=pressure)
+
+
+def _column(name):
+    return f"{name}{{}}_{QUANTITIES[name][0].replace('/', '_per_')}"
+
+
+def _draw_strip(axes, name, values, at_load):
+    column = _column(name)
+    labels = group_labels(at_load)
+    for i, of_group in enumerate(at_load["group_name"].values):
+        members = values[values["group"] == of_group].dropna(subset=column.format(""))
+        found, low, high = (members[column.format(end)].values for end in ("", "_low", "_high"))
+        place = i + HALF_WIDTH * _spread(len(members))
+        colour = colour_of(i + 1)
+        if len(members) <= MOST_BARS:
+            bars = np.nan_to_num([found - low, high - found])
+            axes.errorbar(
+                place, found, np.maximum(bars, 0), fmt="o", ms=2.5, lw=0.5, color=colour, alpha=0.7
+            )
+        else:
+            axes.plot(
+                place, found, "o", ms=1.5, color=colour, alpha=0.4, mec="none", rasterized=True
+            )
+        mean, mean_low, mean_high = (
+            float(at_load[f"{name}_mean{end}"][i]) for end in ("", "_low", "_high")
+        )
+        if np.isfinite(mean_low):
+            axes.errorbar(
+                i + MEAN_AT,
+                mean,
+                [[mean - mean_low], [mean_high - mean]],
+                fmt="D",
+                color="k",
+                capsize=3,
+            )
+    axes.set_xticks(range(len(labels)), labels, rotation=20 if len(labels) > 2 else 0)
+    axes.set_xlim(-0.6, len(labels) - 0.4)
+    settle_axis(axes, name, drawn=bool(np.isfinite(values[column.format("")]).any()))
+
+
+def _draw_key(axes, values):
+    """What the signs are, in the last panel."""
+    axes.set_axis_off()
+    many = values.groupby("group").size().max() > MOST_BARS
+    of_each = "one specimen" if many else "one specimen with its\n95 % interval"
+    axes.errorbar([0.1], [0.7], [0 if many else 0.06], fmt="o", ms=2.5, lw=0.5, color=colour_of(1))
+    axes.text(0.2, 0.7, of_each, va="center")
+    axes.errorbar([0.1], [0.45], [0.06], fmt="D", color="k", capsize=3)
+    axes.text(0.2, 0.45, "mean of the group, with the\n95 % interval of the mean", va="center")
+    axes.set(xlim=(0, 1.4), ylim=(0, 1))
+
+
+def _caption(comparison, at_load, pressure, n):
+    return (
+        f"{SUPPLEMENTARY} {n} specimens in {comparison.sizes['group_name']} groups, under "
+        f"{pressure_label(pressure)}. "
+        f"Mean Delta_g {means_in_words(comparison, 'delta_g', at_load)}."
+    )
+
+
+def _spread(n):
+    """Places of n points from -1 to 1, of one in the middle."""
+    return np.linspace(-1, 1, n) if n > 1 else np.zeros(n)

@@ -1,0 +1,236 @@
+"""Specimens and groups of them compared: what each gives with its error, and how groups spread.
+
+Of every specimen one row is kept, small whatever its scan: the comparison of a thousand specimens
+reads a thousand rows and none of their fields.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled_dataset
+from ..core.intervals import INTERVAL, t_quantile
+from ..mechanics.states import chosen_offset
+from ..surface.specimen import nominal_area
+
+#: What is compared, each with its 95 % interval: unit and long name; the first once a specimen,
+#: the others under every load.
+ONCE = {"delta_g": ("1", "surface dimension Delta_g, the recommended estimate")}
+UNDER_LOAD = {
+    "stiffness": ("MPa/mm", "tangent stiffness d sigma_0 / d w_int at the map offset"),
+    "delta_sigma": ("1", "Delta_sigma by box counting at the map offset"),
+    "dilatancy": ("mm", "elastic dilatancy delta at the largest offset"),
+    "size_exponent": ("1", "exponent of corrected A_r/A_0 against b at equal sigma_0"),
+}
+QUANTITIES = ONCE | UNDER_LOAD
+#: Name of the group of specimens that belong to none.
+UNGROUPED = "no group"
+#: Digits to which nominal pressures must agree that specimens are compared under one.
+_DIGITS = 4
+
+
+def _table(prefix=(), names=QUANTITIES):
+    """Variables of the quantities with the ends of their intervals, over ``prefix`` and loads."""
+    return {
+        f"{name}{end}": ((*prefix, *(() if name in ONCE else ("load",))), unit, f"{words}{of_end}")
+        for name, (unit, words) in names.items()
+        for end, of_end in INTERVAL.items()
+    }
+
+
+def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
+    """What of a specimen is compared with others: each quantity with its 95 % interval.
+
+    Parameters
+    ----------
+    stages : mapping of str to xr.Dataset
+        Of the specimen: ``specimens``, ``surface_dimension``, ``closure``, ``domains``,
+        ``dilatancy``, ``size_test`` and ``error_budget``.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+
+    Returns
+    -------
+    xr.Dataset
+        ``delta_g`` and, over (load,), ``nominal_pressure`` (MPa), ``stiffness`` (MPa/mm),
+        ``delta_sigma``, ``dilatancy`` (mm) and ``size_exponent``, in the first direction that was
+        solved; NaN where there is none. Attributes ``group``, ``label``, ``opposite``.
+    """
+    closure, surface = stages["closure"], stages["surface_dimension"]
+    direction = str(settings["contact_directions"][0])
+    offset = chosen_offset(settings["map_offset"], closure["offset"].values)
+    pressures = closure["normal_force"].values / nominal_area(stages["specimens"])
+    found = {
+        **_ends("delta_g", *(float(surface[f"recommended_{end}"]) for end in _ENDS)),
+        **_stiffness(stages["error_budget"], pressures.size),
+        **_of_domains(stages["domains"], direction, offset),
+        **_dilatancy(stages["dilatancy"], direction, pressures.size),
+        **_size_exponent(stages["size_test"], pressures),
+    }
+    table = _table() | {"nominal_pressure": ("load", "MPa", "nominal pressure sigma_0 = F/A_0")}
+    row = labelled_dataset(table, found | {"nominal_pressure": pressures})
+    return row.assign_attrs(
+        group=settings.get("group") or UNGROUPED,
+        label=str(settings["label"]),
+        opposite=str(stages["specimens"].attrs["opposite"]),
+    )
+
+
+_ENDS = ("value", "low", "high")
+
+
+def _ends(name, value, low, high):
+    return {name: value, f"{name}_low": low, f"{name}_high": high}
+
+
+def _around(name, value, half_width):
+    return _ends(name, value, value - half_width, value + half_width)
+
+
+def _stiffness(budget, n_loads):
+    one = budget.sel(quantity="stiffness")
+    if one.sizes["normal_force"] != n_loads:
+        raise ValueError("the error budget has other loads than the closure")
+    return _around("stiffness", one["published"].values, one["total"].values)
+
+
+def _of_domains(domains, direction, offset):
+    names = [f"delta_sigma{end}" for end in INTERVAL]
+    found = domains[names].sel(direction=direction).sel(offset=offset, method="nearest")
+    found = found.sel(resolution=found["resolution"].min())
+    return {name: found[name].values for name in names}
+
+
+def _dilatancy(dilatancy, direction, n_loads):
+    """Elastic dilatancy at the largest offset; what stands against a plane does not slide."""
+    if direction == "none":
+        return _around("dilatancy", *np.full((2, n_loads), np.nan))
+    last = dilatancy.sel(contact_direction=direction).isel(offset=-1)
+    error = last["elastic_dilatancy_error"].values + np.nan_to_num(last["left_out_error"].values)
+    return _around("dilatancy", last["elastic_dilatancy"].values, error)
+
+
+def _size_exponent(size_test, pressures):
+    """Exponents of the size test under the loads of the study, which it goes beyond."""
+    tested = size_test["nominal_pressure"].values
+    same = np.isclose(tested[:, None], pressures[None, :], rtol=10.0**-_DIGITS)
+    found = {}
+    for end in INTERVAL:
+        values = np.full(pressures.size, np.nan)
+        rows, columns = np.nonzero(same)
+        values[columns] = size_test[f"area_exponent{end}"].values[rows]
+        found[f"size_exponent{end}"] = values
+    return found
+
+
+def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """Rows of all specimens side by side, and how the quantities spread within each group.
+
+    Parameters
+    ----------
+    rows : mapping of str to xr.Dataset
+        By specimen, from :func:`specimen_row`.
+
+    Returns
+    -------
+    xr.Dataset
+        The variables of the rows over (specimen,) and (specimen, load), NaN behind the last load of
+        specimens that have fewer; ``group`` and ``label`` of each. And of each quantity, over
+        (group_name,) and, under every nominal pressure that is a load of any, (group_name,
+        pressure): ``NAME_mean`` with its 95 % interval (Student's t over specimens: NaN of one
+        alone), ``NAME_deviation`` between specimens, ``NAME_n`` of them, and ``NAME_error``, the
+        median half-width of their own intervals.
+    """
+    names = sorted(rows)
+    most = max((rows[name].sizes["load"] for name in names), default=0)
+    groups = [str(rows[name].attrs["group"]) for name in names]
+    table = _table(("specimen",)) | {
+        "nominal_pressure": (("specimen", "load"), "MPa", "nominal pressure sigma_0 = F/A_0"),
+        "group": ("specimen", "1", "group of the specimen"),
+        "label": ("specimen", "1", "label of the specimen"),
+    }
+    values: dict = {
+        name: np.array([_filled(rows[one][name].values, most) for one in names])
+        for name in table
+        if name not in ("group", "label")
+    }
+    values["group"] = np.array(groups, dtype=object)
+    values["label"] = np.array([str(rows[name].attrs["label"]) for name in names], dtype=object)
+    side_by_side = labelled_dataset(table, values, {"specimen": names})
+    return side_by_side.merge(_group_statistics(side_by_side))
+
+
+def _filled(values, n):
+    """Values over loads with NaN behind the last; a number is handed back as it is."""
+    values = np.asarray(values, float)
+    return (
+        values if values.ndim == 0 else np.pad(values, (0, n - values.size), constant_values=np.nan)
+    )
+
+
+def rounded_pressures(pressures: np.ndarray) -> np.ndarray:
+    """Nominal pressures to the digits to which they must agree to be compared, MPa."""
+    pressures = np.asarray(pressures, float)
+    size = 10.0 ** np.floor(np.log10(pressures, where=pressures > 0, out=np.zeros(pressures.shape)))
+    return np.round(pressures / size, _DIGITS - 1) * size
+
+
+#: Of each quantity within a group: ending, words before its long name, whether in its unit.
+_STATISTICS = {
+    "_mean": "mean over specimens of ",
+    "_mean_low": "lower end of the 95 % interval of the mean over specimens of ",
+    "_mean_high": "upper end of the 95 % interval of the mean over specimens of ",
+    "_deviation": "standard deviation between specimens of ",
+    "_error": "median over specimens of the half-width of the 95 % interval of ",
+    "_n": "specimens that have ",
+}
+
+
+def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
+    groups = sorted(set(rows["group"].values))
+    rounded = rounded_pressures(rows["nominal_pressure"].values)
+    known = np.unique(rounded[np.isfinite(rounded)])
+    pressures = (
+        known[np.concatenate([[True], np.diff(known) > 1e-9 * known[1:]])] if known.size else known
+    )
+    member = rows["group"].values[:, None] == np.array(groups, dtype=object)[None, :]
+    table, values = {}, {}
+    for name, (unit, words) in QUANTITIES.items():
+        dims = ("group_name",) if name in ONCE else ("group_name", "pressure")
+        estimates = [rows[f"{name}{end}"].values for end in INTERVAL]
+        if name in UNDER_LOAD:
+            estimates = [_at(pressures, rounded, of_end) for of_end in estimates]
+        statistics = [_statistics(*(part[chosen] for part in estimates)) for chosen in member.T]
+        for i, (ending, before) in enumerate(_STATISTICS.items()):
+            table[f"{name}{ending}"] = (dims, "1" if ending == "_n" else unit, before + words)
+            values[f"{name}{ending}"] = np.array([found[i] for found in statistics])
+    coords = {
+        "group_name": groups,
+        "pressure": (
+            "pressure",
+            pressures,
+            {"units": "MPa", "long_name": "nominal pressure sigma_0"},
+        ),
+    }
+    return labelled_dataset(table, values, coords)
+
+
+def _at(pressures, of_specimens, values):
+    """Values over (specimen, load) brought to (specimen, pressure), NaN where it is no load."""
+    same = np.isclose(of_specimens[:, :, None], pressures, rtol=1e-9)
+    found = np.where(same & np.isfinite(values)[:, :, None], values[:, :, None], 0.0).sum(axis=1)
+    return np.where((same & np.isfinite(values)[:, :, None]).any(axis=1), found, np.nan)
+
+
+def _statistics(value, low, high) -> Sequence[np.ndarray]:
+    """Mean, its interval, deviation, error and number, over the first axis."""
+    n = np.isfinite(value).sum(axis=0)
+    known = np.maximum(n, 1)
+    mean = np.where(n > 0, np.nansum(value, axis=0) / known, np.nan)
+    squares = np.nansum((value - mean) ** 2, axis=0)
+    deviation = np.sqrt(np.where(n > 1, squares / np.maximum(n - 1, 1), np.nan))
+    half = t_quantile(np.maximum(n - 1, 1)) * deviation / np.sqrt(known)
+    widths = np.ma.masked_invalid((high - low) / 2)
+    error = np.ma.median(widths, axis=0) if widths.shape[0] else np.full(np.shape(mean), np.nan)
+    return mean, mean - half, mean + half, deviation, np.ma.filled(error, np.nan), n

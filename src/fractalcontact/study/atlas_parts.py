@@ -1,0 +1,183 @@
+"""Atlas of many specimens, in parts: a file a specimen, of which each is read when asked for."""
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from ..core.errors import InputError
+from .stages import STAGES
+
+
+def open_atlas(path: Path | str) -> "Atlas":
+    """Open the atlas of a study of any number of specimens; nothing of them is read yet.
+
+    Parameters
+    ----------
+    path : path-like
+        Folder of a study's results, or the ``atlas.nc`` in it, in one file or in parts.
+
+    Returns
+    -------
+    Atlas
+
+    Raises
+    ------
+    InputError
+        If there is none, or the file is no atlas.
+    """
+    path = Path(path)
+    file = path / "atlas.nc" if path.is_dir() else path
+    if not file.is_file():
+        raise InputError(
+            f"{file}: no such file; expected the atlas of a study, or the folder of its results, "
+            "such as results/paper"
+        )
+    return Atlas(file)
+
+
+class Atlas:
+    """An atlas whose stages are read one by one, each when it is asked for.
+
+    ``atlas["closure/NAME"]`` is a dataset in memory, which nobody but its user keeps, and
+    ``atlas.stage("closure")`` goes from specimen to specimen: a thousand specimens take the memory
+    of one. No file stays open.
+
+    Attributes
+    ----------
+    path : Path
+    attrs : dict
+        ``study``, ``configuration``, ``versions``, ``scan_checksums``: as of the file.
+    specimens : tuple of str
+    stages : tuple of str
+        What it holds, of specimens or of the study.
+    groups : dict of str to str
+        Group of each specimen, as the study states it; empty where it states none.
+    """
+
+    def __init__(self, path: Path):
+        self.path = path
+        self.attrs, self._own = _contents(path)
+        if "configuration" not in self.attrs:
+            raise InputError(f"{path}: no atlas; it lacks the attribute 'configuration'")
+        self._parts: dict[str, str] = json.loads(self.attrs.get("parts", "{}"))
+        own = self._own.get("specimens", ())
+        self.specimens: tuple[str, ...] = tuple(sorted({*own, *self._parts}))
+        settings: dict[str, Any] = json.loads(self.attrs["configuration"]).get("settings", {})
+        self.groups = {name: settings.get(name, {}).get("group", "") for name in self.specimens}
+
+    def __repr__(self) -> str:
+        where = f"in {len(self._parts)} parts" if self._parts else "in one file"
+        study, n = self.attrs["study"], len(self.specimens)
+        return f"<Atlas of the study {study}: {n} specimens, {where}>"
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Stages of the study and those of its first specimen, in the order of an atlas."""
+        held = set(self._own)
+        if self._parts:
+            held |= set(_contents(self._file(self.specimens[0]))[1])
+        return tuple(name for name in STAGES if name in held)
+
+    def __getitem__(self, key: str) -> xr.Dataset:
+        """Dataset of a stage and a specimen, "STAGE/SPECIMEN", in memory.
+
+        Raises
+        ------
+        KeyError
+            If the atlas has none of these names.
+        """
+        stage, _, name = key.strip("/").partition("/")
+        if name in self._own.get(stage, ()):
+            return read_group(self.path, f"{stage}/{name}")[0]
+        if name not in self._parts:
+            raise KeyError(f"{key}: the atlas {self.path} has no such stage and specimen")
+        return read_group(self._file(name), f"{stage}/{name}")[0]
+
+    def stage(self, stage: str, group: str | None = None) -> Iterator[tuple[str, xr.Dataset]]:
+        """One stage of one specimen after the other, those that have it.
+
+        Parameters
+        ----------
+        stage : str
+        group : str, optional
+            Only specimens of this group.
+
+        Yields
+        ------
+        name : str
+        dataset : xr.Dataset
+        """
+        for name in self.specimens:
+            if group is None or self.groups[name] == group:
+                try:
+                    dataset = self[f"{stage}/{name}"]
+                except KeyError:
+                    continue
+                yield name, dataset
+
+    def specimen(self, name: str) -> xr.DataTree:
+        """All stages of a specimen, opened by xarray: their arrays are read when they are used.
+
+        Raises
+        ------
+        KeyError
+            If there is no such specimen.
+        """
+        if name not in self.specimens:
+            raise KeyError(f"{name}: no specimen of the atlas {self.path}")
+        tree = xr.open_datatree(self._file(name), engine="netcdf4")
+        own = {
+            stage: group[name].to_dataset()
+            for stage, group in tree.children.items()
+            if name in group.children
+        }
+        return xr.DataTree.from_dict({"/": tree.to_dataset(), **own})
+
+    def _file(self, name):
+        return self.path.parent / self._parts[name] if name in self._parts else self.path
+
+
+def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, Any]]:
+    """One group of a netCDF-4 file in memory, and the attributes of the file.
+
+    Parameters
+    ----------
+    path : path-like
+    group : str
+        "STAGE/SPECIMEN".
+
+    Raises
+    ------
+    KeyError
+        If the file has no such group.
+    InputError
+        If it cannot be read.
+    """
+    import netCDF4
+
+    try:
+        file = netCDF4.Dataset(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read as netCDF-4 ({error})") from error
+    with file:
+        try:
+            found = file[group]
+        except (IndexError, KeyError):
+            raise KeyError(f"{path}: no group {group}") from None
+        dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(found)).load()
+        return dataset, {name: file.getncattr(name) for name in file.ncattrs()}
+
+
+def _contents(path):
+    """Attributes of a file, and the names of its groups by stage."""
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(path) as file:
+            attrs = {name: file.getncattr(name) for name in file.ncattrs()}
+            return attrs, {name: tuple(stage.groups) for name, stage in file.groups.items()}
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read as netCDF-4 ({error})") from error

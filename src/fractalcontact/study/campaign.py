@@ -1,0 +1,66 @@
+"""Campaigns, studies of many specimens: how their atlas is kept, and what is drawn of each."""
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from .figure_list import all_figures, figures_of
+from .stages import JOINT, SPECIMEN, STAGES, STUDY
+
+#: Specimens up to which an atlas is one file unless the study says otherwise. A file of many takes
+#: memory for all of them to write, and time for all of them to open.
+MOST_WHOLE = 30
+#: Whether the atlas is one file, or one a specimen.
+WHOLE, PARTS = "whole", "parts"
+#: Word for all figures, and for none.
+ALL, NONE = "all", "none"
+#: The one stage of all specimens together that such an atlas has: it takes one row of each.
+KEPT_WHOLE = "study_comparison"
+#: Key that the figures over several specimens ask for: every study of more than one has it.
+COMPARISON = "comparison"
+
+
+def in_parts(config: Mapping[str, Any], specimens: Collection[str]) -> bool:
+    """Whether the atlas of a study has one file a specimen, and one more for all of them.
+
+    Parameters
+    ----------
+    config : mapping
+        A study that passed the schema.
+    specimens : collection of str
+    """
+    unsaid = WHOLE if len(specimens) <= MOST_WHOLE else PARTS
+    return bool(config.get("atlas", unsaid) == PARTS)
+
+
+def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: str) -> list[str]:
+    """Names of the figures that are drawn of each specimen.
+
+    Parameters
+    ----------
+    config : mapping
+        A study that passed the schema.
+    specimens : collection of str
+        All of the study: where the atlas is in parts none is drawn unless the study asks for them.
+    opposite : str
+        As of :func:`study.figure_list.figures_of`.
+    """
+    asked = config.get("figures", NONE if in_parts(config, specimens) else ALL)
+    known = figures_of(opposite)
+    if asked == ALL:
+        return known
+    return [] if asked == NONE else [name for name in known if name in asked]
+
+
+def of_study_alone(names: Collection[str]) -> list[str]:
+    """Figures of a study that read no stage of its specimens one by one.
+
+    Those stages are not in the atlas of all specimens where that is in parts.
+
+    Parameters
+    ----------
+    names : collection of str
+        From :func:`study.figure_list.study_figures_of`.
+    """
+    in_parts = {name for name, stage in STAGES.items() if stage.grain in (SPECIMEN, JOINT, STUDY)}
+    in_parts -= {KEPT_WHOLE}
+    return [name for name in names if not set(all_figures()[name].needs) & in_parts]

@@ -1,0 +1,175 @@
+"""Memory and time that jobs ask for, by the nodes of their grids: models of what was measured.
+
+A job asks for :data:`ROOM` times what the model says, and for twice as much at every further
+attempt. ``docs/scaling.md`` has the measurements beside what is asked for.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..core.units import quantity
+
+#: Megabytes and minutes below which no job asks: the interpreter and its libraries, and the queue.
+LEAST_MEMORY, LEAST_TIME = 300, 5
+#: How much more is asked for than the models say, of memory and of time: other nodes are slower,
+#: and surfaces differ in what their contact takes.
+ROOM, ROOM_OF_TIME = 1.6, 5.0
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What the job of a rule takes.
+
+    Attributes
+    ----------
+    start : float
+        Megabytes whatever its grid is.
+    node : float
+        Bytes for each node of the grid.
+    seconds : float
+        Whatever its grid is.
+    solve : float
+        Microseconds a node and solve, or a node where nothing is solved.
+    state : float
+        Bytes kept of each node of each state.
+    """
+
+    start: float
+    node: float
+    seconds: float
+    solve: float
+    state: float = 0.0
+
+
+#: By rule, fitted to grids of 128 to 2048 nodes a side (``docs/scaling.md``). Of ``specimen`` the
+#: nodes are those of a face, else those of the window; ``atlas_part`` is ``figures`` without any.
+COSTS = {
+    "embedded": Cost(80, 130, 3, 1),
+    "specimen": Cost(270, 100, 6, 15),
+    "contact": Cost(210, 380, 4, 4, 1),
+    "analysis": Cost(190, 450, 8, 8, 5),
+    "windows": Cost(420, 620, 6, 60),
+    "strength": Cost(190, 10, 4, 0),
+    "figures": Cost(380, 300, 40, 10, 8),
+    "atlas_part": Cost(190, 180, 5, 1, 1),
+    "size_effect_part": Cost(170, 1000, 10, 50),
+}
+#: The analysis solves some states again on finer grids: up to four times as fine, up to so many
+#: nodes, of so many bytes each.
+FINER, MOST_FINER, OF_FINER = 16, 1024**2, 320
+
+#: Bytes of memory for each byte of a file of plain numbers: 12 million points
+#: x, y, z (315 MB as text, 288 MB as they are) take some 2 GB, those of a scattered cloud more.
+_PLAIN = 8
+#: Bytes of memory for each byte of any other file: heights in two bytes, or packed to one.
+_PACKED = 60
+_PLAIN_ENDINGS = {".asc", ".csv", ".dat", ".npy", ".obj", ".ply", ".stl", ".tsv", ".txt", ".xyz"}
+#: Bytes of a file for each of its nodes, by ending (points are three numbers each), and of others.
+_NODE = {".npy": 4, ".xyz": 20, ".ply": 12, ".stl": 25, ".obj": 25}
+_PLAIN_NODE, _PACKED_NODE = 6, 4
+
+
+def memory(rule: str, nodes: float, attempt: int = 1, *, states: int = 1) -> int:
+    """Megabytes that a job asks for.
+
+    Parameters
+    ----------
+    rule : str
+        Of :data:`COSTS`.
+    nodes : float
+        Of its grid.
+    attempt : int, optional
+        1 at first.
+    states : int, optional
+        Contact states that it keeps.
+    """
+    cost = COSTS[rule]
+    finer = OF_FINER * min(FINER * nodes, MOST_FINER) if rule == "analysis" else 0.0
+    needed = cost.start + (finer + nodes * (cost.node + cost.state * states)) / 1e6
+    return max(LEAST_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
+
+
+def minutes(rule: str, nodes: float, solves: int = 1, attempt: int = 1) -> int:
+    """Minutes that a job asks for.
+
+    Parameters
+    ----------
+    rule : str
+        Of :data:`COSTS`.
+    nodes : float
+        Of its grid.
+    solves : int, optional
+        Contact states that it solves, or 1.
+    attempt : int, optional
+        1 at first.
+    """
+    cost = COSTS[rule]
+    needed = (cost.seconds + cost.solve * nodes * solves / 1e6) / 60
+    return max(LEAST_TIME, round(ROOM_OF_TIME * needed)) * 2 ** (attempt - 1)
+
+
+def reading_memory(files: Iterable[Path | str], attempt: int = 1) -> int:
+    """Megabytes to ask for, to read the faces of a specimen, grid, clean and describe them.
+
+    Parameters
+    ----------
+    files : iterable of path-like
+        One face or two. Those that are not there, which the job explains, count as empty.
+    attempt : int, optional
+        1 at first.
+    """
+    files = list(map(Path, files))
+    read = sum(_size(path) * (_PLAIN if _is_plain(path) else _PACKED) for path in files) / 1e6
+    described = memory("specimen", nodes_of_files(files))
+    return max(described, round(2 * COSTS["specimen"].start + read)) * 2 ** (attempt - 1)
+
+
+def nodes_of_files(files: Iterable[Path | str]) -> float:
+    """Most nodes that one of some scan files may hold, by their sizes: nothing is opened."""
+    most = 0.0
+    for path in map(Path, files):
+        unsaid = _PLAIN_NODE if _is_plain(path) else _PACKED_NODE
+        most = max(most, _size(path) / _NODE.get(path.suffix.lower(), unsaid))
+    return most
+
+
+def nodes_of_recipe(recipe: Mapping[str, Any]) -> float:
+    """Nodes of an embedded specimen, from :func:`study.configuration.resolve_embedded`."""
+    return float(round(recipe["size"] / recipe["spacing"]) ** 2)
+
+
+def nodes_of_window(settings: Mapping[str, Any], spacing: object, of_face: float) -> float:
+    """Most nodes of the window of a specimen.
+
+    Parameters
+    ----------
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`.
+    spacing : float, str or None
+        Distance of nodes: mm, or as a sidecar has it; None where the file alone knows.
+    of_face : float
+        Nodes of a face, of which it is a part.
+    """
+    window = settings["window"]
+    if window is None or spacing is None:
+        return of_face
+    length = quantity(spacing, "length", "spacing") if isinstance(spacing, str) else spacing
+    if not isinstance(length, int | float) or length <= 0:  # two spacings, of x and y
+        return of_face
+    sides = window if isinstance(window, list) else [window, window]
+    return min(of_face, sides[0] * sides[1] / length**2)
+
+
+def states_of(settings: Mapping[str, Any], n_offsets: int) -> int:
+    """Most contact states of a specimen: directions, offsets and loads."""
+    return len(settings["contact_directions"]) * n_offsets * len(settings["loads"])
+
+
+def _is_plain(path):
+    return path.suffix.lower() in _PLAIN_ENDINGS
+
+
+def _size(path):
+    return path.stat().st_size if path.is_file() else 0

@@ -1,0 +1,48 @@
+"""How the atlas of a campaign is kept, and what is drawn of each specimen."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from fractalcontact.core.errors import InputError
+from fractalcontact.study.campaign import MOST_WHOLE, drawn_of, in_parts, of_study_alone
+from fractalcontact.study.checks import check_study
+from fractalcontact.study.figure_list import figures_of, study_figures_of
+
+FEW, MANY = range(MOST_WHOLE), range(MOST_WHOLE + 1)
+
+
+@pytest.mark.parametrize(
+    ("config", "specimens", "parts"),
+    [
+        ({}, FEW, False),
+        ({}, MANY, True),
+        ({"atlas": "parts"}, FEW, True),
+        ({"atlas": "whole"}, MANY, False),
+    ],
+)
+def test_many_specimens_have_an_atlas_in_parts(config, specimens, parts):
+    assert in_parts(config, specimens) == parts
+
+
+def test_all_figures_are_drawn_of_few_specimens_and_those_asked_for_of_many():
+    assert drawn_of({}, FEW, "match") == figures_of("match")
+    assert drawn_of({}, MANY, "match") == []
+    assert drawn_of({"figures": "all"}, MANY, "flat") == figures_of("flat")
+    assert drawn_of({"figures": ["strength", "fig02_relief"]}, MANY, "flat") == ["fig02_relief"]
+    assert drawn_of({"figures": "none"}, FEW, "match") == []
+
+
+def test_figures_of_a_campaign_read_no_specimen_for_itself():
+    names = study_figures_of(["defaults", "comparison", "roll_off"])
+    alone = of_study_alone(names)
+    assert {"comparison", "comparison_loads"} <= set(alone)
+    assert "study_statements" in names
+    assert "study_statements" not in alone
+
+
+def test_a_figure_that_is_none_is_refused_with_the_nearest():
+    schema = Path(__file__).parents[2] / "config/schema/study.schema.yaml"
+    with pytest.raises(InputError, match=r"figures: no figure 'strenth'.*'strength'"):
+        check_study({"study": "t", "figures": ["strenth"]}, yaml.safe_load(schema.read_text()), "t")

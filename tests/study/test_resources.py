@@ -1,0 +1,106 @@
+"""Memory and time that jobs ask for: more for larger grids and at a retry, and enough."""
+
+import os
+
+import pytest
+
+from fractalcontact.study.resources import (
+    COSTS,
+    LEAST_MEMORY,
+    memory,
+    minutes,
+    nodes_of_files,
+    nodes_of_window,
+    reading_memory,
+    states_of,
+)
+
+#: Largest resident memory, MB, of jobs that ran alone: rule, nodes a side, states, MB. The last
+#: column of the table in docs/scaling.md.
+MEASURED = [
+    ("specimen", 128, 3, 306),
+    ("specimen", 256, 3, 307),
+    ("specimen", 512, 3, 352),
+    ("contact", 128, 3, 248),
+    ("contact", 256, 3, 263),
+    ("contact", 512, 3, 410),
+    ("analysis", 128, 3, 253),
+    ("analysis", 256, 3, 525),
+    ("analysis", 512, 3, 581),
+    ("windows", 128, 3, 259),
+    ("windows", 256, 3, 276),
+    ("windows", 512, 3, 763),
+    ("strength", 128, 3, 184),
+    ("strength", 512, 3, 195),
+    ("atlas_part", 128, 3, 214),
+    ("atlas_part", 512, 3, 251),
+    ("specimen", 1024, 3, 374),
+    ("contact", 1024, 3, 554),
+    ("analysis", 1024, 3, 1011),
+    ("windows", 1024, 3, 977),
+    ("strength", 1024, 3, 217),
+    ("atlas_part", 1024, 3, 360),
+    ("specimen", 2048, 3, 599),
+    ("contact", 2048, 3, 1249),
+    ("embedded", 1024, 1, 196),
+    ("embedded", 2048, 1, 581),
+    # The paper's study, whose joints slide in four directions, at 13 offsets, under ten loads.
+    ("contact", 248, 560, 289),
+    ("contact", 512, 10, 357),
+    ("analysis", 248, 560, 459),
+    ("analysis", 200, 33, 373),
+    ("analysis", 512, 10, 557),
+    ("windows", 512, 10, 434),
+    ("figures", 248, 560, 656),
+    ("figures", 200, 33, 406),
+    ("figures", 512, 10, 446),
+    ("size_effect_part", 512, 1, 519),
+    ("size_effect_part", 512, 1, 314),
+]
+
+
+def sized(path, size):
+    path.touch()
+    os.truncate(path, size)  # a file with nothing in it takes no room
+    return path
+
+
+@pytest.mark.parametrize(("rule", "side", "states", "used"), MEASURED)
+def test_what_is_asked_for_is_between_1_2_and_3_times_what_was_used(rule, side, states, used):
+    asked = memory(rule, side**2, states=states)
+    assert 1.2 <= asked / used <= 3
+
+
+@pytest.mark.parametrize("rule", COSTS)
+def test_more_is_asked_for_larger_grids_and_twice_as_much_at_a_retry(rule):
+    assert memory(rule, 4096**2) >= memory(rule, 128**2) >= LEAST_MEMORY
+    assert minutes(rule, 4096**2, 10) >= minutes(rule, 128**2, 10)
+    assert [memory(rule, 10**6, n) / memory(rule, 10**6) for n in (1, 2, 3)] == [1, 2, 4]
+    assert [minutes(rule, 10**6, 3, n) / minutes(rule, 10**6, 3) for n in (1, 2, 3)] == [1, 2, 4]
+
+
+def test_more_is_asked_for_large_files_and_for_two_faces(tmp_path):
+    small = sized(tmp_path / "rock.npy", 10**5)
+    absent = reading_memory([tmp_path / "absent.npy"])
+    assert absent <= reading_memory([small]) <= 1.05 * absent
+    text = sized(tmp_path / "rock.xyz", 315 * 10**6)
+    assert reading_memory([text]) > 2700
+    packed = sized(tmp_path / "rock.x3p", 10**8)
+    assert reading_memory([packed]) > 5000  # packed heights unfold to many times the file
+    assert reading_memory([packed, packed]) >= reading_memory([packed])
+    assert reading_memory([packed], 2) == 2 * reading_memory([packed])
+
+
+def test_nodes_follow_from_files_and_windows(tmp_path):
+    file = sized(tmp_path / "rock.npy", 4 * 128**2)
+    assert nodes_of_files([file]) == 128**2
+    settings = {"window": 5.0}
+    assert nodes_of_window(settings, 0.1, 1e6) == pytest.approx(2500)
+    assert nodes_of_window(settings, "100 um", 1e6) == pytest.approx(2500)
+    assert nodes_of_window({"window": [5.0, 10.0]}, 0.1, 1e6) == pytest.approx(5000)
+    for window, spacing in ((None, 0.1), (5.0, None), (5.0, ["1 mm", "2 mm"]), (500.0, 0.1)):
+        assert nodes_of_window({"window": window}, spacing, 4000.0) == 4000
+
+
+def test_states_are_directions_offsets_and_loads():
+    assert states_of({"contact_directions": ["W", "E"], "loads": [1, 2, 3]}, 5) == 30
