@@ -7,6 +7,7 @@ __getattr__, __dir__, __all__ = exports(
     {
         "AUTOMATIC_OFFSETS": ".directions",
         "BLOCKS": ".slope_of_sums",
+        "COMPRESSED_FROM": ".netcdf",
         "CONFIDENCE": ".intervals",
         "CORRECTED_NODES": ".resolved",
         "ChildFailed": ".child_process",
@@ -56,6 +57,7 @@ __getattr__, __dir__, __all__ = exports(
         "njit": ".kernel_cache",
         "number": ".arguments",
         "on_one_line": ".labels",
+        "one_of": ".patterns",
         "padded": ".arrays",
         "pair": ".arguments",
         "percent": ".labels",

@@ -40,6 +40,7 @@ __getattr__, __dir__, __all__ = exports(
         "closure_curves": ".closure",
         "closure_error": ".numerical_error",
         "combine": ".states",
+        "composite_topography": ".joint",
         "contact_states": ".sweep",
         "corrected_area": ".area",
         "describe_joint": ".joint",

@@ -9,9 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from markupsafe import Markup, escape
 
 from ..mechanics.model_validity import GOOD, PARTLY, POOR
-from ..statements.findings import FAILS, HOLDS, UNDETERMINED
-from ..statements.findings import PARTLY as IN_PART
-from ..statements.judge import all_statements
+from ..statements.judge import FAILS, HOLDS, UNDETERMINED, all_statements
+from ..statements.judge import PARTLY as IN_PART
 from .captions import symbols
 from .common_loads import CommonLoad
 from .matrix import Row
