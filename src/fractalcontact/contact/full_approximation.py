@@ -30,9 +30,9 @@ LEAST_COARSE_SIDE = 96
 # Starts that violate the conditions by no more, as a fraction of the closure, are left as they are:
 # coarse solutions are hardly nearer.
 WORTHWHILE = 1e-2
-# A change is found to this on coarser grids, nearer than a cold start: what is left of it takes
+# A change is found to this on coarser grids, nearer than a cold start. What is left of it takes
 # applications on the fine grid.
-CHANGE_RTOL = 5e-3
+CHANGE_RTOL = 1e-2
 # Extrapolated from two states, a pressure at the cap in both may miss it by rounding.
 CAP_ROUNDING = 1e-9
 

@@ -43,24 +43,18 @@ class SplitConvolution:
 
     def __init__(self, shape: tuple[int, int], sides: tuple[float, float], self_term: float | None):
         # Along the shorter side of a cell more of them reach as far.
-        padded = tuple(
-            _length(n + int(np.ceil(NEAR / d)), even=True)
-            for n, d in zip(shape, sides, strict=True)
-        )
+        near_y, near_x = (int(np.ceil(NEAR / side)) for side in sides)
+        padded = _length(shape[0] + near_y), _length(shape[1] + near_x)
         half = padded[0] // 2 + 1, padded[1] // 2 + 1
         near = influence_table(half, sides, self_term)
-        near -= _smooth(*(np.arange(n) for n in half), sides)
+        near -= _smooth(np.arange(half[0]), np.arange(half[1]), sides)
         self._near = Convolution(_even_spectrum(near), shape, padded, np.float32, wrapped=True)
-        self._shape = tuple(shape)
-        self._coarse = tuple(-(-n // STEP) + ORDER - 1 for n in shape)
-        padded = tuple(_length(2 * n - 1, even=True) for n in self._coarse)
-        places = (
-            STEP * np.minimum(np.arange(length // 2 + 1), n - 1)
-            for n, length in zip(self._coarse, padded, strict=True)
-        )
-        spectrum = _even_spectrum(_smooth(*places, sides))
-        self._far = Convolution(spectrum, self._coarse, padded, np.float32)
-        self._weights = _interpolation().astype(np.float32)
+        ny, nx = (-(-n // STEP) + ORDER - 1 for n in shape)
+        padded = _length(2 * ny - 1), _length(2 * nx - 1)
+        y = STEP * np.minimum(np.arange(padded[0] // 2 + 1), ny - 1)
+        x = STEP * np.minimum(np.arange(padded[1] // 2 + 1), nx - 1)
+        self._far = Convolution(_even_spectrum(_smooth(y, x, sides)), (ny, nx), padded, np.float32)
+        self._coarse, self._weights = (ny, nx), _interpolation().astype(np.float32)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """The convolution of a field, (ny, nx) float32.
@@ -90,11 +84,12 @@ class SplitConvolution:
         return result
 
 
-def _length(least, *, even):
-    """The fast length from ``least`` on that takes the least time."""
-    lengths, length = [], fast_length(least)
+def _length(least):
+    """The even fast length from ``least`` on that takes the least time."""
+    lengths: list[int] = []
+    length = fast_length(least)
     while length <= _LONGER * least or not lengths:
-        if not (even and length % 2):
+        if length % 2 == 0:
             lengths.append(length)
         length = fast_length(length + 1)
     return min(lengths, key=_time)
