@@ -12,8 +12,8 @@ does, and with that kept. Compiled kernels are loaded before, for both. One thre
 processor time, several by the clock. A ratio of times has its 95 % interval over the pairs.
 
 An answer is judged before its time is read: by the closure that its pressure has under a
-convolution in double precision, against one of ours to 1e-8, and by its force. Beyond ``--error``
-the row is disqualified; so is a peer that says that it failed, or takes longer than ``--limit``.
+convolution in double precision, against one of ours to 1e-8, and by its force (in windows of more
+than 4096 nodes along a side by the force alone). Beyond ``--error`` the row is disqualified; so is a peer that says that it failed, or takes longer than ``--limit``.
 ``path`` are the counters that prove which way the last call went. Peak memory is that of the whole
 process, which holds the surface and, of the peer, what it is given and gives.
 
@@ -255,7 +255,7 @@ def _timed(solve, what, judge):
         found["force"] = float(pressure.sum(dtype=float)) * space.cell_area
         found["closure"] = what["closure"]
         if what["judged"]:
-            found["closure"] = _closure(pressure, space, np.load(what["heights"]))
+            found["closure"] = _closure(pressure, space, _heights(what))
     return found
 
 
