@@ -9,11 +9,13 @@ solved by ours and by every mode of the peer at a tolerance of 1e-6, each in a p
 with so many threads. Ours is timed in turn with the peer, twice: with what belongs to the grid
 (kernel, transforms, operator between blocks) made anew in each solve, which is what the peer always
 does, and with that kept. Compiled kernels are loaded before, for both. One thread is compared by
-processor time, several by the clock. A ratio of times has its 95 % interval over the pairs.
+processor time, several by the clock. A ratio of times has its 95 % interval over the pairs, if more
+than one is worth waiting for.
 
 An answer is judged before its time is read: by the closure that its pressure has under a
 convolution in double precision, against one of ours to 1e-8, and by its force (in windows of more
-than 4096 nodes along a side by the force alone). Beyond ``--error`` the row is disqualified; so is a peer that says that it failed, or takes longer than ``--limit``.
+than 4096 nodes along a side by the force alone). Beyond ``--error`` the row is disqualified; so is
+a peer that says that it failed, or takes longer than ``--limit``.
 ``path`` are the counters that prove which way the last call went. Peak memory is that of the whole
 process, which holds the surface and, of the peer, what it is given and gives.
 
@@ -37,10 +39,13 @@ import numpy as np
 HURST, RMS, RTOL = 0.8, 0.02, 1e-6
 #: The fraction in contact is met to this: it names a cell and decides nothing.
 MET = 0.05
-#: Windows of more nodes have single precision heights in a file mapped to memory.
+#: Windows with more nodes along a side have single precision heights in a file mapped to memory.
 MAPPED = 4096
 OURS = ("with set-up", "without")
 PEERS = ("ASPHER active set", "ASPHER fft")
+#: Seconds to load a surface and to judge an answer, beside those of the solve.
+JUDGING = 60
+TOO_LONG, BEYOND = "longer than", "not tried: too long with fewer nodes or less contact"
 COLUMNS = (
     *("size", "contact", "threads", "solver", "seconds", "ours", "times", "low", "high", "pairs"),
     *("error", "note", "applications", "path", "peak GB"),
@@ -58,7 +63,7 @@ def main():
         if (str(size), f"{percent:g}", str(threads)) in known:
             continue
         sys.stderr.write(f"{size}, {percent:g} % in contact, {threads} threads ...\n")
-        rows += _cell(size, percent, threads, options)
+        rows += _cell(size, percent, threads, options, rows)
         _write(options.output, rows)
     sys.stdout.write(_write(options.output, rows))
 
@@ -90,12 +95,18 @@ def _options():
 # What measures.
 
 
-def _cell(size, percent, threads, options):
-    """Rows of one cell: ours with and without set-up, and every mode of the peer."""
+def _cell(size, percent, threads, options, before):
+    """Rows of one cell: ours with and without set-up, and every mode of the peer.
+
+    A mode that took too long ``before``, of no more nodes or contact, is not tried again.
+    """
     load = _load(size, percent, options)
     row = {"size": size, "contact": f"{percent:g}", "threads": threads}
     names = [*OURS, *(p for p in options.peers if "ASPHER" not in p or size & (size - 1) == 0)]
     rows, answers = [], {}
+    for name in [name for name in names if _beyond(name, size, percent, threads, before)]:
+        rows.append(row | {"solver": name, "note": BEYOND})
+        names.remove(name)
     workers = {name: _Worker(name, load, threads, options.limit) for name in names}
     for name, worker in workers.items():
         answers[name] = worker.solve(warm=True)
@@ -116,13 +127,27 @@ def _cell(size, percent, threads, options):
     return rows
 
 
+def _beyond(name, size, percent, threads, rows):
+    """Whether a solver took too long in a cell of no more nodes and no more contact."""
+    return any(
+        row["solver"] == name
+        and int(row["size"]) <= size
+        and float(row["contact"]) <= percent
+        and int(row["threads"]) >= threads
+        and str(row.get("note", "")).startswith((TOO_LONG, BEYOND))
+        for row in rows
+    )
+
+
 def _against(name, workers, answers, load, threads, options):
     """The row of a mode of the peer, in turn with ours with its set-up."""
     row = {"solver": name} | _judged(answers[name], load, options)
     if row["note"]:
         return row
-    pairs, spent = [], 0.0
-    while len(pairs) < options.pairs and (spent < options.patience or len(pairs) < 2):
+    # One pair is enough, without an interval, where the first solve tries the patience.
+    pairs, spent = [], answers[name]["clock"]
+    least = 1 if spent > options.patience else 2
+    while len(pairs) < least or (len(pairs) < options.pairs and spent < options.patience):
         order = [OURS[0], name] if len(pairs) % 2 else [name, OURS[0]]
         pair = {who: workers[who].solve() for who in order}
         if any("failed" in found for found in pair.values()):
@@ -133,17 +158,13 @@ def _against(name, workers, answers, load, threads, options):
     ratio = np.log(times[:, 0] / times[:, 1])
     from fractalcontact.core.intervals import t_quantile
 
-    half = t_quantile(len(ratio) - 1) * ratio.std(ddof=1) / np.sqrt(len(ratio))
     seconds, ours = np.median(times, axis=0)
-    spread = np.exp(ratio.mean() + half * np.array([-1, 1]))
-    return row | {
-        "seconds": float(seconds),
-        "ours": float(ours),
-        "times": float(np.exp(ratio.mean())),
-        "low": float(spread[0]),
-        "high": float(spread[1]),
-        "pairs": len(pairs),
-    }
+    row |= {"seconds": float(seconds), "ours": float(ours), "pairs": len(pairs)}
+    row["times"] = float(np.exp(ratio.mean()))
+    if len(ratio) > 1:
+        half = t_quantile(len(ratio) - 1) * ratio.std(ddof=1) / np.sqrt(len(ratio))
+        row["low"], row["high"] = (float(np.exp(ratio.mean() + s * half)) for s in (-1, 1))
+    return row
 
 
 def _time(found, threads):
@@ -191,11 +212,13 @@ class _Worker:
         self.process.stdin.write("judge\n" if warm else "solve\n")
         self.process.stdin.flush()
         # The first loads the surface and is judged as well.
-        ready, _, _ = select.select([self.process.stdout], [], [], self.limit * (2 if warm else 1))
+        wait = self.limit + (JUDGING if warm else 0)
+        ready, _, _ = select.select([self.process.stdout], [], [], wait)
         line = self.process.stdout.readline() if ready else ""
-        found = json.loads(line) if line else {"failed": f"no answer in {self.limit:g} s"}
+        late = f"{TOO_LONG} {self.limit:g} s"
+        found = json.loads(line) if line else {"failed": "its process ended" if ready else late}
         if "failed" in found or found["clock"] > self.limit:
-            self.failed = found.get("failed", f"more than {self.limit:g} s")
+            self.failed = found.get("failed", late)
             self.process.kill()
             return {"failed": self.failed}
         return found

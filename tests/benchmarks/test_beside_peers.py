@@ -45,13 +45,27 @@ def test_ours_alone_is_judged_and_timed(tmp_path):
         ({"closure": 2.0 * (1 + 2e-5)}, "disqualified: its error is off"),
         ({"force": 3.0 * (1 - 2e-5)}, "disqualified: its error is off"),
         ({"closure": np.nan}, "disqualified: its error is off"),
-        ({"failed": "no answer in 600 s"}, "no answer in 600 s"),
+        ({"failed": "longer than 600 s"}, "longer than 600 s"),
     ],
 )
 def test_an_answer_is_judged_before_its_time_is_read(found, note):
     answer = {**LOAD, "applications": 7, "path": "", "peak": 1.0, **found}
     row = beside_peers._judged(answer, LOAD, argparse.Namespace(error=1e-5))
     assert row["note"] == note
+
+
+def test_a_mode_that_took_too_long_is_not_tried_on_more():
+    slow = {"solver": "a", "size": "512", "contact": "8", "threads": "2", "note": "longer than 9 s"}
+    for size, percent, threads, beyond in (
+        (512, 8, 2, True),
+        (1024, 20, 1, True),
+        (256, 8, 2, False),
+        (1024, 2, 2, False),
+        (512, 8, 4, False),
+    ):
+        assert beside_peers._beyond("a", size, percent, threads, [slow]) is beyond
+    assert not beside_peers._beyond("b", 512, 8, 2, [slow])
+    assert not beside_peers._beyond("a", 512, 8, 2, [slow | {"note": "it says no"}])
 
 
 def test_growth_is_the_exponent_over_the_nodes():
