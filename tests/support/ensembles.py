@@ -18,7 +18,7 @@ ENSEMBLES: dict[str, tuple] = {
     "method problems": ((0, 2), (1, 5)),
     "warm start side": (20, 40),
     # contact
-    "candidate problems": (20, 300),
+    "candidate problems": (20, 1000),
     "random energies": (10, 60),
     "candidate problem side": (80, 200),
     # accuracy

@@ -5,11 +5,12 @@ python -m fractalcontact.commands.compile_kernels
 
 import numpy as np
 
-from ..contact.nested_iteration import restrict_sum
+from ..contact.full_approximation import LEAST_FINE_SIDE
 from ..contact.solve import solve_contact
 from ..contact.state import ContactState
 from ..domain.measures import measures_of_states
 from ..elastic.halfspace import HalfSpace
+from ..elastic.split_convolution import LEAST_SIDE
 from ..mechanics.rigid_slide import slide
 from ..roughness.dimension import surface_dimension
 from ..surface.synthesis import self_affine
@@ -41,8 +42,7 @@ def compile_kernels() -> list[float]:
         for force in (2.0, 2000.0):
             state = solve_contact(surface, space, force=force, start=state, hardness=hardness)
             states.append(state)
-    states += _light_states()
-    restrict_sum(surface)  # else of larger grids alone, whose loads change on coarser ones
+    states += _light_states() + _large_states()
     stiffness = [state.stiffness for state in states]
     small = [state for state in states if state.pressure.shape == surface.shape]
     domains = np.array([state.in_contact for state in small])
@@ -57,6 +57,15 @@ def _light_states() -> list[ContactState]:
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
     state = solve_contact(surface, space, force=20.0)
     return [state, solve_contact(surface, space, force=22.0, start=state)]
+
+
+def _large_states() -> list[ContactState]:
+    """States of a window so large that convolutions are split, load steps begun on coarse grids."""
+    side = max(LEAST_FINE_SIDE, LEAST_SIDE)
+    surface = self_affine((side, side), 1.0, 0.8, seed=1, rms=1.0)
+    space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
+    state = solve_contact(surface, space, closure=2.0)
+    return [state, solve_contact(surface, space, closure=2.6, start=state)]
 
 
 if __name__ == "__main__":

@@ -150,8 +150,23 @@ def redistribute(
     padded = np.zeros((2 * my + 4, 2 * mx + 4))
     inside = padded[2 : gap.shape[0] + 2, 2 : gap.shape[1] + 2]
     inside[:] = change
-    _redistribute(before, padded, gap, influence[:4, :4].astype(float))
+    redistribute_padded(before, padded, gap, influence)
     return before + inside
+
+
+def redistribute_padded(
+    before: np.ndarray, change: np.ndarray, gap: np.ndarray, influence: np.ndarray
+) -> None:
+    """The same in place, of a change that has zeros around: two nodes more on each side.
+
+    Parameters
+    ----------
+    before, gap, influence
+        As of :func:`redistribute`.
+    change : (2 my + 4, 2 mx + 4) ndarray
+        Of (my, mx) cells.
+    """
+    _redistribute(before, change, gap, influence[:4, :4].astype(float))
 
 
 @njit(cache=True)
@@ -167,15 +182,17 @@ def _redistribute(before, change, gap, influence):
     for top in range(0, ny, 2):
         for side in range(0, nx, 2):
             total, mask = 0.0, 0
+            for y in range(top, min(top + 2, ny)):
+                for x in range(side, min(side + 2, nx)):
+                    total += before[y, x] + change[y + 2, x + 2]
+            if not total > 0:
+                continue
             for a in range(4):
                 y, x = top + a // 2, side + a % 2
                 known[a] = opening[a] = 0.0
                 if y < ny and x < nx:
                     known[a], opening[a] = before[y, x], gap[y, x]
-                    total += known[a] + change[y + 2, x + 2]
                     mask |= 1 << a
-            if not total > 0:
-                continue
             for i in range(6):
                 for j in range(6):
                     value = change[top + i, side + j]

@@ -144,6 +144,7 @@ class ProjectedCG:
         self.unclipped = np.ones(active.size, np.float32)
         self.at_zero = self.at_cap = np.zeros(active.size, bool)
         self.multiplier = 0.0
+        self._response: np.ndarray | None = None
 
     def clipped_step(
         self, start: np.ndarray, bounds: tuple[float, float], total: float | None
@@ -161,8 +162,8 @@ class ProjectedCG:
             raise ValueError(f"start {start.shape}: expected {self.active.shape}")
         aim = start + self.inverse(self.residual)
         if total is not None and self.active.size:  # it is empty where all that touches yields
-            response = self.inverse(np.ones(self.active.size, np.float32))
-            multiplier = _multiplier_of_total(aim, response, *bounds, total)
+            self._response = self.inverse(np.ones(self.active.size, np.float32))
+            multiplier = _multiplier_of_total(aim, self._response, *bounds, total)
             self.residual += np.float32(multiplier)
             self.multiplier += multiplier
         self.at_zero, self.at_cap = _clip(aim, start, *bounds, self.solution, self.unclipped)
@@ -177,12 +178,14 @@ class ProjectedCG:
         """Go on by conjugate gradients until no residual exceeds ``goal``."""
         response, total = self.unclipped, 0.0
         if by_force:
-            response = self.inverse(self.unclipped) * self.unclipped
+            response = self._response_of_unclipped()
             total = response.sum(dtype=float)
             if total <= 0:
                 return
         direction, previous = None, 1.0
         for _ in range(MAX_INNER):
+            if self._is_even(goal, by_force):
+                break
             search = self.inverse(self.residual)
             offset, slope, worst = _project(search, self.residual, self.unclipped, response, total)
             self.multiplier += offset
@@ -200,6 +203,28 @@ class ProjectedCG:
             add(self.solution, length, direction)
             add(self.image, length, image)
             _subtract(self.residual, length, image, self.active, self.unclipped)
+
+    def _response_of_unclipped(self):
+        """What the preconditioner makes of 1 on the unclipped nodes, on these.
+
+        No other response will do, however few nodes were clipped: with that of the whole set the
+        gradients are not conjugate, and were seen to diverge.
+        """
+        if self._response is not None and self.unclipped.all():
+            return self._response
+        return self.inverse(self.unclipped) * self.unclipped
+
+    def _is_even(self, goal, by_force):
+        """Whether no residual exceeds the goal, by its mean of a multiplier if that is open.
+
+        Known without the preconditioner, unlike the multiplier that its search asks for.
+        """
+        mean, worst = _mean_and_worst(self.residual, self.unclipped, by_force)
+        if worst > goal:
+            return False
+        self.multiplier -= mean
+        self.residual -= np.float32(mean) * self.unclipped
+        return True
 
 
 def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
@@ -284,6 +309,22 @@ def _project(search, residual, unclipped, response, total):
         slope += search[i] * residual[i]
         worst = max(worst, abs(residual[i]))
     return float(offset), slope, worst
+
+
+@njit(cache=True)
+def _mean_and_worst(residual, unclipped, by_force):
+    """Mean residual of the unclipped nodes, or 0 where it is not free; largest difference of it."""
+    total, n = 0.0, 0
+    for i in range(residual.size):
+        if unclipped[i] > 0:
+            total += residual[i]
+            n += 1
+    mean = total / n if by_force and n else 0.0
+    worst = 0.0
+    for i in range(residual.size):
+        if unclipped[i] > 0:
+            worst = max(worst, abs(residual[i] - mean))
+    return mean, worst
 
 
 @njit(cache=True)

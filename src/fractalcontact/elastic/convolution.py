@@ -55,6 +55,9 @@ class Convolution:
         Lengths of the transforms, each a :func:`fast_length`.
     dtype : type
         float32 or float64.
+    wrapped : bool
+        Whether the lengths may be less than twice those of the fields: the kernel is then that of
+        the circle, and it is the caller's to see that it ends before it comes round.
 
     Raises
     ------
@@ -68,11 +71,14 @@ class Convolution:
         shape: tuple[int, int],
         padded: tuple[int, int],
         dtype: type,
+        *,
+        wrapped: bool = False,
     ):
         if dtype not in (np.float32, np.float64):
             raise ValueError(f"dtype {dtype}: expected float32 or float64")
         for n, length in zip(shape, padded, strict=True):
-            if n < 1 or length < 2 * n - 1 or length != fast_length(length):
+            least = n if wrapped else 2 * n - 1
+            if n < 1 or length < least or length != fast_length(length):
                 raise ValueError(
                     f"padded {padded}: expected fast lengths of 2 n - 1 or more, of shape {shape}"
                 )

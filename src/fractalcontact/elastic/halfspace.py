@@ -27,6 +27,7 @@ from ..core.arguments import (
 from ..core.threads import computed_once, count
 from .convolution import Convolution, fast_length
 from .influence import influence_at, influence_table
+from .split_convolution import LEAST_SIDE, SplitConvolution
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
@@ -37,6 +38,8 @@ RIGID_PLATE_SELF_TERMS = {
 }
 #: Compiled code counts cells in four bytes.
 MOST_CELLS = 2**31 - 1
+#: Cells more stretched than this are convolved as a whole in single precision, too.
+MOST_STRETCHED = 1.5
 
 
 def rectangle_mean_displacement(a: float, b: float) -> float:
@@ -309,11 +312,11 @@ class HalfSpace:
 
     @property
     def _double(self):
-        return self._convolutions[0]
+        return self._convolutions[0] if self._split is None else self._double_alone
 
     @property
     def _single(self):
-        return self._convolutions[1]
+        return self._split or self._convolutions[1]
 
     @computed_once
     def _convolutions(self):
@@ -323,6 +326,17 @@ class HalfSpace:
             Convolution(spectrum, self.shape, self._padded, dtype)
             for dtype in (np.float64, np.float32)
         )
+
+    @computed_once
+    def _double_alone(self):
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
+
+    @computed_once
+    def _split(self):
+        """The convolution in single precision on large windows of nearly square cells, or None."""
+        if min(self.shape) < LEAST_SIDE or max(self._sides) > MOST_STRETCHED * min(self._sides):
+            return None
+        return SplitConvolution(self.shape, self._sides, self._self_term)
 
     def _spectrum(self):
         """Transform of the influence in its circulant: even both ways, and so real and even.

@@ -39,6 +39,11 @@ STATES: dict[str, tuple] = {
     "nodes": (_STATE, "1", "nodes in contact"),
     "yielded": (_STATE, "1", "fraction of the nodes in contact that carry the hardness"),
     "residual": (_STATE, "1", "largest KKT residual, fraction of the closure"),
+    "energy_error": (
+        _STATE,
+        "1",
+        "Frank-Wolfe bound on the energy above its minimum, fraction of it",
+    ),
 }
 #: What is kept of every surface, and of every spectrum.
 SURFACES: dict[str, tuple] = {
@@ -179,4 +184,5 @@ def _numbers_of(state: ContactState, area: float) -> dict[str, float]:
         "nodes": int(np.count_nonzero(domain)),
         "yielded": float(np.mean(state.pressure[domain] >= state.hardness)),
         "residual": state.residual,
+        "energy_error": state.energy_error,
     }

@@ -1,0 +1,92 @@
+"""The table of ours beside others, on problems small enough for a test."""
+
+import argparse
+import csv
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from places import BENCHMARKS
+
+sys.path.insert(0, str(BENCHMARKS))
+import beside_peers
+
+LOAD = {"closure": 2.0, "force": 3.0}
+
+
+@pytest.mark.full
+def test_ours_alone_is_judged_and_timed(tmp_path):
+    command = [sys.executable, BENCHMARKS / "beside_peers.py", "--alone", "--threads", "1"]
+    options = ["--sizes", "24", "32", "--fractions", "8", "--pairs", "2", "--output", tmp_path]
+    for _ in range(2):  # what is there is not measured again
+        done = subprocess.run([*command, *options], check=True, capture_output=True, text=True)
+    assert "8 % in contact" not in done.stderr
+    with (tmp_path / "beside_peers.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    names = {(row["size"], row["solver"]) for row in rows}
+    expected = {(n, f"ours, {how}") for n in ("24", "32") for how in ("with set-up", "without")}
+    assert names == expected
+    assert len(rows) == len(expected)
+    for row in rows:
+        assert float(row["error"]) < 1e-6
+        assert float(row["seconds"]) > 0
+        assert int(row["applications"]) > 0
+        assert row["path"].startswith("convolution, residual ")
+        assert row["note"] == ""
+    text = (tmp_path / "beside_peers.md").read_text()
+    assert "ours, without, 8 %, 1 threads: seconds grow as nodes^" in text
+
+
+@pytest.mark.parametrize(
+    ("found", "note"),
+    [
+        ({}, ""),
+        ({"closure": 2.0 * (1 + 2e-5)}, "disqualified: its error is off"),
+        ({"force": 3.0 * (1 - 2e-5)}, "disqualified: its error is off"),
+        ({"closure": np.nan}, "disqualified: its error is off"),
+        ({"failed": "longer than 600 s"}, "longer than 600 s"),
+    ],
+)
+def test_an_answer_is_judged_before_its_time_is_read(found, note):
+    answer = {**LOAD, "applications": 7, "path": "", "peak": 1.0, **found}
+    row = beside_peers._judged(answer, LOAD, argparse.Namespace(error=1e-5))
+    assert row["note"] == note
+
+
+def test_a_mode_that_took_too_long_is_not_tried_on_more():
+    slow = {"solver": "a", "size": "512", "contact": "8", "threads": "2", "note": "longer than 9 s"}
+    for size, percent, threads, beyond in (
+        (512, 8, 2, True),
+        (1024, 20, 1, True),
+        (256, 8, 2, False),
+        (1024, 2, 2, False),
+        (512, 8, 4, False),
+    ):
+        assert beside_peers._beyond("a", size, percent, threads, [slow]) is beyond
+    assert not beside_peers._beyond("b", 512, 8, 2, [slow])
+    assert not beside_peers._beyond("a", 512, 8, 2, [slow | {"note": "it says no"}])
+
+
+def test_growth_is_the_exponent_over_the_nodes():
+    rows = [
+        {"solver": "a", "contact": "2", "threads": "1", "size": n, "seconds": 3e-6 * n**2.5}
+        for n in (512, 1024, 4096)
+    ]
+    wrong = rows[0] | {"seconds": 1e9, "note": "disqualified: its error is off"}
+    ((*key, exponent, error),) = beside_peers.growth([*rows, wrong], "seconds")
+    assert key == ["a", "2", "1"]
+    assert exponent == pytest.approx(1.25)
+    assert error < 1e-9
+
+
+def test_the_summary_takes_the_fastest_mode_of_each_cell():
+    rows = [
+        {"size": 512, "contact": f, "threads": 1, "times": t, "note": ""}
+        for f, t in ((0.05, 4.0), (0.05, 9.0), (8, 20.0), (20, 12.0), (60, 2.0))
+    ]
+    rows.append(rows[0] | {"times": 1.0, "note": "failed"})
+    lines = list(beside_peers._summary(rows))
+    assert lines[0] == "1 threads: least 2 times, in 4 cells"
+    assert lines[1].endswith("4 times in the median")
+    assert lines[2].endswith("12 times in the median")
