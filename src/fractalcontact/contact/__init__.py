@@ -7,12 +7,12 @@ __getattr__, __dir__, __all__ = exports(
     {
         "CandidateState": ".state",
         "ContactState": ".state",
+        "LEAST_FINE_SIDE": ".full_approximation",
         "SOLVING": ".effort",
         "STIFFNESS_ERROR": ".state",
         "checked_hardness": ".solve",
         "checked_problem": ".solve",
         "forget_preconditioner": ".preconditioner",
-        "restrict_sum": ".nested_iteration",
         "solve_contact": ".solve",
         "unloaded_state": ".state",
     },

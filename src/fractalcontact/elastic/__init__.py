@@ -6,6 +6,7 @@ __getattr__, __dir__, __all__ = exports(
     __name__,
     {
         "HalfSpace": ".halfspace",
+        "LEAST_SIDE": ".split_convolution",
         "MultipoleLevels": ".multipole",
         "MultipoleOperator": ".multipole",
         "RIGID_PLATE_SELF_TERMS": ".halfspace",
