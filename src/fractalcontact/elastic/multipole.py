@@ -244,20 +244,31 @@ def _level_matrices(space, level, dtype):
     side, separation = own.size, SEPARATION[dtype]
     reach = _reach(separation)
     matrices = np.zeros((2 * reach + 1, 2 * reach + 1, side**2, _padded(side**2)), dtype)
+    number, apart = _distances(own)
     for oy in range(reach + 1):
         for ox in range(reach + 1):
             if level > 0 and max(oy, ox) <= separation:
                 continue
-            y = np.abs(own[:, None] - own[None, :] - oy * LEAF * 2**level)
-            x = np.abs(own[:, None] - own[None, :] - ox * LEAF * 2**level)
+            y, x = (np.abs(apart - offset * LEAF * 2**level) for offset in (oy, ox))
+            values = _influence(space, *(a.ravel() for a in np.meshgrid(y, x, indexing="ij")))
             # (source y, target y) and (source x, target x) to (source, target).
-            y = np.broadcast_to(y[:, None, :, None], (side,) * 4)
-            x = np.broadcast_to(x[None, :, None, :], (side,) * 4)
-            block = _influence(space, y.ravel(), x.ravel()).reshape(side, side, side, side)
+            block = values.reshape(y.size, x.size)[number[:, None, :, None], number[None, :, None]]
             for sy, sx in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
                 flipped = block[::sy, ::sx, ::sy, ::sx].reshape(side**2, side**2)
                 matrices[reach + sy * oy, reach + sx * ox, :, : side**2] = flipped
     return matrices.ravel()
+
+
+def _distances(places):
+    """Distances (n,) between places of one block and of another on it, and their numbers (i, j).
+
+    Places are symmetric, so those of i to j and of the mirrored j to the mirrored i are the same:
+    the influence, which takes longer than all else, is evaluated at a quarter of all pairs.
+    """
+    i, j = np.indices((places.size, places.size))
+    mirrored = (places.size - 1 - j) * places.size + places.size - 1 - i
+    first, number = np.unique(np.minimum(i * places.size + j, mirrored), return_inverse=True)
+    return number.reshape(i.shape), (places[:, None] - places).ravel()[first]
 
 
 def _influence(space, y, x):
