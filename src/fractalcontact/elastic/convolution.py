@@ -13,6 +13,7 @@ transformed back. (Forward by decimation in frequency: Gentleman and Sande, AFIP
 """
 
 import numpy as np
+from scipy import fft
 
 from ..core import threads
 from ..core.kernel_cache import njit
@@ -22,6 +23,37 @@ from .simd import WIDTH, load, store, transpose
 ROW = 2 * WIDTH
 #: On fewer cells than this a second thread costs more than it brings.
 THREADED_CELLS = 150_000
+#: Lines of a block that `cosine_transform` transforms at once: all would take their memory twice.
+LINES = 64
+
+
+def cosine_transform(half: np.ndarray, axis: int) -> np.ndarray:
+    """Transform of what is even along an axis, from its first half, in its place (DCT-I).
+
+    By threads of our own: scipy's are shut down while the process forks, and whoever transforms
+    then gets an error.
+
+    Parameters
+    ----------
+    half : (ny, nx) float64 ndarray
+        Overwritten.
+    axis : int
+        0 or 1.
+
+    Returns
+    -------
+    (ny, nx) ndarray
+        The same array.
+    """
+    lines = half if axis == 1 else half.T
+
+    def transform(start: int, stop: int) -> None:
+        for first in range(start, stop, LINES):
+            block = slice(first, min(first + LINES, stop))
+            lines[block] = fft.dct(lines[block], 1, axis=1, workers=1)
+
+    threads.in_parts(transform, len(lines), smallest=LINES)
+    return half
 
 
 def fast_length(least: int) -> int:

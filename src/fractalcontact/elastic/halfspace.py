@@ -24,8 +24,8 @@ from ..core.arguments import (
     refuse_masked,
     whole_number,
 )
-from ..core.threads import computed_once, count
-from .convolution import Convolution, fast_length
+from ..core.threads import computed_once
+from .convolution import Convolution, cosine_transform, fast_length
 from .influence import influence_at, influence_table
 from .split_convolution import LEAST_SIDE, SplitConvolution
 
@@ -350,7 +350,7 @@ class HalfSpace:
             if padded % 2 == 0:
                 place = np.minimum(np.arange(half), n - 1)
                 spectrum = np.take(spectrum, place, axis=axis) if half != n else spectrum
-                spectrum = fft.dct(spectrum, 1, axis=axis, overwrite_x=True, workers=count())
+                spectrum = cosine_transform(spectrum, axis)
             else:
                 distance = np.minimum(np.arange(padded), padded - np.arange(padded))
                 circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)

@@ -9,11 +9,11 @@ This takes half the time of the padded convolution, and a third of its memory.
 """
 
 import numpy as np
-from scipy import fft, special
+from scipy import special
 
 from ..core import threads
 from ..core.kernel_cache import njit
-from .convolution import Convolution, fast_length
+from .convolution import Convolution, cosine_transform, fast_length
 from .influence import influence_table
 
 #: Cells between the nodes of the coarse grid; nodes of it that stand for one of the field's, along
@@ -118,7 +118,7 @@ def _smooth(y, x, sides):
 def _even_spectrum(half):
     """Transform of a kernel that is even both ways, from its first half, in its place."""
     for axis in (1, 0):
-        half = fft.dct(half, 1, axis=axis, overwrite_x=True, workers=threads.count())
+        half = cosine_transform(half, axis)
     return half
 
 
