@@ -311,7 +311,6 @@ SUSPICIOUS = {
     "alternate columns of the lower": lambda z: z + alternating(len(z)),
     "alternate rows of the lower": lambda z: z + alternating(len(z))[:, np.newaxis],
     "52 % of the cells are missing": lambda z: np.where(np.arange(len(z)) > 30, np.nan, z),
-    "two tables in one file": lambda z: np.vstack([z, z[::-1] + 3.0]),
 }
 
 
@@ -330,6 +329,21 @@ def test_what_is_suspicious_about_a_file_is_warned_of(folder, check, said):
     assert code == 0
     assert "WARNING: " in text
     assert said in text
+
+
+def test_two_tables_in_one_file_are_refused_with_the_key_that_reads_them(folder, check):
+    z = surface()
+    keys = {"window": "auto", "offsets": "auto"}
+    write_scan(folder / "slab.npy", np.vstack([z, z[::-1] + 3.0]), 0.2, sidecar=keys)
+    code, out = check()
+    assert code == 1
+    text = " ".join(out.split())
+    assert "2 tables of 64 rows stand one under the other" in text
+    assert "axes: none" in text
+    write_scan(
+        folder / "slab.npy", np.vstack([z, z[::-1] + 3.0]), 0.2, sidecar=keys | {"axes": "none"}
+    )
+    assert check()[0] == 0
 
 
 def test_faces_in_the_wrong_order_are_named(folder, check):

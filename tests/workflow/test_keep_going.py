@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from projects import jobs_of, made, project, rough_heights, small_study
+from projects import made, project, rough_heights, small_study
 
 __all__ = ["project"]  # a fixture
 pytestmark = [pytest.mark.workflow, pytest.mark.full]
@@ -19,8 +19,9 @@ def test_what_is_wrong_with_one_scan_stops_only_that_where_the_user_asks_so(proj
     stopped = made(project, study)
     assert stopped.returncode != 0
     assert "half.lower.xyz: the upper face is missing" in stopped.stderr
-    planned = jobs_of(made(project, study, "--dry-run", targets=("--keep-going",)))
-    assert (planned["refused"], planned["specimen"]) == (1, 1)
+    planned = made(project, study, "--dry-run", targets=("--keep-going",)).stdout
+    assert planned.count("a scan that is left out: what is wrong with it") == 1
+    assert planned.count(": levelled scan, its surface dimension and its joint") == 1
     specimen = "results/test/specimens/good_slab.nc"
     refused = "results/test/refused/0.txt"
     done = made(project, study, targets=("--keep-going", specimen, refused))

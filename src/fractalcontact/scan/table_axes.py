@@ -178,8 +178,14 @@ def _edge(table: np.ndarray, where: str, name: str) -> Ruler | None:
 
 
 def _is_alone(table: np.ndarray) -> bool:
-    """Whether the first column rises or falls throughout and few others do."""
+    """Whether the first column rises or falls throughout and few others do.
+
+    One number all along a column is a mark for missing cells rather than heights: among such alone
+    any column of a tilted face would seem to be one of coordinates.
+    """
     others = table[:, 1 : 1 + _SAMPLE].T
+    if varied := [other for other in others if np.ptp(other) > 0]:
+        others = varied
     return (
         len(table) >= SMALLEST_SIDE
         and _is_monotone(table[:, 0])
