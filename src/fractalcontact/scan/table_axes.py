@@ -183,9 +183,8 @@ def _is_alone(table: np.ndarray) -> bool:
     One number all along a column is a mark for missing cells rather than heights: among such alone
     any column of a tilted face would seem to be one of coordinates.
     """
-    others = table[:, 1 : 1 + _SAMPLE].T
-    if varied := [other for other in others if np.ptp(other) > 0]:
-        others = varied
+    others = list(table[:, 1 : 1 + _SAMPLE].T)
+    others = [other for other in others if np.ptp(other) > 0] or others
     return (
         len(table) >= SMALLEST_SIDE
         and _is_monotone(table[:, 0])

@@ -146,7 +146,7 @@ def _found_words(test):
     ]
     measured = interval(*(float(best[f"slope{end}"]) for end in ("", "_low", "_high")))
     beside = f", eq. 6 has {', '.join(wanted)}" if wanted else ""
-    return (
-        f"At {pressure_label(float(best['nominal_pressure']))} the slope is {measured}{beside}. "
-        f"Of {int(known.sum())} slopes {int(sure.sum())} are well-conditioned."
-    )
+    found = f"At {pressure_label(float(best['nominal_pressure']))} the slope is {measured}{beside}."
+    if not sure.any():
+        return f"None of {int(known.sum())} slopes is well-conditioned. {found}"
+    return f"{found} Of {int(known.sum())} slopes {int(sure.sum())} are well-conditioned."
