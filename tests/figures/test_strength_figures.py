@@ -191,7 +191,7 @@ def test_strengths_of_angles_held_at_their_bound_are_marked_and_compared_with_no
     # Where any angle is held, the strength there is the largest that there can be.
     peaks = table[table["curve"] == "peak and residual"].set_index("nominal_pressure_MPa")
     assert (peaks["peak_held"].astype(bool).values == (strength["held_high"].values > 0)).all()
-    none = "no peak is below the bound" in drawn(atlas, "sliding", "strength").caption
+    none = "every peak is held at the bound" in drawn(atlas, "sliding", "strength").caption
     assert none == peaks["peak_held"].all()
 
 

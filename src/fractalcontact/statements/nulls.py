@@ -55,7 +55,7 @@ def domains_are_fractal(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
     if verdict == departure.UNDETERMINED:
         low, high = (float(state[f"delta_sigma_{end}"]) for end in ("low", "high"))
-        return Finding(UNDETERMINED, f"Delta_sigma within {high - low:.1f} only")
+        return Finding(UNDETERMINED, f"interval of Delta_sigma {high - low:.1f} wide")
     return Finding(
         HOLDS if is_fractal(verdict) else _LEFT[verdict],
         verdict,

@@ -59,7 +59,7 @@ def boxes_follow_one_law(joint: Joint) -> Finding:
     lengths = f"boxes of {float(state['fit_min']):.3g} to {float(state['fit_max']):.3g} mm"
     width = high - low
     if width > WIDEST:
-        return Finding(UNDETERMINED, f"Delta_sigma within {width:.1f} only, {lengths}")
+        return Finding(UNDETERMINED, f"interval of Delta_sigma {width:.1f} wide, {lengths}")
     verdict = HOLDS if width <= 2 * NEARLY else PARTLY if width <= 2 * LOOSELY else FAILS
     return Finding(verdict, f"Delta_sigma = {value:.2f} [{low:.2f}, {high:.2f}], {lengths}")
 

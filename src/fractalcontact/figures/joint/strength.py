@@ -263,5 +263,5 @@ def _barton_words(strength):
         return f"{words}; no Barton's law without friction angle and wall strength."
     ratio = ratio[np.isfinite(ratio) & ~_peak_held(strength)]
     if not ratio.size:
-        return f"{words}: no peak is below the bound, to be compared with Barton's."
+        return f"{words}; every peak is held at the bound, so none is compared with Barton's."
     return f"{words}: peaks {short(ratio.min())} to {short(ratio.max())} times Barton's."
