@@ -215,10 +215,16 @@ class Node:
     def left(self):
         """Processes of SLURM that live and did not before :meth:`start`: none after :meth:`stop`.
 
+        What a daemon forked may take seconds longer to end than the daemon.
+
         Returns
         -------
         list of str
         """
+        for _ in range(100):
+            if not _alive() - self.before:
+                break
+            time.sleep(0.1)
         return sorted(_alive() - self.before)
 
     def _configure(self):
