@@ -333,16 +333,15 @@ def test_what_is_suspicious_about_a_file_is_warned_of(folder, check, said):
 
 def test_two_tables_in_one_file_are_refused_with_the_key_that_reads_them(folder, check):
     z = surface()
+    tables = np.vstack([z, z[::-1] + 3.0])
     keys = {"window": "auto", "offsets": "auto"}
-    write_scan(folder / "slab.npy", np.vstack([z, z[::-1] + 3.0]), 0.2, sidecar=keys)
+    write_scan(folder / "slab.npy", tables, 0.2, sidecar=keys)
     code, out = check()
     assert code == 1
     text = " ".join(out.split())
     assert "2 tables of 64 rows stand one under the other" in text
     assert "axes: none" in text
-    write_scan(
-        folder / "slab.npy", np.vstack([z, z[::-1] + 3.0]), 0.2, sidecar=keys | {"axes": "none"}
-    )
+    write_scan(folder / "slab.npy", tables, 0.2, sidecar=keys | {"axes": "none"})
     assert check()[0] == 0
 
 

@@ -221,11 +221,10 @@ class Node:
         -------
         list of str
         """
-        for _ in range(100):
-            if not _alive() - self.before:
-                break
+        end = time.monotonic() + 10
+        while (left := _alive() - self.before) and time.monotonic() < end:
             time.sleep(0.1)
-        return sorted(_alive() - self.before)
+        return sorted(left)
 
     def _configure(self):
         if CONFIGURATION.exists():

@@ -8,6 +8,7 @@ returns unverified.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -308,19 +309,23 @@ class _Units:
         closure = solution.closure * self.length if self.by_force else self.length
         # Of the states before, one is enough, and it need not hold on to its own.
         before = None if start is None or start.space != space else start.without_before()
+        on_nodes = solution.pressure * self.pressure
+        force = float(on_nodes.sum()) * space.cell_area
+        common: dict[str, Any] = {
+            "closure": closure,
+            "force": force,
+            # What is no number violates no condition, and must not pass for a state.
+            "residual": solution.residual if math.isfinite(force) else math.nan,
+            "iterations": solution.applications,
+            "space": space,
+            "hardness": problem.cap * self.pressure,
+        }
         if problem.nodes is not None:
-            on_nodes = solution.pressure * self.pressure
             pressure = np.zeros(space.shape)
             pressure.ravel()[problem.nodes] = on_nodes
-            force = float(on_nodes.sum()) * space.cell_area
             return CandidateState(
                 pressure,
-                closure=closure,
-                force=force,
-                residual=solution.residual if math.isfinite(force) else math.nan,
-                iterations=solution.applications,
-                space=space,
-                hardness=problem.cap * self.pressure,
+                **common,
                 before=before,
                 candidates=Candidates(
                     problem.nodes,
@@ -330,19 +335,11 @@ class _Units:
                     topography,
                 ),
             )
-        pressure = solution.pressure.reshape(space.shape) * self.pressure
         displacement = solution.displacement.reshape(space.shape) * self.length
-        force = float(pressure.sum()) * space.cell_area
         return ContactState(
-            pressure=pressure,
+            pressure=on_nodes.reshape(space.shape),
             displacement=displacement,
             gap=displacement + topography.clearance() - closure,
-            closure=closure,
-            force=force,
-            # What is no number violates no condition, and must not pass for a state.
-            residual=solution.residual if math.isfinite(force) else math.nan,
-            iterations=solution.applications,
-            space=space,
-            hardness=problem.cap * self.pressure,
+            **common,
             _before=before,
         )

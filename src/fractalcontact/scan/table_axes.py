@@ -183,13 +183,11 @@ def _is_alone(table: np.ndarray) -> bool:
     One number all along a column is a mark for missing cells rather than heights: among such alone
     any column of a tilted face would seem to be one of coordinates.
     """
+    if len(table) < SMALLEST_SIDE or not _is_monotone(table[:, 0]):
+        return False
     others = list(table[:, 1 : 1 + _SAMPLE].T)
     others = [other for other in others if np.ptp(other) > 0] or others
-    return (
-        len(table) >= SMALLEST_SIDE
-        and _is_monotone(table[:, 0])
-        and bool(np.mean([_is_monotone(other) for other in others]) < FEW)
-    )
+    return bool(np.mean([_is_monotone(other) for other in others]) < FEW)
 
 
 def _is_mostly_even(numbers: np.ndarray) -> bool:
