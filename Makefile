@@ -122,7 +122,7 @@ test-slurm-accounting: $(VENV)/tests-installed $(VENV)/slurm-installed
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
 
-# CAMPAIGN=--measure: what the workflow takes for so many (after SPECIMENS=6 CAMPAIGN=--run).
+# CAMPAIGN=--measure: what the workflow takes for that many (after SPECIMENS=6 CAMPAIGN=--run).
 SPECIMENS ?= 100
 campaign: $(VENV)/installed
 	$(BIN)/python benchmarks/campaign.py $(SPECIMENS) $(CAMPAIGN)

@@ -6,7 +6,7 @@
 
 Each cell of the table is one self-affine surface under the force at which a fraction of it touches,
 solved by ours and by every mode of the peer at a tolerance of 1e-6, each in a process of its own
-with so many threads. Ours is timed in turn with the peer, twice: with what belongs to the grid
+with that many threads. Ours is timed in turn with the peer, twice: with what belongs to the grid
 (kernel, transforms, operator between blocks) made anew in each solve, which is what the peer always
 does, and with that kept. Compiled kernels are loaded before, for both. One thread is compared by
 processor time, several by the clock. A ratio of times has its 95 % interval over the pairs, if more
@@ -77,7 +77,7 @@ def _options():
     add("--fractions", type=float, nargs="+", default=[0.004, 0.05, 0.5, 2, 8, 20, 60], help="%%")
     add("--threads", type=int, nargs="+", default=[1, 2])
     add("--pairs", type=int, default=5, help="most of each cell")
-    add("--patience", type=float, default=60, help="no further pair after so many seconds")
+    add("--patience", type=float, default=60, help="no further pair after this many seconds")
     add("--limit", type=float, default=600, help="of one solve, seconds")
     add("--error", type=float, default=1e-5, help="of closure or force, relative, at most")
     add("--peers", nargs="+", default=list(PEERS))

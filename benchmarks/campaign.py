@@ -1,4 +1,4 @@
-"""Campaigns of small synthetic twins, and what the workflow takes for so many specimens.
+"""Campaigns of small synthetic twins, and what the workflow takes for that many specimens.
 
 python benchmarks/campaign.py 1000            writes the scans and the study of 1,000 twins
 python benchmarks/campaign.py 6 --run         computes six, which the next needs once

@@ -42,7 +42,7 @@ from fractalcontact.study.documents import read_study, study_name
 WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
 #: Seconds that are waited for the last words of jobs once Snakemake has ended.
 LAST_WORDS = 2
-#: Where Snakemake finds the logger that tells the terminal what happens.
+#: Where Snakemake finds the logger that shows on the terminal what happens.
 LOGGER = ROOT / "workflow/logger"
 #: What a shell does not take as it is.
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"

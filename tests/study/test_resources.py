@@ -15,7 +15,7 @@ from fractalcontact.study.resources import (
     states_of,
 )
 
-#: Largest resident memory, MB, of jobs that ran alone: rule, nodes a side, states, MB. The last
+#: Largest resident memory, MB, of jobs: rule, nodes along a side, states, MB. The last
 #: column of the table in docs/scaling.md.
 MEASURED = [
     ("specimen", 128, 3, 306),

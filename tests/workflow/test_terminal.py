@@ -130,7 +130,7 @@ def test_a_failed_job_says_its_own_sentence_and_where_its_log_is(said):
         start_job(one, number, "specimen", f"rock {number}", [log])
         told = event("job_error", jobid=number, rule_name="specimen", rule_msg=None, log=[log])
         one.hear(told)
-        one.hear(told)  # Snakemake tells of one twice where it gives up
+        one.hear(told)  # Snakemake reports one twice where it gives up
         errors = both()[1]
         assert errors[-3].startswith(expected)
         assert errors[-2:] == [f"  job: rock {number}", f"  log: {log}"]

@@ -43,8 +43,8 @@ class Cost:
     state: float = 0.0
 
 
-#: By rule, fitted to grids of 128 to 2048 nodes a side (``docs/scaling.md``). Of ``specimen`` the
-#: nodes are those of a face, else those of the window; ``atlas_part`` is ``figures`` without any.
+#: By rule, fitted to grids of 128 to 2048 nodes along a side (``docs/scaling.md``). Of ``specimen``
+#: the nodes are those of a face, else of the window; ``atlas_part`` is ``figures`` without any.
 COSTS = {
     "embedded": Cost(80, 130, 3, 1),
     "specimen": Cost(270, 100, 6, 15),
@@ -56,8 +56,8 @@ COSTS = {
     "atlas_part": Cost(190, 180, 5, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
-#: The analysis solves some states again on finer grids: up to four times as fine, up to so many
-#: nodes, of so many bytes each.
+#: The analysis solves some states again on finer grids: up to four times as fine, up to this many
+#: nodes, of this many bytes each.
 FINER, MOST_FINER, OF_FINER = 16, 1024**2, 320
 
 #: Bytes of memory for each byte of a file of plain numbers: 12 million points
