@@ -18,7 +18,8 @@ from .influence import influence_table
 
 #: Cells between the nodes of the coarse grid; nodes of it that stand for one of the field's, along
 #: each side; length s of the smooth part, and that beyond which the near part counts as zero, in
-#: cells. With these the displacement errs by some 1e-6 of the largest.
+#: roots of a cell's area. With these the displacement errs by some 1e-6 of the largest. The loops
+#: over STEP and ORDER are written out below: change both places.
 STEP, ORDER, SMOOTH, NEAR = 8, 6, 42, 126
 #: On windows of fewer nodes along the shorter side it takes no less time.
 LEAST_SIDE = 768

@@ -15,7 +15,8 @@ from ..core.resolved import CORRECTED_NODES
 GOOD, PARTLY, POOR, NOT_ASKED = "good", "in part", "poor", "not asked"
 
 #: Rms slope of the composite topography up to which half-spaces are a fair model of its faces, and
-#: up to which they are one in part: a face is then 4 %, or 25 %, larger than its projection.
+#: up to which they are one in part: chosen bounds, not measured ones. A surface of that rms slope
+#: is at most 4 %, or 25 %, larger than its projection.
 SMALL_SLOPE, MODERATE_SLOPE = 0.3, 0.75
 
 #: A contact that all material around it confines yields as a whole at about three times the
@@ -115,7 +116,7 @@ def elastic_model_validity(
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
     verdict = max(by_pressure, by_slope, key=(GOOD, PARTLY, POOR).index)
-    place = "within" if by_pressure == GOOD else "beyond"
+    place = _place(pressure, by_pressure, material)
     reason = f"sigma_n = {_pressure(pressure)}, {place} the {limit}"
     if np.isfinite(rms_slope):
         size = "small" if by_slope == GOOD else "not small"
@@ -125,6 +126,15 @@ def elastic_model_validity(
 
 def _graded(value, good_to, poor_from):
     return GOOD if value <= good_to else PARTLY if value <= poor_from else POOR
+
+
+def _place(pressure, verdict, material):
+    """Where a pressure lies, as the limit's words go on; a strength not stated is a range."""
+    if np.isfinite(material["hardness"]) or np.isfinite(material["joint_wall_strength"]):
+        return "within" if verdict == GOOD else "beyond"
+    if verdict == GOOD:
+        return "below"
+    return "among" if pressure <= float(material["modulus"]) / LEAST_RATIO else "above"
 
 
 def _limits(material):

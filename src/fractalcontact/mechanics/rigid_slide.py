@@ -1,4 +1,4 @@
-"""Rigid slide of a window: largest height, spread and correlation of the faces at every offset.
+"""Rigid slide of a window along a line: largest height, spread, correlation of the faces.
 
 A joint of a thousand cells is slid through hundreds of offsets in four directions. With arrays of
 their own for every offset, that took longer than all else that is made of a specimen. The largest
@@ -94,7 +94,8 @@ def _correlation(lower, upper, corners):
     (top, left), (last_top, last_left) = corners.min(axis=0), corners.max(axis=0)
     strip = lower[top : last_top + upper.shape[0], left : last_left + upper.shape[1]]
     under, places = without_mean_plane(upper), corners - (top, left)
-    if last_left == left:  # along the rows: slid along the last axis
+    # Where only the row changes, all is turned, y and x below too: it slides along the last axis.
+    if last_left == left:
         strip, under, places = strip.T, under.T, places[:, ::-1]
     elif last_top != top:
         raise ValueError("places of a slide lie along a row or along a column")

@@ -37,7 +37,7 @@ _At = Sequence[tuple[Specimen, AtLoad]]
 def opening_of(
     specimens: Sequence[Specimen], load: CommonLoad | None, rows: Sequence[Row]
 ) -> list[Markup]:
-    """Up to five sentences on what the study found; those without a number are left out.
+    """Up to five sentences on what the study found; those with nothing to report are left out.
 
     Parameters
     ----------
