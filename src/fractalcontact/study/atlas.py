@@ -12,11 +12,10 @@ from ..core.netcdf import COMPRESSED_FROM, encoding, versions
 from .stages import STAGES
 
 #: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
-FIELD_DIGITS = 4
-#: Heights that follow from others, the faces, and so are kept in steps; steps to either side of
-#: their middle.
-HEIGHTS = {"composite"}
-_MOST_STEPS = 32767 - 1
+FIELD_DIGITS = 3
+#: Heights kept in equal steps, with the steps to either side of their middle: of composites, which
+#: follow from the faces, as many as 16 bits hold; of faces 16 times as many, some nanometres each.
+HEIGHTS = {"composite": 2**15 - 2, "lower": 2**19 - 2, "upper": 2**19 - 2}
 
 
 def write_atlas(
@@ -142,23 +141,22 @@ def _write_groups(groups, path):
 
 
 def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
-    """How composites are kept: in 65 532 equal steps between the lowest and the highest height.
+    """How heights are kept: in equal steps between the lowest and the highest, of :data:`HEIGHTS`.
 
-    Faces, of which they are the difference, keep every digit. Of the 64 bits of a height most are
-    noise that no compression removes.
+    Of the 64 bits of a height most are noise that no compression removes.
     """
     kept: dict[Hashable, dict] = {}
-    for name in HEIGHTS & dataset.variables.keys():
+    for name in HEIGHTS.keys() & dataset.variables.keys():
         values = dataset[name].values
         known = values[np.isfinite(values)]
         if values.nbytes < COMPRESSED_FROM or not known.size or known.min() == known.max():
             continue
-        low, high = float(known.min()), float(known.max())
+        low, high, most = float(known.min()), float(known.max()), HEIGHTS[name]
         kept[name] = {
-            "dtype": "int16",
-            "scale_factor": (high - low) / (2 * _MOST_STEPS),
+            "dtype": "int16" if most < 2**15 else "int32",
+            "scale_factor": (high - low) / (2 * most),
             "add_offset": (high + low) / 2,
-            "_FillValue": -_MOST_STEPS - 1,
+            "_FillValue": -most - 1,
             "zlib": True,
             "complevel": 4,
             "shuffle": True,
@@ -175,11 +173,14 @@ def _as_characters(dataset: xr.Dataset) -> dict[Hashable, dict]:
     to the handle that was open first (netcdf4-python issues 261 and 1444, xarray issue 9093).
     A notebook does that easily, with ``open_datatree`` in a cell that runs twice.
     """
-    return {
-        name: {"dtype": "S1"}
-        for name, variable in dataset.variables.items()
-        if variable.dtype.kind in "UO"
-    }
+    kept: dict[Hashable, dict] = {}
+    for name, variable in dataset.variables.items():
+        if variable.dtype.kind not in "UO":
+            continue
+        kept[name] = {"dtype": "S1"}
+        if variable.size * 8 >= COMPRESSED_FROM:
+            kept[name] |= {"zlib": True, "complevel": 4}
+    return kept
 
 
 def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
