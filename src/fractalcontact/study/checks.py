@@ -158,11 +158,13 @@ def with_coordinates(
     InputError
         If a sidecar names a file that is not there, or one that is no plain name.
     """
-    listed = {scan.lower: name for name, scan in scans.items() if scan.upper is None}
     found, taken = dict(scans), set()
-    for name, scan in scans.items():
-        if not is_contact_map(options.get(name, {})):
-            continue
+    maps = [name for name, keys in options.items() if is_contact_map(keys)]
+    if not maps:
+        return found
+    listed = {scan.lower: name for name, scan in scans.items() if scan.upper is None}
+    for name in maps:
+        scan = scans[name]
         files = coordinate_files(scan.lower, options[name])
         for key, path in files.items():
             if path in listed:
