@@ -175,6 +175,15 @@ def test_a_plane_is_correlated_with_nothing(rough):
     assert np.isnan(face_correlation(joint, "E", [0, 2])).all()
 
 
+@pytest.mark.parametrize("level", [0.0, 1e4])
+def test_nothing_is_correlated_with_a_plane(rough, level):
+    y, x = np.indices((20, 20))
+    places = np.array([[5, 0], [5, 3], [5, 20]])
+    tilted = 0.3 * x + 0.1 * y + level
+    assert np.isnan(slide(rough, tilted, places).correlation).all()
+    assert np.isfinite(slide(rough, tilted + rough[:20, :20], places).correlation).all()
+
+
 def test_places_of_a_slide_lie_along_one_line():
     heights = np.zeros((8, 8))
     with pytest.raises(ValueError, match="along a row or along a column"):

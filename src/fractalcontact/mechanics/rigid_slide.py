@@ -100,6 +100,9 @@ def _correlation(lower, upper, corners):
     elif last_top != top:
         raise ValueError("places of a slide lie along a row or along a column")
     strip = strip - strip.mean()
+    of_under, about_mean = np.sum(under**2), np.sum((upper - upper.mean()) ** 2)
+    if of_under <= _LEFT * about_mean:  # the upper face is a plane, tilted or not
+        return np.full(len(corners), np.nan)
     product, of_z, along_y, along_x = (sums[places[:, 1]] for sums in _sums(strip, under))
     # The plane's part of the sum of squares: rows are orthogonal to columns.
     my, mx = under.shape
@@ -107,7 +110,7 @@ def _correlation(lower, upper, corners):
         planes = along_y**2 / (mx * np.sum(_middled(my) ** 2))
         planes += along_x**2 / (my * np.sum(_middled(mx) ** 2))
         norm = np.sqrt(np.where(of_z - planes > _LEFT * of_z, of_z - planes, np.nan))
-        norm *= np.sqrt(np.sum(under**2))
+        norm *= np.sqrt(of_under)
         return np.where(norm > 0, product / norm, np.nan)
 
 
