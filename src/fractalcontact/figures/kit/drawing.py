@@ -320,7 +320,9 @@ def entries(axes: Axes) -> list[Artist]:
     return axes.get_legend_handles_labels()[0]
 
 
-def legends_below(figure: FigureBase, *columns: list[Artist]) -> None:
+def legends_below(
+    figure: FigureBase, *columns: list[Artist], columnspacing: float = 6
+) -> None:
     """Legends side by side under a figure, where they hide nothing.
 
     Parameters
@@ -328,6 +330,8 @@ def legends_below(figure: FigureBase, *columns: list[Artist]) -> None:
     figure : matplotlib.figure.FigureBase
     *columns : list of matplotlib.artist.Artist
         Entries of each legend.
+    columnspacing : float, optional
+        Between the columns, in letters.
     """
     rows = max(len(column) for column in columns)
     # One legend fills its columns one by one: the shorter ones need filling up.
@@ -338,7 +342,7 @@ def legends_below(figure: FigureBase, *columns: list[Artist]) -> None:
         handles=handles,
         loc="outside lower center",
         ncols=len(columns),
-        columnspacing=6,
+        columnspacing=columnspacing,
         handlelength=3,
     )
 
