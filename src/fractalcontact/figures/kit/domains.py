@@ -201,7 +201,8 @@ def departures(counts: xr.Dataset) -> str:
     decided = found[found != UNDETERMINED]
     if not decided.size:
         return "Nulls: undetermined."
-    return f"Beyond both nulls: {int((decided == BEYOND_BOTH).sum())} of {decided.size}."
+    departing = int((decided == BEYOND_BOTH).sum())
+    return f"It departs from both null models at {departing} of {decided.size} loads."
 
 
 def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = True) -> str:

@@ -320,9 +320,7 @@ def entries(axes: Axes) -> list[Artist]:
     return axes.get_legend_handles_labels()[0]
 
 
-def legends_below(
-    figure: FigureBase, *columns: list[Artist], columnspacing: float = 6
-) -> None:
+def legends_below(figure: FigureBase, *columns: list[Artist], columnspacing: float = 6) -> None:
     """Legends side by side under a figure, where they hide nothing.
 
     Parameters

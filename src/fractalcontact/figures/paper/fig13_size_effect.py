@@ -34,7 +34,7 @@ SECTION = "size effect"
 #: Loads drawn.
 _MOST_LOADS = 6
 #: Bars of the n-th load stand the n-th power of this factor of b beyond the ends of its line.
-_BESIDE = 1.06
+_BESIDE = 1.04
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -50,7 +50,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         draw_axes(axes)
         rises = verdict_words(atlas, name, RISES[estimate.key], numbers=False)
         words = rf"$\Delta_\sigma$ by {estimate.symbol}"
-        letter(axes, which, f"{words}; rise with $F$: {rises}")
+        letter(axes, which, f"{words}; the paper's rise with $F$: {rises}")
     plain_decades(panels[0].xaxis)
     panels[1].set_ylabel("")
     # Of both panels.
