@@ -7,6 +7,7 @@ from xarray import DataTree
 
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
+    COLOURS,
     LINES,
     MARKERS,
     WIDTH,
@@ -146,12 +147,12 @@ _NO_STRENGTH = "no strength: the study states no\nbasic friction angle, or one o
 #: What (c) shows: variable and words.
 _SUMMARY = {
     "peak_strength": "peak over the offsets",
-    "residual_strength": "residual, bar: 95 % interval",
+    "residual_strength": "residual; bar: 95 % interval, if known",
     "barton_strength": "peak by Barton, JRC of the scan",
     "barton_scaled_strength": "peak by Barton and Bandis, for this length",
 }
 #: Of peak and residual in (c): colours and markers of no pressure.
-_RESIDUAL, _MARKERS = "#CC79A7", ("X", "D")
+_RESIDUAL, _MARKERS = COLOURS[4], ("o", "D")
 
 
 _OFFSET = "offset $v$, middle of the interval (mm)"

@@ -72,9 +72,8 @@ def roughness_words(strength: xr.Dataset) -> str:
     words = f"JRC {short(jrc)} ({short(step)} mm steps)"
     if float(strength["jrc_used"]) != float(jrc):
         words += f", {short(strength['jrc_used'])} used"
-    scaled = float(strength["scaled_roughness"])
-    if scaled > JRC_RANGE[1]:
-        words += f"; {short(scaled)} for this length, beyond Barton's {JRC_RANGE[1]:g}"
+    if np.isfinite(strength["jrc_used"]) and np.isnan(strength["scaled_roughness"]):
+        words += f", for this length beyond Barton's {JRC_RANGE[1]:g}"
     return words
 
 

@@ -36,7 +36,7 @@ from ..kit.sizes import (
 from ..kit.verdicts import claim, sentences
 from ..kit.words import opening, place, short
 
-TITLE = "Fig. 1b: shear strength against the size of the joint, computed at equal v/b"
+TITLE = "Fig. 1b: shear strength against the size of the joint, at equal offset over size"
 SUBJECT = "joint"
 NEEDS = ("windows", "statements")
 ORDER = 10
@@ -90,9 +90,7 @@ def _draw_strength(axes, laws, share):
     else:
         nothing_in(axes, NO_STRENGTH)
     if np.isfinite(laws["barton_strength"]).any():
-        axes.plot(
-            [], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis (from 50 to 400 mm)"
-        )
+        axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis (50 to 400 mm)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     letter(axes, "a", f"strength at $v$ = {share_words(laws, share)} of $b$")
 

@@ -92,8 +92,6 @@ def _draw_angle(axes, laws, share, drawn):
         draw_bars(axes, beside, mean, np.maximum(low, 0), high, colour)
         barton = slope_angle(laws["barton_strength"].values[:, j], pressure)
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
-        label = rf"$\sigma_0$ = {short(pressure)} MPa"
-        axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     if (laws["similar_held"].values[share] > MOSTLY).any():
         axes.plot([], [], "o", color="0.4", mfc="white", label=HELD)
     if np.isfinite(laws["barton_strength"]).any():
