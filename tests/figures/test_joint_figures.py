@@ -218,8 +218,8 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
     representative(
         [
             ((0.9, 0.97), "as theory has it"),
-            ((0.5, 0.6), "5 lie below and 0 above"),
-            ((1.2, 1.4), "0 lie below and 5 above"),
+            ((0.5, 0.6), "(5 below, 0 above)"),
+            ((1.2, 1.4), "(0 below, 5 above)"),
         ]
     ),
 )

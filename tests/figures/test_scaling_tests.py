@@ -115,7 +115,7 @@ def test_prediction_is_headed_by_the_heaviest_load_of_the_study(atlas):
         caption = drawn(size_prediction, tree, "sliding").caption
         assert f"At {pressure[shown]:.3g} MPa" in caption
         assert ("beyond the study's loads" in caption) == (first == 0)
-        assert "closure is 1.25 of it" in caption
+        assert "closure are, best and worst, 1.25 (" in caption
 
 
 def test_direct_test_without_a_slope(atlas):

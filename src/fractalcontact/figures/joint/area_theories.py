@@ -64,6 +64,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
     headline(figure, settings["label"], where)
     many = "over all offsets" if laws.sizes["offset"] > 1 else ""
+    many = "at other offsets" if many and str(law["no_corrected_law"].values) else many
     linear = claim(atlas, name, "A_r ~ F", "area_is_linear", why=many)
     caption = sentences(_caption(law), linear)
     return Drawing(figure, _table(curve, law), caption)
@@ -171,13 +172,13 @@ def _colours_of_theories():
 
 def _draw_means(axes, law):
     """Mean kappas at light load with their intervals, at the left edge."""
-    for prefix, face in (("corrected_", COLOURS[0]), ("", "white")):
+    for prefix, face, at in (("corrected_", COLOURS[0], 0.05), ("", "white", 0.02)):
         if str(law[f"no_{prefix}mean_kappa"].values):
             continue
         value, low, high = (float(law[f"{prefix}mean_kappa{end}"]) for end in ("", "_low", "_high"))
         reach = [[value - low], [high - value]] if np.isfinite(low) else None
         axes.errorbar(
-            [0.03],
+            [at],
             [value],
             yerr=reach,
             fmt="s",
@@ -251,7 +252,7 @@ def _law_words(law):
     """The exponent of the area beside Archard's levels."""
     reason = str(law["no_corrected_law"].values)
     if reason:
-        return f"No power law ({reason})."
+        return f"No power law here ({reason})."
     low, high = (float(law[f"corrected_exponent_{end}"]) for end in ("low", "high"))
     fit = estimate(float(law["corrected_exponent"]), low, high)
     levels = [

@@ -167,8 +167,8 @@ def _exponent_words(table):
     verdict = (
         f"as theory has it ({low:g} to {high:g})"
         if reached == len(fitted)
-        else f"{reached} of {len(fitted)} intervals reach theory's {low:g} to {high:g}, {below} "
-        f"lie below and {above} above"
+        else f"{reached} of {len(fitted)} intervals reach theory's {low:g} to {high:g} ({below} "
+        f"below, {above} above)"
     )
     finite_size = " Windows of few hills have low powers." if below else ""
     return f"It grows as {values} of the pressure: {verdict}.{finite_size}"

@@ -139,14 +139,17 @@ def _load_said(test):
 
 
 def _caption(test, load):
-    words = f"{SUPPLEMENTARY} What parts of the window predict of the whole, over what was solved."
+    words = f"{SUPPLEMENTARY} What parts of the window predict of the whole, over what is solved."
     if load is None:
         return f"{words} No load lets all of them predict closure and contact area."
     here = test.isel(normal_force=load).sel(predictor=list(PREDICTORS))
     beyond = ", beyond the study's loads," if bool(here["beyond_study"]) else ""
     pressure = short(float(here["nominal_pressure"]))
     closure, area = (_range_words(1 + here[f"{name}_error"]) for name in ("closure", "area"))
-    return f"{words} At {pressure} MPa{beyond} closure is {closure}; contact area {area}."
+    return (
+        f"{words} At {pressure} MPa{beyond} (dotted) predictions of closure are, best and worst, "
+        f"{closure}; of contact area {area}."
+    )
 
 
 def _range_words(ratios):
@@ -154,5 +157,4 @@ def _range_words(ratios):
     away = abs(np.log(ratios.values))
     ends = (int(away.argmin()), int(away.argmax()))
     names = [PREDICTORS[key].replace("$", "") for key in ratios["predictor"].values]
-    words = [f"{short(float(ratios[i]))} of it ({names[i]})" for i in dict.fromkeys(ends)]
-    return " at best, ".join(words) + (" at worst" if len(words) > 1 else "")
+    return " and ".join(f"{short(float(ratios[i]))} ({names[i]})" for i in dict.fromkeys(ends))
