@@ -89,7 +89,7 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
         axes.plot(pressure[known], value, color=colour, ls=line, label=label)
         if decided:
             decides = deciding(one)
-            any_decides |= decides.any()
+            any_decides |= bool(decides.any())
             predicted = one["predicted_slope"].values
             axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5)
     style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.15, "lw": 0}

@@ -41,6 +41,8 @@ STAGES = {
     "compliance_rises_again": "rising again",
 }
 
+#: A bar so many times as high as its value leaves the frame.
+_UNBOUNDED = 1e4
 #: Letters of a line of the stages in the legend.
 _LINE = 50
 
@@ -73,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         upper.set_xlabel("")
     force = group(atlas, "statements", name).attrs["force"]
     stages = _stages(atlas, name, joint, direction)
-    if stages:
+    if np.isfinite(closures["interface_compliance_mm_per_MPa"]).any():
         _number_stages(compliance, stages)
     columns = [entries(correlation), entries(compliance), *_judged(stages, force)]
     legends_below(figure, *columns, columnspacing=1.5)
@@ -235,15 +237,18 @@ def _draw_closures(closed, compliance, table):
     pressure = table["seating_pressure_MPa"].iloc[0]
     seated = bool((table["seated_closure_mm"] > 0).any())
     column = "seated_closure_mm" if seated else "interface_closure_mm"
-    some_few, heights = False, []
+    some_few, heights, tops = False, [], []
     for n, (force, points) in enumerate(table.groupby("force_N")):
         style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
         v, few = points["offset_mm"], ~points["resolved"]
         some_few |= few.any()
         compliances = points["interface_compliance_mm_per_MPa"]
         compliance.plot(v, compliances, **style, label=f"$F$ = {force_label(force)}")
-        ends = (points[f"interface_compliance_{end}_mm_per_MPa"] for end in ("low", "high"))
-        draw_bars(compliance, v, compliances, *ends, style["color"])
+        low, high = (points[f"interface_compliance_{end}_mm_per_MPa"] for end in ("low", "high"))
+        tops += [*high[np.isfinite(high)]]
+        # What is unbounded leaves the frame.
+        high = high.clip(upper=_UNBOUNDED * compliances)
+        draw_bars(compliance, v, compliances, low, high, style["color"])
         drawn = [(compliance, "interface_compliance_mm_per_MPa")]
         if not seated or (points[column] > 0).any():
             closed.plot(v, points[column], **style)
@@ -263,14 +268,20 @@ def _draw_closures(closed, compliance, table):
         say_empty(closed, TOO_FULL)
     closed.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
     compliance.set_yscale("log")
+    if len(tops):
+        compliance.set_ylim(top=1.3 * max(tops))
     plain_decades(compliance.yaxis)
     compliance.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)")
     since = f"counted from {pressure_label(pressure)} on" if seated else "counted from first touch"
     letter(closed, "b", f"closure of the interface, {since}")
     high = table["interface_compliance_high_mm_per_MPa"] / table["interface_compliance_mm_per_MPa"]
     most = high.max() - 1
-    bars = f" (bars: error of the solver alone, up to {percent(most)})" if most > 0.001 else ""
+    bars = f" (bars: error of the solver alone, {_most_words(most)})" if most > 0.001 else ""
     letter(compliance, "c", f"compliance of the interface{bars}")
+
+
+def _most_words(most):
+    return f"up to {percent(most)}" if np.isfinite(most) else "unbounded where they leave the frame"
 
 
 def _mark_offsets(panels, joint, direction):

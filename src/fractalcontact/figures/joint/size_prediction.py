@@ -68,7 +68,10 @@ def _draw_errors(axes, test, quantity, which, load):
     words = _QUANTITIES[quantity][1]
     pressure = test["nominal_pressure"].values
     drawn = False
+    closure, area = (test[f"{name}_error"] for name in ("closure", "area"))
     for i, (predictor, label) in enumerate(PREDICTORS.items()):
+        if not any(np.isfinite(one.sel(predictor=predictor)).any() for one in (closure, area)):
+            label = f"{label} (not known here)"
         ratio = 1 + test[f"{quantity}_error"].sel(predictor=predictor).values
         known = np.isfinite(ratio)
         drawn |= known.any()

@@ -112,7 +112,11 @@ def _draw_summary(axes, strength):
         if key not in known:
             continue
         law = key.startswith("barton")
-        style = {"ls": LINES[n - 1]} if law else {"ls": "none", "marker": _MARKERS[n]}
+        style = (
+            {"ls": LINES[n - 1]}
+            if law
+            else {"ls": "none", "marker": _MARKERS[n], "ms": 6 - 2.5 * n}
+        )
         colour = "k" if n != 1 else _RESIDUAL
         held = _peak_held(strength) if key == "peak_strength" else np.zeros(sigma.shape, bool)
         if not held.all():

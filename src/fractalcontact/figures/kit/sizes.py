@@ -67,12 +67,13 @@ def roughness_words(strength: xr.Dataset) -> str:
     strength : xr.Dataset
         Stage ``strength`` of one direction.
     """
-    jrc = strength["jrc"].sel(sampling=JRC_SAMPLING)
+    jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
+    used = float(strength["jrc_used"])
     step = float(strength["step"].sel(sampling=JRC_SAMPLING))
     words = f"JRC {short(jrc)} ({short(step)} mm steps)"
-    if float(strength["jrc_used"]) != float(jrc):
-        words += f", {short(strength['jrc_used'])} used"
-    if np.isfinite(strength["jrc_used"]) and np.isnan(strength["scaled_roughness"]):
+    if used != jrc:
+        words += f", {short(used)} used"
+    if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
         words += f", for this length beyond Barton's {JRC_RANGE[1]:g}"
     return words
 

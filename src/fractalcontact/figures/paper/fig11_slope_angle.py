@@ -120,7 +120,7 @@ def _draw_ratio(axes, laws, share, drawn):
         label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
         axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     slope = QUOTED_DELTA - 2
-    label = rf"$x$ = {slope:.2f} ($\Delta_\sigma$ = {QUOTED_DELTA:g}), quoted by later work"
+    label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work of the same school"
     axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
     axes.plot([], [], " ", label="bars: 95 % intervals; none of the whole window")
     size_axis(axes, b, "joint")
