@@ -38,7 +38,7 @@ ORDER = 70
 STAGES = {
     "compliance_rises_at_first": "rising at first as v^e",
     "curves_overlap": "the same",
-    "compliance_rises_again": "rising again",
+    "compliance_rises_again": "rising again on average",
 }
 
 #: A bar so many times as high as its value leaves the frame.
@@ -324,6 +324,6 @@ def _correlation_words(ends, decidable):
         if np.isfinite(uncorrelated)
         else "never lost"
         if decidable
-        else "window too small to see it lost"
+        else "loss not seen in this window"
     )
     return f"1/e at v = {short(length)} mm, {lost}"
