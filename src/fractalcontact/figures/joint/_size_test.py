@@ -85,7 +85,7 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
         )
         colour = _COLOURS[estimator]
         axes.fill_between(pressure[known], low, high, color=colour, alpha=0.15, lw=0)
-        label = f"eq. 6, $\\Delta_\\sigma$ by {words}"
+        label = f"eq. 6, $\\Delta_\\sigma$ by {words}{'' if known.any() else ' (unknown)'}"
         axes.plot(pressure[known], value, color=colour, ls=line, label=label)
         if decided:
             decides = deciding(one)
@@ -141,7 +141,8 @@ def draw_measured(
         face = "white" if open_at is not None and open_at[i] else "k"
         axes.vlines(pressure[i], low[i], high[i], color="k", lw=0.8, alpha=alpha)
         axes.plot(pressure[i], value[i], marker, color="k", mfc=face, ms=5, alpha=alpha)
-    axes.plot([], [], ".", color="k", ms=5, label="measured, at other loads")
+    if np.isfinite(value).sum() > len(shown):
+        axes.plot([], [], ".", color="k", ms=5, label="measured, at other loads")
     if faint:
         axes.plot([], [], "o", color="k", ms=4, alpha=0.3, label="faint: undetermined")
 

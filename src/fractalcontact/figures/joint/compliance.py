@@ -36,7 +36,7 @@ ORDER = 70
 
 #: What the paper says of the stages of sliding (:mod:`statements.judge`).
 STAGES = {
-    "compliance_rises_at_first": "rising at first as v^e",
+    "compliance_rises_at_first": "rising as v^e",
     "curves_overlap": "the same",
     "compliance_rises_again": "rising again on average",
 }
@@ -324,6 +324,6 @@ def _correlation_words(ends, decidable):
         if np.isfinite(uncorrelated)
         else "never lost"
         if decidable
-        else "loss not seen in this window"
+        else "loss not seen"
     )
     return f"1/e at v = {short(length)} mm, {lost}"

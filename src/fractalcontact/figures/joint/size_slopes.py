@@ -90,7 +90,7 @@ def _draw_equal(axes, test, loads):
     letter(axes, "a", r"pressure at equal fractal mean pressure $\sigma^*$")
     if not len(loads):
         nothing_in(axes, "no load at which three sizes\nhold enough nodes")
-        return handles[:1]
+        return []
     axes.set_yscale("log")
     drawn = test["equal_pressure"].values[loads]
     axes.set_ylim(np.nanmin(drawn) / 2, np.nanmax(drawn) * 3)

@@ -87,7 +87,7 @@ def _draw_area(axes, test, loads):
     letter(axes, "a", "contact area at equal pressure")
     if not len(loads):
         nothing_in(axes, "no load at which two sizes\nhold enough nodes")
-        return handles[:1]
+        return []
     axes.set_yscale("log")
     axes.set_ylim(np.nanmin(fraction[loads]) / 2.5, np.nanmax(fraction[loads]) * 8)
     plain_decades(axes.yaxis)

@@ -251,7 +251,7 @@ def _residual_words(strength):
     ends = [float(strength[f"residual_angle{end}"]) for end in ("", "_low", "_high")]
     count = int(strength["residual_n"])
     if count > 1:
-        return f"{estimate(*ends, 'degrees')}, {count} intervals of v"
+        return f"{estimate(*ends, 'degrees')}, {count} intervals"
     return f"{short(ends[0])} degrees (one interval)" if count else "none"
 
 
@@ -269,5 +269,5 @@ def _barton_words(strength):
     # A strength of nothing has no place on the axis.
     ratio = ratio[np.isfinite(ratio) & (ratio > 0) & ~_peak_held(strength)]
     if not ratio.size:
-        return f"{words}; every peak is held at the bound, so none is compared with Barton's."
+        return f"{words}; every peak is held at the bound, none compared with Barton's."
     return f"{words}; peaks {short(ratio.min())} to {short(ratio.max())} times Barton's."

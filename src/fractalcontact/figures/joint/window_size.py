@@ -119,7 +119,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _draw_roughness(axes, laws, shown):
     b = laws["scale_side"].values
     face = laws["face_sigma_z"].values
-    used = laws["scale_used"].values & np.isfinite(face)
+    used = laws["scale_used"].values & np.isfinite(face) & np.isfinite(float(laws["face_hurst"]))
     hurst = interval_text(laws, "face_hurst")
     style = {"color": "k", "marker": "o"}
     _with_intervals(axes, b, laws, "face_sigma_z", (), used, **style)

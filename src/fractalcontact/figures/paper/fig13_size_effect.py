@@ -85,6 +85,7 @@ def _draw_lines(axes, loading, estimate, shown, table):
         handles.append(Line2D([], [], marker=MARKERS[n], label=label, **style | faint))
     if len(handles) == 1:
         nothing_in(axes, "no $\\Delta_\\sigma$ at the loads drawn")
+        return []
     return handles
 
 
