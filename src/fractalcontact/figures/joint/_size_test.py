@@ -164,7 +164,8 @@ def verdict_reason(test: xr.Dataset) -> str:
         agree = int((of_study["verdict"].values == AGREES).sum())
         return f"it agrees at {agree} of {int(decides.sum())} loads that decide"
     if not tested.size:
-        return ""
+        beyond = np.isfinite(test["area_exponent"].values).any()
+        return "what is drawn lies beyond the study's loads" if beyond else ""
     why = Counter(tested).most_common(1)[0][0]
     return f"no load decides, mostly as {why}"
 
