@@ -16,6 +16,7 @@ from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.experiments import plateau
 from fractalcontact.figures.experiments.plateau import Slide
+from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.drawing import offset_axis, print_style, save
 
 SLIDING = ("sliding", "pair")
@@ -207,8 +208,9 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
     caption = drawn(atlas, "compliance", "sliding").caption
     judged = atlas["statements/sliding"].to_dataset()
     for name in ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again"):
-        verdict = judged["verdict"].sel(statement=name).item()
-        assert f"({verdict})" in caption
+        row = judged.sel(statement=name)
+        said = f"{compliance.STAGES[name]}: {row['verdict'].item()} ({row['numbers'].item()})"
+        assert said in caption
 
 
 @pytest.mark.parametrize(
@@ -216,8 +218,8 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
     representative(
         [
             ((0.9, 0.97), "as theory has it"),
-            ((0.5, 0.6), "5 lie below and 0 above"),
-            ((1.2, 1.4), "0 lie below and 5 above"),
+            ((0.5, 0.6), "(5 below, 0 above)"),
+            ((1.2, 1.4), "(0 below, 5 above)"),
         ]
     ),
 )

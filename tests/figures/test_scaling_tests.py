@@ -115,7 +115,48 @@ def test_prediction_is_headed_by_the_heaviest_load_of_the_study(atlas):
         caption = drawn(size_prediction, tree, "sliding").caption
         assert f"At {pressure[shown]:.3g} MPa" in caption
         assert ("beyond the study's loads" in caption) == (first == 0)
-        assert "closure is off by 25 %" in caption
+        assert "closure are, best and worst, 1.25 (" in caption
+
+
+def judged_as(atlas, verdict, reason):
+    """The size test of the sliding joint with one verdict and reason at all loads of the study."""
+
+    def set_all(test):
+        test["beyond_study"] = xr.zeros_like(test["beyond_study"], dtype=bool)
+        for name, value in (("verdict", verdict), ("reason", reason)):
+            test[name] = test[name].copy(data=np.full(test[name].shape, value, object))
+        return test
+
+    return changed(atlas, "size_test/sliding", set_all)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "reason", "said"),
+    [
+        ("agrees", "", "it agrees at {n} of {n} loads that decide"),
+        ("measured flatter", "", "it agrees at 0 of {n} loads that decide"),
+        ("undecided", "the cat ate it", "no load decides, mostly as the cat ate it"),
+    ],
+)
+def test_a_verdict_on_eq_6_carries_its_reason(atlas, verdict, reason, said):
+    tree = judged_as(atlas, verdict, reason)
+    drawing = drawn(size_test, tree, "sliding")
+    test = _size_test.size_test_of(tree, "sliding")
+    n = test["normal_force"].size * len(_size_test.ESTIMATORS)
+    assert said.format(n=n) in drawing.caption
+    assert _size_test.deciding(test.sel(estimator=list(_size_test.ESTIMATORS))).sum() == (
+        0 if verdict == "undecided" else n
+    )
+    labels = [line.get_label() for line in drawing.figure.axes[1].lines]
+    assert any("load that decides" in str(label) for label in labels) == (verdict != "undecided")
+
+
+def test_measured_and_predicted_have_colours_of_their_own(atlas):
+    for module in (size_test, size_slopes):
+        for axes in drawn(module, atlas, "sliding").figure.axes:
+            laws = {line.get_color() for line in axes.lines if line.get_linestyle() in ("-", "--")}
+            points = {line.get_color() for line in axes.lines if line.get_marker() in "os^."}
+            assert not laws & points
 
 
 def test_direct_test_without_a_slope(atlas):

@@ -9,7 +9,7 @@ from cases import representative
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style, save
-from fractalcontact.figures.kit.sizes import apart, plain_decades
+from fractalcontact.figures.kit.sizes import apart, plain_decades, roughness_words
 from fractalcontact.mechanics.theory import LARGEST_FRICTION_ANGLE
 
 DRAWN = [
@@ -201,3 +201,30 @@ def test_compliance_over_size_is_drawn_as_the_atlas_has_it(atlas):
     rows = table[table["quantity"] == "interface_compliance"]
     stored = laws["interface_compliance"].transpose("offset", "normal_force", "part").values
     np.testing.assert_array_equal(rows["mean_mm_per_MPa"], stored.ravel())
+
+
+def test_both_figures_of_strength_word_the_roughness_alike(atlas):
+    changed = atlas.copy(deep=True)
+    strength = changed["strength/sliding"].to_dataset()
+    strength["scaled_roughness"] = strength["scaled_roughness"] * np.nan
+    changed["strength/sliding"] = xr.DataTree(strength)
+    laws = changed["windows/sliding"].to_dataset()
+    laws["barton_roughness"] = laws["barton_roughness"] * np.nan
+    changed["windows/sliding"] = xr.DataTree(laws)
+    words = roughness_words(strength.isel(contact_direction=0))
+    assert "for this length beyond Barton's 20" in words
+    for figure in ("strength", "fig11_slope_angle"):
+        assert words in drawn(changed, "sliding", figure).caption
+    known = strength.assign(scaled_roughness=strength["jrc_used"])
+    assert "beyond" not in roughness_words(known.isel(contact_direction=0))
+
+
+def test_points_that_no_exponent_goes_through_are_hollow(atlas):
+    laws = atlas["windows/sliding"].to_dataset()
+    axes = drawn(atlas, "sliding", "window_size").figure.axes[0]
+    used = laws["scale_used"].values & np.isfinite(laws["face_sigma_z"].values)
+    used &= np.isfinite(float(laws["face_hurst"]))
+    face = [line for line in axes.lines if line.get_color() == "k" and line.get_marker() == "o"]
+    drawn_sides = {line.get_markerfacecolor(): set(line.get_xdata()) for line in face[:2]}
+    assert drawn_sides["k"] == set(laws["scale_side"].values[used])
+    assert drawn_sides["white"] == set(laws["scale_side"].values[~used])

@@ -61,7 +61,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     return Drawing(figure, _table(slopes), _caption(slopes))
 
 
-def kappa_lines(axes: Axes, loads: np.ndarray, attrs: Mapping) -> None:
+def kappa_lines(
+    axes: Axes, loads: np.ndarray, attrs: Mapping, colours: Mapping[str, str] | None = None
+) -> None:
     """Persson's and Bush, Gibson and Thomas' kappa, and the literature's values as a band.
 
     Parameters
@@ -72,7 +74,10 @@ def kappa_lines(axes: Axes, loads: np.ndarray, attrs: Mapping) -> None:
         Between the smallest and largest of these the lines are drawn.
     attrs : mapping
         ``persson_kappa``, ``bush_gibson_thomas_kappa`` and ``computed_kappa``.
+    colours : mapping of str to str, optional
+        Of ``bush`` and of ``persson``.
     """
+    colours = colours or {"bush": "0.2", "persson": "0.2"}
     ends = np.geomspace(np.min(loads), np.max(loads), 60)
     low, high = attrs["computed_kappa"]
     bush = attrs["bush_gibson_thomas_kappa"]
@@ -80,7 +85,7 @@ def kappa_lines(axes: Axes, loads: np.ndarray, attrs: Mapping) -> None:
         ends,
         np.full(ends.shape, bush),
         "--",
-        color="0.2",
+        color=colours["bush"],
         lw=1,
         label=rf"Bush, Gibson and Thomas: $\sqrt{{2\pi}}$ = {number(bush, 3)}",
     )
@@ -97,7 +102,7 @@ def kappa_lines(axes: Axes, loads: np.ndarray, attrs: Mapping) -> None:
         ends,
         persson_area(ends, 1.0, 1.0) / ends,
         "-.",
-        color="0.2",
+        color=colours["persson"],
         lw=1,
         label=rf"Persson: $\sqrt{{8/\pi}}$ = {number(attrs['persson_kappa'], 3)} at light load",
     )

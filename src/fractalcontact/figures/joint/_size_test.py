@@ -1,5 +1,6 @@
 """What the figures of the size test share: loads, lines of eq. 6, axes."""
 
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -10,13 +11,19 @@ from matplotlib.axes import Axes
 from xarray import DataTree
 
 from ...domain.box_dimension import is_determined
-from ..kit.drawing import COLOURS, MARKERS, entries, group, label_short_span
+from ...size_effect.size_verdict import AGREES, FLATTER, NOT_TESTED, STEEPER
+from ..kit.drawing import COLOURS, entries, group, label_short_span
 from ..kit.words import place, pressure_label
 
 #: How each estimate of Delta_sigma is drawn where eq. 6 takes it, and how it is named.
 ESTIMATORS = {"area": ("-", "$A_r(s)$"), "box": ("--", "box counting")}
-#: Loads shown over the side b.
+#: Colour of each: measured points alone are black.
+_COLOURS = {"area": COLOURS[1], "box": COLOURS[2]}
+#: Loads shown over the side b, and the marker of each in both panels; "." are all others.
 MOST_LOADS = 3
+_LOAD_MARKERS = ("o", "s", "^")
+#: Verdicts that decide.
+DECIDED = (AGREES, FLATTER, STEEPER)
 #: Verdicts and their reasons: of the well-conditioned form, of eq. 6's own, and of both.
 JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
 
@@ -45,28 +52,69 @@ def pressure_words(test: xr.Dataset, i: int) -> str:
     return pressure_label(float(test["nominal_pressure"][i]))
 
 
-def draw_predictions(axes: Axes, test: xr.Dataset) -> list[Artist]:
-    """-(2 - Delta_sigma) over the load with intervals; legend entries."""
+def load_marker(n: int) -> str:
+    """Marker of the n-th load shown over b."""
+    return _LOAD_MARKERS[n]
+
+
+def draw_laws(axes: Axes, test: xr.Dataset, i: int, b: np.ndarray, start: float) -> None:
+    """Eq. 6 under the i-th load by either estimate, from the whole window's value on."""
+    for estimator, (line, _) in ESTIMATORS.items():
+        slope = float(test["predicted_slope"].sel(estimator=estimator)[i])
+        axes.plot(b, start * (b / b[0]) ** slope, color=_COLOURS[estimator], ls=line, lw=0.8)
+
+
+def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> None:
+    """-(2 - Delta_sigma) over the load with intervals.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    test : xr.Dataset
+    decided : bool, optional
+        Whether the loads are marked at which an estimate decides about eq. 6.
+    """
     pressure = test["nominal_pressure"].values
-    for i, (estimator, (line, words)) in enumerate(ESTIMATORS.items()):
+    test = test.sel(estimator=list(ESTIMATORS))
+    any_decides = False
+    for estimator, (line, words) in ESTIMATORS.items():
         one = test.sel(estimator=estimator)
         known = np.isfinite(one["predicted_slope"].values)
         value, low, high = (
             one[f"predicted_slope{end}"].values[known] for end in ("", "_low", "_high")
         )
-        style: dict[str, Any] = {
-            "color": COLOURS[i + 1],
-            "ls": line,
-            "marker": MARKERS[i + 1],
-            "ms": 3,
-        }
-        axes.fill_between(pressure[known], low, high, color=style["color"], alpha=0.15, lw=0)
-        axes.plot(pressure[known], value, label=f"eq. 6, $\\Delta_\\sigma$ by {words}", **style)
-    return entries(axes)
+        colour = _COLOURS[estimator]
+        axes.fill_between(pressure[known], low, high, color=colour, alpha=0.15, lw=0)
+        label = f"eq. 6, $\\Delta_\\sigma$ by {words}{'' if known.any() else ' (unknown)'}"
+        axes.plot(pressure[known], value, color=colour, ls=line, label=label)
+        if decided:
+            decides = deciding(one)
+            any_decides |= bool(decides.any())
+            predicted = one["predicted_slope"].values
+            axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5)
+    style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.15, "lw": 0}
+    axes.fill_between([], [], [], label="bands and bars: 95 % intervals", **style)
+    if any_decides:
+        axes.plot([], [], "D", color="0.4", ms=5, label=_counted(test))
+    elif decided:
+        axes.plot([], [], " ", label="no load decides about eq. 6")
+
+
+def _counted(test):
+    """Legend of the loads that decide about eq. 6: at how many it agrees."""
+    decides = deciding(test)
+    agree = int((decides & (test["verdict"].values == AGREES)).sum())
+    return f"load that decides: eq. 6 agrees at {agree} of {int(decides.sum())}"
+
+
+def deciding(test: xr.Dataset) -> np.ndarray:
+    """Which of the study's loads decide about eq. 6, in the shape of ``verdict``."""
+    decided = test["verdict"].isin(DECIDED).values
+    return decided & ~test["beyond_study"].values.astype(bool)
 
 
 def draw_measured(
-    axes: Axes, test: xr.Dataset, name: str, chosen: np.ndarray, label: str, face: str = "k"
+    axes: Axes, test: xr.Dataset, name: str, shown: np.ndarray, open_at: np.ndarray | None = None
 ) -> None:
     """Measured exponents over the load with their intervals, faint where these are too wide.
 
@@ -76,22 +124,50 @@ def draw_measured(
     test : xr.Dataset
     name : str
         Of the exponent.
-    chosen : (n_load,) bool ndarray
-        Which loads.
-    label : str
-        For the legend, "" for none.
-    face : str, optional
-        Colour within the markers.
+    shown : (n,) int ndarray
+        Loads shown over b, which have markers of their own.
+    open_at : (n_load,) bool ndarray, optional
+        Which markers are hollow.
     """
     pressure = test["nominal_pressure"].values
     value, low, high = (test[f"{name}{end}"].values for end in ("", "_low", "_high"))
-    sure = np.array([is_determined(*ends) for ends in zip(low, high, strict=True)])
-    for which, alpha in ((chosen & sure, 1.0), (chosen & ~sure, 0.3)):
-        axes.vlines(pressure[which], low[which], high[which], color="k", lw=0.8, alpha=alpha)
-        axes.plot(pressure[which], value[which], "ko", mfc=face, ms=4, alpha=alpha)
-    if label:
-        faint = "; faint: undetermined" if (chosen & ~sure).any() else ""
-        axes.plot([], [], "ko", mfc=face, ms=4, label=f"{label}{faint}")
+    faint = False
+    for i in np.flatnonzero(np.isfinite(value)):
+        sure = is_determined(low[i], high[i])
+        faint |= not sure
+        alpha = 1.0 if sure else 0.3
+        at = np.flatnonzero(shown == i)
+        marker = _LOAD_MARKERS[at[0]] if len(at) else "."
+        face = "white" if open_at is not None and open_at[i] else "k"
+        axes.vlines(pressure[i], low[i], high[i], color="k", lw=0.8, alpha=alpha)
+        axes.plot(pressure[i], value[i], marker, color="k", mfc=face, ms=5, alpha=alpha)
+    if np.isfinite(value).sum() > len(shown):
+        axes.plot([], [], ".", color="k", ms=5, label="measured, at other loads")
+    if faint:
+        axes.plot([], [], "o", color="k", ms=4, alpha=0.3, label="faint: undetermined")
+
+
+def size_legends(axes: Axes) -> tuple[list[Artist], list[Artist]]:
+    """Entries of a panel of exponents in two columns: what is measured, and all else."""
+    every, points = entries(axes), ("measured", "faint", "hollow")
+    measured = [one for one in every if str(one.get_label()).startswith(points)]
+    return measured, [one for one in every if one not in measured]
+
+
+def verdict_reason(test: xr.Dataset) -> str:
+    """Why eq. 6 is judged as it is: loads that decide, or what kept them from it; or empty."""
+    of_study = test.isel(normal_force=~test["beyond_study"].values.astype(bool))
+    of_study = of_study.sel(estimator=list(ESTIMATORS))
+    tested = of_study["reason"].values[of_study["verdict"].values != NOT_TESTED].astype(str)
+    decides = deciding(of_study)
+    if decides.any():
+        agree = int((of_study["verdict"].values == AGREES).sum())
+        return f"it agrees at {agree} of {int(decides.sum())} loads that decide"
+    if not tested.size:
+        beyond = np.isfinite(test["area_exponent"].values).any()
+        return "what is drawn lies beyond the study's loads" if beyond else ""
+    why = Counter(tested).most_common(1)[0][0]
+    return f"no load decides, mostly as {why}"
 
 
 def grey_beyond(axes: Axes, test: xr.Dataset) -> None:
@@ -113,7 +189,7 @@ def load_axis(axes: Axes, test: xr.Dataset) -> None:
     axes.set_xscale("log")
     axes.set_xlim(pressure[0] / 1.3, pressure[-1] * 1.3)
     axes.set_ylim(-2.3, 0.8)
-    axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
+    axes.set_xlabel(r"nominal pressure $\sigma_0$ of the whole window (MPa)")
     label_short_span(axes.xaxis)
 
 

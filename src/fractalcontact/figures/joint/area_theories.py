@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...mechanics.area import LIGHT_LOAD
@@ -23,7 +24,7 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.verdicts import claim, sentences
-from ..kit.words import NOMINAL_PRESSURE, estimate, number, opening, place, short
+from ..kit.words import NOMINAL_PRESSURE, UNDETERMINED, estimate, number, opening, place, short
 
 TITLE = "Real contact area compared with the classical theories of section 2"
 SUBJECT = "specimen"
@@ -58,11 +59,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     left, right = figure.subplots(1, 2)
     _draw_area(left, curve, law)
     _draw_kappa(right, laws, law)
-    letter(left, "a", "real contact area (filled: corrected, hollow: raw)")
+    letter(left, "a", "real contact area")
     letter(right, "b", r"area slope $\kappa$")
     legends_below(figure, entries(left), [*_kappa_words(law), *entries(right)])
     headline(figure, settings["label"], where)
-    linear = claim(atlas, name, "A_r ~ F", "area_is_linear", numbers=False)
+    many = "over all offsets" if laws.sizes["offset"] > 1 else ""
+    many = "at other offsets" if many and str(law["no_corrected_law"].values) else many
+    linear = claim(atlas, name, "A_r ~ F", "area_is_linear", why=many)
     caption = sentences(_caption(law), linear)
     return Drawing(figure, _table(curve, law), caption)
 
@@ -79,8 +82,12 @@ def _draw_area(axes, curve, law):
     points = {"ls": "none", "marker": "o", "color": COLOURS[0], "zorder": 3}
     enough = curve["area_corrected_resolved"].values
     corrected = 100 * curve["area_corrected_share"].values
-    axes.plot(pressure[enough], corrected[enough], label="computed, corrected", **points)
+    words = "computed, corrected for the perimeter"
+    axes.plot(pressure[enough], corrected[enough], label=words, **points)
     axes.plot(pressure, 100 * curve["area_share"], mfc="none", label="computed, raw", **points)
+    if not str(law["no_corrected_law"].values):
+        ends = (float(law[f"corrected_exponent{end}"]) for end in ("", "_low", "_high"))
+        axes.plot([], [], " ", label=f"corrected: $A_r \\sim F^m$, $m$ = {estimate(*ends)}")
     for variable, words, colour, line in THEORIES:
         share = law[variable].values
         drawn = share <= 1  # nothing but Persson's saturates, and beyond A_0 there is no area
@@ -141,19 +148,46 @@ def _draw_kappa(axes, laws, law):
         )
     style = {"color": COLOURS[0], "marker": "o", "lw": 0.7, "zorder": 3}
     axes.plot(*_touching(law, "corrected_kappa"), **style)
-    axes.plot(*_touching(law, "kappa"), mfc="none", ls=":", **style)
+    axes.plot(*_touching(law, "kappa"), mfc="none", **style | {"lw": 0})
+    _draw_means(axes, law)
     reduced = laws["reduced_pressure"].where(laws["fitted"]).values
     reduced = reduced[np.isfinite(reduced)]
     if reduced.size:
-        kappa_lines(axes, reduced, law.attrs)
+        kappa_lines(axes, reduced, law.attrs, _colours_of_theories())
         label_short_span(axes.xaxis)
     if reduced.max(initial=0) > LIGHT_LOAD:
-        axes.axvline(LIGHT_LOAD, color=_GREY, ls=":", lw=0.8, label="end of light load")
+        axes.axvline(LIGHT_LOAD, color=_GREY, lw=0.6, label="end of light load")
     if not law["fitted"].any():
         axes.text(0.5, 0.5, _no_points(law), transform=axes.transAxes, ha="center", fontsize=7)
     axes.set_ylim(bottom=0)
     axes.set_xlabel(r"reduced pressure $\sigma_0/(E^* h'_\mathrm{rms})$ (1)")
     axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/\sigma_0$ (1)")
+
+
+def _colours_of_theories():
+    """Colour of a theory's kappa: that of its area."""
+    of = {variable: colour for variable, _, colour, _ in THEORIES}
+    return {"bush": of["bush_gibson_thomas_share"], "persson": of["persson_share"]}
+
+
+def _draw_means(axes, law):
+    """Mean kappas at light load with their intervals, at the left edge."""
+    for prefix, face, at in (("corrected_", COLOURS[0], 0.05), ("", "white", 0.02)):
+        if str(law[f"no_{prefix}mean_kappa"].values):
+            continue
+        value, low, high = (float(law[f"{prefix}mean_kappa{end}"]) for end in ("", "_low", "_high"))
+        reach = [[value - low], [high - value]] if np.isfinite(low) else None
+        axes.errorbar(
+            [at],
+            [value],
+            yerr=reach,
+            fmt="s",
+            color=COLOURS[0],
+            mfc=face,
+            capsize=2,
+            elinewidth=0.8,
+            transform=axes.get_yaxis_transform(),
+        )
 
 
 def _touching(law, name):
@@ -169,8 +203,16 @@ def _no_points(law):
 def _kappa_words(law):
     """Entries of the legend that state the mean kappas."""
     words = [
-        heading(f"mean at light load, {words}: {_mean(law, prefix)}")
-        for prefix, words in (("corrected_", "corrected"), ("", "raw"))
+        Line2D(
+            [],
+            [],
+            ls="none",
+            marker="s",
+            color=COLOURS[0],
+            mfc=face,
+            label=f"mean at light load, {words}: {_mean(law, prefix)}",
+        )
+        for prefix, words, face in (("corrected_", "corrected", "k"), ("", "raw", "white"))
         if not str(law[f"no_{prefix}mean_kappa"].values)
     ]
     return words or [heading("no mean at light load")]
@@ -210,7 +252,7 @@ def _law_words(law):
     """The exponent of the area beside Archard's levels."""
     reason = str(law["no_corrected_law"].values)
     if reason:
-        return f"No power law ({reason})."
+        return f"No power law here ({reason})."
     low, high = (float(law[f"corrected_exponent_{end}"]) for end in ("low", "high"))
     fit = estimate(float(law["corrected_exponent"]), low, high)
     levels = [
@@ -230,9 +272,12 @@ def _between_words(law):
     if reason:
         return f"No kappa at light load: {reason}."
     value = float(law["corrected_mean_kappa"])
+    mean = _mean(law, "corrected_")
+    if mean.startswith(UNDETERMINED):
+        return f"kappa at light load is {mean}."
     low, high = law.attrs["persson_kappa"], law.attrs["bush_gibson_thomas_kappa"]
     side = "between" if low <= value <= high else "below both" if value < low else "above both"
     return (
-        f"kappa at light load, {_mean(law, 'corrected_')}, lies {side} Persson's "
+        f"kappa at light load, {mean}, lies {side} Persson's "
         f"{number(low, 3)} and Bush's {number(high, 3)}."
     )

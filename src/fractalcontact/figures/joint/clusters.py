@@ -3,6 +3,8 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.fitting import fit_line
@@ -10,7 +12,7 @@ from ...core.resolved import RESOLVED_NODES
 from ...domain.clusters import follows_law
 from ...surface.specimen import cell_side
 from ..kit.drawing import (
-    LINES,
+    COLOURS,
     MARKERS,
     WIDTH,
     Drawing,
@@ -39,6 +41,9 @@ ORDER = 120
 
 #: Offsets whose size distribution is drawn: the first, the middle and the last.
 DISTRIBUTIONS = 3
+#: Colours and markers of these; the loads have the others.
+_OFFSET_COLOURS = (COLOURS[3], COLOURS[4], COLOURS[5])
+_OFFSET_MARKERS = ("D", "v", "P")
 
 #: Numbers of a domain that are drawn and kept, with the names of their columns.
 COLUMNS = {
@@ -89,18 +94,36 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     number, share, localised, distribution = figure.subplots(2, 2).ravel()
     _draw_domains((number, share, localised), table)
     _draw_sizes(distribution, sizes)
-    by_load = [
-        heading("(a) to (c); hollow: few nodes; +: random nodes, ×: bearing-area cut"),
-        *entries(number),
-    ]
-    law = r"; lines: $N \sim a^{-\beta}$" if np.isfinite(sizes["exponent"]).any() else ""
-    at = f"(d) at $F$ = {force_label(loads[mapped])}, by the offset{law}"
+    by_load = [heading(r"(a) to (c): Morisita's index $I \sim v^x$ [95 %]"), *entries(number)]
+    by_load += _other_entries(table)
+    law = r": number $\sim a^{-\beta}$ [95 %]" if np.isfinite(sizes["exponent"]).any() else ""
+    at = f"(d) at $F$ = {force_label(loads[mapped])}{law}"
     legends_below(figure, by_load, [heading(at), *entries(distribution)])
     headline(figure, settings["label"], place(direction))
-    clustered = claim(atlas, name, "growing clustering with v", "domains_cluster")
+    clustered = claim(
+        atlas,
+        name,
+        "growing clustering with v",
+        "domains_cluster",
+        why=f"I ~ v^e over all v at {force_label(loads[mapped])}",
+    )
     caption = _caption(clustered, sizes)
     data = pd.concat([table.assign(kind="domain"), sizes.assign(kind="sizes")], ignore_index=True)
     return Drawing(figure, data, caption)
+
+
+def _other_entries(table):
+    """Entries for what the panels of loads have beside curves."""
+    style = {"ls": "none", "color": "0.4"}
+    found = []
+    if (table["nodes"] < RESOLVED_NODES).any():
+        label = f"hollow: fewer than {RESOLVED_NODES} nodes touch"
+        found.append(Line2D([], [], marker="o", mfc="white", label=label, **style))
+    words = {"random": "as many random nodes", "cut": "as many nodes: bearing-area cut"}
+    for null, marker in NULLS.items():
+        if table[f"clusters_{null}"].notna().any():
+            found.append(Line2D([], [], marker=marker, label=words[null], **style))
+    return [*found, Patch(color="0.4", alpha=0.15, lw=0, label="as many random nodes, 95 %")]
 
 
 def _domain_table(domains, nodes, shown):
@@ -148,12 +171,12 @@ def _draw_domains(panels, table):
         ):
             # No contact is no number, and an index of 0 has no place on a logarithmic axis.
             y = points[column].where(points[column] > 0)
-            axes.plot(v, y, ls=LINES[n % 4], lw=0.8, color=colour_of(n))
+            axes.plot(v, y, lw=0.8, color=colour_of(n))
             axes.plot(v[many], y[many], ls="none", **style)
             axes.plot(v[~many], y[~many], ls="none", mfc="white", **style)
         exponent = slope_text(_trend(points, "morisita"))
-        name = rf"$F$ = {force_label(force)}: $I \sim v^x$, $x$ = {exponent}"
-        number.plot([], [], ls=LINES[n % 4], lw=0.8, label=name, **style)
+        name = rf"$F$ = {force_label(force)}: $x$ = {exponent}"
+        number.plot([], [], lw=0.8, label=name, **style)
         above = 1 + 1.96 * points["morisita_scatter"]
         below = (1 - 1.96 * points["morisita_scatter"]).clip(lower=0.1)
         localised.fill_between(v, below, above, color=colour_of(n), alpha=0.15, lw=0)
@@ -174,7 +197,7 @@ def _draw_domains(panels, table):
     localised.set_ylabel("Morisita's index $I$ (1)")
     letter(number, "a", "number of clusters")
     letter(share, "b", "largest cluster")
-    letter(localised, "c", "localisation (line and bands: random nodes)")
+    letter(localised, "c", "localisation (1: as random nodes)")
 
 
 def _draw_sizes(axes, sizes):
@@ -183,9 +206,12 @@ def _draw_sizes(axes, sizes):
         law = points.iloc[0]
         exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
         area, at_least = points["cluster_area_mm2"], points["clusters_at_least"]
-        style = {"color": colour_of(n), "marker": MARKERS[n], "mfc": "white", "ls": "none"}
+        colour = _OFFSET_COLOURS[n]
+        style = {"color": colour, "marker": _OFFSET_MARKERS[n], "ls": "none"}
         fits = np.isfinite(law["exponent"])
         words = rf"$\beta$ = {exponent}" if fits else "too few for a law"
+        if fits and not follows_law(law["fit_clusters"], law["fit_distance"]):
+            words += ", not followed"
         name = f"$v$ = {short(offset)} mm: {words}"
         axes.plot(area, at_least, label=name, **style)
         if fits:
@@ -193,12 +219,12 @@ def _draw_sizes(axes, sizes):
             first = area[area <= law["fit_min_mm2"] * (1 + 1e-9)].max()
             ends = np.array([first, law["fit_max_mm2"]])
             fitted = law["fit_clusters"] * (ends / first) ** -law["exponent"]
-            axes.plot(ends, fitted, color=colour_of(n), lw=0.8, ls=LINES[n % 4])
+            axes.plot(ends, fitted, color=colour, lw=0.8)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_ylim(bottom=0.7)
     axes.set_xlabel("cluster area $a$ (mm$^2$)")
-    axes.set_ylabel(r"clusters of area $\geq a$ (1)")
+    axes.set_ylabel(r"number of clusters of area $\geq a$ (1)")
     label_short_span(axes.xaxis)
     letter(axes, "d", "sizes of clusters")
 

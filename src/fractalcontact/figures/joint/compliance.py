@@ -1,12 +1,14 @@
 """Correlation of the faces, and closure and compliance of the interface, against the offset."""
 
+import textwrap
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.resolved import RESOLVED_NODES
 from ..kit.drawing import (
-    LINES,
     MARKERS,
     WIDTH,
     Drawing,
@@ -15,6 +17,7 @@ from ..kit.drawing import (
     entries,
     finest_curves,
     group,
+    heading,
     headline,
     legends_below,
     letter,
@@ -22,7 +25,7 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.empty import TOO_FULL, say_empty
-from ..kit.sizes import draw_bars
+from ..kit.sizes import draw_bars, plain_decades
 from ..kit.verdicts import sentences, verdict_words
 from ..kit.words import TOWARDS, force_label, opening, percent, place, pressure_label, short
 
@@ -33,10 +36,15 @@ ORDER = 70
 
 #: What the paper says of the stages of sliding (:mod:`statements.judge`).
 STAGES = {
-    "compliance_rises_at_first": "rising at first",
-    "curves_overlap": "then the same",
-    "compliance_rises_again": "then rising again",
+    "compliance_rises_at_first": "rising as v^e",
+    "curves_overlap": "the same",
+    "compliance_rises_again": "rising again on average",
 }
+
+#: A bar so many times as high as its value leaves the frame.
+_UNBOUNDED = 1e4
+#: Letters of a line of the stages in the legend.
+_LINE = 50
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -52,28 +60,77 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     shown = dilatancy_loads(curves["normal_force"].values, settings, specimen)
     closures = _closure_table(curves, shown)
 
-    figure = Figure(figsize=(WIDTH, 7.4))
+    figure = Figure(figsize=(WIDTH, 7.0))
     correlation, closed, compliance = figure.subplots(
-        3, 1, sharex=True, height_ratios=[1.2, 1, 1.1]
+        3, 1, sharex=True, height_ratios=[1.1, 1, 1.2]
     )
-    _draw_correlation(correlation, joint)
+    _draw_correlation(correlation, joint, direction)
     _draw_closures(closed, compliance, closures)
     _mark_offsets((closed, compliance), joint, direction)
     # The scale suits the offsets solved; the correlation is known at more.
     offset_axis(compliance, curves["offset"].values)
+    if compliance.get_xscale() == "log":
+        plain_decades(compliance.xaxis)
     for upper in (correlation, closed):
         upper.set_xlabel("")
-    legends_below(figure, entries(correlation), entries(compliance))
-    headline(figure, settings["label"])
-    verdicts = {
-        words: verdict_words(atlas, name, said, numbers=False) for said, words in STAGES.items()
-    }
     force = group(atlas, "statements", name).attrs["force"]
+    stages = _stages(atlas, name, joint, direction)
+    if np.isfinite(closures["interface_compliance_mm_per_MPa"]).any():
+        _number_stages(compliance, stages)
+    columns = [entries(correlation), entries(compliance), *_judged(stages, force)]
+    legends_below(figure, *columns, columnspacing=1.5)
+    headline(figure, settings["label"], place(direction))
     caption = sentences(
-        _caption(direction, joint), _stage_words(verdicts, force), _last_words(closures, force)
+        _caption(direction, joint), _stage_words([text for text, *_ in stages], force)
     )
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
+
+
+def _stages(atlas, name, joint, direction):
+    """What the paper says of each stage with its verdict, and from which to which offset it is."""
+    length, uncorrelated = _ends_of_correlation(joint, direction)
+    ends = ((-np.inf, length), (length, uncorrelated), (uncorrelated, np.inf))
+    found = []
+    for (statement, words), (first, last) in zip(STAGES.items(), ends, strict=True):
+        verdict = verdict_words(atlas, name, statement)
+        if verdict:
+            found.append((f"{words}: {verdict}", first, last))
+    return found
+
+
+def _judged(stages, force):
+    """Column of a legend with the stages, in lines that fit; none without stages."""
+    if not stages:
+        return []
+    words = [f"(c): the paper's stages, judged at $F$ = {force_label(force)}"]
+    for n, (text, *_) in enumerate(stages, 1):
+        lines = textwrap.wrap(f"{n}: {text}", _LINE, subsequent_indent="    ")
+        words += [line.replace("v^e", "$v^e$") for line in lines]
+    return [[heading(line) for line in words]]
+
+
+def _number_stages(axes, stages):
+    """Numbers of the stages at the upper edge, between the offsets that bound them."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(top=high * (high / low) ** 0.12)
+    log = axes.get_xscale() != "linear"
+    left, right = axes.dataLim.intervalx if log else axes.get_xlim()
+    for n, (_, first, last) in enumerate(stages, 1):
+        first, last = (left if np.isneginf(first) else first), min(last, right)
+        if np.isnan(last):  # it ends nowhere in the window
+            last = right
+        if np.isfinite(first) and 0 <= first < last:
+            middle = np.sqrt(first * last) if log and first > 0 else (first + last) / 2
+            axes.text(
+                middle,
+                0.97,
+                f"{n}",
+                transform=axes.get_xaxis_transform(),
+                ha="center",
+                va="top",
+                fontweight="bold",
+            )
 
 
 def _common_seat(curves):
@@ -145,97 +202,94 @@ def _correlation_table(joint):
     return pd.concat(rows, ignore_index=True)
 
 
-def _draw_correlation(axes, joint):
-    for n, direction in enumerate(joint["direction"].values):
-        points = joint.sel(direction=direction)
-        uncorrelated = float(points["uncorrelated_offset"])
-        reached = (
-            f"uncorrelated from $v$ = {short(uncorrelated)} mm"
-            if np.isfinite(uncorrelated)
-            else "always correlated"
-            if np.isfinite(joint["correlation_limit"])
-            else "window too small to see it lost"
-        )
-        v, rho = joint["rigid_offset"].values, points["face_correlation"].values
-        # The marks are for prints in grey; at every offset they would hide the line.
-        every = np.unique(np.geomspace(1, max(len(v) - 1, 1), 8).astype(int) % len(v)).tolist()
-        axes.plot(
-            v,
-            rho,
-            color=colour_of(n),
-            ls=LINES[n % 4],
-            marker=MARKERS[n % len(MARKERS)],
-            markevery=every,
-            label=f"{TOWARDS.get(direction, direction)}: {reached}",
-        )
-        if np.isfinite(uncorrelated):
-            axes.axvline(uncorrelated, color=colour_of(n), lw=0.8, ls=":")
-    axes.axhline(np.exp(-1), color="0.4", lw=0.8, ls="--", label="1/e")
+def _draw_correlation(axes, joint, solved):
+    """The direction solved in black, all others in grey."""
+    v = joint["rigid_offset"].values
+    others = [d for d in joint["direction"].values if d != solved]
+    for n, direction in enumerate(others):
+        words = ", ".join(TOWARDS.get(d, d) for d in others)
+        rho = joint["face_correlation"].sel(direction=direction).values
+        axes.plot(v, rho, color="0.7", lw=0.9, label=None if n else f"towards {words}")
+    rho = joint["face_correlation"].sel(direction=solved).values
+    axes.plot(v, rho, color="k", label=f"towards {TOWARDS.get(solved, solved)}, as in (b), (c)")
     limit = float(joint["correlation_limit"])
     if np.isfinite(limit):
-        axes.axhspan(
-            -limit, limit, color="0.88", zorder=0, lw=0, label="what chance alone explains, 95 %"
-        )
+        label = "by chance alone, 95 %"
+        axes.axhspan(-limit, limit, color="0.9", zorder=0, lw=0, label=label)
+    # The level and the offsets found from it are lines of one style, here and below.
+    axes.axhline(np.exp(-1), color="0.4", lw=0.8, ls="--")
+    length, uncorrelated = _ends_of_correlation(joint, solved)
+    for at, style, label in (
+        (length, "--", f"correlation 1/e: $v$ = {short(length)} mm"),
+        (uncorrelated, ":", f"correlation lost: $v$ = {short(uncorrelated)} mm"),
+    ):
+        if np.isfinite(at):
+            axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
+    if not np.isfinite(length):
+        axes.plot([], [], color="0.4", lw=0.8, ls="--", label="correlation 1/e: not reached")
     axes.set_ylim(top=1.05)
     axes.set_ylabel("correlation of the faces (1)")
-    letter(axes, "a", "correlation of the faces (dotted: uncorrelated offset)")
+    letter(axes, "a", "correlation of the faces")
 
 
 def _draw_closures(closed, compliance, table):
-    """Closure from the seating pressure and from first touch, and compliance, load by load."""
+    """Closure from the seating pressure, or else from first touch, and compliance."""
     pressure = table["seating_pressure_MPa"].iloc[0]
+    seated = bool((table["seated_closure_mm"] > 0).any())
+    column = "seated_closure_mm" if seated else "interface_closure_mm"
+    some_few, heights, tops = False, [], []
     for n, (force, points) in enumerate(table.groupby("force_N")):
         style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
-        line = {"ls": LINES[n % 4], "label": f"$F$ = {force_label(force)}"}
         v, few = points["offset_mm"], ~points["resolved"]
-        if (points["seated_closure_mm"] > 0).any():
-            closed.plot(v, points["seated_closure_mm"], **style, ls=LINES[n % 4])
-        closed.plot(v, points["interface_closure_mm"], **style, mfc="none", ms=3, lw=0.5)
+        some_few |= few.any()
         compliances = points["interface_compliance_mm_per_MPa"]
-        compliance.plot(v, compliances, **style, **line)
-        ends = (points[f"interface_compliance_{end}_mm_per_MPa"] for end in ("low", "high"))
-        draw_bars(compliance, v, compliances, *ends, style["color"])
-        hollow = points[few]
-        compliance.plot(
-            hollow["offset_mm"],
-            hollow["interface_compliance_mm_per_MPa"],
-            **style,
-            mfc="white",
-            ls="none",
-        )
+        compliance.plot(v, compliances, **style, label=f"$F$ = {force_label(force)}")
+        low, high = (points[f"interface_compliance_{end}_mm_per_MPa"] for end in ("low", "high"))
+        tops += [*high[np.isfinite(high)]]
+        # What is unbounded leaves the frame.
+        high = high.clip(upper=_UNBOUNDED * compliances)
+        draw_bars(compliance, v, compliances, low, high, style["color"])
+        drawn = [(compliance, "interface_compliance_mm_per_MPa")]
+        if not seated or (points[column] > 0).any():
+            closed.plot(v, points[column], **style)
+            drawn.append((closed, column))
+            heights += [*points[column].dropna()]
+        hollow = {**style, "mfc": "white", "ls": "none"}
+        for axes, values in drawn:
+            axes.plot(points[few]["offset_mm"], points[few][values], **hollow)
+    if some_few:
+        words = f"hollow: fewer than {RESOLVED_NODES} nodes touch"
+        compliance.plot([], [], "o", color="0.4", mfc="white", label=words)
     if not np.isfinite(table["interface_compliance_mm_per_MPa"]).any():
         say_empty(compliance, TOO_FULL)
-    closures = table["interface_closure_mm"].dropna()
-    if (closures != 0).any():
-        closed.set_ylim(bottom=min(0, closures.min()))
-    elif closures.empty:
+    if any(heights):
+        closed.set_ylim(bottom=min(0, *heights))
+    elif not heights:
         say_empty(closed, TOO_FULL)
     closed.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
     compliance.set_yscale("log")
+    if len(tops):
+        compliance.set_ylim(top=1.3 * max(tops))
+    plain_decades(compliance.yaxis)
     compliance.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)")
-    direction = place(table["direction"].iloc[0])
-    seated = f"from {pressure_label(pressure)} on (hollow: from first touch)"
-    if not np.isfinite(pressure):
-        seated = "from first touch"
-    letter(closed, "b", f"closure {seated}, {direction}")
+    since = f"counted from {pressure_label(pressure)} on" if seated else "counted from first touch"
+    letter(closed, "b", f"closure of the interface, {since}")
     high = table["interface_compliance_high_mm_per_MPa"] / table["interface_compliance_mm_per_MPa"]
     most = high.max() - 1
-    bars = f" (bars: the solver alone, up to {percent(most)})" if np.isfinite(most) else ""
-    letter(compliance, "c", f"compliance of the interface, {direction}{bars}")
+    bars = f" (bars: error of the solver alone, {_most_words(most)})" if most > 0.001 else ""
+    letter(compliance, "c", f"compliance of the interface{bars}")
+
+
+def _most_words(most):
+    return f"up to {percent(most)}" if np.isfinite(most) else "unbounded where they leave the frame"
 
 
 def _mark_offsets(panels, joint, direction):
-    """Where the faces of the direction solved lose their correlation."""
-    marks = _ends_of_correlation(joint, direction)
-    for axes in panels:
-        for at, style, label in zip(
-            marks,
-            ("--", ":"),
-            ("correlation length (1/e)", "uncorrelated offset"),
-            strict=True,
-        ):
+    """Where the faces of the direction solved lose their correlation, as in the first panel."""
+    for at, style in zip(_ends_of_correlation(joint, direction), ("--", ":"), strict=True):
+        for axes in panels:
             if np.isfinite(at):
-                axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
+                axes.axvline(at, color="0.4", lw=0.8, ls=style)
 
 
 def _ends_of_correlation(joint, direction):
@@ -247,29 +301,17 @@ def _ends_of_correlation(joint, direction):
 def _caption(direction, joint):
     ends = _ends_of_correlation(joint, direction)
     return (
-        f"{opening('Figs. 4 and 5')} Correlation of the faces, closure and compliance against v. "
-        f"The correlation is "
-        f"{_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))}."
+        f"{opening('Figs. 4 and 5')} Correlation of the faces "
+        f"({_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))}), closure "
+        "and compliance."
     )
 
 
-def _stage_words(verdicts, force):
+def _stage_words(stages, force):
     """What the paper says of the compliance as v grows, and the verdicts that were asked for."""
-    said = ", ".join(f"{words} ({verdict})" for words, verdict in verdicts.items() if verdict)
-    return f"The paper's compliance at {force_label(force)}: {said}." if said else ""
-
-
-def _last_words(table, force):
-    """Where the compliance is largest, and what the last offset has of that."""
-    points = table[table["force_N"] == force].dropna(subset="interface_compliance_mm_per_MPa")
-    if len(points) < 2:
+    if not stages:
         return ""
-    v, values = (points[key].values for key in ("offset_mm", "interface_compliance_mm_per_MPa"))
-    most = int(np.argmax(values))
-    words = f"Compliance at {force_label(force)} is largest at v = {short(v[most])} mm"
-    if most == len(v) - 1:
-        return f"{words}, the last."
-    return f"{words}, {percent(1 - values[-1] / values[most])} less at {short(v[-1])} mm."
+    return f"The paper's compliance at {force_label(force)}, {'; '.join(stages)}."
 
 
 def _correlation_words(ends, decidable):
@@ -282,6 +324,6 @@ def _correlation_words(ends, decidable):
         if np.isfinite(uncorrelated)
         else "never lost"
         if decidable
-        else "the window too small to see it lost"
+        else "loss not seen"
     )
     return f"1/e at v = {short(length)} mm, {lost}"

@@ -8,7 +8,6 @@ from xarray import DataTree
 from ...core.ranges import within
 from ...core.resolved import RESOLVED_NODES
 from ..kit.drawing import (
-    LINES,
     MARKERS,
     WIDTH,
     Drawing,
@@ -53,13 +52,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes.set_yscale("log")
     _draw_theory(axes, table)
     axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
-    axes.set_ylabel("conductance per conductivity $h_c/k$ (mm$^{-1}$)")
+    axes.set_ylabel("conductance over conductivity $h_c/k$ (mm$^{-1}$)")
     functions = (lambda y: y * e_star, lambda y: y / e_star)
     axes.secondary_yaxis("right", functions=functions).set_ylabel(
         r"interface stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
     )
     n = table["offset_mm"].nunique()
-    remarks = entries(axes)[n:]
+    remarks = [*entries(axes)[n:], heading("lines: fits, exponents with 95 % intervals")]
     if not table["fitted"].all():
         remarks.append(heading(f"hollow: not fitted (fewer than {RESOLVED_NODES} nodes)"))
     legends_below(figure, entries(axes)[:n], remarks)
@@ -121,7 +120,7 @@ def _draw_curve(axes, n, state, points):
         )
         ends = np.array([p.min(), p.max()])
         line = np.exp(h.mean() + law["exponent"] * (ends - p.mean()))
-        axes.plot(np.exp(ends), line, color=colour_of(n), lw=0.8, ls=LINES[n % 4])
+        axes.plot(np.exp(ends), line, color=colour_of(n), lw=0.8)
 
 
 def _draw_theory(axes, table):
@@ -134,10 +133,12 @@ def _draw_theory(axes, table):
     p, h = (np.log(middle[key]) for key in ("nominal_pressure_MPa", "conductance_per_mm"))
     ends = np.array([p.min(), p.mean(), p.max()])
     for slope, name in zip(
-        THEORY, (f"slopes {THEORY[0]:g} and {THEORY[1]:g} of theory", None), strict=True
+        THEORY,
+        (f"theory: slopes {THEORY[0]:g} and {THEORY[1]:g} (at any height)", None),
+        strict=True,
     ):
         height = np.exp(h.mean() + slope * (ends - p.mean()))
-        axes.plot(np.exp(ends), height, color="0.6", lw=1, ls=":", zorder=0, label=name)
+        axes.plot(np.exp(ends), height, color="0.5", lw=1.2, ls="--", zorder=0, label=name)
 
 
 def _caption(table):
@@ -166,8 +167,8 @@ def _exponent_words(table):
     verdict = (
         f"as theory has it ({low:g} to {high:g})"
         if reached == len(fitted)
-        else f"{reached} of {len(fitted)} intervals reach theory's {low:g} to {high:g}, {below} "
-        f"lie below and {above} above"
+        else f"{reached} of {len(fitted)} intervals reach theory's {low:g} to {high:g} ({below} "
+        f"below, {above} above)"
     )
-    finite_size = " Low powers: few hills in the window." if below else ""
+    finite_size = " Windows of few hills have low powers." if below else ""
     return f"It grows as {values} of the pressure: {verdict}.{finite_size}"

@@ -18,7 +18,7 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.sizes import nothing_in, plain_decades
-from ..kit.words import SUPPLEMENTARY, percent, short
+from ..kit.words import SUPPLEMENTARY, short
 from ._size_test import grey_beyond, load_columns, place_of, size_test_of
 
 TITLE = "Closure and contact area of the whole window, predicted from its parts"
@@ -35,9 +35,13 @@ PREDICTORS = {
 }
 _QUANTITIES = {
     "closure": ("normal_force", r"closure $w_\mathrm{int}$"),
-    "area": ("normal_force", "$A_r/A_0$"),
+    "area": ("normal_force", "contact area $A_r/A_0$"),
     "strength": ("dilatancy_load", r"strength $\tau$"),
 }
+
+#: What the bars at the load of the caption are, and how far they stand apart.
+_BARS = "95 % intervals there, side by side"
+_BESIDE = 1.06
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -48,31 +52,49 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     test = size_test_of(atlas, name)
     figure = Figure(figsize=(WIDTH, 3.7))
     panels = figure.subplots(1, 2)
+    load = _load_said(test)
     for axes, which, quantity in zip(panels, "ab", ("closure", "area"), strict=True):
-        _draw_errors(axes, test, quantity, which)
+        _draw_errors(axes, test, quantity, which, load)
     handles = entries(panels[0])
-    # First those of this window, then eq. 6's.
-    legends_below(figure, handles[::4] + handles[5:], handles[1:3], handles[3:4])
+    # First those of this window, then eq. 6's, then all else.
+    columns = handles[:5:4], handles[1:4], handles[5:]
+    legends_below(figure, *columns, columnspacing=3)
     headline(figure, settings_of(atlas, name)["label"], place_of(test))
-    return Drawing(figure, _table(test), _caption(test))
+    return Drawing(figure, _table(test), _caption(test, load))
 
 
-def _draw_errors(axes, test, quantity, which):
+def _draw_errors(axes, test, quantity, which, load):
     """Predicted over solved values of the whole window."""
     words = _QUANTITIES[quantity][1]
     pressure = test["nominal_pressure"].values
     drawn = False
+    closure, area = (test[f"{name}_error"] for name in ("closure", "area"))
     for i, (predictor, label) in enumerate(PREDICTORS.items()):
+        if not any(np.isfinite(one.sel(predictor=predictor)).any() for one in (closure, area)):
+            label = f"{label} (not known here)"
         ratio = 1 + test[f"{quantity}_error"].sel(predictor=predictor).values
         known = np.isfinite(ratio)
         drawn |= known.any()
         style = {"color": colour_of(i), "marker": MARKERS[i], "ms": 3}
+        if predictor == "eq6_box_sizes":
+            # Where eq. 6 has no size effect, what stands for that hides it.
+            style |= {"ms": 5.5, "mfc": "white"}
         axes.plot(pressure[known], ratio[known], lw=0.8, label=label, **style)
+        if load is not None:
+            solved = float(test[f"direct_{quantity}"][load])
+            ends = (test[f"predicted_{quantity}_{end}"] for end in ("low", "high"))
+            low, high = (float(end.sel(predictor=predictor)[load]) / solved for end in ends)
+            if np.isfinite([low, high]).all():
+                at = pressure[load] * _BESIDE ** (i - 2)
+                axes.vlines(at, max(low, 1e-3), high, color=style["color"], lw=0.8)
     axes.axhline(1, color="0.5", lw=0.6)
+    if load is not None:
+        axes.axvline(pressure[load], color="0.4", ls=":", lw=0.8, label="load of the caption")
+        axes.plot([], [], color="0.4", lw=0.8, marker="|", ls="none", ms=8, label=_BARS)
     grey_beyond(axes, test)
-    axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
+    axes.set_xlabel(r"nominal pressure $\sigma_0$ of the whole window (MPa)")
     axes.set_ylabel(f"{words}: predicted / solved (1)")
-    letter(axes, which, f"{words} (1: right)")
+    letter(axes, which, f"{words} (1: as solved)")
     if not drawn:
         # Without data a logarithmic axis has no limits.
         nothing_in(axes, "nothing to predict from")
@@ -108,24 +130,34 @@ def _table(test):
     return pd.concat(tables[1:] or tables, ignore_index=True)
 
 
-def _caption(test):
-    words = f"{SUPPLEMENTARY} What parts of the window predict of the whole, over what was solved."
-    errors = abs(test[["closure_error", "area_error"]].sel(predictor=list(PREDICTORS)))
+def _load_said(test):
+    """Index of the load that the caption speaks of; None where no load has every prediction."""
+    errors = test[["closure_error", "area_error"]].sel(predictor=list(PREDICTORS))
     known = np.isfinite(errors.to_dataarray()).all(("variable", "predictor")).values
     of_study = known & ~test["beyond_study"].values.astype(bool)
     if not known.any():
-        return f"{words} No load lets all of them predict closure and contact area."
+        return None
     # The heaviest load of the study says most: more nodes touch. One beyond it matters to nobody.
-    load = np.flatnonzero(of_study if of_study.any() else known)[-1]
-    beyond = "" if of_study.any() else ", beyond the study's loads,"
-    here = errors.isel(normal_force=load)
-    pressure = short(float(test["nominal_pressure"][load]))
-    closure, area = (_range_words(here[f"{name}_error"]) for name in ("closure", "area"))
-    return f"{words} At {pressure} MPa{beyond} closure is off by {closure}, contact area by {area}."
+    return int(np.flatnonzero(of_study if of_study.any() else known)[-1])
 
 
-def _range_words(errors):
-    """Least and largest error, each with its predictor."""
-    ends = (int(errors.values.argmin()), int(errors.values.argmax()))
-    names = [PREDICTORS[key].replace("$", "") for key in errors["predictor"].values]
-    return " to ".join(f"{percent(float(errors[i]))} ({names[i]})" for i in dict.fromkeys(ends))
+def _caption(test, load):
+    words = f"{SUPPLEMENTARY} What parts of the window predict of the whole, over what is solved."
+    if load is None:
+        return f"{words} No load lets all of them predict closure and contact area."
+    here = test.isel(normal_force=load).sel(predictor=list(PREDICTORS))
+    beyond = ", beyond the study's loads," if bool(here["beyond_study"]) else ""
+    pressure = short(float(here["nominal_pressure"]))
+    closure, area = (_range_words(1 + here[f"{name}_error"]) for name in ("closure", "area"))
+    return (
+        f"{words} At {pressure} MPa{beyond} (dotted) predictions of closure are, best and worst, "
+        f"{closure}; of contact area {area}."
+    )
+
+
+def _range_words(ratios):
+    """Best and worst ratio of predicted and solved, each with its predictor."""
+    away = abs(np.log(ratios.values))
+    ends = (int(away.argmin()), int(away.argmax()))
+    names = [PREDICTORS[key].replace("$", "") for key in ratios["predictor"].values]
+    return " and ".join(f"{short(float(ratios[i]))} ({names[i]})" for i in dict.fromkeys(ends))

@@ -7,11 +7,8 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ..kit.drawing import (
-    COLOURS,
-    MARKERS,
     WIDTH,
     Drawing,
-    entries,
     heading,
     headline,
     legends_below,
@@ -25,15 +22,20 @@ from ..kit.words import SUPPLEMENTARY, interval, number, pressure_label
 from ._size_test import (
     ESTIMATORS,
     MOST_LOADS,
+    deciding,
+    draw_laws,
     draw_measured,
     draw_predictions,
     first_loads,
     load_axis,
     load_columns,
+    load_marker,
     place_of,
     predicted_table,
     pressure_words,
+    size_legends,
     size_test_of,
+    verdict_reason,
 )
 
 TITLE = "Eq. 6 in its own form: pressure that gives parts of the window the sigma* of the whole"
@@ -45,42 +47,50 @@ ORDER = 171
 def draw(atlas: DataTree, name: str) -> Drawing:
     """sigma_0 at equal sigma* over b under some loads, and its slope over the load."""
     test = size_test_of(atlas, name)
-    figure = Figure(figsize=(WIDTH, 3.9))
+    fitted = first_loads(test, "slope")
+    loads = fitted[spread(len(fitted), MOST_LOADS)]
+    figure = Figure(figsize=(WIDTH, 4.1))
     equal, slopes = figure.subplots(1, 2)
-    shown = _draw_equal(equal, test)
-    legends_below(figure, shown, _draw_slopes(slopes, test))
+    measured = _draw_equal(equal, test, loads)
+    _draw_slopes(slopes, test, loads)
+    others, laws = size_legends(slopes)
+    legends_below(figure, measured + others, laws)
     headline(figure, settings_of(atlas, name)["label"], place_of(test))
+    judged = deciding(test).sum() and f"by A_r/A_0 at equal sigma_0, {verdict_reason(test)}"
     caption = sentences(
-        f"{SUPPLEMENTARY} Nominal pressure at equal sigma* over the side b of parts of the window, "
-        "and its slope.",
+        f"{SUPPLEMENTARY} Nominal pressure that gives parts of the window the sigma* of the whole, "
+        "over their side b.",
         _found_words(test),
-        claim(atlas, name, "eq. 6", "size_effect_follows", numbers=False),
+        claim(
+            atlas,
+            name,
+            "eq. 6",
+            "size_effect_follows",
+            numbers=False,
+            why=judged or "no load decides by A_r/A_0 at equal sigma_0",
+        ),
     )
     return Drawing(figure, _table(test), caption)
 
 
-def _draw_equal(axes, test):
+def _draw_equal(axes, test, loads):
     """sigma_0 over b at the sigma* of the whole, with the slopes predicted; legend entries."""
     b = test["side"].values
-    fitted = first_loads(test, "slope")
-    loads = fitted[spread(len(fitted), MOST_LOADS)]
-    handles = [heading("whole window, and the measured slope")]
+    handles = [heading("measured (no intervals), slope [95 % interval]")]
     for n, i in enumerate(loads):
-        style = {"color": COLOURS[n], "marker": MARKERS[n]}
+        style = {"color": "k", "marker": load_marker(n)}
         pressure = test["equal_pressure"].values[i]
         axes.plot(b, pressure, ls="none", **style)
-        for estimator, (line, _) in ESTIMATORS.items():
-            slope = float(test["predicted_slope"].sel(estimator=estimator)[i])
-            axes.plot(b, pressure[0] * (b / b[0]) ** slope, color=COLOURS[n], ls=line, lw=0.8)
+        draw_laws(axes, test, i, b, pressure[0])
         found = interval(*(float(test[f"slope{end}"][i]) for end in ("", "_low", "_high")))
-        label = f"{pressure_words(test, i)}: {found}"
+        label = f"at {pressure_words(test, i)}: {found}"
         handles.append(Line2D([], [], ls="none", **style, label=label))
     size_axis(axes, b, "parts")
-    axes.set_ylabel(r"$\sigma_0$ at the same $\sigma^*$ (MPa)")
-    letter(axes, "a", "points: measured; lines: eq. 6")
+    axes.set_ylabel(r"nominal pressure $\sigma_0$ (MPa)")
+    letter(axes, "a", r"pressure at equal fractal mean pressure $\sigma^*$")
     if not len(loads):
         nothing_in(axes, "no load at which three sizes\nhold enough nodes")
-        return handles[:1]
+        return []
     axes.set_yscale("log")
     drawn = test["equal_pressure"].values[loads]
     axes.set_ylim(np.nanmin(drawn) / 2, np.nanmax(drawn) * 3)
@@ -88,20 +98,17 @@ def _draw_equal(axes, test):
     return handles
 
 
-def _draw_slopes(axes, test):
-    """Slopes at equal sigma*, measured and predicted, over the load; legend entries."""
+def _draw_slopes(axes, test, loads):
+    """Slopes at equal sigma*, measured and predicted, over the load."""
     draw_predictions(axes, test)
-    known = np.isfinite(test["slope"].values)
-    determined = known & test["well_conditioned"].values.astype(bool)
-    for chosen, face, words in (
-        (determined, "k", "measured"),
-        (known & ~determined, "white", "measured, ill-conditioned"),
-    ):
-        draw_measured(axes, test, "slope", chosen, words, face)
+    poor = ~test["well_conditioned"].values.astype(bool)
+    draw_measured(axes, test, "slope", loads, poor)
+    if (poor & np.isfinite(test["slope"].values)).any():
+        words = r"hollow: $\sigma_0$ poorly known from $\sigma^*$"
+        axes.plot([], [], "o", color="k", mfc="white", ms=5, label=words)
     load_axis(axes, test)
     axes.set_ylabel(r"slope of $\log\sigma_0$ over $\log b$ (1)")
-    letter(axes, "b", "slopes, measured and by eq. 6")
-    return entries(axes)
+    letter(axes, "b", "its slope (0: no size effect)")
 
 
 def _table(test):
@@ -147,6 +154,5 @@ def _found_words(test):
     measured = interval(*(float(best[f"slope{end}"]) for end in ("", "_low", "_high")))
     beside = f", eq. 6 has {', '.join(wanted)}" if wanted else ""
     found = f"At {pressure_label(float(best['nominal_pressure']))} the slope is {measured}{beside}."
-    if not sure.any():
-        return f"None of {int(known.sum())} slopes is well-conditioned. {found}"
-    return f"{found} Of {int(known.sum())} slopes {int(sure.sum())} are well-conditioned."
+    hollow = int(known.sum() - sure.sum())
+    return f"{found} Hollow slopes ({hollow} of {int(known.sum())}) decide nothing."

@@ -7,11 +7,8 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ..kit.drawing import (
-    COLOURS,
-    MARKERS,
     WIDTH,
     Drawing,
-    entries,
     heading,
     headline,
     legends_below,
@@ -19,21 +16,24 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.sizes import apart, draw_bars, nothing_in, plain_decades, size_axis
+from ..kit.sizes import draw_bars, nothing_in, plain_decades, size_axis
 from ..kit.verdicts import claim, sentences
-from ..kit.words import SUPPLEMENTARY, interval, short
+from ..kit.words import SUPPLEMENTARY, interval
 from ._size_test import (
-    ESTIMATORS,
     MOST_LOADS,
+    draw_laws,
     draw_measured,
     draw_predictions,
     first_loads,
     load_axis,
     load_columns,
+    load_marker,
     place_of,
     predicted_table,
     pressure_words,
+    size_legends,
     size_test_of,
+    verdict_reason,
 )
 
 TITLE = "Size test: real contact area of parts of the window at equal pressure, beside eq. 6"
@@ -51,61 +51,56 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     Its data also have the exponents of the compliance and of the mean gap.
     """
     test = size_test_of(atlas, name)
+    fitted = first_loads(test, "area_exponent_low")
+    loads = fitted[spread(len(fitted), MOST_LOADS)]
     figure = Figure(figsize=(WIDTH, 3.9))
     area, exponents = figure.subplots(1, 2)
-    shown = _draw_area(area, test)
-    legends_below(figure, shown, _draw_exponents(exponents, test))
+    measured = _draw_area(area, test, loads)
+    _draw_exponents(exponents, test, loads)
+    others, laws = size_legends(exponents)
+    legends_below(figure, measured + others, laws)
     headline(figure, settings_of(atlas, name)["label"], place_of(test))
-    follows = claim(atlas, name, "eq. 6", "size_effect_follows")
     caption = sentences(
-        f"{SUPPLEMENTARY} Parts of the window at equal sigma_0: contact area over their side b, "
+        f"{SUPPLEMENTARY} Contact area of parts of the window over their side b at equal sigma_0, "
         "and its exponent.",
-        follows,
-        _edge_words(test),
+        claim(atlas, name, "eq. 6", "size_effect_follows", why=verdict_reason(test)),
+        _few_words(test),
     )
     return Drawing(figure, _table(test), caption)
 
 
-def _draw_area(axes, test):
+def _draw_area(axes, test, loads):
     """A_r/A_0 over b at some sigma_0 with intervals, and what eq. 6 wants; legend entries."""
     b = test["side"].values
     fraction, low, high = (test[f"area_fraction{end}"].values for end in ("", "_low", "_high"))
-    fitted = first_loads(test, "area_exponent_low")
-    loads = fitted[spread(len(fitted), MOST_LOADS)]
-    handles = [heading("measured, and its exponent")]
+    handles = [heading("measured, exponent of $b$ [95 % interval]")]
     for n, i in enumerate(loads):
-        style = {"color": COLOURS[n], "marker": MARKERS[n]}
-        moved = apart(b, n, len(loads))
-        axes.plot(moved, fraction[i], ls="none", **style)
-        draw_bars(axes, moved, fraction[i], low[i], high[i], COLOURS[n])
-        used = b[np.isfinite(fraction[i])]
-        for estimator, (line, _) in ESTIMATORS.items():
-            slope = float(test["predicted_slope"].sel(estimator=estimator)[i])
-            axes.plot(used, fraction[i, 0] * (used / b[0]) ** slope, COLOURS[n], ls=line, lw=0.8)
+        style = {"color": "k", "marker": load_marker(n)}
+        axes.plot(b, fraction[i], ls="none", **style)
+        draw_bars(axes, b, fraction[i], low[i], high[i], "k")
+        draw_laws(axes, test, i, b[np.isfinite(fraction[i])], fraction[i, 0])
         found = interval(*(float(test[f"area_exponent{end}"][i]) for end in ("", "_low", "_high")))
-        label = f"{pressure_words(test, i)}: {found}"
+        label = f"at {pressure_words(test, i)}: {found}"
         handles.append(Line2D([], [], ls="none", **style, label=label))
     size_axis(axes, b, "parts")
-    axes.set_ylabel(r"$A_r/A_0$ (1)")
-    letter(axes, "a", r"points: measured; lines: eq. 6")
+    axes.set_ylabel(r"real contact area $A_r/A_0$ (1)")
+    letter(axes, "a", "contact area at equal pressure")
     if not len(loads):
         nothing_in(axes, "no load at which two sizes\nhold enough nodes")
-        return handles[:1]
+        return []
     axes.set_yscale("log")
     axes.set_ylim(np.nanmin(fraction[loads]) / 2.5, np.nanmax(fraction[loads]) * 8)
     plain_decades(axes.yaxis)
     return handles
 
 
-def _draw_exponents(axes, test):
-    """Exponent of A_r/A_0 over b, and those of eq. 6, over the load; legend entries."""
-    draw_predictions(axes, test)
-    known = np.isfinite(test["area_exponent_low"].values)
-    draw_measured(axes, test, "area_exponent", known, "measured (0: no size effect)")
+def _draw_exponents(axes, test, loads):
+    """Exponent of A_r/A_0 over b, and those of eq. 6, over the load."""
+    draw_predictions(axes, test, decided=True)
+    draw_measured(axes, test, "area_exponent", loads)
     load_axis(axes, test)
     axes.set_ylabel("exponent of $A_r/A_0$ over $b$ (1)")
-    letter(axes, "b", "exponents, measured and by eq. 6")
-    return entries(axes)
+    letter(axes, "b", "its exponent (0: no size effect)")
 
 
 def _table(test):
@@ -144,17 +139,7 @@ def _equal_pressure_table(test, i, common):
     return pd.concat([pd.DataFrame(rows) for rows in means + exponents], ignore_index=True)
 
 
-def _edge_words(test):
-    """That the bulk is more compliant than the interface, at the last load that has both."""
-    if not np.isfinite(test["area_exponent_low"].values).any():
-        return "Parts hold too few nodes in contact."
-    ratio = test["edge_ratio"].sel(part=1).values
-    known = np.flatnonzero(ratio > 0)
-    if not len(known):
-        return ""
-    if ratio[known[-1]] < 1:
-        return ""
-    return (
-        f"Edges matter: at {pressure_words(test, known[-1])} the bulk is "
-        f"{short(ratio[known[-1]], 2)} times as compliant as the interface."
-    )
+def _few_words(test):
+    """That there is nothing to measure the exponent with."""
+    known = np.isfinite(test["area_exponent_low"].values).any()
+    return "" if known else "Parts hold too few nodes in contact."

@@ -5,9 +5,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...mechanics.jrc import JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
+    COLOURS,
     LINES,
     MARKERS,
     WIDTH,
@@ -21,7 +21,7 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
-from ..kit.sizes import draw_bars, logarithmic, nothing_in, plain_decades
+from ..kit.sizes import draw_bars, logarithmic, nothing_in, plain_decades, roughness_words
 from ..kit.words import estimate, opening, place, short
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
@@ -57,13 +57,15 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _draw_angles(axes, strength, shown):
-    v = strength["midpoint"]
+    v = strength["midpoint"].values
     rigid = strength["rigid_dilatancy_angle"]
     axes.plot(v, rigid, color="0.6", lw=1, marker=".", label="rigid, $F$ = 0")
-    for n, j in enumerate(shown):
-        axes.plot(v, strength["dilatancy_angle"][:, j], **_style(n), label=_label(strength, j))
-    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     basic = float(strength["basic_friction_angle"])
+    for n, j in enumerate(shown):
+        angle, held = strength["dilatancy_angle"].values[:, j], _held_at(strength)[:, j]
+        axes.plot(v, angle, **_style(n), label=_label(strength, j))
+        axes.plot(v[held], angle[held], **_style(n), ls="none", mfc="white", zorder=3)
+    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     if np.isfinite(basic):
         axes.axhline(LARGEST_FRICTION_ANGLE - basic, color="0.4", lw=0.8, ls=":", label=_held())
         other = axes.secondary_yaxis(
@@ -72,16 +74,16 @@ def _draw_angles(axes, strength, shown):
         other.set_ylabel(r"friction angle $\varphi_b + i$ (degrees)")
     _offset_axis(axes, v)
     axes.set_ylabel("dilatancy angle $i$ (degrees)")
-    letter(axes, "a", "angles")
+    letter(axes, "a", "dilatancy and friction angle")
 
 
 def _held():
-    return f"held above: $\\varphi_b + i$ = {LARGEST_FRICTION_ANGLE:g}°"
+    return f"held above: friction angle {LARGEST_FRICTION_ANGLE:g}°"
 
 
 def _draw_strength(axes, strength, shown):
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
-    letter(axes, "b", "strength by nominal pressure")
+    letter(axes, "b", "shear strength")
     v = strength["midpoint"].values
     if not np.isfinite(strength["shear_strength"]).any():
         axes.set_xlabel(_OFFSET)
@@ -100,7 +102,7 @@ def _draw_strength(axes, strength, shown):
 def _draw_summary(axes, strength):
     axes.set_xlabel(r"nominal pressure $\sigma_0$ (MPa)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
-    letter(axes, "c", "peak and residual")
+    letter(axes, "c", "peak and residual shear strength")
     sigma = strength["nominal_pressure"].values
     known = {key: strength[key].values for key in _SUMMARY if np.isfinite(strength[key]).any()}
     if not known:
@@ -110,15 +112,20 @@ def _draw_summary(axes, strength):
         if key not in known:
             continue
         law = key.startswith("barton")
-        style = {"ls": LINES[n - 1]} if law else {"ls": "none", "marker": MARKERS[n]}
+        style = (
+            {"ls": LINES[n - 1]}
+            if law
+            else {"ls": "none", "marker": _MARKERS[n], "ms": 6 - 2.5 * n}
+        )
+        colour = "k" if n != 1 else _RESIDUAL
         held = _peak_held(strength) if key == "peak_strength" else np.zeros(sigma.shape, bool)
         if not held.all():
-            axes.plot(sigma[~held], known[key][~held], color=colour_of(n), label=words, **style)
+            axes.plot(sigma[~held], known[key][~held], color=colour, label=words, **style)
         if held.any():
-            label = f"{words}: {_NO_RESULT}"
-            axes.plot(sigma[held], known[key][held], color="0.5", mfc="white", label=label, **style)
+            label = f"{words}: held, no result"
+            axes.plot(sigma[held], known[key][held], color="k", mfc="white", label=label, **style)
     residual = [strength[f"residual_strength{end}"].values for end in ("", "_low", "_high")]
-    draw_bars(axes, sigma, *residual, colour_of(1))
+    draw_bars(axes, sigma, *residual, _RESIDUAL)
     axes.set(xscale="log")
     logarithmic(axes, np.array(list(known.values())))
 
@@ -144,10 +151,12 @@ _NO_STRENGTH = "no strength: the study states no\nbasic friction angle, or one o
 #: What (c) shows: variable and words.
 _SUMMARY = {
     "peak_strength": "peak over the offsets",
-    "residual_strength": "residual",
-    "barton_strength": "Barton, JRC of the scan",
-    "barton_scaled_strength": "Barton and Bandis, for this length",
+    "residual_strength": "residual; bar: 95 % interval, if known",
+    "barton_strength": "peak by Barton, JRC of the scan",
+    "barton_scaled_strength": "peak by Barton and Bandis, for this length",
 }
+#: Of peak and residual in (c): colours and markers of no pressure.
+_RESIDUAL, _MARKERS = COLOURS[4], ("o", "D")
 
 
 _OFFSET = "offset $v$, middle of the interval (mm)"
@@ -166,7 +175,7 @@ def _style(n):
 
 
 def _label(strength, j):
-    return rf"$\sigma_0$ = {short(strength['nominal_pressure'][j])} MPa"
+    return rf"nominal pressure $\sigma_0$ = {short(strength['nominal_pressure'][j])} MPa"
 
 
 def _table(strength, shown):
@@ -242,7 +251,7 @@ def _residual_words(strength):
     ends = [float(strength[f"residual_angle{end}"]) for end in ("", "_low", "_high")]
     count = int(strength["residual_n"])
     if count > 1:
-        return f"{estimate(*ends, 'degrees')} ({count} intervals)"
+        return f"{estimate(*ends, 'degrees')}, {count} intervals"
     return f"{short(ends[0])} degrees (one interval)" if count else "none"
 
 
@@ -253,15 +262,12 @@ def _counts(held):
 
 def _barton_words(strength):
     """The computed peaks over those of Barton's law, with its roughness."""
-    jrc = strength["jrc"].sel(sampling=JRC_SAMPLING)
-    step = float(strength["step"].sel(sampling=JRC_SAMPLING))
-    words = f"JRC {short(jrc)} ({short(step)} mm steps)"
-    if float(strength["jrc_used"]) != float(jrc):
-        words += f", {short(strength['jrc_used'])} used"
+    words = roughness_words(strength)
     ratio = (strength["peak_strength"] / strength["barton_strength"]).values
     if not np.isfinite(ratio).any():
         return f"{words}; no Barton's law without friction angle and wall strength."
-    ratio = ratio[np.isfinite(ratio) & ~_peak_held(strength)]
+    # A strength of nothing has no place on the axis.
+    ratio = ratio[np.isfinite(ratio) & (ratio > 0) & ~_peak_held(strength)]
     if not ratio.size:
-        return f"{words}; every peak is held at the bound, so none is compared with Barton's."
-    return f"{words}: peaks {short(ratio.min())} to {short(ratio.max())} times Barton's."
+        return f"{words}; every peak is held at the bound, none compared with Barton's."
+    return f"{words}; peaks {short(ratio.min())} to {short(ratio.max())} times Barton's."

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.ranges import within
@@ -21,11 +22,10 @@ from ..kit.drawing import (
     headline,
     letter,
     settings_of,
-    spread,
 )
 from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, nothing_in, size_axis
 from ..kit.verdicts import claim, sentences
-from ..kit.words import UNDETERMINED, estimate, opening, place, short
+from ..kit.words import UNDETERMINED, estimate, opening, place, pressure_label
 
 TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
 SUBJECT = "specimen"
@@ -41,7 +41,6 @@ class Quantity(NamedTuple):
     letter: str
     words: str
     label: str
-    symbol: str
 
 
 CLOSURE = Quantity(
@@ -50,19 +49,17 @@ CLOSURE = Quantity(
     "b",
     "closure",
     r"interface closure $w_\mathrm{int}$ (mm)",
-    r"w_\mathrm{int}",
 )
 COMPLIANCE = Quantity(
     "interface_compliance",
     "compliance_exponent",
     "c",
     "compliance",
-    r"compliance $c=\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)",
-    "c",
+    r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)",
 )
 
-#: Offsets whose composite topography is shown in (a).
-_OFFSETS = 3
+#: Points that no exponent goes through: beyond the range of eq. 2, or of few nodes in contact.
+_HOLLOW = "hollow: not fitted (out of range, few nodes)"
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -75,7 +72,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     offsets = laws["offset"].values
     flat = str(laws["direction"].values) == "none"
     mapped = int(np.argmin(np.abs(offsets - chosen_offset(settings["map_offset"], offsets))))
-    shown = [] if flat else [int(i) for i in spread(len(offsets), _OFFSETS)]
+    shown = [] if flat else [mapped]
 
     figure = Figure(figsize=(WIDTH, 5.8))
     (roughness, closure), (compliance, legends) = figure.subplots(2, 2)
@@ -86,11 +83,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles = [
         entry
         for axes, words in (
-            (roughness, "(a)"),
-            (closure, "(b), thin: undetermined"),
-            (compliance, "(c), thin: undetermined"),
+            (roughness, "(a) exponents with 95 % intervals"),
+            (closure, r"(b) $w_\mathrm{int} \sim b^x$ at nominal pressure"),
+            (compliance, r"(c) $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0 \sim b^x$"),
         )
         for entry in (heading(words), *entries(axes))
+    ]
+    handles += [
+        Line2D([], [], ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW),
+        Line2D([], [], color="0.4", label="line: fit (thin: undetermined)", lw=0.8),
+        heading("bars: 95 % intervals; none of the whole window"),
     ]
     legends.legend(handles=handles, loc="center left", labelspacing=0.4)
     headline(figure, settings["label"])
@@ -101,36 +103,44 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         ],
         ignore_index=True,
     )
-    larger = claim(atlas, name, "more compliant larger samples", "larger_samples_close_more")
+    force = float(group(atlas, "statements", name).attrs["force"])
+    judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
+    exponents = bool(np.isfinite(laws["compliance_exponent"]).any())
+    larger = claim(
+        atlas,
+        name,
+        "more compliant larger samples",
+        "larger_samples_close_more",
+        why=f"at {pressure_label(float(judged))}, filled sizes alone" if exponents else "",
+    )
     return Drawing(figure, table, sentences(_caption(laws), _closure_words(laws), larger))
 
 
 def _draw_roughness(axes, laws, shown):
     b = laws["scale_side"].values
     face = laws["face_sigma_z"].values
+    used = laws["scale_used"].values & np.isfinite(face) & np.isfinite(float(laws["face_hurst"]))
     hurst = interval_text(laws, "face_hurst")
-    _with_intervals(axes, b, laws, "face_sigma_z", (), color="k", marker="o", ls="none")
-    axes.plot([], [], "ko", label=f"the face: H = {hurst}")
-    for n, i in enumerate(shown):
-        style = {"color": colour_of(n + 1), "marker": MARKERS[n + 1]}
-        _with_intervals(axes, b, laws, "sigma_z_all", (i,), **style, ls="-", lw=0.6)
-        label = (
-            f"composite, $v$ = {short(laws['offset'][i])} mm: H = {interval_text(laws, 'hurst', i)}"
-        )
-        axes.plot([], [], **style, lw=0.6, label=label)
+    style = {"color": "k", "marker": "o"}
+    _with_intervals(axes, b, laws, "face_sigma_z", (), used, **style)
+    axes.plot([], [], **style, ls="none", label=rf"face: $\sigma_z \sim b^H$, $H$ = {hurst}")
+    for i in shown:
+        style = {"color": "0.65", "marker": "D"}
+        _with_intervals(axes, b, laws, "sigma_z_all", (i,), used, **style)
+        label = f"gap of both faces: $H$ = {interval_text(laws, 'hurst', i)}"
+        axes.plot([], [], **style, ls="none", label=label)
     expected = float(laws["expected_hurst"])
-    used = laws["scale_used"].values & np.isfinite(face)
     if np.isfinite(expected) and used.any():
         ends = b[used][[0, -1]]
         middle = np.exp(np.mean(np.log(b[used])))
         level = np.exp(np.mean(np.log(face[used])))
-        label = rf"eq. 2, $H = 3-\Delta_g$ = {interval_text(laws, 'expected_hurst')}"
-        axes.plot(ends, level * (ends / middle) ** expected, color="0.5", ls="--", label=label)
+        label = rf"eq. 2: $H = 3-\Delta_g$ = {interval_text(laws, 'expected_hurst')}"
+        axes.plot(ends, level * (ends / middle) ** expected, color="k", ls="--", label=label)
     size_axis(axes, b, "sub-windows")
     if (face > 0).any():
         drawn = [face, *laws["sigma_z_all"].values[shown]]
         logarithmic(axes, np.concatenate(drawn))
-    axes.set_ylabel(r"$\sigma_z$ about the own plane (mm)")
+    axes.set_ylabel(r"roughness $\sigma_z$ about the own plane (mm)")
     letter(axes, "a", "roughness")
 
 
@@ -139,19 +149,20 @@ def _draw_contact(axes, laws, mapped, quantity):
     b = laws["side"].values
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
-        _with_intervals(axes, b, laws, quantity.name, (mapped, j), **style, ls="none")
         law = quantity.exponent
         ends = [float(laws[f"{law}{end}"][mapped, j]) for end in ("", "_low", "_high")]
         weak = WEAK if estimate(*ends).startswith(UNDETERMINED) else {}
-        label = f"{short(pressure)} MPa: ${quantity.symbol} \\sim b^x$, $x$ = {estimate(*ends)}"
-        axes.plot([], [], **style, ls="none", label=label)
         values = laws[quantity.name].values[:, mapped, j]
+        fitted = np.zeros(b.shape, bool)
         if np.isfinite(ends[0]):
             b_min, b_max = (float(laws[f"{law}_b_{end}"][mapped, j]) for end in ("min", "max"))
             fitted = (values > 0) & within(b, b_min, b_max)
             level = np.exp(np.mean(np.log(values[fitted]) - ends[0] * np.log(b[fitted])))
             line = {"color": style["color"], "linewidth": 0.8} | weak
             axes.plot(b[fitted], level * b[fitted] ** ends[0], **line)
+        _with_intervals(axes, b, laws, quantity.name, (mapped, j), fitted, **style)
+        label = f"{pressure_label(pressure)}: $x$ = {estimate(*ends)}"
+        axes.plot([], [], **style, ls="none", label=label)
     size_axis(axes, b, "sub-windows")
     values = laws[quantity.name].values[:, mapped]
     if (values > 0).any():
@@ -163,11 +174,15 @@ def _draw_contact(axes, laws, mapped, quantity):
     letter(axes, quantity.letter, f"{quantity.words}, {where}")
 
 
-def _with_intervals(axes, b, laws, name, index, **style):
-    """Means over sub-windows and their 95 % intervals; ``index`` follows the dimension of b."""
+def _with_intervals(axes, b, laws, name, index, fitted, **style):
+    """Means over sub-windows and their 95 % intervals; hollow where not ``fitted``.
+
+    ``index`` follows the dimension of b.
+    """
     mean, low, high = along_size(laws, name, index)
-    axes.plot(b, mean, **style)
     draw_bars(axes, b, mean, low, high, style["color"])
+    for chosen, face in ((fitted, style["color"]), (~fitted, "white")):
+        axes.plot(b[chosen], mean[chosen], ls="none", mfc=face, **style)
 
 
 def _roughness_table(laws, shown):

@@ -16,6 +16,9 @@ from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
 from .verdicts import verdict_words
 from .words import interval, place
 
+#: Statements that judge the rise of Delta_sigma with the load, by estimate.
+RISES = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -198,7 +201,8 @@ def departures(counts: xr.Dataset) -> str:
     decided = found[found != UNDETERMINED]
     if not decided.size:
         return "Nulls: undetermined."
-    return f"Beyond both nulls: {int((decided == BEYOND_BOTH).sum())} of {decided.size}."
+    departing = int((decided == BEYOND_BOTH).sum())
+    return f"It departs from both null models at {departing} of {decided.size} loads."
 
 
 def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = True) -> str:
@@ -214,9 +218,8 @@ def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = 
     numbers : bool, optional
         Whether the numbers follow that decide.
     """
-    rows = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
     return ", ".join(
-        f"by {estimate.label} {verdict_words(atlas, name, rows[estimate.key], numbers=numbers)}"
+        f"by {estimate.label} {verdict_words(atlas, name, RISES[estimate.key], numbers=numbers)}"
         for estimate in loading.estimates
     )
 

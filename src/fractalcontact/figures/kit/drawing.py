@@ -219,8 +219,12 @@ def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
     """
     slid = offsets[offsets > 0]
     if slid.size > 1 and slid.max() > 10 * slid.min():
-        first, last = np.ceil(np.log10(slid.min())), np.floor(np.log10(slid.max()))
-        ticks = list(10 ** np.arange(first, last + 1))
+        decades = np.arange(np.floor(np.log10(slid.min())), np.log10(slid.max()) + 1)
+        # Powers of ten would be one or two on an axis shorter than two decades.
+        parts = (1, 2, 5) if slid.max() < 100 * slid.min() else (1,)
+        places = np.outer(10**decades, parts).ravel()
+        within = (places >= slid.min() * (1 - 1e-9)) & (places <= slid.max() * (1 + 1e-9))
+        ticks = list(places[within])
         if slid.size < len(offsets):
             axes.set_xscale("symlog", linthresh=slid.min(), linscale=0.3)
             axes.set_xlim(-0.15 * slid.min(), 1.2 * slid.max())
@@ -228,6 +232,7 @@ def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
             ticks.insert(0, 0.0)
         else:
             axes.set_xscale("log", nonpositive="mask")
+            axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xlabel("offset $v$ (mm)")
 
@@ -320,7 +325,7 @@ def entries(axes: Axes) -> list[Artist]:
     return axes.get_legend_handles_labels()[0]
 
 
-def legends_below(figure: FigureBase, *columns: list[Artist]) -> None:
+def legends_below(figure: FigureBase, *columns: list[Artist], columnspacing: float = 6) -> None:
     """Legends side by side under a figure, where they hide nothing.
 
     Parameters
@@ -328,6 +333,8 @@ def legends_below(figure: FigureBase, *columns: list[Artist]) -> None:
     figure : matplotlib.figure.FigureBase
     *columns : list of matplotlib.artist.Artist
         Entries of each legend.
+    columnspacing : float, optional
+        Between the columns, in letters.
     """
     rows = max(len(column) for column in columns)
     # One legend fills its columns one by one: the shorter ones need filling up.
@@ -338,7 +345,7 @@ def legends_below(figure: FigureBase, *columns: list[Artist]) -> None:
         handles=handles,
         loc="outside lower center",
         ncols=len(columns),
-        columnspacing=6,
+        columnspacing=columnspacing,
         handlelength=3,
     )
 

@@ -30,7 +30,7 @@ FEW_NODES = 100
 FINE_NODES = 100
 
 _RING: dict[str, Any] = {"marker": "o", "ls": "none", "ms": 4, "mfc": "none", "mew": 0.7}
-_RING["mec"] = COLOURS[2]
+_RING["mec"] = COLOURS[3]
 
 #: Points that a node in contact is wide at least, so that print shows it, as long as no more than
 #: this fraction of the map becomes black.

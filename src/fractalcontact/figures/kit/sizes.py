@@ -6,11 +6,17 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
+from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
+from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from .empty import MARK
 from .words import estimate, length_unit, short
 
 #: Where more than this fraction of the sub-windows had their angle held, a marker is left open.
 MOSTLY = 0.5
+#: What such a marker says.
+HELD = f"hollow: most sub-windows held at {LARGEST_FRICTION_ANGLE:g}°, no result"
+#: How :func:`apart` is declared in a legend.
+SHIFTED = "pressures at one $b$ are drawn side by side"
 #: Why no strength is drawn.
 NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
 #: Numbers of a decade that stand at an axis whose ends are up to this factor apart.
@@ -51,6 +57,25 @@ def share_shown(laws: xr.Dataset, name: str) -> int:
 def share_words(laws: xr.Dataset, share: int) -> str:
     """A v/b in per cent."""
     return f"{short(100 * float(laws['share'][share]))} %"
+
+
+def roughness_words(strength: xr.Dataset) -> str:
+    """JRC of the scan, and whether the law of scale keeps it within Barton's.
+
+    Parameters
+    ----------
+    strength : xr.Dataset
+        Stage ``strength`` of one direction.
+    """
+    jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
+    used = float(strength["jrc_used"])
+    step = float(strength["step"].sel(sampling=JRC_SAMPLING))
+    words = f"JRC {short(jrc)} ({short(step)} mm steps)"
+    if used != jrc:
+        words += f", {short(used)} used"
+    if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
+        words += f", for this length beyond Barton's {JRC_RANGE[1]:g}"
+    return words
 
 
 def draw_means(

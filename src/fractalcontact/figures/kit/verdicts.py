@@ -10,7 +10,9 @@ from ...statements.study import STATEMENTS as OF_STUDY
 CIRCULAR, CIRCULAR_SHORT = "circular: chosen for it", "circular"
 
 
-def verdict_words(atlas: DataTree, name: str, statement: str, *, numbers: bool = True) -> str:
+def verdict_words(
+    atlas: DataTree, name: str, statement: str, *, numbers: bool = True, why: str = ""
+) -> str:
     """Verdict on a statement with the numbers that decide it, as the table of statements has them.
 
     Parameters
@@ -23,6 +25,8 @@ def verdict_words(atlas: DataTree, name: str, statement: str, *, numbers: bool =
         Name of the function that judges it.
     numbers : bool, optional
         Whether the numbers follow.
+    why : str, optional
+        What the eye cannot see: the reason, which follows the numbers.
 
     Returns
     -------
@@ -33,23 +37,33 @@ def verdict_words(atlas: DataTree, name: str, statement: str, *, numbers: bool =
     if row is None:
         return ""
     said = [str(row["numbers"].item())] if numbers else []
+    if why:
+        said.append(why)
     if bool(row["circular"]):
         said.append(CIRCULAR)
     words = str(row["verdict"].item())
     return f"{words} ({'; '.join(said)})" if said else words
 
 
-def claim(atlas: DataTree, name: str, says: str, statement: str, *, numbers: bool = True) -> str:
+def claim(
+    atlas: DataTree,
+    name: str,
+    says: str,
+    statement: str,
+    *,
+    numbers: bool = True,
+    why: str = "",
+) -> str:
     """A sentence on what the paper says and whether it holds; empty where it is not asked.
 
     Parameters
     ----------
-    atlas, name, statement, numbers
+    atlas, name, statement, numbers, why
         As for :func:`verdict_words`.
     says : str
         What the paper says, short: "A_r ~ F".
     """
-    words = verdict_words(atlas, name, statement, numbers=numbers)
+    words = verdict_words(atlas, name, statement, numbers=numbers, why=why)
     return f"The paper's {says}: {words}." if words else ""
 
 

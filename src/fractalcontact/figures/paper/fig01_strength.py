@@ -5,7 +5,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -19,8 +18,10 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.sizes import (
+    HELD,
     MOSTLY,
     NO_STRENGTH,
+    SHIFTED,
     along_size,
     apart,
     draw_bars,
@@ -35,7 +36,7 @@ from ..kit.sizes import (
 from ..kit.verdicts import claim, sentences
 from ..kit.words import opening, place, short
 
-TITLE = "Fig. 1b: peak shear strength against the size of the joint, computed"
+TITLE = "Fig. 1b: shear strength against the size of the joint, at equal offset over size"
 SUBJECT = "joint"
 NEEDS = ("windows", "statements")
 ORDER = 10
@@ -59,15 +60,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(strength), entries(slope))
     direction = str(laws["direction"].values)
     headline(figure, settings["label"], place(direction))
-    falls = claim(
-        atlas, name, "fall of strength with size", "strength_falls_with_size", numbers=False
-    )
+    falls = claim(atlas, name, "fall of strength with size", "strength_falls_with_size")
     return Drawing(figure, _table(laws), _caption(laws, share, falls))
 
 
 def _draw_strength(axes, laws, share):
     b, loads = laws["side"].values, laws.sizes["normal_force"]
     drawn = np.isfinite(laws["similar_strength"][share].values).any()
+    held = laws["similar_held"].values[share] > MOSTLY
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
         mean, low, high = along_size(laws.isel(share=share), "similar_strength", (j,))
@@ -80,22 +80,19 @@ def _draw_strength(axes, laws, share):
             style = {"color": colour, "marker": marker, "ls": "none"}
             exponent = interval_text(laws, "similar_strength_exponent", (share, j))
             label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau \sim b^x$, $x$ = {exponent}"
+            label = label.replace("no fit", "no fit (held)" if held[:, j].any() else "no fit")
             axes.plot([], [], **style, label=label)
     size_axis(axes, b, "joint")
     if drawn:
         logarithmic(axes, laws["similar_strength"].values[share])
-        if (laws["similar_held"].values[share] > MOSTLY).any():
-            axes.plot([], [], "o", color="k", mfc="white", label=_held_label())
+        if held.any():
+            axes.plot([], [], "o", color="0.4", mfc="white", label=HELD)
     else:
         nothing_in(axes, NO_STRENGTH)
     if np.isfinite(laws["barton_strength"]).any():
-        axes.plot([], [], "k--", lw=0.8, label="Barton and Bandis (joints of 50 to 400 mm)")
+        axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis (50 to 400 mm)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     letter(axes, "a", f"strength at $v$ = {share_words(laws, share)} of $b$")
-
-
-def _held_label():
-    return f"most sub-windows held at {LARGEST_FRICTION_ANGLE:g}°"
 
 
 def _draw_slope(axes, laws, share):
@@ -119,8 +116,10 @@ def _draw_slope(axes, laws, share):
         side = b[anchored]
         level = np.exp(np.mean(np.log(slopes[anchored])))
         middle = np.exp(np.mean(np.log(side)))
-        label = rf"self-affine: $x = H - 1$ = {short(expected)}"
+        label = rf"self-affine: $x = H - 1$ = {short(expected)} (slope alone)"
         axes.plot(side, level * (side / middle) ** expected, color="0.5", ls=":", label=label)
+    axes.plot([], [], " ", label="bars: 95 % intervals; none of the whole window")
+    axes.plot([], [], " ", label=SHIFTED)
     size_axis(axes, b, "joint")
     if drawn:
         logarithmic(axes, laws["similar_slope"].values[share])

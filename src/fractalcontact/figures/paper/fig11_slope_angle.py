@@ -19,7 +19,10 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.sizes import (
+    HELD,
+    MOSTLY,
     NO_STRENGTH,
+    SHIFTED,
     along_size,
     apart,
     draw_bars,
@@ -27,6 +30,7 @@ from ..kit.sizes import (
     interval_text,
     nothing_in,
     plain_decades,
+    roughness_words,
     share_shown,
     share_words,
     size_axis,
@@ -36,7 +40,7 @@ from ..kit.words import opening, place, short
 
 TITLE = "Fig. 11: limit slope angle against the size of the joint, computed"
 SUBJECT = "joint"
-NEEDS = ("windows", "statements")
+NEEDS = ("windows", "strength", "statements")
 ORDER = 180
 
 #: Delta_sigma that later work of the paper's school takes from Bandis' shear tests.
@@ -52,15 +56,18 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     laws = group(atlas, "windows", name)
     share = share_shown(laws, "similar_strength")
     figure = Figure(figsize=(WIDTH, 4.4))
-    angle, strength = figure.subplots(1, 2)
+    angle, ratio = figure.subplots(1, 2)
     drawn = bool(np.isfinite(laws["similar_strength"].values[share]).all(axis=1).any())
     _draw_angle(angle, laws, share, drawn)
-    _draw_ratio(strength, laws, share, drawn)
+    _draw_ratio(ratio, laws, share, drawn)
     headline(figure, settings["label"], place(str(laws["direction"].values)))
     if drawn:
-        legends_below(figure, entries(angle), entries(strength))
-    falls = claim(atlas, name, "fall with size", "strength_falls_with_size", numbers=False)
-    return Drawing(figure, _table(laws), _caption(settings, laws, share, drawn, falls))
+        legends_below(figure, entries(angle), entries(ratio), columnspacing=2)
+    falls = claim(atlas, name, "fall with size", "strength_falls_with_size")
+    strength = group(atlas, "strength", name)
+    strength = strength.sel(contact_direction=str(laws["direction"].values))
+    caption = _caption(laws, share, drawn, falls, _beyond_barton(settings, laws, strength))
+    return Drawing(figure, _table(laws), caption)
 
 
 def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
@@ -85,14 +92,14 @@ def _draw_angle(axes, laws, share, drawn):
         draw_bars(axes, beside, mean, np.maximum(low, 0), high, colour)
         barton = slope_angle(laws["barton_strength"].values[:, j], pressure)
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
-        label = rf"$\sigma_0$ = {short(pressure)} MPa"
-        axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
-    axes.plot([], [], "ko", mfc="white", label="most of them held")
+    if (laws["similar_held"].values[share] > MOSTLY).any():
+        axes.plot([], [], "o", color="0.4", mfc="white", label=HELD)
     if np.isfinite(laws["barton_strength"]).any():
-        axes.plot([], [], "k--", lw=0.8, label="Barton and Bandis' scale law")
+        axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
+    axes.plot([], [], " ", label=SHIFTED)
     size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)
-    axes.set_ylabel("limit slope angle (degrees)")
+    axes.set_ylabel(r"limit slope angle $\arctan(\tau/\sigma_0)$ (degrees)")
     letter(axes, "a", f"angle at $v$ = {share_words(laws, share)} of $b$")
     if not drawn:
         nothing_in(axes, NO_STRENGTH)
@@ -102,21 +109,24 @@ def _draw_ratio(axes, laws, share, drawn):
     """tau / tau of the whole window, beside the exponent quoted for shear tests."""
     b, pressures = laws["side"].values, laws["nominal_pressure"].values
     for j, pressure in enumerate(pressures):
-        values = laws["similar_strength"].values[share, :, j]
+        values, *ends = along_size(laws.isel(share=share), "similar_strength", (j,))
         colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
         held = laws["similar_held"].values[share, :, j]
         beside = apart(b, j, len(pressures))
         draw_means(axes, beside, values / values[0], held, colour, marker)
+        draw_bars(axes, beside, *(one / values[0] for one in (values, *ends)), colour)
         exponent = interval_text(laws, "similar_strength_exponent", (share, j))
+        exponent = exponent.replace("no fit", "no fit (held)") if (held > 0).any() else exponent
         label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
         axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     slope = QUOTED_DELTA - 2
-    label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}: quoted by later work of the same school"
+    label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work of the same school"
     axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
+    axes.plot([], [], " ", label="bars: 95 % intervals; none of the whole window")
     size_axis(axes, b, "joint")
     axes.set_yscale("log")
     axes.set_ylabel(r"$\tau$ / $\tau$ of the whole window (1)")
-    letter(axes, "b", "strength over that of the largest")
+    letter(axes, "b", r"strength $\tau$ over that of the whole window")
     ratio = laws["similar_strength"].values[share] / laws["similar_strength"].values[share, 0]
     known = ratio[np.isfinite(ratio) & (ratio > 0)]
     # The whole window may have no strength where its parts have.
@@ -165,7 +175,7 @@ def _table(laws):
 # -- caption ---------------------------------------------------------------------------------------
 
 
-def _caption(settings, laws, share, drawn, falls):
+def _caption(laws, share, drawn, falls, beyond):
     first = opening("Fig. 11")
     if not drawn:
         return sentences(
@@ -175,15 +185,14 @@ def _caption(settings, laws, share, drawn, falls):
         )
     return sentences(
         f"{first} Computed limit slope angle and relative strength of sub-windows at "
-        f"v = {share_words(laws, share)} of their side b; no exponent goes through strengths held "
-        "at their bound.",
+        f"v = {share_words(laws, share)} of their side b.",
         falls,
-        _beyond_barton(settings, laws),
+        beyond,
     )
 
 
-def _beyond_barton(settings, laws):
+def _beyond_barton(settings, laws, strength):
     """Whether Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20."""
     stated = np.isfinite(settings["material"]["joint_wall_strength"])
     beyond = stated & np.isnan(laws["barton_roughness"]).all()
-    return "JRC_n is beyond Barton's scale." if beyond else ""
+    return f"No Barton's law: {roughness_words(strength)}." if beyond else ""

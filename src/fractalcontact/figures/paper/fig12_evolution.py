@@ -1,16 +1,19 @@
 """Fig. 12: the contact domain and its dimension as the joint closes."""
 
+import re
+import textwrap
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.resolved import CORRECTED_NODES
-from ..kit.domains import Loading, departures, rise_words
+from ..kit.domains import RISES, Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
 from ..kit.maps import ENLARGED, draw_domain, ring_entry
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
-from ..kit.verdicts import sentences
+from ..kit.verdicts import sentences, verdict_words
 from ..kit.words import force_label, opening, percent, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
@@ -23,7 +26,17 @@ _MOST_MAPS = 6
 
 #: Null models of box counting, in words.
 NULLS = {"random": "random nodes (95 % band)", "cut": "bearing-area cut"}
+#: The same in the legend: as many nodes as touch.
+NULL_LABELS = {
+    "random": "as many random nodes (95 % band)",
+    "cut": "as many nodes: bearing-area cut",
+}
 
+#: Letters of a line of the legend.
+_LEGEND = 34
+
+#: Points of the letters above the maps.
+_ABOVE_MAPS = 8
 #: Points between the panel's title and its upper edge, where an axis stands.
 _ABOVE = 30
 #: The two estimates stand this factor of F apart, so that neither hides the other.
@@ -35,7 +48,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_MAPS)
     aspect = loading.sides[0] / loading.sides[1]
-    map_height = WIDTH / _MOST_MAPS * aspect + 0.75
+    map_height = WIDTH / _MOST_MAPS * aspect + 0.95
     figure = Figure(figsize=(WIDTH, map_height + 3))
     top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 3])  # type: ignore[misc]  # an array
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
@@ -43,24 +56,28 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     states = loading.scaling.sel(resolution=loading.finest)
     finest = states["area"].values
     corrected = np.where(states["nodes"] >= CORRECTED_NODES, states["area_corrected"], np.nan)
-    larger = False
+    larger, some_raw = False, False
     for axes, which, i in zip(maps, "abcdef", shown, strict=False):
         larger |= draw_domain(axes, loading.domain(loading.finest, i), loading.sides, ticks=3)
         known = np.isfinite(corrected[i])
         share = percent((corrected if known else finest)[i] / nominal) + ("" if known else " raw")
+        some_raw |= not known
         letter(axes, which, f"{force_label(loading.forces[i])}\n{share}")
         axes.label_outer()
+    raw = "; raw: not corrected for the perimeter" if some_raw else ""
+    above = f"force $F$ and real contact area $A_r/A_0$ of each domain (contact black{raw})"
+    top.suptitle(above, fontsize=_ABOVE_MAPS)
     axes = bottom.subplots()
     measured = measured_series(atlas)
     _draw_nulls(axes, loading)
-    _draw_dimensions(axes, loading)
+    _draw_dimensions(axes, loading, _rises(atlas, name))
     _draw_measured(axes, measured, nominal)
     handles = entries(axes)
     ringed = [ring_entry(f"ring: one node ({which})") for which in [_ringed(maps)] if which]
     axes.legend(
         handles=[*handles, *ringed], loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0
     )
-    letter(axes, "abcdefg"[len(shown)], "dimension of the contact domain and load")
+    letter(axes, "abcdefg"[len(shown)], r"dimension $\Delta_\sigma$ of the contact domain")
     _pressure_axis(axes, nominal)
     headline(figure, *loading.title)
     table = pd.concat([_table(loading, finest, corrected, nominal), *_measured_rows(measured)])
@@ -68,6 +85,17 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = f"{_caption(loading, rises)}{_measured_words(measured)}"
     caption = sentences(caption, ENLARGED if larger else "")
     return Drawing(figure, table.reset_index(drop=True), caption)
+
+
+def _rises(atlas, name):
+    """Verdict on the rise of Delta_sigma with the load, by estimator, in lines of a legend."""
+    found = {}
+    for key, statement in RISES.items():
+        words = verdict_words(atlas, name, statement).replace(" a decade of F", " a decade")
+        # An interval stays in one line.
+        words = re.sub(r"(\[\S+) ", "\\1\N{NO-BREAK SPACE}", words)
+        found[key] = textwrap.fill(f"rise with $F$: {words}", _LEGEND)
+    return found
 
 
 def _ringed(maps):
@@ -169,11 +197,13 @@ def _draw_nulls(axes, loading):
     counts, forces = loading.counts, loading.forces
     low, high = (counts[f"delta_sigma_random_{end}"].values for end in ("low", "high"))
     axes.fill_between(forces, low, high, color="0.8", lw=0, zorder=0)
-    axes.plot(forces, counts["delta_sigma_random"], color="0.5", lw=1, label=NULLS["random"])
-    axes.plot(forces, counts["delta_sigma_cut"], "-.", color=COLOURS[4], lw=1, label=NULLS["cut"])
+    axes.plot(forces, counts["delta_sigma_random"], color="0.5", lw=1, label=NULL_LABELS["random"])
+    axes.plot(
+        forces, counts["delta_sigma_cut"], "-.", color=COLOURS[4], lw=1, label=NULL_LABELS["cut"]
+    )
 
 
-def _draw_dimensions(axes, loading):
+def _draw_dimensions(axes, loading, rises):
     for estimate in loading.estimates:
         reach = np.array([estimate.value - estimate.low, estimate.high - estimate.value])
         axes.errorbar(
@@ -191,12 +221,14 @@ def _draw_dimensions(axes, loading):
             loading.forces[sure] * _APART[estimate.key],
             estimate.value[sure],
             **estimate.style | {"linestyle": "none"},
-            label=f"{estimate.symbol},\n{sure.sum()} of {sure.size} loads (faint: undetermined)",
+            label=f"$\\Delta_\\sigma$ by {estimate.symbol}\n{rises[estimate.key]}",
         )
+    axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
+    faint = "faint: undetermined, yet in the rise"
+    axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
     if not any(np.isfinite(estimate.value).any() for estimate in loading.estimates):
         first = "\n".join(wrapped(estimate.reason[0]) for estimate in loading.estimates)
         axes.text(0.5, 0.5, first, transform=axes.transAxes, ha="center")
-    axes.axhline(1, color="0.6", ls=":", lw=0.8, zorder=0, label="dimension of a line")
     axes.set_xscale("log")
     axes.set_xlim(loading.forces.min() / 1.5, loading.forces.max() * 1.5)
     axes.set_ylim(-0.05, 2.05)

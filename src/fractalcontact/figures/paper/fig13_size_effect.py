@@ -2,13 +2,26 @@
 
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ..kit.domains import Loading, rise_words
-from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing, heading, headline, legends_below
+from ..kit.domains import RISES, Loading, rise_words
+from ..kit.drawing import (
+    COLOURS,
+    MARKERS,
+    WEAK,
+    WIDTH,
+    Drawing,
+    heading,
+    headline,
+    legends_below,
+    letter,
+)
+from ..kit.sizes import nothing_in, plain_decades
+from ..kit.verdicts import verdict_words
 from ..kit.words import force_label, interval, opening
 from ._size_effect import draw_axes, size_effect
 
@@ -20,50 +33,59 @@ SECTION = "size effect"
 
 #: Loads drawn.
 _MOST_LOADS = 6
+#: Bars of the n-th load stand the n-th power of this factor of b beyond the ends of its line.
+_BESIDE = 1.04
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
-    """Eq. 6 under several loads, by both estimators."""
+    """Eq. 6 under several loads, one panel an estimator."""
     loading = Loading.of(atlas, name)
     shown = loading.spread_loads(_MOST_LOADS)
     table = pd.concat([size_effect(loading, i) for i in shown], ignore_index=True)
-    figure = Figure(figsize=(WIDTH, 4.8))
-    axes = figure.subplots()
-    for n, (_, rows) in enumerate(table.groupby("load_N")):
-        if rows["sigma_0_MPa"].isna().all():
-            continue
-        own = rows.iloc[0]
-        point: dict[str, Any] = {
-            "marker": MARKERS[n],
-            "ms": 7,
-            "mec": "white",
-            "mew": 0.5,
-            "zorder": 3,
-        }
-        axes.plot(own["specimen_b_mm"], own["specimen_sigma_0_MPa"], color=COLOURS[n], **point)
-    lines = [_draw_lines(axes, loading, estimate, shown, table) for estimate in loading.estimates]
-    legends_below(figure, *lines)
-    draw_axes(axes)
-    axes.set_title("lines: eq. 6 (thin: undetermined); markers: the specimen")
+    figure = Figure(figsize=(WIDTH, 4.6))
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    columns = []
+    for axes, which, estimate in zip(panels, "ab", loading.estimates, strict=True):
+        columns.append(_draw_lines(axes, loading, estimate, shown, table))
+        draw_axes(axes)
+        rises = verdict_words(atlas, name, RISES[estimate.key], numbers=False)
+        words = rf"$\Delta_\sigma$ by {estimate.symbol}"
+        letter(axes, which, f"{words}; the paper's rise with $F$: {rises}")
+    plain_decades(panels[0].xaxis)
+    panels[1].set_ylabel("")
+    # Of both panels.
+    columns[0].append(heading("markers: the specimen, on which eq. 6 is fixed; lines: eq. 6"))
+    columns[0].append(heading("bars at the ends: 95 % interval; thin, no bar: undetermined"))
+    legends_below(figure, *columns, columnspacing=2)
     headline(figure, *loading.title)
-    return Drawing(figure, table, _caption(rise_words(atlas, name, loading, numbers=False)))
+    return Drawing(figure, table, _caption(rise_words(atlas, name, loading)))
 
 
 def _draw_lines(axes, loading, estimate, shown, table):
-    """Lines of one estimator, a colour a load; entries of a legend."""
-    line = estimate.style["linestyle"]
-    handles = [heading(rf"{estimate.symbol}: slope $-(2-\Delta_\sigma)$, 95 % interval")]
+    """Lines of one estimator, a colour a load, and the specimen; entries of a legend."""
+    handles = [heading(rf"{estimate.symbol}: slope $-(2-\Delta_\sigma)$ [95 % interval]")]
     for n, i in enumerate(shown):
         if estimate.reason[i]:
             continue
         force = loading.forces[i]
         rows = table[(table["load_N"] == force) & (table["estimator"] == estimate.label)]
-        style = {"color": COLOURS[n], "linestyle": line}
-        style |= {} if estimate.determined[i] else WEAK
-        axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style)
+        style: dict[str, Any] = {"color": COLOURS[n]}
+        faint = {} if estimate.determined[i] else WEAK
+        axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style | faint)
+        if estimate.determined[i]:
+            ends = rows.iloc[[0, -1]]
+            # Beside each other, lest one hides another.
+            b = ends["b_mm"] * np.array([1 / _BESIDE**n, _BESIDE**n])
+            axes.vlines(b, ends["sigma_0_low_MPa"], ends["sigma_0_high_MPa"], lw=1, **style)
+        own = rows.iloc[0]
+        point = style | {"marker": MARKERS[n], "ms": 6, "mec": "white", "mew": 0.5}
+        axes.plot(own["specimen_b_mm"], own["specimen_sigma_0_MPa"], zorder=3, **point)
         slope = interval(*(d[i] for d in _slope(estimate)))
-        label = f"{force_label(force)}: {slope}"
-        handles.append(Line2D([], [], **style, marker=MARKERS[n], label=label))
+        label = f"$F$ = {force_label(force)}: {slope}"
+        handles.append(Line2D([], [], marker=MARKERS[n], label=label, **style | faint))
+    if len(handles) == 1:
+        nothing_in(axes, "no $\\Delta_\\sigma$ at the loads drawn")
+        return []
     return handles
 
 
@@ -74,6 +96,6 @@ def _slope(estimate):
 
 def _caption(rises):
     return (
-        f"{opening('Fig. 13')} Eq. 6 extrapolated from the specimen (solid by A_r(s), dashed by "
-        f"box counting), not measured. The paper's rise of Delta_sigma: {rises}."
+        f"{opening('Fig. 13')} Nominal pressure of joints of other sizes by eq. 6, extrapolated "
+        f"from the specimen, not measured. The paper's rise of Delta_sigma: {rises}."
     )
