@@ -139,7 +139,7 @@ def _draw_lacunarity(axes, table, mapped):
         ylabel=r"lacunarity $\langle M^2\rangle/\langle M\rangle^2$ (1)",
     )
     label_short_span(axes.xaxis)
-    letter(axes, "b", "lacunarity: evenness")
+    letter(axes, "b", "lacunarity: 1 if even")
 
 
 def _draw_spectrum(axes, table, mapped):
@@ -158,7 +158,7 @@ def _key(state, mapped):
     greys = ((_LINE, "(a) 1: as of a line"), (_PLANE, "(a), (c) 2: as of a filled plane"))
     entries = [Line2D([], [], label=label, **style) for style, label in greys]
     entries.append(Line2D([], [], label="(b) 1: evenly filled", **_EVEN))
-    entries.append(Patch(color="0.5", alpha=0.3, lw=0, label=f"95 %, {force_label(mapped)} alone"))
+    entries.append(Patch(color="0.5", alpha=0.3, lw=0, label=f"95 % interval, {force_label(mapped)} alone"))
     return entries + [
         heading(rf"$\Delta_\sigma$ by {words}: {_interval(state, key)}")
         for words, key in _DIMENSIONS

@@ -51,7 +51,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     if larger:
         left.set_title("nodes enlarged", loc="right", fontsize=7)
     handles, _ = middle.get_legend_handles_labels()
-    handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) bands of the fits: 95 %"))
+    handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) 95 % of both fits"))
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     caption = sentences(
@@ -116,14 +116,14 @@ def _draw_counts(axes, table, counts):
         null["random_count_high"],
         color=_RANDOM,
         lw=1.5,
-        label="as many random nodes ((b) 95 %, (c) mean)",
+        label="random nodes: (b) 95 %, (c) mean",
         zorder=0,
     )
     axes.loglog(
-        null["box_side_mm"], null["cut_count"], "-.", color=COLOURS[4], label="bearing-area cut, as many nodes"
+        null["box_side_mm"], null["cut_count"], "-.", color=COLOURS[4], label="bearing-area cut"
     )
     for used, face in ((table["ordinary_used"], COLOURS[0]), (~table["ordinary_used"], "white")):
-        words = "fewest boxes" + (", in the ordinary slope" if face != "white" else "")
+        words = "fewest boxes" + (", fitted" if face != "white" else ", not fitted")
         axes.loglog(
             r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
         )
@@ -134,7 +134,7 @@ def _draw_counts(axes, table, counts):
     axes.loglog(r, table["mean_count"], "x", color=COLOURS[2], label="mean boxes", **_CROSS)
     if np.isfinite(table["law_count"]).any():
         weak = {} if _law_determined(counts) else WEAK
-        label = rf"count law of the mean, $\Delta_\sigma$: {_by_law(counts)}"
+        label = rf"count law: $\Delta_\sigma$ {_by_law(counts)}"
         axes.loglog(r, table["law_count"], color=COLOURS[2], label=label, **_SEEN | weak)
     axes.set_ylim(0.7, table["box_count"].max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
