@@ -89,9 +89,7 @@ def draw_histogram(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> Non
         )
     first = quality.sel(face=faces[0])
     rms, z = first["rms"].item() / size, quality["edge"].values / size
-    axes.plot(
-        z, np.exp(-((z / rms) ** 2) / 2) / rms / np.sqrt(2 * np.pi), color=GAUSSIAN, lw=0.8
-    )
+    axes.plot(z, np.exp(-((z / rms) ** 2) / 2) / rms / np.sqrt(2 * np.pi), color=GAUSSIAN, lw=0.8)
     axes.set(xlabel=f"height ({unit})", ylabel=f"fraction of cells (1/{unit})", ylim=(0, None))
     words = "\n".join(
         f"{face}: rms {length_words(float(q['rms']))}\n"
@@ -173,9 +171,10 @@ def _mark_range(axes, quality):
 
 def _range(quality):
     """Wavelengths (mm) of the fractal range: those measured, from its end to any roll-off."""
-    waves = quality["radial_wavelength"].values
+    waves = [quality[f"{of}wavelength"].values.ravel() for of in ("", "radial_")]
+    waves = np.concatenate([*waves, 2 * quality["resolution"].values])
     waves = waves[np.isfinite(waves)]
-    low, high = (waves.min(), waves.max()) if waves.size else (np.nan, np.nan)
+    low, high = 0.95 * waves.min(), 1.05 * waves.max()  # markers at the ends stand inside
     end, off = quality["range_end"].item(), quality["roll_off_wavelength"].values
     off = off[np.isfinite(off)]
     return end if np.isfinite(end) else low, off.min() if off.size else high
@@ -222,11 +221,10 @@ def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Artist]:
     if quality["noise_rms"].notnull().any():
         entries.append(Line2D([], [], color="0.3", ls="--", lw=0.8, label="noise floor"))
     entries.append(Line2D([], [], color=GAUSSIAN, lw=0.8, label="Gaussian of the same rms"))
-    if np.isfinite(_range(quality)).all():
-        entries.append(Patch(color=RANGE, alpha=0.13, lw=0, label="fractal range"))
+    entries.append(Patch(color=RANGE, alpha=0.13, lw=0, label="fractal range"))
     below = quality["below_range"].values
     for which, label in ((False, "2 $s$ of a resolution"), (True, "2 $s$, below the range")):
         if (below == which).any():
-            style = {"color": RANGE, "mfc": "white" if which else RANGE}
+            style: dict[str, Any] = {"color": RANGE, "mfc": "white" if which else RANGE}
             entries.append(Line2D([], [], ls="none", marker="v", label=label, **style))
     return entries

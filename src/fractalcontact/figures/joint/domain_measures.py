@@ -158,7 +158,9 @@ def _key(state, mapped):
     greys = ((_LINE, "(a) 1: as of a line"), (_PLANE, "(a), (c) 2: as of a filled plane"))
     entries = [Line2D([], [], label=label, **style) for style, label in greys]
     entries.append(Line2D([], [], label="(b) 1: evenly filled", **_EVEN))
-    entries.append(Patch(color="0.5", alpha=0.3, lw=0, label=f"95 % interval, {force_label(mapped)} alone"))
+    entries.append(
+        Patch(color="0.5", alpha=0.3, lw=0, label=f"95 % interval, {force_label(mapped)} alone")
+    )
     return entries + [
         heading(rf"$\Delta_\sigma$ by {words}: {_interval(state, key)}")
         for words, key in _DIMENSIONS

@@ -20,6 +20,8 @@ SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "statements")
 ORDER = 40
 
+#: Why a correlation may decide nothing.
+_TOO_SMALL = "window too small to separate it from chance"
 _TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
 
 
@@ -136,7 +138,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(profile, "b", "profile through the point of first touch")
     letter(composite, "c", f"composite topography $h$\n{_correlation_words(slid)}")
     headline(figure, label, place(slid.direction, slid.offset))
-    left = claim(atlas, name, "loss of all correlation", "no_correlation_is_left")
+    says = "loss of all correlation"
+    says += "" if np.isfinite(slid.chance) else f" ({_TOO_SMALL})"
+    left = claim(atlas, name, says, "no_correlation_is_left")
     return Drawing(figure, profiles, _caption(slid, left))
 
 
@@ -221,7 +225,9 @@ def _draw_composite(figure, axes, slid):
 
 def _correlation_words(slid):
     """Correlation of the faces in the window, and what chance alone would give."""
-    chance = f", by chance up to {slid.chance:.2f}" if np.isfinite(slid.chance) else ""
+    chance = f", by chance up to {slid.chance:.2f}"
+    if not np.isfinite(slid.chance):
+        chance = f"\n{_TOO_SMALL}"
     return f"correlation of the faces {slid.correlation:+.2f}{chance}"
 
 

@@ -120,10 +120,14 @@ def _draw_counts(axes, table, counts):
         zorder=0,
     )
     axes.loglog(
-        null["box_side_mm"], null["cut_count"], "-.", color=COLOURS[4], label="bearing-area cut"
+        null["box_side_mm"],
+        null["cut_count"],
+        "-.",
+        color=COLOURS[4],
+        label="bearing-area cut: highest nodes",
     )
     for used, face in ((table["ordinary_used"], COLOURS[0]), (~table["ordinary_used"], "white")):
-        words = "fewest boxes" + (", fitted" if face != "white" else ", not fitted")
+        words = "boxes, fewest" + (", fitted" if face != "white" else ", not fitted")
         axes.loglog(
             r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
         )
@@ -131,7 +135,9 @@ def _draw_counts(axes, table, counts):
         weak = {} if bool(counts["ordinary_determined"]) else WEAK
         label = f"ordinary slope: {_ordinary(counts)}"
         axes.loglog(r, table["ordinary_count"], "--", color=COLOURS[0], label=label, **_SEEN | weak)
-    axes.loglog(r, table["mean_count"], "x", color=COLOURS[2], label="mean boxes", **_CROSS)
+    axes.loglog(
+        r, table["mean_count"], "x", color=COLOURS[2], label="boxes, mean over origins", **_CROSS
+    )
     if np.isfinite(table["law_count"]).any():
         weak = {} if _law_determined(counts) else WEAK
         label = rf"count law: $\Delta_\sigma$ {_by_law(counts)}"
@@ -185,9 +191,7 @@ def _caption(loading, i, counts):
     reason = str(counts["reason"].item())
     if reason:
         return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
-    return (
-        f"{start}Delta_sigma is {loading.estimates[1].text(i)}, the ordinary slope {ordinary}."
-    )
+    return f"{start}Delta_sigma is {loading.estimates[1].text(i)}, the ordinary slope {ordinary}."
 
 
 def _by_law(counts):

@@ -95,7 +95,9 @@ def _draw_areas(axes, loading, map_load, table):
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
-    axes.plot([], [], "o", color="0.3", ls="-", ms=4, label="filled: corrected for the edge, fitted")
+    axes.plot(
+        [], [], "o", color="0.3", ls="-", ms=4, label="filled: corrected for the edge, fitted"
+    )
     axes.plot([], [], "o", color="0.3", mfc="none", mew=0.6, ms=4, label="hollow: raw, not fitted")
     letter(axes, "a", r"contact area, $A_r \sim s^{2-\Delta_\sigma}$ [95 %]")
 
