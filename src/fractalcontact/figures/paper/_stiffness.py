@@ -108,7 +108,7 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
 
 
 def stiffness_words(table: pd.DataFrame) -> str:
-    """What twice the spacing makes of the tangent stiffness at the load of the maps, and of k_ni."""
+    """What twice the spacing makes of the tangent stiffness at the map load, and of k_ni."""
     tangent = table[table["map_load"].eq(True)]
     at = force_label(tangent["force_N"].iloc[0])
     value, change = _with_change(tangent)

@@ -52,7 +52,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         left.set_title("nodes enlarged", loc="right", fontsize=7)
     handles, _ = middle.get_legend_handles_labels()
     handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) 95 % of both fits"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    narrow = {"columnspacing": 1.2, "handlelength": 1.8}
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     caption = sentences(
         _caption(loading, i, counts),
@@ -135,9 +136,8 @@ def _draw_counts(axes, table, counts):
         weak = {} if bool(counts["ordinary_determined"]) else WEAK
         label = f"ordinary slope: {_ordinary(counts)}"
         axes.loglog(r, table["ordinary_count"], "--", color=COLOURS[0], label=label, **_SEEN | weak)
-    axes.loglog(
-        r, table["mean_count"], "x", color=COLOURS[2], label="boxes, mean over origins", **_CROSS
-    )
+    label = "boxes, mean of origins"
+    axes.loglog(r, table["mean_count"], "x", color=COLOURS[2], label=label, **_CROSS)
     if np.isfinite(table["law_count"]).any():
         weak = {} if _law_determined(counts) else WEAK
         label = rf"count law: $\Delta_\sigma$ {_by_law(counts)}"
