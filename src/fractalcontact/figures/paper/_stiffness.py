@@ -118,7 +118,7 @@ def stiffness_words(table: pd.DataFrame) -> str:
         return f"Tangent stiffness at {at}: {short(value)} MPa/mm."
     _, initial = _with_change(table[table["quantity"] != "tangent"])
     also = f", k_ni by {initial}" if initial else ""
-    return f"Twice the spacing changes the tangent stiffness at {at} by {change}{also}."
+    return f"Twice the spacing changes tangent stiffness at {at} by {change}{also}."
 
 
 def _numbers(rows):

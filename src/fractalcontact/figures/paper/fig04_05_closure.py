@@ -62,7 +62,7 @@ _BEYOND, _OF_AREA = ":", "-."
 _FOLLOWED = {
     SEMI_LOGARITHMIC: "the logarithmic law",
     HYPERBOLA: "the hyperbola",
-    UNDECIDED: "both laws alike",
+    UNDECIDED: "both",
     NEITHER: f"neither (misfits above {percent(GOOD_FIT)})",
 }
 
@@ -339,7 +339,7 @@ def _table(curves, drawn, laws):
 
 def _caption(curves, stiffness):
     return (
-        f"{opening('Figs. 4 and 5')} Closure, contact area and stiffness. "
+        f"{opening('Figs. 4 and 5')} Closure, contact area, stiffness. "
         f"{_laws_words(curves)} {stiffness_words(stiffness)}"
     )
 
@@ -366,6 +366,6 @@ def _laws_words(curves):
     laws = curves["closure_law"].values.astype(str)[fitted]
     named = {words: int((laws == law).sum()) for law, words in _FOLLOWED.items()}
     if len(laws) == 1:
-        return f"The closure curve follows {next(words for words, n in named.items() if n)}."
+        return f"The curve follows {next(words for words, n in named.items() if n)}."
     counts = ", ".join(f"{n} {words}" for words, n in named.items() if n)
-    return f"Of {len(laws)} closure curves {counts.replace(' ', ' follow ', 1)}."
+    return f"Of {len(laws)} curves {counts.replace(' ', ' follow ', 1)}."
