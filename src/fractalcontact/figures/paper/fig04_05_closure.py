@@ -366,6 +366,7 @@ def _laws_words(curves):
     laws = curves["closure_law"].values.astype(str)[fitted]
     named = {words: int((laws == law).sum()) for law, words in _FOLLOWED.items()}
     if len(laws) == 1:
-        return f"The curve follows {next(words for words, n in named.items() if n)}."
+        followed = next(words for words, n in named.items() if n)
+        return f"The curve follows {followed.replace('neither', 'neither law')}."
     counts = ", ".join(f"{n} {words}" for words, n in named.items() if n)
     return f"Of {len(laws)} curves {counts.replace(' ', ' follow ', 1)}."
