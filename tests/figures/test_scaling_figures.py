@@ -134,8 +134,8 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
     ("material", "words"),
     representative(
         [
-            ({"hardness": 1e3}, "beyond the hardness (1 GPa)"),
-            ({"hardness": 1e9}, "within the hardness (1e+06 GPa)"),
+            ({"hardness": 1e3}, "beyond the hardness (1000 MPa)"),
+            ({"hardness": 1e9}, "within the hardness (1e+09 MPa)"),
             ({"hardness": np.inf, "joint_wall_strength": 80.0}, "beyond the joint wall strength"),
         ]
     ),
@@ -290,10 +290,10 @@ def test_eq_6_is_called_an_extrapolation(atlas, figure):
 
 def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
     verdict = r"(They disagree|Their intervals overlap|They disagree at \d of \d loads)\.$"
-    assert re.search(verdict, draw(atlas, "fig08_prefractals", "flat").caption)
+    assert re.search(verdict, draw(atlas, "fig10_scaling", "flat").caption)
     # One resolution gives no A_r(s) to fit.
     assert np.isnan(finest(atlas, "scaling", "pair")["delta_sigma_area"]).all()
-    assert "One estimate is missing." in draw(atlas, "fig08_prefractals", "pair").caption
+    assert "One estimate is missing." in draw(atlas, "fig10_scaling", "pair").caption
 
 
 def test_no_fit_is_said_with_its_reason(atlas):
@@ -311,3 +311,28 @@ def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
         first, second = (tmp_path / folder / name for folder in ("first", "second"))
         assert first.stat().st_size > 100
         assert first.read_bytes() == second.read_bytes()
+
+
+def test_nodes_of_compared_maps_are_all_drawn_alike(atlas):
+    """With a width for each map, finer domains would look fuller than coarser ones."""
+    loading = Loading.of(atlas, "sliding")
+    maps = [
+        axes.images[0].get_array()
+        for axes in draw(atlas, "fig08_prefractals", "sliding").figure.axes
+        if axes.images
+    ]
+    ks = sorted(int(k) for k in loading.scaling["resolution"])
+    for shown, k in zip(maps, ks, strict=True):
+        np.testing.assert_array_equal(shown, loading.domain(k, loading.map_load))
+
+
+def test_pressures_without_a_stated_strength_stand_beside_usual_ones(atlas):
+    other = atlas.copy()
+    configuration = json.loads(atlas.attrs["configuration"])
+    material = configuration["settings"]["sliding"]["material"]
+    material |= {"hardness": np.inf, "joint_wall_strength": np.nan}
+    other.attrs["configuration"] = json.dumps(configuration)
+    (axes,) = (a for a in draw(other, "fig08_prefractals", "sliding").figure.axes if not a.images)
+    low, high = material["modulus"] / 1000, material["modulus"] / 200
+    (band,) = axes.patches
+    np.testing.assert_allclose([band.get_y(), band.get_y() + band.get_height()], [low, high])

@@ -144,12 +144,23 @@ def _limits(material):
         return hardness, hardness, f"hardness ({_pressure(hardness)})"
     if np.isfinite(strength):
         return strength, CONFINED * strength, f"joint wall strength ({_pressure(strength)})"
-    low, high = (float(material["modulus"]) / ratio for ratio in (LARGEST_RATIO, LEAST_RATIO))
+    low, high = usual_strengths(material)
     words = f"usual strengths, none being stated (E/1000 to E/200: {low:.3g} to {high:.3g} MPa)"
     return low, CONFINED * high, words
 
 
+def usual_strengths(material: Mapping[str, float]) -> tuple[float, float]:
+    """Least and largest uniaxial strength usual for the modulus of a material, MPa.
+
+    Parameters
+    ----------
+    material : mapping of str to float
+        ``modulus`` in MPa.
+    """
+    modulus = float(material["modulus"])
+    return modulus / LARGEST_RATIO, modulus / LEAST_RATIO
+
+
 def _pressure(pressure):
-    """A pressure in MPa, or in GPa from one on."""
-    size, unit = (1e3, "GPa") if pressure >= 1e3 else (1.0, "MPa")
-    return f"{float(f'{pressure / size:.3g}'):g} {unit}"
+    """A pressure in MPa, so that it can be compared with the strength beside it."""
+    return f"{float(f'{pressure:.3g}'):g} MPa"

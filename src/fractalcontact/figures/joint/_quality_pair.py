@@ -84,7 +84,7 @@ def draw_load_share(axes: Axes, curves: xr.Dataset) -> None:
             color=colour_of(i),
             label=f"{float(at['offset']):.3g}",
         )
-    axes.axhline(DECISIVE, color="0.4", lw=0.7, ls="--")
+    axes.axhline(DECISIVE, color="0.4", lw=0.7, ls="-.")
     axes.set(
         xlabel=r"nominal pressure $\sigma_0$ (MPa)",
         ylabel="load on suspicious cells (fraction)",
@@ -105,7 +105,7 @@ def _shown(finest):
 
 def pair_entries() -> list[Artist]:
     """Entries of the legend for the lower row."""
-    return [Line2D([], [], color="0.4", ls="--", lw=0.7, label="half of the load")]
+    return [Line2D([], [], color="0.4", ls="-.", lw=0.7, label="half of the load")]
 
 
 def pair_table(specimen: xr.Dataset, curves: xr.Dataset) -> list[pd.DataFrame]:

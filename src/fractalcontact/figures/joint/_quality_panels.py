@@ -1,6 +1,7 @@
 """Panels of the quality sheet: mask, heights, profiles and spectra of the faces of a scan."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,7 +21,11 @@ from ..kit.words import length_unit
 FEW_OUTLIERS = 400
 OUTLIER, FILLED, PRESENT, SPIKE = COLOURS[2], COLOURS[1], "0.96", COLOURS[0]
 FACE_COLOURS = {"lower": COLOURS[0], "upper": COLOURS[4]}
-AXIS_COLOURS = {"x": COLOURS[1], "y": COLOURS[2]}
+AXIS_COLOURS = {"x": COLOURS[6], "y": COLOURS[5]}
+#: The fractal range, and what lies in it; where profiles run; what heights are compared with.
+RANGE, GAUSSIAN = COLOURS[3], "0.6"
+_PROFILES: dict[str, Any] = {"color": "0.4", "lw": 0.7, "ls": (0, (6, 2, 1, 2))}
+_WINDOW = "0.9"
 
 
 # -- maps ------------------------------------------------------------------------------------------
@@ -33,7 +38,8 @@ def draw_mask(
     missing = np.isnan([specimen[face].values for face in faces]).any(axis=0)
     image = np.full((*missing.shape, 3), to_rgb(PRESENT))
     image[missing] = to_rgb(MISSING)
-    marks: list[Artist] = [missing_patch()] if missing.any() else []
+    marks: list[Artist] = [Patch(facecolor=PRESENT, edgecolor="0.6", lw=0.5, label="measured")]
+    marks += [missing_patch()] if missing.any() else []
     if "filled" in specimen and specimen["filled"].any():
         image[specimen["filled"].values] = to_rgb(FILLED)
         marks.append(Patch(facecolor=FILLED, label="filled"))
@@ -57,7 +63,9 @@ def draw_mask(
     axes.add_patch(window_outline(specimen, size, lw=1))
     for axis, start in zip("yx", _middle(specimen), strict=True):
         at = (start + 0.5) * specimen.attrs[f"spacing_{axis}"] / size
-        (axes.axhline if axis == "y" else axes.axvline)(at, color="0.4", lw=0.6, ls=":")
+        (axes.axhline if axis == "y" else axes.axvline)(at, **_PROFILES)
+    marks.append(Line2D([], [], label="where profiles run", **_PROFILES))
+    marks.append(Patch(facecolor=_WINDOW, label="profiles: the window"))
     return marks
 
 
@@ -81,9 +89,7 @@ def draw_histogram(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> Non
         )
     first = quality.sel(face=faces[0])
     rms, z = first["rms"].item() / size, quality["edge"].values / size
-    axes.plot(
-        z, np.exp(-((z / rms) ** 2) / 2) / rms / np.sqrt(2 * np.pi), color="0.6", lw=0.8, ls="--"
-    )
+    axes.plot(z, np.exp(-((z / rms) ** 2) / 2) / rms / np.sqrt(2 * np.pi), color=GAUSSIAN, lw=0.8)
     axes.set(xlabel=f"height ({unit})", ylabel=f"fraction of cells (1/{unit})", ylim=(0, None))
     words = "\n".join(
         f"{face}: rms {length_words(float(q['rms']))}\n"
@@ -112,7 +118,7 @@ def draw_profile(axes: Axes, specimen: xr.Dataset, faces: Sequence[str], axis: s
         axes.plot(x / place, z / size, color=FACE_COLOURS[face], lw=0.7)
     cells = dict(zip("yx", window_slices(specimen), strict=True))[axis]
     spacing = specimen.attrs[f"spacing_{axis}"] / place
-    axes.axvspan(cells.start * spacing, cells.stop * spacing, color="0.93", zorder=0)
+    axes.axvspan(cells.start * spacing, cells.stop * spacing, color=_WINDOW, zorder=0)
     axes.set(xlabel=f"${axis}$ ({place_unit})", ylabel=f"height ({unit})")
     axes.margins(x=0)
 
@@ -151,24 +157,27 @@ def _spacing(quality, axis):
 
 
 def _mark_range(axes, quality):
-    """The end of the fractal range, and 2 s of every resolution at the upper edge."""
-    end = quality["range_end"].item()
-    if np.isfinite(end):
-        axes.axvline(end, color="0.3", lw=0.8, ls="-.")
+    """The fractal range, shaded, and 2 s of every resolution at the upper edge."""
+    axes.axvspan(*_range(quality), color=RANGE, alpha=0.13, lw=0, zorder=0)
     for side, below in zip(
         quality["resolution"].values, quality["below_range"].values, strict=True
     ):
+        face = "white" if below else RANGE
+        at = axes.get_xaxis_transform()
         axes.plot(
-            2 * side,
-            0.985,
-            "v",
-            ms=5,
-            transform=axes.get_xaxis_transform(),
-            clip_on=False,
-            color=OUTLIER if below else COLOURS[3],
-            mfc="none" if below else COLOURS[3],
-            zorder=5,
+            2 * side, 0.985, "v", ms=5, transform=at, clip_on=False, color=RANGE, mfc=face, zorder=5
         )
+
+
+def _range(quality):
+    """Wavelengths (mm) of the fractal range: those measured, from its end to any roll-off."""
+    waves = [quality[f"{of}wavelength"].values.ravel() for of in ("", "radial_")]
+    waves = np.concatenate([*waves, 2 * quality["resolution"].values])
+    waves = waves[np.isfinite(waves)]
+    low, high = 0.95 * waves.min(), 1.05 * waves.max()  # markers at the ends stand inside
+    end, off = quality["range_end"].item(), quality["roll_off_wavelength"].values
+    off = off[np.isfinite(off)]
+    return end if np.isfinite(end) else low, off.min() if off.size else high
 
 
 def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
@@ -190,9 +199,9 @@ def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
     label_short_span(axes.xaxis)
 
 
-def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Line2D]:
+def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Artist]:
     """Entries of the legend for what stands in the lower panels."""
-    entries = [
+    entries: list[Artist] = [
         Line2D([], [], color=FACE_COLOURS[face], lw=1, label=f"{face} face") for face in faces
     ]
     entries += [
@@ -211,23 +220,11 @@ def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Line2D]:
     entries.append(Line2D([], [], color="0.3", ls=":", lw=0.8, label="self-affine line"))
     if quality["noise_rms"].notnull().any():
         entries.append(Line2D([], [], color="0.3", ls="--", lw=0.8, label="noise floor"))
-    if quality["range_end"].notnull():
-        entries.append(
-            Line2D([], [], color="0.3", ls="-.", lw=0.8, label="end of the fractal range")
-        )
+    entries.append(Line2D([], [], color=GAUSSIAN, lw=0.8, label="Gaussian of the same rms"))
+    entries.append(Patch(color=RANGE, alpha=0.13, lw=0, label="fractal range"))
     below = quality["below_range"].values
     for which, label in ((False, "2 $s$ of a resolution"), (True, "2 $s$, below the range")):
         if (below == which).any():
-            colour = OUTLIER if which else COLOURS[3]
-            entries.append(
-                Line2D(
-                    [],
-                    [],
-                    ls="none",
-                    marker="v",
-                    color=colour,
-                    label=label,
-                    mfc="none" if which else colour,
-                )
-            )
+            style: dict[str, Any] = {"color": RANGE, "mfc": "white" if which else RANGE}
+            entries.append(Line2D([], [], ls="none", marker="v", label=label, **style))
     return entries

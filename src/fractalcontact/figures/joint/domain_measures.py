@@ -1,8 +1,12 @@
 """Measures of the contact domain beside its box dimension: local slopes, lacunarity and D_q."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ..kit.drawing import (
@@ -12,8 +16,10 @@ from ..kit.drawing import (
     Drawing,
     colour_of,
     group,
+    heading,
     headline,
     label_short_span,
+    legends_below,
     letter,
     nearest_load,
     settings_of,
@@ -29,6 +35,13 @@ ORDER = 150
 #: Loads drawn, the map load among them.
 MOST_LOADS = 3
 
+#: Dimensions of the contact domain, by what they are estimated from.
+_DIMENSIONS = (("boxes", "delta_sigma"), ("pairs", "correlation_dimension"))
+#: What curves are compared with, in greys that no load has.
+_LINE: dict[str, Any] = {"color": "0.6", "ls": (0, (1, 1)), "lw": 1.2, "zorder": 0}
+_PLANE: dict[str, Any] = {"color": "0.6", "ls": "-", "lw": 1.2, "zorder": 0}
+_EVEN: dict[str, Any] = {"color": "0.6", "ls": (0, (6, 2)), "lw": 1.2, "zorder": 0}
+
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """Local slopes of the box counts, lacunarity and the spectrum D_q of the pressure.
@@ -41,13 +54,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     mapped = nearest_load(forces, settings["map_load"], group(atlas, "specimens", name))
     table = _table(measures, _shown(measures, mapped))
 
-    figure = Figure(figsize=(WIDTH, 3.1))
+    figure = Figure(figsize=(WIDTH, 3.4))
     slopes, lacunarity, spectrum = figure.subplots(1, 3)
     _draw_slopes(slopes, table)
     _draw_lacunarity(lacunarity, table, forces[mapped])
     _draw_spectrum(spectrum, table, forces[mapped])
     handles, _ = lacunarity.get_legend_handles_labels()
-    figure.legend(handles=handles, loc="outside lower center", ncols=MOST_LOADS)
+    mapped_entries = _key(measures.isel(normal_force=mapped), forces[mapped])
+    legends_below(figure, handles, mapped_entries[:3], mapped_entries[3:])
     where = place(str(measures["direction"].item()), float(measures["offset"]))
     headline(figure, settings["label"], where)
     start = opening("section 6")
@@ -99,12 +113,12 @@ def _styles(table, kind):
 def _draw_slopes(axes, table):
     for _, points, style in _styles(table, "slope"):
         axes.semilogx(points["box_side_mm"], points["value"], ms=3, lw=0.8, **style)
-    for slope, line in ((1, ":"), (2, "-.")):
-        axes.axhline(slope, color="0.6", ls=line, lw=0.8, zorder=0)
+    for slope, style in ((1, _LINE), (2, _PLANE)):
+        axes.axhline(slope, **style)
     axes.set_ylim(-0.1, max(2.2, axes.get_ylim()[1]))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    letter(axes, "a", "box counts (fractal: level)")
+    letter(axes, "a", "box counts: level if fractal")
 
 
 def _draw_lacunarity(axes, table, mapped):
@@ -115,7 +129,7 @@ def _draw_lacunarity(axes, table, mapped):
         if force == mapped:
             low, high = points["low"].clip(lower=1), points["high"]
             axes.fill_between(r, low, high, color=style["color"], alpha=0.15, lw=0)
-    axes.axhline(1, color="0.6", lw=0.8, zorder=0)
+    axes.axhline(1, **_EVEN)
     most = table.loc[table["kind"] == "lacunarity", "value"].max()
     if np.isfinite(most):
         # Bands may be open upwards where one part of the window holds nearly all contact.
@@ -125,7 +139,7 @@ def _draw_lacunarity(axes, table, mapped):
         ylabel=r"lacunarity $\langle M^2\rangle/\langle M\rangle^2$ (1)",
     )
     label_short_span(axes.xaxis)
-    letter(axes, "b", "lacunarity (1: even)")
+    letter(axes, "b", "lacunarity: 1 if even")
 
 
 def _draw_spectrum(axes, table, mapped):
@@ -134,9 +148,24 @@ def _draw_spectrum(axes, table, mapped):
         if force == mapped:
             low, high = points["low"], points["high"]
             axes.fill_between(points["order_q"], low, high, color=style["color"], alpha=0.15, lw=0)
-    axes.axhline(2, color="0.6", ls="-.", lw=0.8, zorder=0)
+    axes.axhline(2, **_PLANE)
     axes.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")
-    letter(axes, "c", "pressure (fractal: level)")
+    letter(axes, "c", "pressure: level if monofractal")
+
+
+def _key(state, mapped):
+    """What is no curve of a load: grey lines, shaded intervals, and dimensions in words."""
+    greys = ((_LINE, "(a) 1: as of a line"), (_PLANE, "(a), (c) 2: as of a filled plane"))
+    entries = [Line2D([], [], label=label, **style) for style, label in greys]
+    entries.append(Line2D([], [], label="(b) 1: evenly filled", **_EVEN))
+    entries.append(
+        Patch(color="0.5", alpha=0.3, lw=0, label=f"95 % interval, {force_label(mapped)} alone")
+    )
+    return entries + [
+        heading(rf"$\Delta_\sigma$ by {words}: {_interval(state, key)}")
+        for words, key in _DIMENSIONS
+        if np.isfinite(state[key])
+    ]
 
 
 def _caption(state, table):
@@ -147,7 +176,7 @@ def _caption(state, table):
     )
     dimensions = [
         f"{_interval(state, key)} from {label}"
-        for key, label in (("delta_sigma", "boxes"), ("correlation_dimension", "pairs"))
+        for label, key in _DIMENSIONS
         if np.isfinite(state[key])
     ]
     if not dimensions:
@@ -157,8 +186,8 @@ def _caption(state, table):
     if np.isfinite(span).all():
         low = state["generalised_dimension_low"].sel(order=0.0).item()
         high = state["generalised_dimension_high"].sel(order=4.0).item()
-        apart = "separated" if high < low else "not separated"
-        spectrum = f"; D_0 = {span[0]:.2f}, D_4 = {span[1]:.2f}, {apart}"
+        apart = "separate" if high < low else "overlap"
+        spectrum = f"; intervals of D_0 = {span[0]:.2f} and D_4 = {span[1]:.2f} {apart}"
     return f"{words} {_law(state, table)} Delta_sigma is {', '.join(dimensions)}{spectrum}."
 
 

@@ -45,7 +45,7 @@ NEEDS = ("specimens", "quality", "closure")
 ORDER = 30
 
 #: Letters in a line of the text, and inches a line is high.
-LETTERS, LINE = 138, 0.128
+LETTERS, LINE = 126, 0.138
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -106,7 +106,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         1,
         "\n".join(lines),
         va="top",
-        fontsize=6.5,
+        fontsize=7,
         linespacing=1.2,
         parse_math=False,
     )
@@ -159,7 +159,7 @@ def _cells_words(specimen, quality, faces):
 
 def _caption(specimen, quality, warnings):
     faces = [str(face) for face in quality["face"].values]
-    found = ["all resolutions of the study lie within the fractal range"]
+    found = ["all resolutions of the study lie within the fractal range (shaded)"]
     if stated := sum(map(bool, warnings)):
         found = [f"{stated} warning{'s stand' if stated > 1 else ' stands'} below the panels"]
     found += filter(None, [overlap_words(specimen, quality)])

@@ -111,7 +111,14 @@ def draw_map(
     return drawn
 
 
-def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks: int = 5) -> bool:
+def draw_domain(
+    axes: Axes,
+    domain: np.ndarray,
+    sides: Sequence[float],
+    *,
+    ticks: int = 5,
+    times: int | None = None,
+) -> bool:
     """A contact domain in black, its nodes enlarged where print would lose them; rings round few.
 
     Parameters
@@ -122,6 +129,9 @@ def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks
         Of the window (y, x), mm.
     ticks : int
         About this many along each side.
+    times : int, optional
+        How many times as wide nodes are drawn, the same in maps that are compared with each other;
+        by default what one map asks for.
 
     Returns
     -------
@@ -130,7 +140,10 @@ def draw_domain(axes: Axes, domain: np.ndarray, sides: Sequence[float], *, ticks
     """
     # No cell is missing in a window, and a node smaller than a pixel must not vanish.
     grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
-    drawn = enlarged(domain, _node_points(axes, domain.shape, sides))
+    if times is None:
+        drawn = enlarged(domain, _node_points(axes, domain.shape, sides))
+    else:
+        drawn = domain if times < 2 else maximum_filter(domain, times, mode="constant", cval=0)
     draw_map(axes, drawn, sides, ticks=ticks, **grey)
     nodes = np.argwhere(domain)
     if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:

@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...domain.departure import is_fractal
@@ -44,10 +45,20 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
             axes.set_ylabel("")
         if n + columns < len(chosen):
             axes.set_xlabel("")
-    figure.legend(handles=[missing_patch()], loc="outside lower center")
-    shown = f", {len(chosen)} of {len(maps)}" if len(chosen) < len(maps) else ""
-    headline(figure, f"measured contact maps{shown}")
+    figure.legend(handles=_key(one for _, one in chosen), loc="outside lower center", ncols=3)
+    shown = f"{len(chosen)} of {len(maps)} maps" if len(chosen) < len(maps) else f"{len(maps)} maps"
+    headline(figure, f"{shown}, each with its nominal pressure; in brackets 95 % intervals")
     return Drawing(figure, map_table(series), _caption(series, maps))
+
+
+def _key(maps):
+    """What black, white and grey are, of those that are drawn."""
+    outline = {"edgecolor": "0.4", "lw": 0.5}
+    handles = [
+        Patch(facecolor="black", label="in contact", **outline),
+        Patch(facecolor="white", label="not in contact", **outline),
+    ]
+    return handles + ([missing_patch()] if any(not one["measured"].all() for one in maps) else [])
 
 
 def _sides(one):
@@ -65,7 +76,7 @@ def _title(name, one):
     if np.isfinite(value):
         dimension = rf"$\Delta_\sigma$ = {interval(value, low, high)}"
     share = percent(float(one["area_share"]))
-    return f"{name.replace('$', '')}\n{load}, {share}\n{dimension}"
+    return f"{name.replace('$', '')}\n{load}, $A_r/A_0$ = {share}\n{dimension}"
 
 
 def _caption(series, maps):

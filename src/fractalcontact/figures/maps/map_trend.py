@@ -30,11 +30,10 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
         draw_series(panels[1], each, each.values("area_share"), each.legend, nulls=True)
     for axes, which, words in (
         (panels[0], "a", r"nominal pressure $\sigma_0$ (MPa)"),
-        (panels[1], "b", "contact fraction $A_r/A_0$"),
+        (panels[1], "b", "contact fraction $A_r/A_0$ (1)"),
     ):
         axes.set_xlabel(words)
         letter(axes, which, words.split(" $")[0])
-        axes.axhline(1, color="0.6", ls=":", lw=0.8, zorder=0)
     if any(np.isfinite(each.pressure).any() for each in series):
         panels[0].set_xscale("log")
         label_short_span(panels[0].xaxis)
@@ -45,10 +44,10 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
         )
     panels[1].set_xscale("log")
     label_short_span(panels[1].xaxis)
-    panels[0].set_ylabel(r"dimension $\Delta_\sigma$ by box counting")
+    panels[0].set_ylabel(r"dimension $\Delta_\sigma$ by box counting (1)")
     panels[0].set_ylim(-0.05, 2.05)
     legends_below(figure, entries(panels[1]), _marks(series))
-    headline(figure, "measured contact maps")
+    headline(figure, "bars: 95 % intervals; after each name the number of its maps")
     return Drawing(figure, map_table(series), _caption(series))
 
 

@@ -10,9 +10,12 @@ from matplotlib.ticker import NullLocator
 
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import cell_side
-from ..kit.drawing import MARKERS, colour_of, dilatancy_loads, label_short_span, nearest_load
+from ..kit.drawing import MARKERS, dilatancy_loads, label_short_span, nearest_load
 from ..kit.empty import TOO_FULL, say_empty
 from ..kit.words import force_label, percent, short
+
+#: Greys and markers of the loads: colours and the other markers stand for offsets in this figure.
+_GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), MARKERS[5:]
 
 
 def stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) -> pd.DataFrame:
@@ -56,12 +59,17 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
     known = table.dropna(subset="stiffness_MPa_per_mm")
     tangent = known[known["quantity"] == "tangent"]
     for n, (force, points) in enumerate(tangent.groupby("force_N")):
-        style: dict[str, Any] = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
+        style: dict[str, Any] = {
+            "color": _GREYS[n % len(_GREYS)],
+            "marker": _MARKERS[n % len(_MARKERS)],
+            "ms": 5,
+        }
         axes.plot(
             points["spacing_mm"],
             points["stiffness_MPa_per_mm"],
             ls="-",
-            label=f"$F$ = {force_label(force)}",
+            lw=0.7,
+            label=f"tangent, $F$ = {force_label(force)}: {_numbers(points)}",
             **style,
         )
         few = points[~points["resolved"]]
@@ -74,21 +82,21 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
             initial["spacing_mm"],
             value,
             yerr=np.maximum([value - ends[0], ends[1] - value], 0),
-            color=colour_of(0),
-            marker="D",
-            mfc="white",
-            ls="--",
+            color="0",
+            marker="_",
+            ls=(0, (4, 2)),
             lw=0.8,
             capsize=2,
-            label="$k_{ni}$ of the hyperbola ($F$ = 0)",
+            label=f"$k_{{ni}}$ of the hyperbola, bars 95 %: {_numbers(initial)}",
         )
     axes.set_xscale("log")
     if len(known):
         axes.set_yscale("log")
         # Room for the legend above all points.
         low, high = axes.get_ylim()
-        axes.set_ylim(low, high * (high / low) ** 0.7)
-        axes.legend(loc="upper left", ncols=2, handlelength=1.5, columnspacing=1)
+        axes.set_ylim(low, high * (high / low) ** 1.0)
+        title = "at the finest $s$ (change at $2s$), MPa/mm"
+        axes.legend(loc="upper left", handlelength=1.5, title=title, title_fontsize=7)
     else:
         say_empty(axes, TOO_FULL)
     axes.set_xlabel("spacing $s$ (mm)")
@@ -100,16 +108,23 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
 
 
 def stiffness_words(table: pd.DataFrame) -> str:
-    """Tangent stiffness at the load of the maps, and what twice the spacing makes of it."""
+    """What twice the spacing makes of the tangent stiffness at the map load, and of k_ni."""
     tangent = table[table["map_load"].eq(True)]
     at = force_label(tangent["force_N"].iloc[0])
     value, change = _with_change(tangent)
     if not np.isfinite(value):
         return f"No tangent stiffness at {at}."
-    words = f"Tangent stiffness at {at}: {short(value)} MPa/mm"
-    words += f" ({change} at 2 s)" if change else ""
-    value, change = _with_change(table[table["quantity"] != "tangent"])
-    return f"{words}; k_ni {short(value)} ({change})." if change else f"{words}."
+    if not change:
+        return f"Tangent stiffness at {at}: {short(value)} MPa/mm."
+    _, initial = _with_change(table[table["quantity"] != "tangent"])
+    also = f", k_ni by {initial}" if initial else ""
+    return f"Twice the spacing changes tangent stiffness at {at} by {change}{also}."
+
+
+def _numbers(rows):
+    """A stiffness at the finest spacing with its change at twice that, for a legend."""
+    value, change = _with_change(rows)
+    return f"{short(value)} ({change})" if change else f"{short(value)}"
 
 
 def _with_change(rows):

@@ -57,7 +57,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     estimates = _draw_dimensions(axes[-1], dimension)
     letter(axes[-1], "abc"[len(faces)], r"$\Delta_g$ of the lower face")
     handles = [outline, *([missing_patch()] if any(missing) else []), *estimates]
-    figure.legend(handles=handles, loc="outside lower left", ncols=3)
+    figure.legend(handles=handles, loc="outside lower left", ncols=3, columnspacing=1)
     headline(figure, label, below=_size_words(specimen, sides))
     return Drawing(figure, _table(dimension), _caption(specimen, faces, dimension))
 
@@ -155,9 +155,15 @@ def _draw_dimensions(axes, dimension):
             drawn = axes.errorbar(
                 values[of], rows[of], xerr=errors[:, of], fmt="o", capsize=2, **style
             )
-            if marked is chosen and not dimension["no_dimension"].item():
+            none = bool(dimension["no_dimension"].item())
+            if marked is not chosen:
+                drawn.set_label("other estimators, 95 %")
+            elif none:
+                drawn.set_label("preferred estimator, 95 %: no dimension")
+            else:
                 drawn.set_label(rf"recommended $\Delta_g$ {_recommended_words(dimension)}")
-                handles.append(drawn)
+            handles.append(drawn)
+    handles += _impossible(axes)
     known = float(dimension["known_dimension"])
     if np.isfinite(known):
         line = axes.axvline(known, color=COLOURS[2], ls="--", lw=0.8)
@@ -165,6 +171,19 @@ def _draw_dimensions(axes, dimension):
         handles.append(line)
     axes.grid(axis="x", color="0.9", lw=0.5)
     return handles
+
+
+def _impossible(axes):
+    """Shade what no surface has for a dimension, where the axis reaches it; entry of a legend."""
+    low, high = axes.get_xlim()
+    ends = [(low, min(high, 2)), (max(low, 3), high)]
+    shaded = [
+        axes.axvspan(*pair, color="0.88", lw=0, zorder=0) for pair in ends if pair[0] < pair[1]
+    ]
+    axes.set_xlim(low, high)
+    for one in shaded[:1]:
+        one.set_label("no dimension of a surface")
+    return shaded[:1]
 
 
 def _recommended_words(dimension):

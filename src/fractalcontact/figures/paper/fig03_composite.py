@@ -20,6 +20,8 @@ SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "statements")
 ORDER = 40
 
+#: Why a correlation may decide nothing.
+_TOO_SMALL = "window too small to separate it from chance"
 _TOUCH = {"ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
 
 
@@ -130,13 +132,15 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     plan, composite = top.subplots(1, 2)
     profile = bottom.subplots()
     handles = _draw_plan(top, plan, slid) + _draw_profile(profile, slid, profiles)
-    bottom.legend(handles=handles, loc="outside lower center", ncols=4)
+    bottom.legend(handles=handles, loc="outside lower center", ncols=3)
     _draw_composite(top, composite, slid)
     letter(plan, "a", "lower face and window")
     letter(profile, "b", "profile through the point of first touch")
-    letter(composite, "c", "composite topography $h$")
+    letter(composite, "c", f"composite topography $h$\n{_correlation_words(slid)}")
     headline(figure, label, place(slid.direction, slid.offset))
-    left = claim(atlas, name, "loss of all correlation", "no_correlation_is_left", numbers=False)
+    says = "loss of all correlation"
+    says += "" if np.isfinite(slid.chance) else f" ({_TOO_SMALL})"
+    left = claim(atlas, name, says, "no_correlation_is_left")
     return Drawing(figure, profiles, _caption(slid, left))
 
 
@@ -154,7 +158,7 @@ def _draw_plan(figure, axes, slid):
             specimen, size, edgecolor=COLOURS[1], lw=1.5, ls="--", label="window before"
         ),
         window_outline(
-            specimen, size, slid.slid, edgecolor=COLOURS[2], lw=1.5, label="window after"
+            specimen, size, slid.slid, edgecolor=COLOURS[4], lw=1.5, label="window after"
         ),
     ]
     for outline in outlines:
@@ -196,27 +200,15 @@ def _draw_profile(axes, slid, profiles):
     arrow = {"arrowstyle": "<->", "color": COLOURS[3], "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
     for tip, tail in (((end, bottom), (start, bottom)), ((end, top), (end, bottom))):
         axes.annotate("", tip, tail, arrowprops=arrow)
-    ground = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
-    words = {"color": COLOURS[3], "bbox": ground, "textcoords": "offset points"}
-    axes.annotate(
-        f"$v$ = {slid.offset:.3g} mm", ((start + end) / 2, bottom), (0, -10), ha="center", **words
-    )
-    side = 1 if end < x.mean() else -1  # towards the middle, where there is room
-    axes.annotate(
-        rf"$\delta_r$ = {slid.dilatancy:.3g} mm",
-        (end, (top + bottom) / 2),
-        (5 * side, 0),
-        ha="left" if side > 0 else "right",
-        va="center",
-        **words,
-    )
+    # The numbers stand in the legend: on the profile they would hide it.
+    moved = rf"offset $v$ = {slid.offset:.3g} mm, dilatancy $\delta_r$ = {slid.dilatancy:.3g} mm"
+    axes.plot([], [], color=COLOURS[3], lw=1.2, label=moved)
     axes.plot(end, top, marker="o", label="first touch", **_TOUCH)
     axes.set_xlabel(f"${slid.axis}$ ({unit})")
     axes.set_ylabel(f"height ({height_unit})")
     axes.margins(x=0, y=0.15)
     floor, ceiling = axes.get_ylim()
-    # The word below the arrow stays clear of the axis.
-    floor = min(floor, bottom - 0.25 * (ceiling - bottom))
+    floor = min(floor, bottom - 0.1 * (ceiling - bottom))  # the arrow stays clear of the axis
     axes.fill_between(x, lower, floor, color="0.9", lw=0, zorder=0)
     axes.set_ylim(floor, ceiling)
     return axes.get_legend_handles_labels()[0]
@@ -229,6 +221,14 @@ def _draw_composite(figure, axes, slid):
     figure.colorbar(image, ax=axes, shrink=0.8, label=f"$h$ ({height_unit})")
     y, x = node_position(slid.touch, slid.composite.shape, sides)
     axes.plot(x, y, marker="o", path_effects=HALO, **_TOUCH)
+
+
+def _correlation_words(slid):
+    """Correlation of the faces in the window, and what chance alone would give."""
+    chance = f", by chance up to {slid.chance:.2f}"
+    if not np.isfinite(slid.chance):
+        chance = f"\n{_TOO_SMALL}"
+    return f"correlation of the faces {slid.correlation:+.2f}{chance}"
 
 
 def _caption(slid, correlation_left):

@@ -6,11 +6,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.resolved import RESOLVED_NODES
-from ...mechanics.closure_laws import HYPERBOLA, LAWS, SEMI_LOGARITHMIC, UNDECIDED
+from ...core.resolved import CORRECTED_NODES, RESOLVED_NODES
+from ...mechanics.closure_laws import (
+    GOOD_FIT,
+    HYPERBOLA,
+    NEITHER,
+    SEMI_LOGARITHMIC,
+    UNDECIDED,
+)
 from ...surface.specimen import nominal_area
 from ..kit.drawing import (
-    LINES,
     MARKERS,
     WIDTH,
     Drawing,
@@ -46,19 +51,22 @@ ORDER = 50
 
 CURVES = 5
 
-#: An exponent this near to 1 is what a plot shows as "nearly linear", the paper's words.
-NEARLY = 0.1
-
-#: An asymptote beyond this many times the largest closure is stated, not drawn.
-FARTHEST_ASYMPTOTE = 1.5
-
 #: What the numbers of every curve are.
-_LEGEND = "(a), (b): $k_{ni}$ (MPa/mm); misfits of logarithmic law, hyperbola"
+_LEGEND = "(a), (b): rms misfit of logarithmic law, of hyperbola; $k_{ni}$ (MPa/mm) [95 %]"
 
-#: Of the law that fits less well.
-_DASHES = (0, (4, 3))
+#: One line for each law, whatever its curve and panel; beyond the loads fitted; of the area.
+_OF_LAW = {SEMI_LOGARITHMIC: "-", HYPERBOLA: (0, (4, 2))}
+_BEYOND, _OF_AREA = ":", "-."
 
-#: Marker of raw areas, and of states of too few nodes: open, and smaller than the others.
+#: How captions name what curves follow.
+_FOLLOWED = {
+    SEMI_LOGARITHMIC: "the logarithmic law",
+    HYPERBOLA: "the hyperbola",
+    UNDECIDED: "both",
+    NEITHER: f"neither (misfits above {percent(GOOD_FIT)})",
+}
+
+#: Marker of states of too few nodes: open, and smaller than the others.
 _OPEN = {"mfc": "none", "ms": 3, "mew": 0.6}
 
 
@@ -74,28 +82,33 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         group(atlas, "closure", name).sel(direction=direction), settings, specimen
     )
 
-    figure = Figure(figsize=(WIDTH, 7.0))
-    panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.15, 1])
+    figure = Figure(figsize=(WIDTH, 7.2))
+    panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.1, 1])
     area = nominal_area(specimen)
     _draw_closure(panels["a"], curves, drawn, direction, area)
     _draw_light_loads(panels["b"], curves, drawn, area)
     _draw_area(panels["c"], curves, drawn, direction, laws, area)
     draw_stiffness(panels["d"], stiffness)
-    area_line = [_line("-", "power law fitted", lw=0.7)] if _has_lines(panels["c"]) else []
+    area_line = [_line(_OF_AREA, "power law")] if _has_lines(panels["c"]) else []
     legends_below(
         figure,
-        _keyed(_LEGEND, panels["a"], _line_entries(panels["a"])),
-        _keyed(r"(c): exponent of $A_r$ over $F$", panels["c"], area_line),
+        _keyed(_LEGEND, panels["a"], _line_entries(panels)),
+        [
+            *_keyed(r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]", panels["c"], area_line),
+            *_hollow_entries(panels),
+        ],
     )
-    letter(panels["a"], "a", f"closure (hollow: fewer than {RESOLVED_NODES} nodes)")
-    letter(panels["b"], "b", r"light loads: hyperbola, dotted down to its $k_{ni}$")
-    letter(panels["c"], "c", "contact area (filled: corrected, hollow: raw)")
+    count = curves.sizes["offset"]
+    some = f", {len(drawn)} of {count} offsets solved" if len(drawn) < count else ""
+    letter(panels["a"], "a", f"closure{some}")
+    letter(panels["b"], "b", f"light loads{_initial_words(curves)}")
+    letter(panels["c"], "c", "contact area")
     letter(panels["d"], "d", f"stiffness over the spacing, {_state(direction, stiffness)}")
     headline(figure, settings["label"], place(direction))
     caption = sentences(
         _caption(curves, stiffness),
-        claim(atlas, name, "hyperbola", "closure_is_hyperbolic", numbers=False),
-        claim(atlas, name, "A_r ~ F", "area_is_linear", numbers=False),
+        claim(atlas, name, "hyperbola", "closure_is_hyperbolic"),
+        claim(atlas, name, "A_r ~ F", "area_is_linear"),
     )
     table = [_table(curves, drawn, laws), stiffness.assign(panel="d")]
     return Drawing(figure, pd.concat(table, ignore_index=True), caption)
@@ -119,7 +132,7 @@ def _semi_logarithmic(curve, pressure):
 def _draw_closure(axes, curves, drawn, direction, area):
     size = force_axis(axes.yaxis, curves["normal_force"])
     closures = curves["interface_closure"].isel(offset=drawn)
-    largest = limit = float(closures.max())
+    limit = float(closures.max())
     for n, i in enumerate(drawn):
         curve = curves.isel(offset=i)
         style = {"color": colour_of(n)}
@@ -129,11 +142,6 @@ def _draw_closure(axes, curves, drawn, direction, area):
         axes.plot(w[resolved], force[resolved], MARKERS[n], label=label, **style)
         axes.plot(w[~resolved], force[~resolved], MARKERS[n], **style, **_OPEN)
         _draw_laws(axes, curve, area, size, style)
-        w_m = float(curve["hyperbola_w_m"])
-        asymptotic = curve["closure_law"].item() in (HYPERBOLA, UNDECIDED)
-        if asymptotic and w_m <= FARTHEST_ASYMPTOTE * largest:
-            axes.axvline(w_m, ls=":", lw=0.8, **style)
-            limit = max(limit, w_m)
     if np.isfinite(closures).any():
         # Flush faces have closures of 0 alone.
         axes.set_xlim(0, 1.05 * limit if limit > 0 else None)
@@ -158,7 +166,8 @@ def _draw_light_loads(axes, curves, drawn, area):
         if np.isfinite(float(curve["hyperbola_k_ni"])):
             # Below the loads it is fitted to the hyperbola is all k_ni, and an extrapolation.
             first, last = (float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max"))
-            for ends, line in (((first, last), "-"), ((pressure[0] / 2, first), ":")):
+            fitted = _OF_LAW[HYPERBOLA]
+            for ends, line in (((first, last), fitted), ((pressure[0] / 2, first), _BEYOND)):
                 along = np.geomspace(*ends, 40)
                 axes.plot(_hyperbola(curve, along), along, ls=line, lw=0.8, **style)
     axes.set(xscale="log", yscale="log")
@@ -175,36 +184,32 @@ def _draw_light_loads(axes, curves, drawn, area):
 
 
 def _draw_laws(axes, curve, area, size, style):
-    """Both laws over the loads that they were fitted to, the better one in full."""
+    """Both laws over the loads that they were fitted to."""
     ends = [float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max")]
     for law, of in ((HYPERBOLA, _hyperbola), (SEMI_LOGARITHMIC, _semi_logarithmic)):
-        prefix = law.replace("-", "_")
-        misfits = [float(curve[f"{of}_misfit"]) for of in ("hyperbola", "semi_logarithmic")]
-        if not np.isfinite(misfits[0 if law == HYPERBOLA else 1]):
-            continue
-        pressure = np.geomspace(*ends, 100)
-        better = float(curve[f"{prefix}_misfit"]) == np.nanmin(misfits)
-        line = {"lw": 0.9} if better else {"lw": 0.7, "ls": _DASHES}
-        axes.plot(of(curve, pressure), pressure * area / size, **line, **style)
+        if np.isfinite(float(curve[f"{law.replace('-', '_')}_misfit"])):
+            pressure = np.geomspace(*ends, 100)
+            force = pressure * area / size
+            axes.plot(of(curve, pressure), force, ls=_OF_LAW[law], lw=0.8, **style)
 
 
 def _law_words(curve):
-    """k_ni with its interval, and the misfits of both laws, as the legend's heading says."""
+    """Misfits of both laws, and k_ni with its interval, as the legend's heading says."""
     misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
     if not np.isfinite(misfits).any():
         return f"no fit: {_no_law(curve)}"
     ends = [float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")]
     known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
-    return f"{estimate(*ends)}; {', '.join(known)}"
+    return f"{', '.join(known)}; {estimate(*ends)}"
 
 
 def _no_law(curve):
     return str(curve["closure_law_reason"].values)
 
 
-def _line(style, label, lw=0.9):
+def _line(style, label):
     """Entry of a legend for a line of any curve."""
-    return Line2D([], [], color="0.3", ls=style, lw=lw, label=label)
+    return Line2D([], [], color="0.3", ls=style, lw=0.9, label=label)
 
 
 def _has_lines(axes):
@@ -217,15 +222,24 @@ def _keyed(head, axes, lines):
     return [heading(head), *entries(axes), *lines] if lines else entries(axes)
 
 
-def _line_entries(axes):
-    """What the lines of (a) are, of those that are drawn."""
-    drawn = [line.get_linestyle() for line in axes.lines]
+def _line_entries(panels):
+    """What the lines of (a) and (b) are, of those that are drawn."""
+    drawn = [line.get_linestyle() for which in "ab" for line in panels[which].lines]
     known = (
-        ("-", _line("-", "law that fits better")),
-        ("--", _line(_DASHES, "the other law", lw=0.7)),
-        (":", _line(":", "asymptote $w_m$", lw=0.8)),
+        ("-", _line(_OF_LAW[SEMI_LOGARITHMIC], "logarithmic law")),
+        ("--", _line(_OF_LAW[HYPERBOLA], "hyperbola")),
+        (":", _line(_BEYOND, "(b): hyperbola below the loads fitted, slope $k_{ni}$")),
     )
     return [entry for style, entry in known if style in drawn]
+
+
+def _hollow_entries(panels):
+    """What hollow markers are, if any is drawn."""
+    lines = [line for panel in panels.values() for line in panel.lines]
+    if not any(line.get_markerfacecolor() in ("none", "white") for line in lines):
+        return []
+    words = f"hollow: under {RESOLVED_NODES} nodes, in (c) {CORRECTED_NODES} (area raw)"
+    return [Line2D([], [], color="0.3", ls="none", marker="o", label=words, **_OPEN)]
 
 
 def _offset(direction, offset):
@@ -260,12 +274,13 @@ def _draw_area(axes, curves, drawn, direction, laws, area):
             label=f"{_offset(direction, float(curve['offset']))}: {words}",
             **style,
         )
-        axes.plot(force / size, 100 * curve["area_share"].values, **style, **_OPEN)
+        raw = 100 * curve["area_share"].values
+        axes.plot(force[~enough] / size, raw[~enough], **style, **_OPEN)
         if known:
             ends = np.array([float(law[f"corrected_force_{end}"]) for end in ("low", "high")])
             unit = float(law["corrected_unit_area"])
             line = 100 * unit * ends ** float(law["corrected_exponent"]) / area
-            axes.plot(ends / size, line, color=colour_of(n), lw=0.7, ls=LINES[n % 4])
+            axes.plot(ends / size, line, color=colour_of(n), lw=0.8, ls=_OF_AREA)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_ylabel("real contact area $A_r/A_0$ (%)")
@@ -324,8 +339,8 @@ def _table(curves, drawn, laws):
 
 def _caption(curves, stiffness):
     return (
-        f"{opening('Figs. 4 and 5')} Closure, contact area and stiffness. "
-        f"{_laws_words(curves)} {stiffness_words(stiffness)}{_initial_words(curves)}"
+        f"{opening('Figs. 4 and 5')} Closure, contact area, stiffness. "
+        f"{_laws_words(curves)} {stiffness_words(stiffness)}"
     )
 
 
@@ -339,18 +354,19 @@ def _initial_words(curves):
     fitted = int(np.isfinite(k_ni).sum())
     less = k_ni * curves["interface_closure"] > curves["nominal_pressure"]
     softer = int(less.any("normal_force").sum())
-    return (
-        f" Light loads are less stiff than k_ni at {softer} of {fitted} offsets." if softer else ""
-    )
+    return f": softer than $k_{{ni}}$ at {softer} of {fitted} offsets" if softer else ""
 
 
 def _laws_words(curves):
-    """Which law fits better, beside the paper's hyperbola."""
+    """Which law the curves follow, beside the paper's hyperbola."""
     misfits = [curves[f"{name}_misfit"].values for name in ("hyperbola", "semi_logarithmic")]
     fitted = np.isfinite(misfits[1])
     if not fitted.any():
         return f"No law could be fitted ({_no_law(curves.isel(offset=-1))})."
     laws = curves["closure_law"].values.astype(str)[fitted]
-    named = {law: int((laws == law).sum()) for law in LAWS}
-    counts = ", ".join(f"{law} {n}" for law, n in named.items() if n)
-    return f"Better law of {fitted.sum()} curves: {counts}."
+    named = {words: int((laws == law).sum()) for law, words in _FOLLOWED.items()}
+    if len(laws) == 1:
+        followed = next(words for words, n in named.items() if n)
+        return f"The curve follows {followed.replace('neither', 'neither law')}."
+    counts = ", ".join(f"{n} {words}" for words, n in named.items() if n)
+    return f"Of {len(laws)} curves {counts.replace(' ', ' follow ', 1)}."

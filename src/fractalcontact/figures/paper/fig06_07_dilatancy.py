@@ -3,9 +3,11 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.fitting import fit_line
+from ...core.resolved import RESOLVED_NODES
 from ...surface.specimen import window_sides
 from ..kit.drawing import (
     LINES,
@@ -16,7 +18,9 @@ from ..kit.drawing import (
     entries,
     finest_curves,
     group,
+    heading,
     headline,
+    label_short_span,
     legends_below,
     letter,
     nearest_load,
@@ -25,24 +29,28 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.maps import ENLARGED, HALO, draw_domain
-from ..kit.verdicts import claim, sentences
-from ..kit.words import TOWARDS, area_label, force_label, opening, place, short, slope_text
+from ..kit.verdicts import claim, row_of, sentences
+from ..kit.words import TOWARDS, area_label, force_label, opening, place, short
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
 NEEDS = ("specimens", "dilatancy", "closure", "contact", "statements")
 ORDER = 100
 
-#: What the paper says of rock and of concrete, and the statements that judge it.
-_PLATEAUS = (
-    ("plateau in every direction", "dilatancy_flattens"),
-    ("plateau in two of four", "dilatancy_flattens_in_two"),
-)
 DOMAINS, COLUMNS = 6, 3
 #: What the table has of the contact area.
 _OF_AREA = ("nodes", "area_share", "area_corrected_share", "area_corrected_resolved")
+#: Of the fitted lines, points.
+_FIT_WIDTH = 2.2
 #: A change over the second half below this share of the mean there is called nearly flat.
 NEARLY_FLAT = 0.1
+_LEVEL = f"{NEARLY_FLAT:.0%}".replace("%", " %")
+
+#: What the paper says of rock and of concrete, and the statements that judge it.
+_PLATEAUS = (
+    (f"plateau (changes within {_LEVEL}) in every direction", "dilatancy_flattens"),
+    (f"plateau (changes within {_LEVEL}) in two of four", "dilatancy_flattens_in_two"),
+)
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -70,21 +78,20 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     opened = dilatancy["elastic_dilatancy"].sel(contact_direction=direction)
     opened = opened.assign_coords(resolved=curves["resolved"])
     _draw_elastic(elastic, dilatancy, opened, shown, mapped, points)
-    legends_below(top, entries(rigid), entries(elastic))
+    legends_below(top, _keyed(rigid, dilatancy), entries(elastic))
     domains = group(atlas, "contact", name)[f"in_contact_{finest}"].sel(direction=direction)
     panels = bottom.subplots(rows, COLUMNS, squeeze=False)
     at_map = curves.isel(normal_force=mapped)
     larger = _draw_domains(panels, domains[:, mapped], at_map, points, window_sides(specimen))
-    bottom.suptitle(
-        f"(c) contact domains at $F$ = {force_label(loads[mapped])}", x=0.01, ha="left", fontsize=8
-    )
+    title = f"(c) contact domains at $F$ = {force_label(loads[mapped])}{_fall(atlas, name)}"
+    title += "; nodes drawn enlarged" if larger else ""
+    bottom.suptitle(title, x=0.01, ha="left", fontsize=8)
     headline(figure, settings["label"])
     table = _table(dilatancy, direction, shown, curves)
     caption = sentences(
         _caption(float(at_map["normal_force"])),
-        sentences(*(claim(atlas, name, *said, numbers=False) for said in _PLATEAUS))
-        or _plateau_words(plateaus),
-        claim(atlas, name, "fall of A_r with v", "area_falls", numbers=False),
+        sentences(*(claim(atlas, name, *said) for said in _PLATEAUS)) or _plateau_words(plateaus),
+        claim(atlas, name, "fall of A_r as v^e", "area_falls"),
         ENLARGED if larger else "",
     )
     return Drawing(figure, table, caption)
@@ -101,14 +108,15 @@ def _plateau(dilatancy, direction):
 
 def _draw_rigid(axes, dilatancy, plateaus):
     v = dilatancy["rigid_offset"].values
-    for n, (direction, (line, _)) in enumerate(plateaus.items()):
+    for n, (direction, plateau) in enumerate(plateaus.items()):
         opened = dilatancy["rigid_dilatancy"].sel(direction=direction)
-        slope = f"slope {slope_text(line, 'mm/mm')}" if np.isfinite(line.slope) else "no fit"
-        name = TOWARDS.get(direction, "plane")
-        axes.plot(v, opened, color=colour_of(n), ls=LINES[n % 4], label=f"{name}: {slope}")
+        label = f"{TOWARDS.get(direction, 'plane')}: {_change_words(*plateau)}"
+        axes.plot(v, opened, label=label, **_direction_style(n))
+        line, _ = plateau
         if np.isfinite(line.slope):
             ends = np.array([line.x_min, line.x_max])
-            axes.plot(ends, line.intercept + line.slope * ends, color=colour_of(n), lw=0.6)
+            level = line.intercept + line.slope * ends
+            axes.plot(ends, level, color=colour_of(n), lw=_FIT_WIDTH, alpha=0.7)
     axes.set_xlabel("offset $v$ (mm)")
     axes.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
     axes.set_ylim(bottom=min(0, float(dilatancy["rigid_dilatancy"].min())))
@@ -116,16 +124,58 @@ def _draw_rigid(axes, dilatancy, plateaus):
     letter(axes, "a", "rigid dilatancy")
 
 
+def _direction_style(n):
+    """Line of the n-th direction, in both panels."""
+    return {"color": colour_of(n), "ls": LINES[n % 4], "lw": 0.9}
+
+
+def _change_words(line, change):
+    """Change of the fitted line in per cent of the mean, and what it is called."""
+    if not np.isfinite(line.slope):
+        return "no fit"
+    ends = (100 * change / line.slope * end for end in (line.slope_low, line.slope_high))
+    low, high = (f"{end + 0.0:+.0f}" for end in ends) if line.slope else ("0", "0")
+    known = "level" if abs(change) <= NEARLY_FLAT else "rising" if change > 0 else "falling"
+    return f"{100 * change:+.0f} % [{low}, {high}], {known}"
+
+
+def _keyed(axes, dilatancy):
+    """Legend of (a): what its numbers and its thick lines are, and the rule of a plateau."""
+    half = short(float(dilatancy["rigid_offset"][-1]) / 2)
+    return [
+        heading(rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"),
+        *entries(axes),
+        Line2D(
+            [],
+            [],
+            color="0.4",
+            lw=_FIT_WIDTH,
+            alpha=0.7,
+            label=f"fitted lines; level: change within {_LEVEL}",
+        ),
+    ]
+
+
+def _fall(atlas, name):
+    """The exponent of A_r over the offset, where the statement on it gives one."""
+    row = row_of(atlas, "statements", name, "area_falls")
+    numbers = "" if row is None else str(row["numbers"].item())
+    return rf"; all offsets: $A_r \sim v^e$, {numbers}" if numbers.startswith("e =") else ""
+
+
 def _draw_elastic(axes, dilatancy, opened, shown, mapped, points):
     """Elastic dilatancy under some loads, below the rigid one."""
     direction, offsets = str(opened["contact_direction"].values), opened["offset"].values
     rigid = dilatancy["rigid_dilatancy"].sel(direction=direction)
-    axes.plot(dilatancy["rigid_offset"], rigid, color="0.6", lw=1, label="rigid, $F$ = 0")
+    number = list(dilatancy["direction"].values).index(direction)
+    style = _direction_style(number)
+    axes.plot(dilatancy["rigid_offset"], rigid, label="rigid, $F$ = 0, as in (a)", **style)
     _elastic_curves(axes, opened, shown)
     _mark_points(axes, opened[:, mapped], points)
     offset_axis(axes, offsets)
     if axes.get_xscale() == "log":
         axes.set_xlim(offsets.min() / 1.3, offsets.max() * 1.3)
+        label_short_span(axes.xaxis)
     axes.margins(y=0.12)
     low, high = axes.get_ylim()
     axes.set_ylim(low - 0.1 * (high - low), high)  # room for a letter below the lowest point
@@ -135,13 +185,16 @@ def _draw_elastic(axes, dilatancy, opened, shown, mapped, points):
 
 def _elastic_curves(axes, opened, shown):
     """Curves of the loads shown; states of too few nodes are hollow."""
+    labelled = False
     for n, j in enumerate(shown):
         curve = opened[:, j]
-        style = {"marker": MARKERS[n % len(MARKERS)], "color": colour_of(n + 1)}
+        style = {"marker": MARKERS[n % len(MARKERS)], "color": colour_of(n + 4)}
         label = f"$F$ = {force_label(float(curve['normal_force']))}"
         axes.plot(curve["offset"], curve, label=label, **style)
         few = curve[~curve["resolved"].values]
-        axes.plot(few["offset"], few, ls="none", mfc="white", **style)
+        hollow = f"hollow: under {RESOLVED_NODES} nodes" if len(few) and not labelled else None
+        labelled |= bool(len(few))
+        axes.plot(few["offset"], few, ls="none", mfc="white", label=hollow, **style)
 
 
 def _mark_points(axes, curve, points):
@@ -223,7 +276,7 @@ def _plateau_words(plateaus):
     flat = sum(abs(change) <= NEARLY_FLAT for change in changes.values())
     rising = [TOWARDS[d] for d, change in changes.items() if change > NEARLY_FLAT]
     falling = [TOWARDS[d] for d, change in changes.items() if change < -NEARLY_FLAT]
-    words = f"{flat} of {len(changes)} directions have a plateau over the second half of v"
+    words = f"{flat} of {len(changes)} directions have a plateau (changes within {_LEVEL})"
     words += f" (rising: {', '.join(rising)})" if rising else ""
     words += f" (falling: {', '.join(falling)})" if falling else ""
     return f"{words}."

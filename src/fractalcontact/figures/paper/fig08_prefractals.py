@@ -8,8 +8,8 @@ from xarray import DataTree
 
 from ...core.resolved import CORRECTED_NODES
 from ...domain.renormalisation import RESOLUTION
-from ...mechanics.model_validity import elastic_model_validity
-from ..kit.domains import Loading, disagreement
+from ...mechanics.model_validity import elastic_model_validity, usual_strengths
+from ..kit.domains import Loading
 from ..kit.drawing import (
     COLOURS,
     WIDTH,
@@ -19,14 +19,14 @@ from ..kit.drawing import (
     label_short_span,
     letter,
 )
-from ..kit.maps import ENLARGED, draw_domain
+from ..kit.maps import LEAST_DOT, draw_domain
 from ..kit.verdicts import claim, sentences
 from ..kit.words import (
     REAL_PRESSURE,
     force_label,
+    number,
     opening,
     percent,
-    pressure_label,
     short,
 )
 
@@ -35,8 +35,8 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "contact", "domains", "scaling", "area", "statements")
 ORDER = 130
 
-#: Maps side by side.
-_COLUMNS = 4
+#: Maps side by side, and the most times as wide as they are that all draw their nodes.
+_COLUMNS, _WIDEST = 4, 3
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -46,7 +46,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     table = _table(loading, i)
     laws = group(atlas, "area", name).sel(direction=loading.direction)
     slope = float(laws["rms_slope"].sel(offset=loading.offset, method="nearest"))
-    limit = _limit(loading.settings["material"])
     rows, columns = -(-len(table) // _COLUMNS), min(len(table), _COLUMNS)
     aspect = loading.sides[0] / loading.sides[1]
     height = rows * (WIDTH / _COLUMNS * aspect + 0.75)
@@ -54,20 +53,26 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     top, bottom = figure.subfigures(2, 1, height_ratios=[height, 2.0])  # type: ignore[misc]  # an array
     panels = top.subplots(rows, columns, squeeze=False, sharey=True).ravel()
     letters = "abcdefghijklmnop"
-    larger = False
+    times = _times(loading, columns)
     for axes, which, row in zip(panels, letters, table.itertuples(), strict=False):
-        larger |= draw_domain(axes, loading.domain(row.resolution, i), loading.sides)
+        domain = loading.domain(row.resolution, i)
+        draw_domain(axes, domain, loading.sides, ticks=4, times=times)
         letter(axes, which, f"$s$ = {short(row.spacing_mm)} mm\n{_area_words(row)}")
         axes.label_outer()
     for axes in panels[len(table) :]:
         axes.remove()
     axes = bottom.subplots()
-    _draw_pressures(axes, table, limit)
-    letter(axes, letters[len(table)], f"real mean pressure (rms slope {short(slope)})")
-    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
-    falls = claim(atlas, name, "fall of A_r as a power", "area_is_lacunar", numbers=False)
-    caption = _caption(loading, i, table, slope, falls)
-    caption = sentences(caption, ENLARGED if larger else "")
+    _draw_pressures(axes, table, loading.settings["material"])
+    found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {_exponent_words(loading.estimates[0], i)}"
+    title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(slope)}"
+    letter(axes, letters[len(table)], title)
+    wide = f"nodes drawn {times} times as wide in all maps" if times > 1 else ""
+    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}", below=wide)
+    caption = sentences(
+        f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}.",
+        _model_words(loading, table, slope),
+        claim(atlas, name, "fall of A_r as a power", "area_is_lacunar"),
+    )
     return Drawing(figure, table.assign(rms_slope=slope), caption)
 
 
@@ -94,37 +99,47 @@ def _table(loading, i):
     )
 
 
+def _times(loading, columns):
+    """How many times as wide as they are all maps draw their nodes, so that print shows the finest.
+
+    One number for all: with one for each, finer domains would look fuller than coarser ones.
+    """
+    nodes = max(loading.domain(loading.finest, 0).shape)
+    points = 72 * 0.85 * WIDTH / columns / nodes
+    return int(np.clip(np.ceil(LEAST_DOT / points), 1, _WIDEST))
+
+
+def _exponent_words(by_area, i):
+    """Delta_sigma of the areas with its interval, or that too few nodes touch for one."""
+    if by_area.reason[i]:
+        return f"no fit (fewer than {CORRECTED_NODES} nodes)"
+    ends = (number(end[i]) for end in (by_area.value, by_area.low, by_area.high))
+    return r"$\Delta_\sigma$ = {} [{}, {}]".format(*ends)
+
+
 def _area_words(row):
     """Area and pressure of a panel: corrected, or raw where too few nodes touch."""
     if np.isfinite(row.area_corrected_mm2):
         area, share, pressure = row.area_corrected_mm2, row.area_corrected_share, row.sigma_n_MPa
-        raw = f" (raw {short(row.area_mm2)})"
+        raw = ""
     else:
         area, share, pressure = row.area_mm2, row.area_share, row.sigma_n_raw_MPa
         raw = " (raw)"
     return (
         f"$A_r$ = {short(area)} mm$^2${raw}\n$A_r/A_0$ = {percent(share)}\n"
-        rf"$\sigma_n$ = {pressure_label(pressure)}"
+        rf"$\sigma_n$ = {short(pressure)} MPa"
     )
 
 
-def _limit(material):
-    """The pressure that the material bears and its name, of what the study states; or None."""
-    for key, words in (("hardness", "hardness"), ("joint_wall_strength", "joint wall strength")):
-        if np.isfinite(material[key]):
-            return float(material[key]), words
-    return None
-
-
-def _draw_pressures(axes, table, limit):
+def _draw_pressures(axes, table, material):
     style = {"color": COLOURS[0], "marker": "o"}
     known = table.dropna(subset="sigma_n_MPa")
-    axes.plot(known["spacing_mm"], known["sigma_n_MPa"], **style, label="corrected area")
+    if len(known):
+        label = r"$A_r$ corrected for its edge"
+        axes.plot(known["spacing_mm"], known["sigma_n_MPa"], **style, label=label)
     raw = {"mfc": "none", "ls": ":", "lw": 0.8}
-    axes.plot(table["spacing_mm"], table["sigma_n_raw_MPa"], **style, **raw, label="raw area")
-    if limit is not None:
-        pressure, words = limit
-        axes.axhline(pressure, color=COLOURS[2], ls="--", label=f"{words} of the study")
+    axes.plot(table["spacing_mm"], table["sigma_n_raw_MPa"], **style, **raw, label="$A_r$ raw")
+    _draw_limit(axes, material)
     axes.set(xscale="log", yscale="log")
     axes.set_xticks(table["spacing_mm"], [short(s) for s in table["spacing_mm"]])
     axes.xaxis.set_minor_locator(NullLocator())
@@ -134,14 +149,16 @@ def _draw_pressures(axes, table, limit):
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
 
 
-def _caption(loading, i, table, slope, falls):
-    # "no fit", "no dimension": the reasons stand in Figs. 9 and 10.
-    by_area, by_box = (e.reason[i].split(":")[0] or e.text(i) for e in loading.estimates)
-    return (
-        f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}. "
-        f"{_model_words(loading, table, slope)} {falls} Delta_sigma: {by_area} by A_r(s), "
-        f"{by_box} by box counting. {disagreement(loading.scaling.isel(normal_force=i))}"
-    )
+def _draw_limit(axes, material):
+    """The pressure that the material bears: what the study states, or that of usual materials."""
+    for key, words in (("hardness", "hardness"), ("joint_wall_strength", "joint wall strength")):
+        if np.isfinite(material[key]):
+            label = f"{words}: {short(material[key])} MPa"
+            axes.axhline(float(material[key]), color=COLOURS[2], ls="--", label=label)
+            return
+    low, high = usual_strengths(material)
+    label = f"usual strengths:\n{short(low)} to {short(high)} MPa"
+    axes.axhspan(low, high, color=COLOURS[2], alpha=0.2, lw=0, label=label)
 
 
 def _model_words(loading, table, slope):

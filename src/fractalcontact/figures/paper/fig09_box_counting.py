@@ -1,5 +1,7 @@
 """Fig. 9: box counting on one contact domain."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -13,7 +15,7 @@ from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, headline, label_short_span, letter
 from ..kit.maps import ENLARGED, draw_domain
 from ..kit.verdicts import claim, sentences
-from ..kit.words import force_label, interval, opening, short, undetermined
+from ..kit.words import force_label, interval, opening, undetermined
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
@@ -28,6 +30,11 @@ NULLS = {
     "cut_count": "null_count_cut",
 }
 
+#: Grey of random nodes; lines over markers, which would hide them; markers that hide no line.
+_RANDOM = "0.7"
+_SEEN: dict[str, Any] = {"zorder": 4, "linewidth": 1.4}
+_CROSS = {"ms": 3.5, "mew": 0.7, "alpha": 0.7}
+
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """A contact domain, its box counts N(r) with count law and ordinary slope, local slopes."""
@@ -35,15 +42,18 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     i = loading.map_load
     counts = loading.counts.isel(normal_force=i)
     table = _table(counts)
-    figure = Figure(figsize=(WIDTH, 3.6))
+    figure = Figure(figsize=(WIDTH, 3.7))
     left, middle, right = figure.subplots(1, 3)
     larger = draw_domain(left, loading.domain(loading.finest, i), loading.sides)
     letter(left, "a", "contact domain")
     _draw_counts(middle, table, counts)
     _draw_slopes(right, table, counts)
+    if larger:
+        left.set_title("nodes enlarged", loc="right", fontsize=7)
     handles, _ = middle.get_legend_handles_labels()
-    handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) shaded: 95 % intervals"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) 95 % of both fits"))
+    narrow = {"columnspacing": 1.2, "handlelength": 1.8}
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     caption = sentences(
         _caption(loading, i, counts),
@@ -105,30 +115,33 @@ def _draw_counts(axes, table, counts):
         null["box_side_mm"],
         null["random_count_low"].clip(lower=0.5),
         null["random_count_high"],
-        color="0.75",
+        color=_RANDOM,
         lw=1.5,
-        label="minimal cover of random nodes, 95 %",
+        label="random nodes: (b) 95 %, (c) mean",
         zorder=0,
     )
     axes.loglog(
-        null["box_side_mm"], null["cut_count"], "-.", color=COLOURS[4], label="bearing-area cut"
+        null["box_side_mm"],
+        null["cut_count"],
+        "-.",
+        color=COLOURS[4],
+        label="bearing-area cut: highest nodes",
     )
     for used, face in ((table["ordinary_used"], COLOURS[0]), (~table["ordinary_used"], "white")):
-        words = "minimal cover, in the ordinary slope" if face != "white" else "minimal cover"
+        words = "boxes, fewest" + (", fitted" if face != "white" else ", not fitted")
         axes.loglog(
             r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
         )
     if np.isfinite(table["ordinary_count"]).any():
         weak = {} if bool(counts["ordinary_determined"]) else WEAK
-        label = "ordinary slope" + (", undetermined" if weak else "")
-        axes.loglog(
-            r, table["ordinary_count"], "--", color=COLOURS[0], zorder=1, label=label, **weak
-        )
-    axes.loglog(r, table["mean_count"], "x", ms=4, color=COLOURS[2], label="mean over origins")
+        label = f"ordinary slope: {_ordinary(counts)}"
+        axes.loglog(r, table["ordinary_count"], "--", color=COLOURS[0], label=label, **_SEEN | weak)
+    label = "boxes, mean of origins"
+    axes.loglog(r, table["mean_count"], "x", color=COLOURS[2], label=label, **_CROSS)
     if np.isfinite(table["law_count"]).any():
         weak = {} if _law_determined(counts) else WEAK
-        label = str(counts["estimator"].item()) + (", undetermined" if weak else "")
-        axes.loglog(r, table["law_count"], color=COLOURS[2], label=label, **weak)
+        label = rf"count law: $\Delta_\sigma$ {_by_law(counts)}"
+        axes.loglog(r, table["law_count"], color=COLOURS[2], label=label, **_SEEN | weak)
     axes.set_ylim(0.7, table["box_count"].max() ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
     label_short_span(axes.xaxis)
@@ -145,11 +158,11 @@ def _draw_slopes(axes, table, counts):
     axes.semilogx(middle, table["local_slope"], "o", ms=4, mfc="white", mec=COLOURS[0])
     null = table[np.isfinite(table["random_count"])]
     for column, style in (
-        ("random_count", {"color": "0.6", "ls": "-"}),
+        ("random_count", {"color": _RANDOM, "ls": "-", "lw": 2}),
         ("cut_count", {"color": COLOURS[4], "ls": "-."}),
     ):
         if np.isfinite(null[column]).all() and len(null) > 1:
-            axes.plot(*local_slopes(null["box_side_mm"], null[column]), lw=1, **style)
+            axes.plot(*local_slopes(null["box_side_mm"], null[column]), **{"lw": 1} | style)
     for name, fit, colour, style, sure in (
         ("delta_sigma", "fit", COLOURS[2], "-", _law_determined(counts)),
         (
@@ -178,10 +191,12 @@ def _caption(loading, i, counts):
     reason = str(counts["reason"].item())
     if reason:
         return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
-    return (
-        f"{start}Delta_sigma is {loading.estimates[1].text(i)} (r = {short(counts['fit_min'])}–"
-        f"{short(counts['fit_max'])} mm); ordinary slope {ordinary}."
-    )
+    return f"{start}Delta_sigma is {loading.estimates[1].text(i)}, the ordinary slope {ordinary}."
+
+
+def _by_law(counts):
+    """The dimension of the count law with its interval."""
+    return interval(*(counts[f"delta_sigma{end}"].item() for end in ("", "_low", "_high")))
 
 
 def _ordinary(counts):

@@ -7,7 +7,7 @@ from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
 from ...domain.renormalisation import RESOLUTION
-from ..kit.domains import Loading
+from ..kit.domains import Loading, disagreement
 from ..kit.drawing import (
     COLOURS,
     MARKERS,
@@ -46,7 +46,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(left), entries(right))
     headline(figure, *loading.title)
     table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
-    falls = claim(atlas, name, "power-law fall of A_r", "area_is_lacunar", numbers=False)
+    falls = claim(atlas, name, "power-law fall of A_r", "area_is_lacunar")
     return Drawing(figure, table, _caption(loading, i, falls))
 
 
@@ -95,13 +95,19 @@ def _draw_areas(axes, loading, map_load, table):
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
-    letter(axes, "a", "contact area (filled: corrected, hollow: raw; lines: fits)")
+    axes.plot(
+        [], [], "o", color="0.3", ls="-", ms=4, label="filled: corrected for the edge, fitted"
+    )
+    axes.plot([], [], "o", color="0.3", mfc="none", mew=0.6, ms=4, label="hollow: raw, not fitted")
+    letter(axes, "a", r"contact area, $A_r \sim s^{2-\Delta_\sigma}$ [95 %]")
 
 
 def _draw_pressures(axes, loading, i, table):
     for estimate in loading.estimates:
         rows = table[table["estimator"] == estimate.label]
         style = {"color": estimate.style["color"], "linestyle": estimate.style["linestyle"]}
+        if estimate.reason[i]:
+            style["linestyle"] = "none"  # nothing is drawn: no line in the legend either
         style |= {} if estimate.determined[i] else WEAK
         label = f"{estimate.symbol}: {estimate.entry(i)}"
         axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style, label=label)
@@ -116,7 +122,8 @@ def _draw_pressures(axes, loading, i, table):
         ends = rows["sigma_0_low_MPa"], rows["sigma_0_high_MPa"]
         faint = 0.15 if estimate.determined[i] else 0.06
         axes.fill_between(rows["b_mm"], *ends, color=estimate.style["color"], alpha=faint, lw=0)
-    axes.plot([], [], lw=5, color="0.85", label="shaded: 95 % interval")
+    if any(np.isfinite(estimate.value[i]) for estimate in loading.estimates):
+        axes.plot([], [], lw=5, color="0.85", label="shaded: 95 % interval, of both")
     letter(axes, "b", f"eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
 
 
@@ -124,6 +131,18 @@ def _caption(loading, i, falls):
     by_area, by_box = loading.estimates
     return (
         f"{opening('Fig. 10')} A_r(s), and eq. 6 extrapolated from the specimen at F = "
-        f"{force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.text(i)} by A_r(s), "
-        f"{by_box.text(i)} by box counting."
+        f"{force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.text(i)} by A_r(s)"
+        f"{_determined_words(loading, i)}, {by_box.text(i)} by box counting. "
+        f"{disagreement(loading.scaling.isel(normal_force=i))}"
     )
+
+
+def _determined_words(loading, i):
+    """Where the load of the maps determines none: the nearest load drawn that does."""
+    by_area = loading.estimates[0]
+    drawn = loading.spread_loads(_MOST_LOADS, i)
+    known = [j for j in drawn if by_area.determined[j] and not by_area.reason[j]]
+    if by_area.determined[i] or by_area.reason[i] or not known:
+        return ""
+    nearest = min(known, key=lambda j: abs(j - i))
+    return f" but {by_area.text(nearest)} at {force_label(loading.forces[nearest])}"
