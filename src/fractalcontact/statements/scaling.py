@@ -171,7 +171,9 @@ def _why_open(reasons):
     """Why no load decides about eq. 6; a reason a load and estimate, the most frequent first."""
     counts = Counter(str(reason) for reason in reasons).most_common()
     why = "; ".join(f"{reason} ({n})" for reason, n in counts)
-    return f"at no load are the intervals narrow enough; {len(reasons)} cases (load, estimate): {why}"
+    return (
+        f"at no load are the intervals narrow enough; {len(reasons)} cases (load, estimate): {why}"
+    )
 
 
 def larger_domains_are_less_dense(joint: Joint) -> Finding:

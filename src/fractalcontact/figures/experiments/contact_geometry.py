@@ -56,7 +56,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels = np.atleast_1d(parts[0].subplots(1, len(hursts), sharey=True))
     for axes, hurst in zip(panels, hursts, strict=True):
         _draw_curves(axes, test.sel(hurst=hurst), _CURVES, colours=(1, 2))
-        axes.axhline(1 + hurst, color="0.5", lw=0.8, ls=":", label=r"$\Delta_\sigma$ of the area: $1+H$")
+        axes.axhline(
+            1 + hurst, color="0.5", lw=0.8, ls=":", label=r"$\Delta_\sigma$ of the area: $1+H$"
+        )
         letter(axes, next(letters), f"$H$ = {hurst:g}")
     panels[0].set_ylabel("correlation dimension $D_2$ (1)")
     undetermined = Line2D([], [], color="0.4", marker="o", ls="none", mfc="white")

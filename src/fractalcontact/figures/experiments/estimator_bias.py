@@ -16,6 +16,7 @@ from ..kit.drawing import (
     colour_of,
     entries,
     group,
+    heading,
     legends_below,
     letter,
 )
@@ -63,7 +64,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for panel in panels[-1]:
         panel.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
         panel.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
-    legends_below(figure, *_legends(panels[0, 0], panels[1, 0]))
+    legends_below(figure, *_legends(panels[0, 0], panels[1, 0], bias.attrs["from_hurst"]))
     figure.suptitle(
         f"{bias.sizes['seed']} synthetic surfaces each, bars: standard deviation between surfaces; "
         "estimators side by side",
@@ -72,14 +73,19 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     return Drawing(figure, _table(bias), _caption(bias))
 
 
-def _legends(of_bias, of_coverage):
+def _legends(of_bias, of_coverage, start):
     """Estimators with their errors, in two columns, and what else is drawn."""
     estimators = [one for one in entries(of_bias) if not isinstance(one, Patch | Line2D)]
     half = -(-len(estimators) // 2)
     hollow = Line2D([], [], color="0.3", marker="o", mfc="none", ls="none")
     hollow.set_label("hollow: before known bias is taken off")
     others = [one for one in entries(of_bias) if isinstance(one, Patch | Line2D)]
-    return estimators[:half], estimators[half:], [hollow, *others, *entries(of_coverage)]
+    head = heading(f"rms error of $H$, from $H$ = {start:g} on")
+    return (
+        [head, *estimators[:half]],
+        [heading(" "), *estimators[half:]],
+        [hollow, *others, *entries(of_coverage)],
+    )
 
 
 def _surface_words(size, roll_off):
@@ -98,7 +104,7 @@ def _beside(bias, n):
 def _label(bias, name):
     """An estimator in the legend, with the rms error that the caption compares."""
     error = float(bias["overall_error"].sel(estimator=name))
-    words = _name(name) + (", recommended" if name == bias.attrs["recommended"] else "")
+    words = _name(name) + (" (recommended)" if name == bias.attrs["recommended"] else "")
     return f"{words}: {error:.3f}" if np.isfinite(error) else words
 
 
@@ -162,8 +168,8 @@ def _caption(bias):
     least = known["least_coverage"].to_series()
     name = bias.attrs["recommended"]
     return (
-        f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of H (numbers "
-        f"in the legend) of {errors[name]:.3f}, {_place(errors, name)}; its intervals hold H in "
+        f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of "
+        f"{errors[name]:.3f}, {_place(errors, name)}; its intervals hold H in "
         f"{_at_least(least[name])}, those of the worst estimator in "
         f"{100 * least.min():.0f} %.{_rough_words(bias, start)}"
     )

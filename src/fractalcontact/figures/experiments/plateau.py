@@ -13,6 +13,7 @@ from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...core.intervals import mean_interval
+from ...core.labels import printable
 from ...core.mean_plane import without_mean_plane
 from ...core.units import quantity
 from ...experiments.roll_off import SURFACES
@@ -34,7 +35,7 @@ from ..kit.sizes import plain_decades
 from ..kit.verdicts import CIRCULAR_SHORT, row_of
 from ..kit.words import PAPER, estimate, short
 
-TITLE = "Rigid dilatancy of all joints: a plateau comes with a roll-off of the spectrum"
+TITLE = "Rigid dilatancy of all joints: does a plateau need a roll-off of the spectrum?"
 SUBJECT = "study"
 NEEDS = ("specimens", "joints", "roll_off", "statements")
 KEY = "roll_off"
@@ -43,8 +44,8 @@ ORDER = 10
 #: What the paper says of rock and of concrete (:mod:`statements.sliding`).
 PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
-#: Specimens that the caption names.
-MOST_NAMED = 3
+#: Specimens that the caption names, and letters of the label of each.
+MOST_NAMED, LONGEST_IN_CAPTION = 3, 40
 
 #: Specimens whose largest offsets differ by more than this are drawn in decades.
 WIDE = 5
@@ -197,7 +198,8 @@ def _without_repeats(slides):
     for slide in slides:
         for n, other in enumerate(found):
             if _alike(slide, other):
-                found[n] = replace(other, label=f"{other.label}; the same: {slide.label}")
+                longer, shorter = sorted((other, slide), key=lambda one: -one.v.size)
+                found[n] = replace(longer, label=f"{longer.label}; the same: {shorter.label}")
                 break
         else:
             found.append(slide)
@@ -218,8 +220,9 @@ def _draw_slide(panels, n, slide, *, slope=False):
     # In decades flush faces have no place, and what rounding leaves of their spread would be shown.
     shown = slide.v > 0 if panels[1].get_xscale() == "log" else np.full(slide.v.shape, True)
     v = slide.v[shown]
-    label = f"{slide.label}; slope {_change(slide)}" if slope else slide.label
-    label = label_in_lines(label, width=COLUMN)
+    label = label_in_lines(slide.label, width=COLUMN)
+    if slope:
+        label += f"\nslope {_change(slide)}"
     for axes, values in zip(panels, (slide.opened, slide.ratio), strict=True):
         if axes is panels[1] and not slide.matched:
             continue  # its dilatancy counts from faces that were apart already
@@ -253,7 +256,9 @@ def _marks():
     """Entries of the legend for what is marked on every curve."""
     marks = ((_ROLL_OFF, "(a) roll-off length"), (_UNCORRELATED, "(a) faces uncorrelated"))
     return [
-        heading("lines: means; bands: from least to most of\nthe joints or directions, no intervals"),
+        heading(
+            "lines: means; bands: from least to most of\nthe joints or directions, no intervals"
+        ),
         Line2D([], [], color="0.3", label="(a) half over which the slope is taken", **_SECOND_HALF),
         *(
             Line2D([], [], ls="none", marker=marker, color="0.3", label=words, **_MARK)
@@ -339,7 +344,7 @@ class Trend(NamedTuple):
 def _caption(slides, verdicts):
     synthetic = slides[: len(SURFACES)]
     words = (
-        f"After Figs. 6a and 7a of {PAPER}. Rigid dilatancy delta_r, and its ratio to the spread "
+        f"After Figs. 6a and 7a of {PAPER}. Rigid dilatancy delta_r, alone and over the spread "
         f"sigma_z of the composite topography. {_explanation(synthetic, slides)}"
     )
     return f"{words} The paper's plateaus: {verdicts}." if verdicts else words
@@ -352,7 +357,10 @@ def _verdicts(atlas, names):
         for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
             if row is not None:
                 mark = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
-                said.setdefault(row["verdict"].item(), []).append(f"{name}{mark}")
+                label = settings_of(atlas, name)["label"]
+                said.setdefault(row["verdict"].item(), []).append(
+                    f"{printable(label, LONGEST_IN_CAPTION)}{mark}"
+                )
     few = sum(map(len, said.values())) <= MOST_NAMED
     return "; ".join(
         f"{verdict} for {', '.join(of) if few else f'{len(of)} specimens'}"
@@ -365,7 +373,7 @@ def _explanation(synthetic, slides):
     with_it, without = synthetic
     return (
         f"With a roll-off delta_r of synthetic joints {_level(with_it)}, without it "
-        f"{_level(without)} (slopes over the second half in the legend); delta_r / sigma_z stays "
+        f"{_level(without)} (slopes: legend); delta_r / sigma_z stays "
         f"{_span(_mean_ratios(slides))}."
     )
 

@@ -55,7 +55,10 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     letter(left, "a", "area at every cut-off $s$")
     _draw_exponents(right, test)
     theories, classes = _entries(left, table)
-    of_b = [heading(f"(b) side by side; bars:\n{100 * PROBABILITY:.0f} % intervals"), *entries(right)]
+    of_b = [
+        heading(f"(b) side by side; bars:\n{100 * PROBABILITY:.0f} % intervals"),
+        *entries(right),
+    ]
     legends_below(figure, classes, theories, of_b)
     return Drawing(figure, table, _caption(test, table))
 

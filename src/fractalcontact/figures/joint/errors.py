@@ -146,7 +146,9 @@ def _draw_errors(axes, table, size) -> None:
     for source, (words, line) in TOTALS.items():
         rows = table[(table["source"] == source) & np.isfinite(table["relative_error"])]
         drawn = 100 * np.maximum(rows["relative_error"], LEAST)
-        axes.plot(rows["force_N"] / size, drawn, color="black", lw=2.2, ls=line, label=words, zorder=1)
+        axes.plot(
+            rows["force_N"] / size, drawn, color="black", lw=2.2, ls=line, label=words, zorder=1
+        )
 
 
 def _draw_legend(axes, panels) -> None:
