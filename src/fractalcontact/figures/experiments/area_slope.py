@@ -160,6 +160,6 @@ def _band_words(slopes):
     below, above = int((corrected < low).sum()), int((corrected > high).sum())
     inside = corrected.size - below - above
     counts = ((below, "below"), (inside, "within"), (above, "above"))
-    lie = [f"{n} lie {words}" for n, words in counts if n]
-    every = f"All {lie[0]}" if len(lie) == 1 else f"Of {corrected.size} {', '.join(lie)}"
-    return f"{every} the literature's computed {low:g} to {high:g}."
+    lie = [f"{n} {words}" for n, words in counts if n]
+    words = f"All {lie[0]}" if len(lie) == 1 else f"Of {corrected.size} values {', '.join(lie)}"
+    return f"{words} the literature's computed {low:g} to {high:g}."

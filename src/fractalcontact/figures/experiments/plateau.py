@@ -193,7 +193,7 @@ def _roll_off(atlas, name):
 
 
 def _without_repeats(slides):
-    """Slides that differ; one whose faces are another's, with another material, is named with it."""
+    """Slides that differ; one whose faces are another's, of another material, is named with it."""
     found: list[Slide] = []
     for slide in slides:
         for n, other in enumerate(found):
