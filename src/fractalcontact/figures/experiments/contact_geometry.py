@@ -118,11 +118,10 @@ def _caption(test) -> str:
     known = ((high - low) <= WIDEST) & ((test["cut_delta_high"] - test["cut_delta_low"]) <= WIDEST)
     beyond = known & ((low > test["cut_delta_high"]) | (high < test["cut_delta_low"]))
     return (
-        f"{SUPPLEMENTARY} Correlation dimension of contact domains, means of {count} synthetic "
-        f"surfaces of each H. From the bearing-area cut's it differs beyond both intervals at "
+        f"{SUPPLEMENTARY} Correlation dimension of contact domains, {count} synthetic surfaces of "
+        f"each H. It differs from the bearing-area cut's beyond both intervals at "
         f"{int(beyond.sum())} of {known.size} states ({known.size - int(known.sum())} "
-        f"undetermined, hollow); it rises with load from {_span(test, 0)} to {_span(test, -1)}, "
-        "towards that of random nodes."
+        f"undetermined, hollow), and rises with load from {_span(test, 0)} to {_span(test, -1)}."
     )
 
 

@@ -1,6 +1,7 @@
 """The resolution law of the contact area: Persson's theory, for every short cut-off."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -161,7 +162,7 @@ def _draw_exponents(axes: Axes, test: xr.Dataset) -> None:
     axes.set_ylabel(r"$\Delta_\sigma$ by the change of $A_r$ with $s$ (1)")
     axes.set_xmargin(0.12)
     letter(axes, "b", r"$\Delta_\sigma$ of the contact area")
-    grey = {"color": "0.3"}
+    grey: dict[str, Any] = {"color": "0.3"}
     axes.add_line(Line2D([], [], marker="o", ls="none", label="from the areas $A_r(s)$", **grey))
     words = "from the slopes $h'_\\mathrm{rms}(s)$ alone"
     axes.add_line(Line2D([], [], marker="_", ms=14, mew=1.5, ls="none", label=words, **grey))
@@ -183,12 +184,11 @@ def _departure(test: xr.Dataset) -> float:
 def _caption(test: xr.Dataset, table: pd.DataFrame) -> str:
     low, high = _light(table)
     words = (
-        f"At light load kappa is {number(low)} to {number(high)} at every H and cut-off s; "
+        f"At light load kappa is {number(low)} to {number(high)} at every H and s; "
         if np.isfinite(low)
         else ""
     )
     return (
-        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s, times "
-        f"their rms slope over the pressure (a), and its exponent (b). {words}Delta_sigma from the "
-        f"areas differs from that of the slopes alone by at most {number(_departure(test))}."
+        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s (a), and "
+        f"its exponent (b). {words}Delta_sigma from the areas differs from that of the slopes alone by at most {number(_departure(test))}."
     )

@@ -162,6 +162,6 @@ def _caption(test: xr.Dataset) -> str:
     return (
         f"{SUPPLEMENTARY} Exponent alpha of the contact area over the side b, found and wanted by "
         f"eq. 6. Eq. 6 is refuted for {refuted} of {classes.size} classes and supported for "
-        f"{supported}: |alpha| is at most {number(largest)}, far from the dashed line; intervals "
-        f"lie within {NO_EFFECT:g} in {flat} of {test['no_size_effect'].size} cases."
+        f"{supported}: |alpha| is at most {number(largest)}, shown to be below "
+        f"{NO_EFFECT:g} in {flat} of {test['no_size_effect'].size} cases."
     )

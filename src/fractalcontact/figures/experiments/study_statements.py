@@ -47,16 +47,16 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     whole = _whole(atlas)
     shown = [*rows.values(), *whole[["figure", "claim"]].to_dict("records")]
     texts, lines = wrap_rows(shown, COLUMNS)
-    lines = [n - LESS for n in lines]
+    heights = [n - LESS for n in lines]
     heads = _heads(atlas, list(tables))
     top = 1 + LINES_A_LETTER * max(len(line) for head in heads.values() for line in head)
-    height = LINE_HEIGHT * (top + sum(lines) + 3.2)
+    height = LINE_HEIGHT * (top + sum(heights) + 3.2)
     figure = Figure(figsize=(WIDTH, height))
     figure.set_layout_engine("none")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, 1), ylim=(height / LINE_HEIGHT, 0))
     axes.set_axis_off()
-    places = _draw_words(axes, texts, lines, top)
+    places = _draw_words(axes, texts, heights, top)
     at = {name: FIRST + (i + 0.5) * (LAST - FIRST) / len(tables) for i, name in enumerate(tables)}
     for name, table in tables.items():
         axes.text(

@@ -69,7 +69,7 @@ def _caption(plan):
     solved, states = plan.attrs["states_solved"], plan.attrs["states"]
     return (
         f"{SUPPLEMENTARY} Solve plan with the reason for each choice: {solved} of {states} states "
-        f"were solved.{_error_words(plan)} Asked: {plan.attrs['asked']}. A dash: no error by it."
+        f"were solved.{_error_words(plan)}"
     )
 
 
@@ -82,6 +82,6 @@ def _error_words(plan):
         return ""
     limits = "grid" if grid > solver else "solver"
     return (
-        f" The {limits} limits the accuracy: at most {percent(solver)} of the closure is the "
-        f"solver's error, {percent(grid)} the grid's."
+        f" The {limits} limits the accuracy: the grid's error is up to {percent(grid)} of the closure, "
+        f"the solver's {percent(solver)}."
     )

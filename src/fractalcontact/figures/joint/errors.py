@@ -185,9 +185,9 @@ def _caption(here) -> str:
         parts.append(f"{words} {percent(total)} ({largest})")
     found = (
         f"Totals for this surface at {force_label(float(here['normal_force']))} and their largest "
-        f"sources: {', '.join(parts)}; for any surface of its kind they are larger, by few "
-        "contacts or by other windows."
+        f"sources: {', '.join(parts)}; larger for any surface of its kind, by few contacts or other "
+        "windows."
         if parts
         else "No total is known at the load of the maps."
     )
-    return f"{SUPPLEMENTARY} Errors by source and in all, half-widths at 95 %. {found}"
+    return f"{SUPPLEMENTARY} Errors by source, half-widths at 95 %. {found}"
