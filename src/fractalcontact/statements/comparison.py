@@ -141,8 +141,8 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
         specimens that have fewer; ``group`` and ``label`` of each. And of each quantity, over
         (group_name,) and, under every nominal pressure that is a load of any (those that
         differ by up to 5 % are one), (group_name, pressure): ``NAME_mean`` with its 95 % interval
-        (Student's t over specimens: NaN of one alone), ``NAME_deviation`` between specimens, ``NAME_n`` of them, and ``NAME_error``, the
-        median half-width of their own intervals.
+        (Student's t over specimens: NaN of one alone), ``NAME_deviation`` between specimens,
+        ``NAME_n`` of them, and ``NAME_error``, the median half-width of their own intervals.
     """
     names = sorted(rows)
     most = max((rows[name].sizes["load"] for name in names), default=0)

@@ -136,11 +136,10 @@ def _table(slopes):
 
 def _caption(slopes):
     with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
-    low, high = (number(slopes.attrs[f"{name}_kappa"], 3) for name in _THEORIES)
     return (
         f"{SUPPLEMENTARY} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces. "
-        f"Corrected kappa is {with_one} with a roll-off and {without} without. The theories are "
-        f"{low} (Persson) and {high} (Bush et al.). {_band_words(slopes)}"
+        f"Corrected kappa is {with_one} with a roll-off and {without} without. "
+        f"{_band_words(slopes)}"
     )
 
 

@@ -189,6 +189,7 @@ def _caption(test: xr.Dataset, table: pd.DataFrame) -> str:
         else ""
     )
     return (
-        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s (a), and "
-        f"its exponent (b). {words}Delta_sigma from the areas differs from that of the slopes alone by at most {number(_departure(test))}."
+        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s (a), its "
+        f"exponent (b). {words}Delta_sigma from areas and that from slopes alone differ by at most "
+        f"{number(_departure(test))}."
     )

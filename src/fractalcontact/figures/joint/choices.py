@@ -43,7 +43,7 @@ def _states(plan):
         "choice": "states",
         "value": f"{solved} of {states} solved",
         "reason": f"asked: {plan.attrs['asked']}"
-        + ("" if solved == states else "; no figure reads the others, which are missing"),
+        + ("" if solved == states else "; the others are missing in the atlas"),
         "error": "–",
     }
 
@@ -82,6 +82,6 @@ def _error_words(plan):
         return ""
     limits = "grid" if grid > solver else "solver"
     return (
-        f" The {limits} limits the accuracy: the grid's error is up to {percent(grid)} of the closure, "
-        f"the solver's {percent(solver)}."
+        f" The {limits} limits the accuracy: the grid's error is up to {percent(grid)} of the "
+        f"closure, the solver's {percent(solver)}."
     )

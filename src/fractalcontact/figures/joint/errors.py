@@ -185,8 +185,7 @@ def _caption(here) -> str:
         parts.append(f"{words} {percent(total)} ({largest})")
     found = (
         f"Totals for this surface at {force_label(float(here['normal_force']))} and their largest "
-        f"sources: {', '.join(parts)}; larger for any surface of its kind, by few contacts or other "
-        "windows."
+        f"sources: {', '.join(parts)}; larger for any of its kind (few contacts, other windows)."
         if parts
         else "No total is known at the load of the maps."
     )
