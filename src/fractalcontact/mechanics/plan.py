@@ -138,8 +138,8 @@ def _of_tolerance(curves, solver, requested):
     reason = (
         "stated by the study"
         if requested is None or solver["rtol"] != tolerance(requested)
-        else f"{SHARE_OF_CLOSURE:g} of the error asked of the closure, {SHARE_OF_DIMENSION:g} of that "
-        "of Delta_sigma: ten times and more below them in trials"
+        else f"{SHARE_OF_CLOSURE:g} of the error asked of the closure, {SHARE_OF_DIMENSION:g} of "
+        "that of Delta_sigma: ten times and more below them in trials"
     )
     error = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
     return "solver tolerance", f"{solver['rtol']:.1g}", reason, "interface closure", _largest(error)

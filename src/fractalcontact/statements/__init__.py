@@ -22,7 +22,6 @@ __getattr__, __dir__, __all__ = exports(
         "compare_specimens": ".comparison",
         "judge_study": ".study",
         "compared_pressures": ".comparison",
-        "rounded_pressures": ".comparison",
         "specimen_row": ".comparison",
     },
 )

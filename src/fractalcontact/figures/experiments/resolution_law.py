@@ -189,7 +189,7 @@ def _caption(test: xr.Dataset, table: pd.DataFrame) -> str:
         else ""
     )
     return (
-        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s (a), its "
-        f"exponent (b). {words}Delta_sigma from areas and that from slopes alone differ by at most "
+        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s (a), "
+        f"its exponent (b). {words}Delta_sigma from areas and from slopes alone differ by at most "
         f"{number(_departure(test))}."
     )
