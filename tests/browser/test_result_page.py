@@ -65,7 +65,10 @@ def test_every_link_leads_somewhere(open_page, results, pages):
 
 def test_a_click_on_a_heading_sorts_the_rows_both_ways(open_page):
     with open_page("index.html") as page:
+        assert page.locator("#table thead th:visible").count() == 10
+        page.locator("#all-columns").check()
         headings = page.locator("#table thead button")
+        assert page.locator("#table thead th:visible").count() == headings.count() == 14
         for i in range(headings.count()):
             if i == 1:  # lights: how many are good
                 continue

@@ -12,8 +12,11 @@ NAMES = ("sliding", "flat", "pair")
 @pytest.mark.parametrize("name", representative(NAMES))
 def test_choices_of_every_specimen(atlas, name):
     drawing = choices.draw(atlas, name)
-    assert list(drawing.data["choice"]) == list(atlas[f"choices/{name}"]["choice"].values)
-    assert f"{int(atlas[f'closure/{name}']['solved'].sum())} of " in drawing.caption
+    stated = list(atlas[f"choices/{name}"]["choice"].values)
+    assert list(drawing.data["choice"]) == ["states", *stated]
+    solved = f"{int(atlas[f'closure/{name}']['solved'].sum())} of "
+    assert solved in drawing.caption
+    assert drawing.data["value"][0].startswith(solved)
 
 
 @pytest.mark.parametrize("name", representative(NAMES))

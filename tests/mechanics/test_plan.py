@@ -184,6 +184,6 @@ def test_a_study_solves_less_and_says_so(specimen):
     assert float(table["error"].sel(choice="solver tolerance")) < 2e-3
     assert "under the largest" in str(table["reason"].sel(choice="extent of the solve").values)
     assert "E: 2" in str(table["value"].sel(choice="directions").values)
-    assert str(table["value"].sel(choice="resolutions (curves)").values) == (
-        "1: 4 of 4, 2: 1 of 4, 4: 1 of 4"
+    assert str(table["value"].sel(choice="resolutions").values) == (
+        "all nodes: 4 of 4 curves; every 2nd: 1 of 4 curves; every 4th: 1 of 4 curves"
     )

@@ -32,6 +32,7 @@ from fractalcontact.pages.matrix import (
 )
 from fractalcontact.pages.opening import opening_of
 from fractalcontact.pages.result_page import Place, write_result_page
+from fractalcontact.pages.summary import summarised
 from fractalcontact.pages.words import with_unit
 from fractalcontact.statements.judge import all_statements
 from fractalcontact.study.atlas import read_atlas, write_atlas
@@ -326,6 +327,31 @@ def test_pressures_that_differ_by_their_windows_alone_are_one():
     unsolved = Solved("unsolved", [2.5, 25, 75], [1], 1, unsolved=[1])
     assert common_loads([unsolved]) == []
     assert main_load([], []) is None
+
+
+def test_k_ni_is_undetermined_where_the_hyperbola_is_not_the_law(results):
+    atlas = read_atlas(results / "atlas.nc")
+    table = pd.read_csv(results / "summary.csv").set_index("specimen")
+    for name in NAMES:
+        laws = {"hyperbola": "", "semi-logarithmic": "a logarithm less", "neither": "misses"}
+        for law, reason in laws.items():
+            changed = atlas.copy()
+            curves = atlas[f"closure/{name}"].to_dataset().load()
+            curves["closure_law"] = xr.full_like(curves["closure_law"], law)
+            curves["hyperbola_reason"] = xr.full_like(curves["hyperbola_reason"], "")
+            curves["hyperbola_misfit"] = xr.full_like(curves["hyperbola_misfit"], 0.058)
+            for end, value in (("", 100.0), ("_low", 90.0), ("_high", 110.0)):
+                known = curves[f"hyperbola_k_ni{end}"]
+                curves[f"hyperbola_k_ni{end}"] = xr.full_like(known, value)
+            changed[f"closure/{name}"] = xr.DataTree(curves)
+            found = summarised(Chosen(changed, name)).k_ni
+            assert found.value == 100
+            assert found.determined == (law == "hyperbola")
+            assert reason in found.why
+        row = table.loc[[name]].iloc[0]
+        if row["closure_law"] not in ("hyperbola", "undecided"):
+            assert not row["k_ni_MPa_per_mm_determined"]
+            assert row["k_ni_reason"]
 
 
 def test_the_page_opens_with_numbers_and_verdicts(results):

@@ -9,6 +9,7 @@ from fractalcontact.statements.comparison import (
     QUANTITIES,
     UNDER_LOAD,
     compare_specimens,
+    compared_pressures,
     rounded_pressures,
 )
 
@@ -77,6 +78,14 @@ def test_order_of_the_specimens_changes_nothing():
     rows = {f"s{i}": row(v, 0.1, "g") for i, v in enumerate([2.0, 2.4, 2.1])}
     backwards = dict(reversed(list(rows.items())))
     assert compare_specimens(rows).identical(compare_specimens(backwards))
+
+
+def test_pressures_that_differ_little_are_one_but_never_two_of_one_specimen():
+    compared = compared_pressures([[1.0, 1.02, 5.0], [1.03, 5.2, np.nan], [2.0, 5.3, 9.0]])
+    assert np.allclose(compared[0], [1.0, 1.025, 5.1])
+    assert np.allclose(compared[1, :2], [1.025, 5.1])
+    assert np.isnan(compared[1, 2])
+    assert np.allclose(compared[2], [2.0, 5.3, 9.0])  # 5.3 is more than 5 % above 5.0
 
 
 def test_pressures_are_rounded_to_four_digits():

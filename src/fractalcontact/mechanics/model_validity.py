@@ -29,6 +29,7 @@ LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
+_HARDNESS, _USUAL = "hardness", "usual strengths"
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,16 @@ class Validity:
     limit: str
     rms_slope: float
     reason: str
+
+    @property
+    def capped(self) -> bool:
+        """Whether a stated hardness caps the pressure, which then is no test of the model."""
+        return self.limit.startswith(_HARDNESS)
+
+    @property
+    def stated(self) -> bool:
+        """Whether a strength or a hardness was stated, and judges the pressure."""
+        return not self.limit.startswith(_USUAL)
 
     @property
     def sentence(self) -> str:
@@ -118,6 +129,8 @@ def elastic_model_validity(
     verdict = max(by_pressure, by_slope, key=(GOOD, PARTLY, POOR).index)
     place = _place(pressure, by_pressure, material)
     reason = f"sigma_n = {_pressure(pressure)}, {place} the {limit}"
+    if np.isfinite(material["hardness"]):
+        reason += ", which caps it: not a test of the model"
     if np.isfinite(rms_slope):
         size = "small" if by_slope == GOOD else "not small"
         reason += f"; rms slope {rms_slope:.3g}, {size}"
@@ -141,11 +154,11 @@ def _limits(material):
     """Pressures up to which the model is good, and from which it is poor, and what they are."""
     hardness, strength = float(material["hardness"]), float(material["joint_wall_strength"])
     if np.isfinite(hardness):
-        return hardness, hardness, f"hardness ({_pressure(hardness)})"
+        return hardness, hardness, f"{_HARDNESS} ({_pressure(hardness)})"
     if np.isfinite(strength):
         return strength, CONFINED * strength, f"joint wall strength ({_pressure(strength)})"
     low, high = usual_strengths(material)
-    words = f"usual strengths, none being stated (E/1000 to E/200: {low:.3g} to {high:.3g} MPa)"
+    words = f"{_USUAL}, none being stated (E/1000 to E/200: {low:.3g} to {high:.3g} MPa)"
     return low, CONFINED * high, words
 
 

@@ -124,7 +124,8 @@ _COLUMNS = {
 def _requested(accuracy: Mapping[str, float] | None) -> str:
     if accuracy is None:
         return "everything: all states, whatever it costs"
-    return f"closure to {accuracy['closure']:.3g}, Delta_sigma to {accuracy['delta_sigma']:.3g}"
+    closure = 100 * accuracy["closure"]
+    return f"closure to {closure:.3g} %, Delta_sigma to {accuracy['delta_sigma']:.3g}"
 
 
 def _largest(values: xr.DataArray) -> float:
@@ -137,8 +138,8 @@ def _of_tolerance(curves, solver, requested):
     reason = (
         "stated by the study"
         if requested is None or solver["rtol"] != tolerance(requested)
-        else f"{SHARE_OF_CLOSURE:g} of the closure and {SHARE_OF_DIMENSION:g} of the Delta_sigma "
-        "asked for: tenfold and more below them where it was tried"
+        else f"{SHARE_OF_CLOSURE:g} of the error asked of the closure, {SHARE_OF_DIMENSION:g} of "
+        "that of Delta_sigma: ten times and more below them in trials"
     )
     error = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
     return "solver tolerance", f"{solver['rtol']:.1g}", reason, "interface closure", _largest(error)
@@ -149,14 +150,14 @@ def _of_loads(curves, dilatancy, requested):
     misses = dilatancy["left_out_error"].rename(contact_direction="direction")
     errors = abs(misses / closure.where(closure != 0))
     known = errors.values[np.isfinite(errors.values)]
-    value = f"{closure.sizes['normal_force']} in the first direction, none read between others"
+    value = f"{closure.sizes['normal_force']} in the first direction, none interpolated"
     if not known.size:
-        return "load steps", value, "too few to tell what lies between them", "", np.nan
+        return "load steps", value, "too few to know what lies between them", "", np.nan
     within = np.mean(known <= requested["closure"]) if requested else np.nan
     reason = (
-        f"left out and read from its neighbours a closure would be wrong by {np.median(known):.1%} "
-        f"(median) to {known.max():.0%} of itself"
-        + (f"; {within:.0%} would be within what is asked for" if requested else "")
+        f"interpolated between its neighbours a closure would be off by "
+        f"{100 * np.median(known):.1f} % (median) to {100 * known.max():.0f} %"
+        + (f"; {100 * within:.0f} % would be as exact as asked" if requested else "")
     )
     return "load steps", value, reason, "interface closure, if every second were left out", np.nan
 
@@ -182,16 +183,16 @@ def _of_resolutions(curves):
     solved = curves["solved"].any("normal_force")
     n_curves = solved.sizes["direction"] * solved.sizes["offset"]
     counts = solved.sum(["direction", "offset"])
-    value = ", ".join(
-        f"{k}: {int(n)} of {n_curves}"
+    value = "; ".join(
+        f"{_nodes_words(int(k))}: {int(n)} of {n_curves} curves"
         for k, n in zip(curves["resolution"].values, counts.values, strict=True)
     )
     reason = (
-        "curves at the finest give closure and contact; how they change with the resolution is "
-        "asked at the offset of the maps"
+        "closure and contact are those of all nodes; how they change with the resolution is asked "
+        "at the offset of the maps alone"
     )
     return (
-        "resolutions (curves)",
+        "resolutions",
         value,
         reason,
         "interface closure, by the spacing",
@@ -199,12 +200,17 @@ def _of_resolutions(curves):
     )
 
 
+def _nodes_words(k):
+    """A resolution in words: every k-th node."""
+    return "all nodes" if k == 1 else "every " + {2: "2nd", 3: "3rd"}.get(k, f"{k}th")
+
+
 def _of_extent(curves):
     extent = curves["extent"].isel(direction=0).sel(resolution=curves["resolution"].min())
     lightest, heaviest = (float(extent.isel(normal_force=i).median("offset")) for i in (0, -1))
     reason = (
-        f"a rectangle around the contact takes {lightest:.0%} of the window under the smallest "
-        f"load and {heaviest:.0%} under the largest, which costs most"
+        f"a rectangle around the contact takes {100 * lightest:.0f} % of the window under the "
+        f"smallest load and {100 * heaviest:.0f} % under the largest, which costs most"
     )
     value = "equations on the contact set, displacements on the whole window"
     return "extent of the solve", value, reason, "", np.nan

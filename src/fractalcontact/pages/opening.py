@@ -52,7 +52,7 @@ def opening_of(
     found = [(one, at) for one in specimens if (at := one.at(load.numbers.get(one.name)))]
     under = f"Under {short(load.pressure)} MPa"
     sentences = (
-        _closure(found, under),
+        _closure(found, under, len(specimens)),
         _model(found, under),
         _dilatancy(specimens, rows),
         _dimensions(found, under),
@@ -61,7 +61,7 @@ def opening_of(
     return [sentence for sentence in sentences if sentence]
 
 
-def _closure(found: _At, under: str) -> Markup | None:
+def _closure(found: _At, under: str, total: int) -> Markup | None:
     """Closure and tangent stiffness; what suspicious cells of a scan decide is not quoted."""
     sure = [(one, at) for one, at in found if not at.decided_by_scan]
     closure = _ends(sure, lambda at: at.quantities["closure"].value)
@@ -71,7 +71,11 @@ def _closure(found: _At, under: str) -> Markup | None:
         Markup("{} ({}{})").format(with_unit(value, "mm"), one.name, _error(at))
         for value, one, at in closure
     ]
-    text = Markup("{} the interface closes by {}").format(under, Markup(" to ").join(ends))
+    known = sum(at.quantities["closure"].value is not None for _, at in sure)
+    counted = f"all {total}" if known == total else f"{known} of {total}"
+    whose = "" if total == 1 else f" of {counted} specimens"
+    words = Markup(" to ").join(ends)
+    text = Markup("{} the interface{} closes by {}").format(under, whose, words)
     stiffness = _ends(sure, lambda at: at.quantities["stiffness"].value)
     if stiffness:
         text += Markup("; its tangent stiffness is {}").format(
@@ -109,15 +113,38 @@ def _model(found: _At, under: str) -> Markup | None:
     if not known:
         return None
     shares = [at.nominal_pressure / at.model.pressure for _, at in known]
-    verdicts = _counted([at.model.verdict for _, at in known], _MODEL)
-    slopes = [one.rms_slope for one, _ in known if one.rms_slope is not None]
-    bounds = _range([at.model.good_to for _, at in known], _pressure)
     text = (
         f"{under} {_range(shares, percent)} of the window is in contact, at a real mean pressure "
-        f"of {_range([at.model.pressure for _, at in known], _pressure)}: the elastic model is "
-        f"{verdicts} (strength or hardness {bounds}{_slopes(slopes)})."
+        f"of {_range([at.model.pressure for _, at in known], _pressure)}: {_tested(known)}"
     )
     return Markup(escape(text))
+
+
+def _tested(known: _At) -> str:
+    """Verdicts of those whose pressure can exceed what the model bears, then those it is capped."""
+    tested = [(one, at) for one, at in known if not at.model.capped]
+    capped = [one.name for one, at in known if at.model.capped]
+    parts = []
+    if tested:
+        verdicts = _counted([at.model.verdict for _, at in tested], _MODEL)
+        slopes = [one.rms_slope for one, _ in tested if one.rms_slope is not None]
+        uncapped = " whose pressure no hardness caps" if capped else ""
+        parts.append(
+            f"the elastic model is {verdicts}{uncapped} ({_limits(tested)}{_slopes(slopes)})"
+        )
+    if capped:
+        parts.append(f"for {_listed(capped)}, of stated hardness, the pressure is not a test of it")
+    return f"{'; '.join(parts)}."
+
+
+def _limits(tested: _At) -> str:
+    """What the pressures are judged by: strengths that are stated, or usual ones."""
+    stated = [at.model.good_to for _, at in tested if at.model.stated]
+    usual = [at.model.good_to for _, at in tested if not at.model.stated]
+    parts = [f"joint wall strength {_range(stated, _pressure)}"] if stated else []
+    if usual:
+        parts.append(f"no strength stated, usual ones from {_range(usual, _pressure)}")
+    return ", ".join(parts)
 
 
 def _pressure(value):
@@ -144,7 +171,7 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
     parts = []
     for kind, words in _KINDS.items():
         named = [
-            f"{one.name} ({_level(one.dilatancy)})"
+            f"{one.name} ({_level(one.dilatancy)}, towards {one.direction})"
             for one in specimens
             if one.dilatancy.kind == kind and one.name in asked
         ]
@@ -155,7 +182,7 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
     plateaus = [row.cells for row in rows if row.name in _PLATEAUS]
     chosen = sorted(name for cells in plateaus for name in cells if cells[name].circular)
     note = f"; no finding for {_listed(chosen)}, chosen for it" if chosen else ""
-    text = f"As the faces slide, the rigid dilatancy {' and '.join(parts)}{note}."
+    text = f"Over the second half of the offsets the rigid dilatancy {' and '.join(parts)}{note}."
     return Markup(escape(text))
 
 

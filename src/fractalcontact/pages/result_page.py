@@ -179,7 +179,7 @@ def _sort_value(state: AtLoad | None, name: str) -> float | str:
 def _note_of(state: AtLoad | None, name: str) -> str:
     """Why an estimate is missing, or what to know of it."""
     found = None if state is None else _quoted(state, name)
-    return found.note if isinstance(found, Estimate) else ""
+    return found.why if isinstance(found, Estimate) else ""
 
 
 def _in_paper(figures):

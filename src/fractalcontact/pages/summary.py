@@ -1,14 +1,16 @@
 """The summary of a study: what each specimen is and does, one row a specimen and pressure."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
 from ..core.determined import determined
 from ..domain.box_dimension import WIDEST
+from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
 from ..mechanics.model_validity import Validity
 from ..mechanics.overlap import DECISIVE
 from ..statements.sliding import Plateaus
@@ -17,12 +19,15 @@ from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
-from .words import in_table
+from .words import in_table, percent
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
 #: Dimensions are determined as figures have it: 0 and 2 need no interval.
 DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
+
+#: Why a number is undetermined where its stage gives no other reason.
+_WIDE = "its 95 % interval leaves nearly everything open"
 
 
 @dataclass(frozen=True)
@@ -56,6 +61,13 @@ class Estimate:
         value, low, high = ends
         says = determined(value, low, high, **kind)
         return cls(finite(value), finite(low), finite(high), says, note)
+
+    @property
+    def why(self) -> str:
+        """Why it is missing or undetermined, or what to know of it."""
+        if self.note or self.determined or self.value is None:
+            return self.note
+        return _WIDE if self.low is not None else "its error is not known"
 
 
 @dataclass(frozen=True)
@@ -187,7 +199,6 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
     side_y, side_x = window_sides(specimen)
     surface = chosen.stage("surface_dimension")
     curve = chosen.values("closure")
-    why = str(curve["hyperbola_reason"].item()) or str(curve["closure_law_reason"].item())
     dimension = [float(surface[f"recommended_{end}"]) for end in ("value", "low", "high")]
     return Specimen(
         name=chosen.name,
@@ -200,12 +211,25 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
         delta_g=Estimate.between(dimension, str(surface["no_dimension"].item()), DIMENSION),
         estimator=str(surface["recommended"].item()).replace("_", " "),
         rms_slope=finite(chosen.values("area", "rms_slope")["rms_slope"]),
-        k_ni=Estimate.of(curve, "hyperbola_k_ni", why),
+        k_ni=_initial_stiffness(curve),
         closure_law=str(curve["closure_law"].item()),
         dilatancy=dilatancy_of(chosen),
         loads=[_at_load(chosen, curve, i) for i in sorted(compared.union(chosen.quoted))],
         lights=lights_of(chosen),
     )
+
+
+def _initial_stiffness(curve):
+    """k_ni of the hyperbola: undetermined, with the reason, where that is not the law."""
+    law = str(curve["closure_law"].item())
+    why = str(curve["hyperbola_reason"].item())
+    if not why and law not in (HYPERBOLA, UNDECIDED):
+        misfit = float(curve["hyperbola_misfit"])
+        why = f"the hyperbola misses the curve by {percent(misfit)} rms of the largest closure"
+        if law == SEMI_LOGARITHMIC:
+            why += ", a logarithm less"
+    found = Estimate.of(curve, "hyperbola_k_ni", why)
+    return found if law in (HYPERBOLA, UNDECIDED) else replace(found, determined=False)
 
 
 def _at_load(chosen, curve, number):
@@ -231,6 +255,8 @@ def _dimension(chosen, stage, state):
     names += ["reason"] if "reason" in chosen.stage(stage) else []
     found = chosen.values(stage, *names).isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
+    if not note and np.isnan(float(found["delta_sigma"])):
+        note = "too few resolutions were solved under this load with nodes enough in contact"
     return Estimate.of(found, "delta_sigma", note, **DIMENSION)
 
 
@@ -306,6 +332,7 @@ def _of_specimen(one):
         "delta_g_estimator": one.estimator,
         "rms_slope": one.rms_slope,
         **_columns("k_ni_MPa_per_mm", one.k_ni),
+        "k_ni_reason": one.k_ni.why,
         "closure_law": one.closure_law,
         "dilatancy": one.dilatancy.kind,
         "dilatancy_level_mm": one.dilatancy.level,

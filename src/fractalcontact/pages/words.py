@@ -46,8 +46,9 @@ def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
     """A number in the unit that suits it: 12.3 µm for 0.0123 mm."""
     if value is None or not math.isfinite(value):
         return MISSING
+    rounded = abs(float(f"{value:.{digits}g}"))
     for least, name, size in _SCALED.get(unit, ()):
-        if abs(value) >= least:
+        if rounded >= least:
             return f"{short(value / size, digits)} {name}"
     number = short(value, digits)
     return number if unit == "1" else f"{number} {unit.replace('mm2', 'mm²')}"

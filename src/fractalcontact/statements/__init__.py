@@ -21,7 +21,7 @@ __getattr__, __dir__, __all__ = exports(
         "all_statements": ".judge",
         "compare_specimens": ".comparison",
         "judge_study": ".study",
-        "rounded_pressures": ".comparison",
+        "compared_pressures": ".comparison",
         "specimen_row": ".comparison",
     },
 )

@@ -28,6 +28,8 @@ QUANTITIES = ONCE | UNDER_LOAD
 UNGROUPED = "no group"
 #: Digits to which nominal pressures must agree that specimens are compared under one.
 _DIGITS = 4
+#: Nominal pressures of several specimens that differ by less than this fraction are one.
+ALIKE = 0.05
 
 
 def _table(prefix=(), names=QUANTITIES):
@@ -137,10 +139,10 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     xr.Dataset
         The variables of the rows over (specimen,) and (specimen, load), NaN behind the last load of
         specimens that have fewer; ``group`` and ``label`` of each. And of each quantity, over
-        (group_name,) and, under every nominal pressure that is a load of any, (group_name,
-        pressure): ``NAME_mean`` with its 95 % interval (Student's t over specimens: NaN of one
-        alone), ``NAME_deviation`` between specimens, ``NAME_n`` of them, and ``NAME_error``, the
-        median half-width of their own intervals.
+        (group_name,) and, under every nominal pressure that is a load of any (those that
+        differ by up to 5 % are one), (group_name, pressure): ``NAME_mean`` with its 95 % interval
+        (Student's t over specimens: NaN of one alone), ``NAME_deviation`` between specimens,
+        ``NAME_n`` of them, and ``NAME_error``, the median half-width of their own intervals.
     """
     names = sorted(rows)
     most = max((rows[name].sizes["load"] for name in names), default=0)
@@ -176,6 +178,41 @@ def rounded_pressures(pressures: np.ndarray) -> np.ndarray:
     return np.round(pressures / size, _DIGITS - 1) * size
 
 
+def compared_pressures(pressures: np.ndarray) -> np.ndarray:
+    """Nominal pressures under which specimens are compared: those that differ little are one.
+
+    Windows of one nominal size differ a little in area, and a load in N is then another pressure.
+
+    Parameters
+    ----------
+    pressures : (specimen, load) array_like
+        MPa, NaN where a specimen has fewer loads.
+
+    Returns
+    -------
+    (specimen, load) ndarray
+        For each the median of those within :data:`ALIKE` of the least; two loads of one specimen
+        stay two.
+    """
+    rounded = rounded_pressures(pressures)
+    places = np.argwhere(np.isfinite(rounded))
+    places = places[np.argsort(rounded[tuple(places.T)], kind="stable")]
+    groups: list[list[np.ndarray]] = []
+    specimens: set[int] = set()
+    for place in places:
+        far = not groups or rounded[tuple(place)] > rounded[tuple(groups[-1][0])] * (1 + ALIKE)
+        if far or int(place[0]) in specimens:
+            groups.append([])
+            specimens = set()
+        groups[-1].append(place)
+        specimens.add(int(place[0]))
+    compared = np.full(rounded.shape, np.nan)
+    for members in groups:
+        at = tuple(np.array(members).T)
+        compared[at] = rounded_pressures(np.median(rounded[at]))
+    return compared
+
+
 #: Of each quantity within a group: ending, words before its long name, whether in its unit.
 _STATISTICS = {
     "_mean": "mean over specimens of ",
@@ -189,7 +226,7 @@ _STATISTICS = {
 
 def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
     groups = sorted(set(rows["group"].values))
-    rounded = rounded_pressures(rows["nominal_pressure"].values)
+    rounded = compared_pressures(rows["nominal_pressure"].values)
     known = np.unique(rounded[np.isfinite(rounded)])
     pressures = (
         known[np.concatenate([[True], np.diff(known) > 1e-9 * known[1:]])] if known.size else known

@@ -154,13 +154,16 @@ def size_effect_follows(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, numbers, _why_open(test["reason"].values[:, known].ravel()))
     agree = (test["verdict"] == DECIDED[0]).values
     words = ", ".join(
-        f"{agree[i].sum()} of {decided[i].sum()} {by}" for i, by in enumerate(ESTIMATES.values())
+        f"{agree[i].sum()} of {decided[i].sum()} loads {by}"
+        if decided[i].any()
+        else f"no load says {by}"
+        for i, by in enumerate(ESTIMATES.values())
     )
     return Finding(
         share(int(agree.sum()), int(decided.sum())),
         numbers,
-        f"of the loads that decide e is eq. 6's at {words}, on windows within one joint; where it "
-        "is, the slope of sigma_0 over b at equal sigma* must agree, too",
+        f"e agrees with eq. 6 at {words} (loads with intervals narrow enough alone), on windows "
+        "within one joint; where it does, sigma_0 over b at equal sigma* must agree, too",
     )
 
 
@@ -168,7 +171,9 @@ def _why_open(reasons):
     """Why no load decides about eq. 6; a reason a load and estimate, the most frequent first."""
     counts = Counter(str(reason) for reason in reasons).most_common()
     why = "; ".join(f"{reason} ({n})" for reason, n in counts)
-    return f"no load decides; {len(reasons)} cases (load, estimate): {why}"
+    return (
+        f"at no load are the intervals narrow enough; {len(reasons)} cases (load, estimate): {why}"
+    )
 
 
 def larger_domains_are_less_dense(joint: Joint) -> Finding:

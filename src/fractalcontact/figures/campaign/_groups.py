@@ -1,6 +1,7 @@
 """What the figures over specimens and groups share: words, colours, the load they are drawn at."""
 
 from collections.abc import Sequence
+from textwrap import fill
 
 import numpy as np
 import xarray as xr
@@ -14,7 +15,7 @@ from ..kit.words import estimate, interval, short
 #: What each quantity is on an axis.
 AXES = {
     "delta_g": r"surface dimension $\Delta_g$ (1)",
-    "stiffness": r"tangent stiffness d$\sigma_0$/d$w_{int}$ (MPa/mm)",
+    "stiffness": r"tangent stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)",
     "delta_sigma": r"$\Delta_\sigma$ by box counting (1)",
     "dilatancy": r"elastic dilatancy $\delta$ (mm)",
     "size_exponent": r"exponent of $A_r/A_0$ against $b$ (1)",
@@ -31,6 +32,12 @@ TITLES = {
 BETWEEN = {"delta_sigma": (-0.05, 2.05)}
 #: Those drawn over decades.
 LOGARITHMIC = ("stiffness",)
+#: Ends of an axis whose quotient is smaller are no decade.
+_DECADE = 10
+#: What stands for a group in a study that states none.
+UNGROUPED = "no group"
+#: Specimens of a study without groups up to which each stands for itself: colours there are.
+MOST_ALONE = 7
 #: Letters of the name of a group that are shown, and groups that a caption names.
 LONGEST, MOST_NAMED = 24, 3
 
@@ -40,6 +47,18 @@ def group_labels(comparison: xr.Dataset) -> list[str]:
     return [
         printable(name, LONGEST).replace("$", r"\$") for name in comparison["group_name"].values
     ]
+
+
+def alone(comparison: xr.Dataset) -> bool:
+    """Whether every specimen stands for itself: few of them, and no group stated."""
+    few = comparison.sizes["specimen"] <= MOST_ALONE
+    return few and list(comparison["group_name"].values) == [UNGROUPED]
+
+
+def specimen_labels(comparison: xr.Dataset, width: int) -> list[str]:
+    """Labels of the specimens, in lines of ``width`` letters; their names where they have none."""
+    shown = (printable(label, 2 * width) for label in comparison["label"].values)
+    return [fill(label, width).replace("$", r"\$") for label in shown]
 
 
 def settle_axis(axes: Axes, name: str, *, drawn: bool) -> None:
@@ -57,8 +76,10 @@ def settle_axis(axes: Axes, name: str, *, drawn: bool) -> None:
         say_empty(axes, "no specimen\nhas a value")
         axes.set_yticks([])
     elif name in LOGARITHMIC:
-        axes.set_yscale("log", nonpositive="mask")
-        label_short_span(axes.yaxis)
+        low, high = axes.get_ylim()
+        if low <= 0 or high > _DECADE * low:  # else a logarithmic axis would have a label or two
+            axes.set_yscale("log", nonpositive="mask")
+            label_short_span(axes.yaxis)
     elif name in BETWEEN:
         axes.set_ylim(*BETWEEN[name])
 
@@ -84,6 +105,16 @@ def means_in_words(comparison: xr.Dataset, name: str, state: xr.Dataset, unit: s
         found.append(f"{label} {words} of {n}")
     more = len(found) - MOST_NAMED
     return "; ".join(found[:MOST_NAMED]) + (f"; {more} more groups" if more > 0 else "")
+
+
+def range_in_words(values: np.ndarray, labels: Sequence[str], unit: str = "") -> str:
+    """Least and largest of some values with their specimens: "2.13 (one) to 2.51 (other)"."""
+    known = np.flatnonzero(np.isfinite(values))
+    if not known.size:
+        return "known of none"
+    ends = dict.fromkeys(known[[np.argmin(values[known]), np.argmax(values[known])]].tolist())
+    words = (f"{short(values[i])}{unit} ({printable(labels[i], 2 * LONGEST)})" for i in ends)
+    return " to ".join(words)
 
 
 def _plain(comparison: xr.Dataset) -> Sequence[str]:

@@ -8,10 +8,19 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...statements.comparison import ONCE, QUANTITIES, rounded_pressures
+from ...statements.comparison import ONCE, QUANTITIES, compared_pressures
 from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, group, letter
 from ..kit.words import SUPPLEMENTARY, pressure_label
-from ._groups import TITLES, common_pressure, group_labels, means_in_words, settle_axis
+from ._groups import (
+    TITLES,
+    alone,
+    common_pressure,
+    group_labels,
+    means_in_words,
+    range_in_words,
+    settle_axis,
+    specimen_labels,
+)
 
 TITLE = "Specimens and groups compared: surface, stiffness, contact, dilatancy and size effect"
 SUBJECT = "study"
@@ -24,6 +33,8 @@ MOST_BARS = 40
 #: Half the width that the specimens of a group take, of the distance between groups; where the
 #: mean stands.
 HALF_WIDTH, MEAN_AT = 0.25, 0.38
+#: Letters of a line of a specimen's label along an axis.
+_LETTERS = 24
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -33,19 +44,23 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     pressure = float(comparison["pressure"][number])
     at_load = comparison.isel(pressure=number)
     values = _values_at(comparison, pressure)
-    figure = Figure(figsize=(WIDTH, 5.2))
+    by_specimen = alone(comparison)
+    figure = Figure(figsize=(WIDTH, 6.4 if by_specimen else 5.2))
     panels = figure.subplots(2, 3).ravel()
     for axes, name, which in zip(panels, QUANTITIES, "abcde", strict=False):
-        _draw_strip(axes, name, values, at_load)
+        if by_specimen:
+            _draw_specimens(axes, name, values, specimen_labels(comparison, _LETTERS))
+        else:
+            _draw_strip(axes, name, values, at_load)
         letter(axes, which, TITLES[name])
-    _draw_key(panels[-1], values)
+    _draw_key(panels[-1], values, by_specimen=by_specimen)
     figure.suptitle(rf"under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE)
-    return Drawing(figure, values, _caption(comparison, at_load, pressure, len(values)))
+    return Drawing(figure, values, _caption(comparison, at_load, pressure, values))
 
 
 def _values_at(comparison: xr.Dataset, pressure: float) -> pd.DataFrame:
     """Every specimen with its quantities under one pressure, NaN where it was not loaded so."""
-    rounded = rounded_pressures(comparison["nominal_pressure"].values)
+    rounded = compared_pressures(comparison["nominal_pressure"].values)
     same = np.isclose(rounded, pressure, rtol=1e-9)
     columns = {"specimen": comparison["specimen"].values, "group": comparison["group"].values}
     for name, (unit, _) in QUANTITIES.items():
@@ -60,6 +75,17 @@ def _values_at(comparison: xr.Dataset, pressure: float) -> pd.DataFrame:
 
 def _column(name):
     return f"{name}{{}}_{QUANTITIES[name][0].replace('/', '_per_')}"
+
+
+def _draw_specimens(axes, name, values, labels):
+    """A bar for each specimen, at its label."""
+    found, low, high = (values[_column(name).format(end)].values for end in ("", "_low", "_high"))
+    bars = np.maximum(np.nan_to_num([found - low, high - found]), 0)
+    axes.errorbar(range(len(labels)), found, bars, fmt="o", lw=1, color=colour_of(1))
+    axes.set_xticks(range(len(labels)), labels, rotation=90, fontsize=6.5, linespacing=1)
+    axes.set_xlim(-0.6, len(labels) - 0.4)
+    axes.grid(axis="x", color="0.9", lw=0.6)
+    settle_axis(axes, name, drawn=bool(np.isfinite(found).any()))
 
 
 def _draw_strip(axes, name, values, at_load):
@@ -96,19 +122,35 @@ def _draw_strip(axes, name, values, at_load):
     settle_axis(axes, name, drawn=bool(np.isfinite(values[column.format("")]).any()))
 
 
-def _draw_key(axes, values):
+def _draw_key(axes, values, *, by_specimen):
     """What the signs are, in the last panel."""
     axes.set_axis_off()
+    axes.set(xlim=(0, 1.4), ylim=(0, 1))
+    if by_specimen:
+        axes.errorbar([0.1], [0.7], [0.06], fmt="o", lw=1, color=colour_of(1))
+        words = "a specimen with its 95 %\ninterval, where it is known;\nno point: no value there"
+        axes.text(0.2, 0.7, words, va="center")
+        return
     many = values.groupby("group").size().max() > MOST_BARS
     of_each = "one specimen" if many else "one specimen with its\n95 % interval"
     axes.errorbar([0.1], [0.7], [0 if many else 0.06], fmt="o", ms=2.5, lw=0.5, color=colour_of(1))
     axes.text(0.2, 0.7, of_each, va="center")
     axes.errorbar([0.1], [0.45], [0.06], fmt="D", color="k", capsize=3)
     axes.text(0.2, 0.45, "mean of the group, with the\n95 % interval of the mean", va="center")
-    axes.set(xlim=(0, 1.4), ylim=(0, 1))
 
 
-def _caption(comparison, at_load, pressure, n):
+def _caption(comparison, at_load, pressure, values):
+    n = len(values)
+    if alone(comparison):
+        labels = comparison["label"].values
+        ends = {
+            name: range_in_words(values[_column(name).format("")].values, labels, unit)
+            for name, unit in (("delta_g", ""), ("stiffness", " MPa/mm"))
+        }
+        return (
+            f"{SUPPLEMENTARY} {n} specimens under {pressure_label(pressure)}. Delta_g is "
+            f"{ends['delta_g']}; the tangent stiffness {ends['stiffness']}."
+        )
     return (
         f"{SUPPLEMENTARY} {n} specimens in {comparison.sizes['group_name']} groups, under "
         f"{pressure_label(pressure)}. "

@@ -5,14 +5,35 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...statements.comparison import UNDER_LOAD
-from ..kit.drawing import WIDTH, Drawing, colour_of, entries, group, letter
+from ...statements.comparison import UNDER_LOAD, compared_pressures
+from ..kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    group,
+    heading,
+    letter,
+)
 from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, pressure_label
-from ._groups import TITLES, common_pressure, group_labels, means_in_words, settle_axis
+from ._groups import (
+    TITLES,
+    alone,
+    common_pressure,
+    group_labels,
+    means_in_words,
+    range_in_words,
+    settle_axis,
+    specimen_labels,
+)
 
-TITLE = "Groups of specimens over the nominal pressure"
+TITLE = "Specimens and groups over the nominal pressure: stiffness, contact, dilatancy, size effect"
 SUBJECT = "study"
 NEEDS = ("study_comparison",)
 KEY = "comparison"
@@ -22,20 +43,61 @@ ORDER = 7
 MOST_LINES = 40
 #: Groups that are drawn; the others stand in the table.
 MOST_GROUPS = 7
+#: Letters of a line of a specimen's label in the legend.
+_LETTERS = 42
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Mean of each group with its interval and the spread of its specimens."""
     comparison = group(atlas, "study_comparison", "study")
     figure = Figure(figsize=(WIDTH, 5.4))
+    by_specimen = alone(comparison)
     panels = figure.subplots(2, 2, sharex=True)
     for axes, name, which in zip(panels.ravel(), UNDER_LOAD, "abcd", strict=True):
-        _draw_quantity(axes, comparison, name)
+        (_draw_alone if by_specimen else _draw_quantity)(axes, comparison, name)
         letter(axes, which, TITLES[name])
     for axes in panels[1]:
         axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
-    figure.legend(handles=entries(panels[0, 0]), loc="outside lower center", ncols=3)
+    shown = [*entries(panels[0, 0]), *_marks(comparison, by_specimen=by_specimen)]
+    figure.legend(handles=shown, loc="outside lower center", ncols=3)
     return Drawing(figure, _table(comparison), _caption(comparison))
+
+
+def _draw_alone(axes, comparison, name):
+    """A line for each specimen, with its intervals."""
+    axes.set_xscale("log")
+    for i, label in enumerate(specimen_labels(comparison, _LETTERS)):
+        one = comparison.isel(specimen=i)
+        found, low, high = (one[f"{name}{end}"].values for end in ("", "_low", "_high"))
+        bars = np.maximum(np.nan_to_num([found - low, high - found]), 0)
+        # Present in every panel, so that one legend serves all.
+        style = {"color": colour_of(i), "marker": MARKERS[i], "ls": LINES[i % len(LINES)]}
+        pressure = one["nominal_pressure"].values
+        axes.errorbar(pressure, found, bars, label=label, ms=3, lw=0.9, elinewidth=0.5, **style)
+    drawn = bool(np.isfinite(comparison[name]).any())
+    settle_axis(axes, name, drawn=drawn)
+    _draw_no_effect(axes, name, drawn=drawn)
+
+
+def _draw_no_effect(axes, name, *, drawn):
+    """The line of no size effect."""
+    if name == "size_exponent" and drawn:
+        axes.axhline(0, color="0.4", lw=0.8, ls=(0, (1, 2)), zorder=0)
+
+
+def _marks(comparison, *, by_specimen):
+    """What else is drawn, for the legend."""
+    no_effect = Line2D([], [], color="0.4", lw=0.8, ls=(0, (1, 2)), label="(d) no size effect: 0")
+    if by_specimen:
+        return [heading("bars: 95 % intervals"), no_effect]
+    marks = [
+        Patch(color="0.85", label="band: mean and one standard deviation"),
+        heading("bars: 95 % interval of the mean"),
+        no_effect,
+    ]
+    if comparison.sizes["specimen"] <= MOST_LINES:
+        marks.append(Line2D([], [], color="0.5", lw=0.4, label="thin: one specimen"))
+    return marks
 
 
 def _draw_quantity(axes, comparison, name):
@@ -46,9 +108,13 @@ def _draw_quantity(axes, comparison, name):
     for i, label in enumerate(group_labels(comparison)[:MOST_GROUPS]):
         one, colour = comparison.isel(group_name=i), colour_of(i + 1)
         mean, deviation = one[f"{name}_mean"].values, one[f"{name}_deviation"].values
-        n = int(one[f"{name}_n"].max())
+        members = one[f"{name}_n"].values
+        n = int(members.max())
+        # Of one specimen among several a mean would be its own line, and jump to it.
+        mean = np.where(members >= min(n, 2), mean, np.nan)
         # Present in every panel, so that one legend serves all.
-        axes.plot(pressure, mean, "o-", color=colour, label=f"{label}: mean of {n} specimens")
+        words = f"mean of up to {n} specimens" if n > 1 else "one specimen"
+        axes.plot(pressure, mean, "o-", color=colour, label=f"{label}: {words}")
         axes.fill_between(
             pressure, mean - deviation, mean + deviation, color=colour, alpha=0.15, lw=0
         )
@@ -57,8 +123,7 @@ def _draw_quantity(axes, comparison, name):
         axes.errorbar(pressure, mean, bars, fmt="none", ecolor=colour, capsize=2, lw=0.8)
     drawn = bool(np.isfinite(comparison[f"{name}_mean"]).any())
     settle_axis(axes, name, drawn=drawn)
-    if name == "size_exponent" and drawn:
-        axes.axhline(0, color="0.5", lw=0.6)
+    _draw_no_effect(axes, name, drawn=drawn)
 
 
 def _draw_specimens(axes, comparison, name):
@@ -84,6 +149,18 @@ def _table(comparison: xr.Dataset):
 def _caption(comparison):
     number = common_pressure(comparison)
     state = comparison.isel(pressure=number)
+    if alone(comparison):
+        values = comparison[["stiffness", "nominal_pressure"]]
+        compared = compared_pressures(values["nominal_pressure"].values)
+        here = np.isclose(compared, float(comparison["pressure"][number]))
+        at = np.where(here, values["stiffness"].values, np.nan)
+        found = np.where(np.isfinite(at).any(axis=1), np.nansum(at, axis=1), np.nan)
+        where = pressure_label(float(comparison["pressure"][number]))
+        words = range_in_words(found, comparison["label"].values, " MPa/mm")
+        return (
+            f"{SUPPLEMENTARY} Each specimen at the offset of its contact maps (dilatancy: the "
+            f"largest). Tangent stiffness under {where}: {words}."
+        )
     drawn = "bars the 95 % interval of the mean, bands one standard deviation between specimens"
     means = means_in_words(comparison, "stiffness", state, "MPa/mm")
     where = pressure_label(float(comparison["pressure"][number]))

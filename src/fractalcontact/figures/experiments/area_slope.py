@@ -32,6 +32,8 @@ _TITLES = {
     "with_roll_off": "with a roll-off at {share} of the side",
     "without_roll_off": "without a roll-off",
 }
+#: Estimates of kappa and their words.
+_KAPPAS = {"corrected_kappa": "corrected for the perimeter", "kappa": "raw: every node counted"}
 #: Theories between which kappa is expected, the lower first.
 _THEORIES = ("persson", "bush_gibson_thomas")
 
@@ -51,8 +53,10 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
     panels[0].set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/p$ (1)")
     shown = entries(panels[0])
-    seeds, theories = shown[: slopes.sizes["seed"]], shown[slopes.sizes["seed"] :]
-    legends_below(figure, [heading("corrected for the perimeter (hollow: raw)"), *seeds], theories)
+    surfaces = [one for one in shown if str(one.get_label()).startswith(tuple(_KAPPAS.values()))]
+    theories = [one for one in shown if one not in surfaces]
+    each = heading(f"a line for each of {slopes.sizes['seed']} surfaces; no intervals")
+    legends_below(figure, [each, *surfaces], theories)
     nodes, dimension = slopes.attrs["nodes"], slopes.attrs["dimension"]
     figure.suptitle(
         rf"synthetic surfaces of {nodes} $\times$ {nodes} nodes, $\Delta_g$ = {dimension:g}",
@@ -110,11 +114,22 @@ def kappa_lines(
 
 
 def _draw_surfaces(axes, chosen):
-    for n, seed in enumerate(chosen["seed"].values):
+    """A line a surface; what is corrected is filled, what is raw hollow."""
+    styles = (
+        {"color": colour_of(1), "marker": MARKERS[0]},
+        {"color": colour_of(2), "marker": MARKERS[1], "mfc": "white", "ls": "--"},
+    )
+    for seed in chosen["seed"].values:
         one = chosen.sel(seed=seed)
-        style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "lw": 0.7}
-        axes.plot(one["reduced_pressure"], one["corrected_kappa"], label=f"seed {seed}", **style)
-        axes.plot(one["reduced_pressure"], one["kappa"], mfc="none", ls=":", **style)
+        first = seed == chosen["seed"].values[0]
+        for (name, words), style in zip(_KAPPAS.items(), styles, strict=True):
+            label = words if first else None
+            axes.plot(one["reduced_pressure"], one[name], label=label, lw=0.7, ms=3, **style)
+    low, high = (number(end(chosen["corrected_kappa"].values)) for end in (np.min, np.max))
+    axes.text(
+        0.98, 0.98, f"corrected: {low} to {high}", transform=axes.transAxes, ha="right", va="top"
+    )
+    axes.margins(y=0.12)
 
 
 def _table(slopes):
@@ -126,11 +141,10 @@ def _table(slopes):
 
 def _caption(slopes):
     with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
-    low, high = (number(slopes.attrs[f"{name}_kappa"], 3) for name in _THEORIES)
     return (
         f"{SUPPLEMENTARY} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces. "
-        f"Corrected kappa is {with_one} with a roll-off and {without} without. Persson has "
-        f"{low}, Bush {high}. {_band_words(slopes)} {_scatter_words(slopes)}"
+        f"Corrected kappa is {with_one} with a roll-off and {without} without. "
+        f"{_band_words(slopes)}"
     )
 
 
@@ -151,14 +165,5 @@ def _band_words(slopes):
     inside = corrected.size - below - above
     counts = ((below, "below"), (inside, "within"), (above, "above"))
     lie = [f"{n} {words}" for n, words in counts if n]
-    every = f"All {lie[0]}" if len(lie) == 1 else f"Of {corrected.size} {', '.join(lie)}"
-    return f"{every} the literature's computed {low:g} to {high:g}."
-
-
-def _scatter_words(slopes):
-    """Standard deviation between seeds, of the corrected values."""
-    deviation = slopes["corrected_mean_kappa_deviation"].max("reduced_pressure")
-    with_one, without = (float(deviation.sel(surface=kind)) for kind in _TITLES)
-    if not np.isfinite([with_one, without]).all():
-        return "One seed has no scatter."
-    return f"Scatter is at most {number(with_one)} and {number(without)}."
+    words = f"All {lie[0]}" if len(lie) == 1 else f"Of {corrected.size} values {', '.join(lie)}"
+    return f"{words} the literature's computed {low:g} to {high:g}."

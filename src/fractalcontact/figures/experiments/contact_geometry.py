@@ -9,7 +9,17 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...domain.box_dimension import WIDEST
-from ..kit.drawing import WIDTH, Drawing, colour_of, entries, group, legends_below, letter
+from ...experiments.size_decision import PROBABILITY
+from ..kit.drawing import (
+    WIDTH,
+    Drawing,
+    colour_of,
+    entries,
+    group,
+    heading,
+    legends_below,
+    letter,
+)
 from ..kit.words import SUPPLEMENTARY, number
 from ._reduced_pressure import load_axis
 
@@ -28,6 +38,9 @@ _OTHERS = (
     ("geometry_cut", "bearing-area cut", "s", "--"),
 )
 
+#: Factors of the places of the two, which would hide each other.
+_BESIDE = (0.96, 1.04)
+
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Correlation dimension of contact and of its null models against load.
@@ -43,11 +56,13 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels = np.atleast_1d(parts[0].subplots(1, len(hursts), sharey=True))
     for axes, hurst in zip(panels, hursts, strict=True):
         _draw_curves(axes, test.sel(hurst=hurst), _CURVES, colours=(1, 2))
-        axes.axhline(1 + hurst, color="0.5", lw=0.8, ls=":", label="$1+H$")
+        axes.axhline(
+            1 + hurst, color="0.5", lw=0.8, ls=":", label=r"$\Delta_\sigma$ of the area: $1+H$"
+        )
         letter(axes, next(letters), f"$H$ = {hurst:g}")
     panels[0].set_ylabel("correlation dimension $D_2$ (1)")
     undetermined = Line2D([], [], color="0.4", marker="o", ls="none", mfc="white")
-    undetermined.set_label(f"hollow: undetermined (interval wider than {WIDEST:g})")
+    undetermined.set_label(f"hollow: undetermined (interval wider than {WIDEST:g}, not drawn)")
     handles = [*entries(panels[0]), undetermined]
     if constructions.size:
         others = np.atleast_1d(parts[1].subplots(1, len(constructions), sharey=True))
@@ -57,27 +72,34 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
                 _draw_curves(axes, one, _OTHERS, colours=(i + 3, i + 3), of=f", $H$ = {hurst:g}")
             letter(axes, next(letters), str(name))
         others[0].set_ylabel("correlation dimension $D_2$ (1)")
-        legends_below(parts[0], handles[:2], handles[2:])
+        legends_below(parts[0], handles[:2], [_bars(), *handles[2:]])
         legends_below(parts[1], entries(others[0]))
     else:
-        legends_below(figure, handles[:2], handles[2:])
+        legends_below(figure, handles[:2], [_bars(), *handles[2:]])
     return Drawing(figure, _table(test), _caption(test))
+
+
+def _bars() -> Line2D:
+    """What bars and places of points are."""
+    return heading(f"side by side; bars: {100 * PROBABILITY:.0f} % intervals")
 
 
 def _draw_curves(axes, one, curves, *, colours, of="") -> None:
     """Dimension of the contact domain and of its cut, beside that of random nodes."""
     load = one["reduced_pressure"].values
-    for (name, label, marker, line), colour in zip(curves, colours, strict=True):
+    pairs = zip(curves, colours, strict=True)
+    for beside, ((name, label, marker, line), colour) in zip(_BESIDE, pairs, strict=True):
         low, high = one[f"{name}_low"], one[f"{name}_high"]
         narrow = (high - low) <= WIDEST
         error = [(one[name] - low).where(narrow), (high - one[name]).where(narrow)]
         style = {"marker": marker, "ls": line, "color": colour_of(colour)}
-        axes.errorbar(load, one[name], yerr=error, label=f"{label}{of}", **style)
+        x = load * beside
+        axes.errorbar(x, one[name], yerr=error, label=f"{label}{of}", **style)
         hollow = style | {"ls": "none", "mfc": "white", "zorder": 3}
-        axes.plot(load, one[name].where(~narrow), **hollow)
-    axes.axhline(2, color="k", lw=0.8, label="random nodes" if not of else None)
+        axes.plot(x, one[name].where(~narrow), **hollow)
+    axes.axhline(2, color="k", lw=0.8, label="random nodes: 2" if not of else None)
     load_axis(axes, load)
-    axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$ (1)")
+    axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
 
 
 def _table(test) -> pd.DataFrame:
@@ -95,10 +117,16 @@ def _caption(test) -> str:
     low, high = (test[f"band_delta_{end}"] for end in ("low", "high"))
     known = ((high - low) <= WIDEST) & ((test["cut_delta_high"] - test["cut_delta_low"]) <= WIDEST)
     beyond = known & ((low > test["cut_delta_high"]) | (high < test["cut_delta_low"]))
-    rising = test["band_delta"].isel(reduced_pressure=[0, -1]).diff("reduced_pressure")
     return (
-        f"{SUPPLEMENTARY} Correlation dimension of contact domains between cut-off and roll-off, "
-        f"{count} synthetic surfaces of each H. It differs from the bearing-area cut's beyond both "
-        f"intervals at {int(beyond.sum())} of {known.size} states ({known.size - int(known.sum())} "
-        f"undetermined, hollow), and rises with load by {number(float(rising.mean()))}."
+        f"{SUPPLEMENTARY} Correlation dimension of contact domains, {count} synthetic surfaces of "
+        f"each H. It differs from the bearing-area cut's beyond both intervals at "
+        f"{int(beyond.sum())} of {known.size} states ({known.size - int(known.sum())} "
+        f"undetermined, hollow), and rises with load from {_span(test, 0)} to {_span(test, -1)}."
     )
+
+
+def _span(test, load: int) -> str:
+    """Dimensions of the contact domains of all H under one load."""
+    values = test["band_delta"].isel(reduced_pressure=load).values
+    ends = (number(end) for end in (np.nanmin(values), np.nanmax(values)))
+    return " - ".join(dict.fromkeys(ends))

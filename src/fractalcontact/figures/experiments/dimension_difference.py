@@ -15,8 +15,8 @@ from ..kit.drawing import (
     Drawing,
     colour_of,
     group,
+    heading,
     headline,
-    label_short_span,
     legends_below,
     letter,
 )
@@ -28,6 +28,8 @@ NEEDS = ("dimension_test",)
 KEY = "dimension_test"
 ORDER = 31
 
+#: Ends of the axis of differences: intervals of two surfaces would go far beyond.
+_DIFFERENCES = (-0.35, 0.85)
 _NAMES = ("delta_sigma_area", "delta_sigma_box")
 
 
@@ -42,7 +44,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     if capped:
         _draw_capped(panels[2], test, "c")
     legends_below(figure, *_legends(test))
-    headline(figure, "means over seeds, lightest and heaviest load")
+    headline(figure, f"means of {test.sizes['seed']} surfaces")
     return Drawing(figure, _table(test), _caption(test))
 
 
@@ -62,14 +64,14 @@ def _draw_difference(axes, test, which):
             colour = colour_of(i)
             axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])
             axes.vlines(beside, low, high, color=colour, lw=0.5)
-    axes.axhline(0, color="0.5", lw=0.6)
+    axes.axhline(0, color="0.5", lw=0.8, ls=LINES[2])
     axes.set_xscale("log", base=2)
     axes.set_xticks(size, [f"{n:g}" for n in size])
     axes.minorticks_off()
-    axes.set_ylim(-0.35, 0.85)
+    axes.set_ylim(*_DIFFERENCES)
     axes.set_xlabel("nodes per side (1)")
     axes.set_ylabel(r"$\Delta_\sigma$: $A_r(s)$ less box counting (1)")
-    letter(axes, which, "difference (one law: 0)")
+    letter(axes, which, "difference, 95 % intervals")
 
 
 def _draw_boxes(axes, test, which):
@@ -81,13 +83,13 @@ def _draw_boxes(axes, test, which):
             ratio = largest["boxes_per_node"].isel(dimension=i, reduced_pressure=j).mean("seed")
             style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
             axes.plot(k, ratio, **style)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlabel("resolution $k = s_k/s$ (1)")
-    axes.set_ylabel("occupied boxes $ks$ / nodes at $k$ (1)")
-    label_short_span(axes.xaxis)
-    label_short_span(axes.yaxis)
-    letter(axes, which, "boxes per node (one law: level)")
+    axes.axhline(1, color="0.5", lw=0.8, ls=LINES[2])
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(k, [f"{n:g}" for n in k])
+    axes.minorticks_off()
+    axes.set_xlabel("resolution: every $k$-th node (1)")
+    axes.set_ylabel("occupied boxes of $k$ nodes\nover nodes in contact at $k$ (1)")
+    letter(axes, which, "boxes per node of contact")
 
 
 def _draw_capped(axes, test, which):
@@ -101,12 +103,10 @@ def _draw_capped(axes, test, which):
         ):
             style = {"color": colour_of(i), "marker": MARKERS[i], "mfc": face, "lw": 0.8}
             axes.plot(part, one[f"capped_mean_{name}"].values, ls=line, **style)
-    axes.axhline(2, color="0.5", lw=0.6)
     axes.set_ylim(0.8, 2.1)
-    axes.set_xlabel("$F/(H A_0)$ (1)")
+    axes.set_xlabel("load over that of full yield\n$F/(H A_0)$ (1)")
     axes.set_ylabel(r"$\Delta_\sigma$ (1)")
-    letter(axes, which, rf"hardness {test.attrs['hardness']:g} $E^* h'_\mathrm{{rms}}$")
-    axes.text(0.97, 0.05, "filled: $A_r(s)$\nopen: boxes", transform=axes.transAxes, ha="right")
+    letter(axes, which, rf"yielding at $H$ = {test.attrs['hardness']:g} $E^* h'_\mathrm{{rms}}$")
 
 
 def _legends(test):
@@ -116,10 +116,25 @@ def _legends(test):
     ]
     loads = test["reduced_pressure"].values
     lines = [
-        Line2D([], [], color="k", ls=LINES[n % len(LINES)], label=f"(a), (b) load {loads[j]:g}")
+        Line2D(
+            [],
+            [],
+            color="0.3",
+            ls=LINES[n % len(LINES)],
+            label=rf"(a), (b) $p/(E^* h'_\mathrm{{rms}})$ = {loads[j]:g}",
+        )
         for n, j in enumerate(_shown(test))
     ]
-    return dimensions, lines
+    one_law = "(a), (b) if one law governed both"
+    lines.append(Line2D([], [], color="0.5", lw=0.8, ls=LINES[2], label=one_law))
+    if "capped_pressure" not in test.dims:
+        return dimensions, lines
+    faces = (("0.3", "-", "(c) by $A_r(s)$"), ("white", "--", "(c) by box counting"))
+    capped = [
+        Line2D([], [], color="0.3", lw=0.8, marker="o", mfc=face, ls=line, label=words)
+        for face, line, words in faces
+    ]
+    return dimensions, lines, [*capped, heading("(b), (c) no intervals drawn")]
 
 
 def _table(test):
@@ -143,7 +158,8 @@ def _table(test):
 
 def _caption(test):
     return (
-        f"After Figs. 8 and 9 of {PAPER}. Delta_sigma by A_r(s) less that by box counting. "
+        f"After Figs. 8 and 9 of {PAPER}. Delta_sigma by A_r(s) less that by box counting, the "
+        "lightest and the heaviest load drawn. "
         f"{_difference_words(test)} {_capped_words(test)}"
     ).strip()
 
@@ -157,8 +173,8 @@ def _difference_words(test):
         return "Too few values to compare the two."
     agree = int(((low <= 0) & (high >= 0))[known].sum())
     return (
-        f"Their difference is {number(mean[known].min())} to {number(mean[known].max())}; zero "
-        f"lies in {agree} of {int(known.sum())} intervals."
+        f"At all loads their difference is {number(mean[known].min())} to "
+        f"{number(mean[known].max())}; zero lies in {agree} of {int(known.sum())} intervals."
     )
 
 

@@ -13,6 +13,7 @@ from ..kit.drawing import (
     WIDTH,
     Drawing,
     group,
+    heading,
     headline,
     label_short_span,
     legends_below,
@@ -28,10 +29,14 @@ ORDER = 30
 
 #: How each estimator is drawn: colour, line, name.
 _ESTIMATORS = {
-    "delta_sigma_area": (COLOURS[1], "-", "$A_r(s)$"),
-    "delta_sigma_box": (COLOURS[2], "--", "box counting"),
-    "delta_pairs": (COLOURS[3], ":", "correlation dimension"),
+    "delta_sigma_area": (COLOURS[1], "-", "by the areas $A_r(s)$"),
+    "delta_sigma_box": (COLOURS[2], "--", "by box counting"),
+    "delta_pairs": (COLOURS[3], ":", "by pairs (correlation dimension)"),
 }
+
+#: Ends of the axis, the lower one unless a mean lies below.
+_LEAST = 0.6
+_MOST = 2.05
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -44,9 +49,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels = np.atleast_1d(figure.subplots(1, test.sizes["dimension"], sharey=True))
     for which, axes, dimension in zip("abcdefgh", panels, test["dimension"].values, strict=False):
         _draw_loads(axes, test.isel(size=-1), dimension, which)
-    panels[0].set_ylabel(r"$\Delta_\sigma$ (1)")
+    means = np.array([test[f"mean_{one}"].isel(size=-1).values for one in _ESTIMATORS])
+    panels[0].set_ylim(min(_LEAST, np.nanmin(means, initial=_LEAST) - 0.1), _MOST)
+    panels[0].set_ylabel(r"dimension of the contact domain $\Delta_\sigma$ (1)")
     legends_below(figure, *_legends(test))
-    headline(figure, f"{test['size'].values[-1]} nodes per side, means over seeds")
+    surfaces, size = test.sizes["seed"], test["size"].values[-1]
+    headline(figure, f"means of {surfaces} surfaces of {size} nodes per side")
     return Drawing(figure, _table(test), _caption(test))
 
 
@@ -61,11 +69,10 @@ def _draw_loads(axes, test, dimension, which):
         axes.vlines(beside, low, high, color=colour, lw=0.8)
     axes.axhline(float(one["light_load_delta"]), color="0.3", lw=0.8, ls="-.")
     if np.isclose(dimension, test.attrs["paper_dimension"]):
-        axes.axhline(test.attrs["paper_delta_sigma"], color=COLOURS[4], lw=0.8, ls="-")
+        axes.axhline(test.attrs["paper_delta_sigma"], color=COLOURS[4], lw=1.2, ls="-")
     axes.set_xscale("log")
-    axes.set_ylim(0.6, 2.05)
     label_short_span(axes.xaxis)
-    axes.set_xlabel(r"$p/(E^* h'_\mathrm{rms})$ (1)")
+    axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
     title = rf"$\Delta_g$ = {dimension:g}"
     if test.sizes["dimension"] > 1:
         letter(axes, which, title)
@@ -78,10 +85,14 @@ def _legends(test):
         Line2D([], [], color=colour, ls=line, marker=MARKERS[n], label=words)
         for n, (colour, line, words) in enumerate(_ESTIMATORS.values())
     ]
-    theory = [Line2D([], [], color="0.3", lw=0.8, ls="-.", label=r"light load: $1+H$")]
+    words = r"theory at light load: $1+H=4-\Delta_g$"
+    theory = [
+        heading("side by side; bars: 95 % intervals"),
+        Line2D([], [], color="0.3", lw=0.8, ls="-.", label=words),
+    ]
     if np.isclose(test["dimension"].values, test.attrs["paper_dimension"]).any():
-        words = f"the paper's {test.attrs['paper_delta_sigma']:g}, $\\Delta_g$ = 2.1"
-        theory.append(Line2D([], [], color=COLOURS[4], lw=0.8, label=words))
+        words = f"the paper's {test.attrs['paper_delta_sigma']:g} at $\\Delta_g$ = 2.1"
+        theory.append(Line2D([], [], color=COLOURS[4], lw=1.2, label=words))
     return lines, theory
 
 
@@ -111,8 +122,8 @@ def _paper_words(test):
     ranges = []
     for name, words in (
         ("delta_sigma_area", "by A_r(s)"),
-        ("delta_sigma_box", "by the count law"),
-        ("delta_ordinary", "by ordinary boxes"),
+        ("delta_sigma_box", "by box counting"),
+        ("delta_pairs", "by pairs"),
     ):
         values = one[f"mean_{name}"].values
         known = values[np.isfinite(values)]
@@ -120,5 +131,5 @@ def _paper_words(test):
             ranges.append(f"{number(known.min())} to {number(known.max())} {words}")
     return (
         f"The paper has {test.attrs['paper_delta_sigma']:g} at Delta_g = {wanted:g}, here "
-        f"{', '.join(ranges)}. "
+        f"means are {', '.join(ranges)}. "
     )

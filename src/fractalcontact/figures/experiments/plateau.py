@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...core.intervals import mean_interval
+from ...core.labels import printable
 from ...core.mean_plane import without_mean_plane
 from ...core.units import quantity
 from ...experiments.roll_off import SURFACES
@@ -34,7 +35,7 @@ from ..kit.sizes import plain_decades
 from ..kit.verdicts import CIRCULAR_SHORT, row_of
 from ..kit.words import PAPER, estimate, short
 
-TITLE = "Rigid dilatancy of all joints, with and without a roll-off of the spectrum"
+TITLE = "Rigid dilatancy of all joints: does a plateau need a roll-off of the spectrum?"
 SUBJECT = "study"
 NEEDS = ("specimens", "joints", "roll_off", "statements")
 KEY = "roll_off"
@@ -43,8 +44,8 @@ ORDER = 10
 #: What the paper says of rock and of concrete (:mod:`statements.sliding`).
 PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
-#: Specimens that the caption names.
-MOST_NAMED = 3
+#: Specimens that the caption names, and letters of the label of each.
+MOST_NAMED, LONGEST_IN_CAPTION = 3, 40
 
 #: Specimens whose largest offsets differ by more than this are drawn in decades.
 WIDE = 5
@@ -57,8 +58,8 @@ LEVEL = 0.1
 
 _PLATEAU = "reaches a plateau"
 
-#: How what explains the curves is drawn.
-_EXPECTED = {"lw": 3, "alpha": 0.35, "ls": "-"}
+#: The second half of the offsets, over which slopes are taken.
+_SECOND_HALF = {"lw": 3}
 _ROLL_OFF, _UNCORRELATED = "v", "o"
 _MARK = {"mfc": "white", "ms": 6, "zorder": 3}
 
@@ -165,15 +166,17 @@ class Slide:
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """Dilatancy, spread of the composite topography and their ratio for all that slides."""
+    """Dilatancy, and its ratio to the spread of the composite topography, for all that slides."""
     synthetic = [Slide.synthetic(atlas, surface) for surface in SURFACES]
     sliding = [name for name in names if settings_of(atlas, name)["opposite"] != "flat"]
     slides = synthetic + [Slide.of(atlas, name) for name in sliding]
     figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
-    panels = figure.subplots(1, 3, sharex=True)
+    panels = figure.subplots(1, 2, sharex=True)
     _prepare(panels, slides)
-    for n, slide in enumerate(slides):
-        _draw_slide(panels, n, slide)
+    drawn = _without_repeats(slides)
+    for n, slide in enumerate(drawn):
+        _draw_slide(panels, n, slide, slope=n < len(synthetic))
+    _mark_ends(panels[1], slides)
     _start_at_zero(panels)
     legends_below(figure, entries(panels[0]), _marks())
     table = pd.concat([_table(slide) for slide in slides], ignore_index=True)
@@ -189,55 +192,85 @@ def _roll_off(atlas, name):
     return None if stated is None else quantity(stated, "length", f"embedded.{name}.roll_off")
 
 
-def _draw_slide(panels, n, slide):
-    colour = colour_of(n)
+def _without_repeats(slides):
+    """Slides that differ; one whose faces are another's, of another material, is named with it."""
+    found: list[Slide] = []
+    for slide in slides:
+        for n, other in enumerate(found):
+            if _alike(slide, other):
+                longer, shorter = sorted((other, slide), key=lambda one: -one.v.size)
+                found[n] = replace(longer, label=f"{longer.label}; the same: {shorter.label}")
+                break
+        else:
+            found.append(slide)
+    return found
+
+
+def _alike(slide, other):
+    """Whether one slide is the other, or begins as it does."""
+    n = min(slide.v.size, other.v.size)
+    return slide.rows == other.rows and all(
+        np.array_equal(getattr(slide, name)[..., :n], getattr(other, name)[..., :n])
+        for name in ("v", "opened", "spread")
+    )
+
+
+def _draw_slide(panels, n, slide, *, slope=False):
+    colour, line = colour_of(n), LINES[n % 4]
     # In decades flush faces have no place, and what rounding leaves of their spread would be shown.
     shown = slide.v > 0 if panels[1].get_xscale() == "log" else np.full(slide.v.shape, True)
     v = slide.v[shown]
-    for axes, values in zip(panels, (slide.opened, slide.spread, slide.ratio), strict=True):
-        if axes is panels[2] and not slide.matched:
+    label = label_in_lines(slide.label, width=COLUMN)
+    if slope:
+        label += f"\nslope {_change(slide)}"
+    for axes, values in zip(panels, (slide.opened, slide.ratio), strict=True):
+        if axes is panels[1] and not slide.matched:
             continue  # its dilatancy counts from faces that were apart already
         values = values[:, shown]
         mean, low, high = values.mean(axis=0), values.min(axis=0), values.max(axis=0)
         if axes.get_yscale() == "log":
             mean, low, high = (np.where(y > 0, y, np.nan) for y in (mean, low, high))
         axes.fill_between(v, low, high, color=colour, alpha=0.15, lw=0)
-        axes.plot(
-            v,
-            mean,
-            color=colour,
-            ls=LINES[n % 4],
-            label=label_in_lines(slide.label, width=COLUMN),
-        )
-    panels[1].plot(v, slide.expected[:, shown].mean(axis=0), color=colour, **_EXPECTED)
+        axes.plot(v, mean, color=colour, ls=line, label=label)
+    if slope:
+        half = slide.second_half
+        mean = slide.opened[:, half].mean(axis=0)
+        panels[0].plot(slide.v[half], mean, color=colour, **_SECOND_HALF)
     for at, marker in ((slide.roll_off, _ROLL_OFF), (slide.uncorrelated, _UNCORRELATED)):
         if at is not None and slide.v[0] <= at <= slide.v[-1]:
-            for axes, values in zip(panels[:2], (slide.opened, slide.spread), strict=True):
-                height = np.interp(at, slide.v, values.mean(axis=0))
-                axes.plot(at, height, marker, color=colour, **_MARK)
+            height = np.interp(at, slide.v, slide.opened.mean(axis=0))
+            panels[0].plot(at, height, marker, color=colour, **_MARK)
+
+
+def _mark_ends(axes, slides):
+    """Lines at the least and the largest ratio of a mean, which the caption states."""
+    ratios = _mean_ratios(slides)
+    if not ratios.size:
+        return
+    for end, va in ((ratios.min(), "top"), (ratios.max(), "bottom")):
+        axes.axhline(end, color="0.4", lw=0.8, ls=(0, (1, 2)))
+        axes.text(0.02, end, short(end), transform=axes.get_yaxis_transform(), va=va)
 
 
 def _marks():
     """Entries of the legend for what is marked on every curve."""
+    marks = ((_ROLL_OFF, "(a) roll-off length"), (_UNCORRELATED, "(a) faces uncorrelated"))
     return [
-        heading("bands: from least to most of the joints or directions"),
-        Line2D([], [], color="0.3", label=r"(b) $\sqrt{2}\,\sigma\,\sqrt{1-\rho(v)}$", **_EXPECTED),
-        Line2D([], [], ls="none", marker=_ROLL_OFF, color="0.3", label="roll-off length", **_MARK),
-        Line2D(
-            [],
-            [],
-            ls="none",
-            marker=_UNCORRELATED,
-            color="0.3",
-            label="faces uncorrelated",
-            **_MARK,
+        heading(
+            "lines: means; bands: from least to most of\nthe joints or directions, no intervals"
         ),
+        Line2D([], [], color="0.3", label="(a) half over which the slope is taken", **_SECOND_HALF),
+        *(
+            Line2D([], [], ls="none", marker=marker, color="0.3", label=words, **_MARK)
+            for marker, words in marks
+        ),
+        Line2D([], [], color="0.4", lw=0.8, ls=(0, (1, 2)), label="(b) least and largest mean"),
     ]
 
 
 def _prepare(panels, slides):
     """Scales, labels and letters; decades where one specimen slides much farther than another."""
-    opened, spread, ratio = panels
+    opened, ratio = panels
     farthest = [slide.v[-1] for slide in slides]
     decades = max(farthest) > WIDE * min(farthest)
     for axes in panels:
@@ -246,13 +279,11 @@ def _prepare(panels, slides):
             axes.set_xscale("log", nonpositive="mask")
     if decades:
         opened.set_yscale("log", nonpositive="mask")
-        spread.set_yscale("log", nonpositive="mask")
         plain_decades(opened.yaxis)
-        plain_decades(spread.yaxis)
     opened.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
-    spread.set_ylabel(r"spread of the composite $\sigma_z$ (mm)")
-    ratio.set_ylabel(r"$\delta_r/\sigma_z$ (1)")
-    for axes, which, title in zip(panels, "abc", ("dilatancy", "spread", "ratio"), strict=True):
+    ratio.set_ylabel(r"dilatancy over spread $\delta_r/\sigma_z$ (1)")
+    titles = ("dilatancy", r"over the spread $\sigma_z$ of the composite topography")
+    for axes, which, title in zip(panels, "ab", titles, strict=True):
         letter(axes, which, title)
 
 
@@ -313,8 +344,8 @@ class Trend(NamedTuple):
 def _caption(slides, verdicts):
     synthetic = slides[: len(SURFACES)]
     words = (
-        f"After Figs. 6a and 7a of {PAPER}. Rigid dilatancy delta_r beside the spread sigma_z of "
-        f"the composite topography. {_explanation(synthetic, slides)}"
+        f"After Figs. 6a and 7a of {PAPER}. Rigid dilatancy delta_r, alone and over the spread "
+        f"sigma_z of the composite topography. {_explanation(synthetic, slides)}"
     )
     return f"{words} The paper's plateaus: {verdicts}." if verdicts else words
 
@@ -326,7 +357,10 @@ def _verdicts(atlas, names):
         for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
             if row is not None:
                 mark = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
-                said.setdefault(row["verdict"].item(), []).append(f"{name}{mark}")
+                label = settings_of(atlas, name)["label"]
+                said.setdefault(row["verdict"].item(), []).append(
+                    f"{printable(label, LONGEST_IN_CAPTION)}{mark}"
+                )
     few = sum(map(len, said.values())) <= MOST_NAMED
     return "; ".join(
         f"{verdict} for {', '.join(of) if few else f'{len(of)} specimens'}"
@@ -337,13 +371,18 @@ def _verdicts(atlas, names):
 def _explanation(synthetic, slides):
     """Whether delta_r follows sigma_z, and what the roll-off does to both."""
     with_it, without = synthetic
+    return (
+        f"With a roll-off delta_r of synthetic joints {_level(with_it)}, without it "
+        f"{_level(without)} (slopes: legend); delta_r / sigma_z stays "
+        f"{_span(_mean_ratios(slides))}."
+    )
+
+
+def _mean_ratios(slides):
+    """delta_r / sigma_z of all slides, means of their rows, at all offsets."""
     drawn = [slide.ratio.mean(axis=0)[slide.v > 0] for slide in slides if slide.matched]
     ratios = np.concatenate(drawn)
-    return (
-        f"delta_r / sigma_z stays {_span(ratios[np.isfinite(ratios)])}. "
-        f"With a roll-off delta_r {_level(with_it)} ({_change(with_it)}), "
-        f"without it {_level(without)} ({_change(without)})."
-    )
+    return ratios[np.isfinite(ratios)]
 
 
 def _change(slide):

@@ -8,15 +8,17 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...experiments.size_decision import REFUTED, UPHELD
+from ...experiments.size_decision import NO_EFFECT, PROBABILITY, REFUTED, UPHELD
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
     Drawing,
     colour_of,
     group,
+    heading,
     legends_below,
     letter,
 )
@@ -30,16 +32,14 @@ ORDER = 5
 
 #: Arms that vary the size, in words.
 _ARMS = {
-    "S1": "roll-off fixed",
-    "S2": "roll-off in proportion to $b$",
-    "S3": "no roll-off",
-    "W": "windows of surfaces like S3",
+    "S1": "surfaces of several sides $b$, roll-off length fixed",
+    "S2": "roll-off in proportion to the side $b$",
+    "S3": "surfaces without a roll-off",
+    "W": "windows of surfaces without a roll-off",
 }
 #: Estimators of Delta_sigma: variable, words, filled.
 _ESTIMATORS = (("area_delta", "$A_r(s)$", True), ("box_delta", "box counts", False))
 _ENDS = ("", "_low", "_high")
-#: Half of the distance at which the two estimates of one alpha are drawn.
-_APART = 0.004
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -55,15 +55,16 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.remove()
     for which, axes, arm in zip("abcd", panels.ravel(), arms, strict=False):
         _draw_arm(axes, table[table["arm"] == arm], test)
-        title = f"{arm}: {_ARMS[str(arm)]}"
+        title = _ARMS[str(arm)]
         if len(arms) > 1:
             letter(axes, which, title)
         else:
             axes.set_title(title, loc="left")
-        axes.set_xlabel(r"eq. 6: $-(2-\Delta_\sigma)$ (1)")
+        axes.set_xlabel(r"exponent wanted by eq. 6: $-(2-\Delta_\sigma)$ (1)")
     for axes in panels[:, 0]:
-        axes.set_ylabel(r"found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$ (1)")
-    legends_below(figure, _classes(test), _loads(test), _lines())
+        axes.set_ylabel(r"exponent found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$ (1)")
+    bars = heading(f"bars: {100 * PROBABILITY:.0f} % intervals")
+    legends_below(figure, [*_classes(test), bars], _loads(test), _lines())
     return Drawing(figure, table, _caption(test))
 
 
@@ -94,16 +95,15 @@ def _table(test: xr.Dataset) -> pd.DataFrame:
 
 def _draw_arm(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
     """Points of one arm: colours are Hurst exponents, markers loads, hollow ones box counts."""
-    axes.axhline(0, color="0.6", lw=0.8)
-    axes.axline((0, 0), slope=1, color="0.6", lw=0.8, ls="--")
+    axes.axhspan(-NO_EFFECT, NO_EFFECT, color="0.88", lw=0, zorder=0)
+    axes.axline((0, 0), slope=1, color="k", lw=1.2, ls="--")
     hursts, loads = list(test["hurst"].values), list(test["reduced_pressure"].values)
     for _, row in table.dropna(subset=["alpha", "eq6"]).iterrows():
         colour = colour_of(hursts.index(row["hurst"]))
         filled = row["estimator"] == _ESTIMATORS[0][1].strip("$")
         axes.errorbar(
             row["eq6"],
-            # Both estimates share alpha: neither hides the other.
-            row["alpha"] + (_APART if filled else -_APART),
+            row["alpha"],
             xerr=_reach(row, "eq6"),
             yerr=_reach(row, "alpha"),
             fmt=MARKERS[loads.index(row["p_over_E_slope"])],
@@ -119,14 +119,21 @@ def _reach(row: pd.Series, name: str) -> list[list[float]]:
 
 def _classes(test: xr.Dataset) -> list:
     return [
-        Line2D([], [], color=colour_of(i), marker="o", ls="none", label=f"$H$ = {hurst:g}")
+        Line2D([], [], color=colour_of(i), marker="o", ls="none", label=_class_words(test, hurst))
         for i, hurst in enumerate(test["hurst"].values)
     ]
 
 
+def _class_words(test: xr.Dataset, hurst: float) -> str:
+    """A Hurst exponent, and what was decided of eq. 6 where all arms say the same."""
+    decided = np.unique(test["overall"].sel(hurst=hurst).values)
+    words = f": {decided[0]}" if len(decided) == 1 else ""
+    return f"$H$ = {hurst:g}{words}"
+
+
 def _loads(test: xr.Dataset) -> list:
-    return [
-        Line2D([], [], color="0.3", marker=MARKERS[i], ls="none", label=f"$p^*$ = {load:g}")
+    return [heading(r"pressure $p/(E^*h'_\mathrm{rms})$")] + [
+        Line2D([], [], color="0.3", marker=MARKERS[i], ls="none", label=f"{load:g}")
         for i, load in enumerate(test["reduced_pressure"].values)
     ]
 
@@ -141,8 +148,8 @@ def _lines() -> list:
     ]
     return [
         *marks,
-        Line2D([], [], color="0.6", lw=0.8, ls="--", label="eq. 6"),
-        Line2D([], [], color="0.6", lw=0.8, label="no size effect"),
+        Line2D([], [], color="k", lw=1.2, ls="--", label="eq. 6 would lie here"),
+        Patch(color="0.88", label=rf"no size effect: $|\alpha|$ < {NO_EFFECT:g}"),
     ]
 
 
@@ -153,8 +160,8 @@ def _caption(test: xr.Dataset) -> str:
     flat = int(test["no_size_effect"].sum())
     largest = float(np.nanmax(abs(test["alpha"].values)))
     return (
-        f"{SUPPLEMENTARY} Exponent alpha of the contact area over b, beside that of eq. 6. "
-        f"Eq. 6 is refuted for {refuted} of {classes.size} classes and supported for {supported}; "
-        f"|alpha| is at most {number(largest)}, shown to be below 0.02 in {flat} of "
-        f"{test['no_size_effect'].size} cases."
+        f"{SUPPLEMENTARY} Exponent alpha of the contact area over the side b, and eq. 6's. "
+        f"Eq. 6 is refuted for {refuted} of {classes.size} classes and supported for "
+        f"{supported}: |alpha| is at most {number(largest)}, shown to be below "
+        f"{NO_EFFECT:g} in {flat} of {test['no_size_effect'].size} cases."
     )

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -21,7 +22,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.words import SUPPLEMENTARY, number, percent
+from ..kit.words import SUPPLEMENTARY, number
 
 TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
 SUBJECT = "study"
@@ -32,8 +33,8 @@ ORDER = 8
 _ENDS = ("", "_low", "_high")
 #: Labels of ticks stand at least this fraction of the axis apart.
 _CLEAR = 0.15
-#: Colours of the laws; sides have the others.
-_LAWS = {"elastic": colour_of(0), "capped": colour_of(2)}
+#: Colour of exponents: those of the sides stand for sides alone.
+_OF_EXPONENTS = "k"
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -46,16 +47,16 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for i, hurst in enumerate(hursts):
         upper, lower = panels[:, i]
         _draw_strength(upper, strengths[strengths["hurst"] == hurst], test)
-        letter(upper, "abcdefgh"[i], rf"$H$ = {hurst:g}")
-        upper.set_xlabel("shear displacement $v$ (nodes)")
+        letter(upper, "abcdefgh"[i], rf"$H$ = {hurst:g}: strength")
+        upper.set_xlabel("shear displacement $v$, middle of its interval (nodes)")
         _draw_exponents(lower, exponents[exponents["hurst"] == hurst], test)
-        letter(lower, "abcdefgh"[i + len(hursts)], rf"$H$ = {hurst:g}")
-        lower.set_xlabel("equal $v$ (nodes) | equal $v/b$")
+        letter(lower, "abcdefgh"[i + len(hursts)], rf"$H$ = {hurst:g}: its exponent over the side")
+        lower.set_xlabel("at equal $v$ (nodes)  |  at equal $v/b$ (1)")
     panels[0, 0].set_ylabel(r"strength $\tau/\sigma_0$ (1)")
     panels[1, 0].set_ylabel(r"$\mathrm{d}\ln(\tau/\sigma_0)/\mathrm{d}\ln b$ (1)")
     legends_below(figure, _side_entries(test), _law_entries(test), _line_entries(test))
     table = pd.concat([strengths, exponents], ignore_index=True)
-    return Drawing(figure, table, _caption(test, strengths, exponents))
+    return Drawing(figure, table, _caption(test, exponents))
 
 
 def _strengths(test: xr.Dataset) -> pd.DataFrame:
@@ -91,6 +92,8 @@ def _exponents(test: xr.Dataset) -> pd.DataFrame:
             ("interval", "strength_exponent"),
             ("fraction", "scaled_strength_exponent"),
         ):
+            if dim == "interval":
+                rows.append(_pooled(test, hurst, law, load))
             for k in range(test.sizes[dim]):
                 one = test.sel(hurst=hurst, law=law, reduced_pressure=load).isel({dim: k})
                 scaled = dim == "fraction"
@@ -109,6 +112,23 @@ def _exponents(test: xr.Dataset) -> pd.DataFrame:
                     }
                 )
     return pd.DataFrame(rows)
+
+
+def _pooled(test: xr.Dataset, hurst: float, law: str, load: float) -> dict:
+    """The exponent of all intervals of v together, which the caption states."""
+    one = test.sel(hurst=hurst, law=law, reduced_pressure=load)
+    return {
+        "drawn": "all v",
+        "hurst": hurst,
+        "law": law,
+        "p_over_E_slope": load,
+        "low": float(test["interval_low"].min()),
+        "high": float(test["interval_high"].max()),
+        **{f"value{end}": float(one[f"pooled_exponent{end}"]) for end in _ENDS},
+        "by_v_alone": 0.0,
+        "by_theory": 0.0,
+        "verdict": one["pooled_exponent_verdict"].item(),
+    }
 
 
 def _classes(test: xr.Dataset) -> list[tuple]:
@@ -174,7 +194,7 @@ def _draw_exponents(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
             float,
         )
         x += 0.7 * ((n + 0.5) / len(groups) - 0.5)
-        colour, marker = _style(law, load, test)
+        colour, marker = _style(load, test)
         axes.errorbar(
             x,
             one["value"],
@@ -188,12 +208,14 @@ def _draw_exponents(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         axes.plot(x[scaled], one["by_v_alone"][scaled], "_", color=colour, ms=12, zorder=0)
         axes.plot(x[scaled], one["by_theory"][scaled], "x", color="0.6", ms=5, zorder=0)
     if any(kind == "equal v/b" for kind, _, _ in places):
-        axes.axvline(test.sizes["interval"] - 0.5, color="0.6", lw=0.8)
+        axes.axvline(test.sizes["interval"] + 0.5, color="0.6", lw=0.8)
     axes.set_xticks(range(len(places)), [_ends_text(*place) for place in places], fontsize=7)
     axes.tick_params(axis="x", rotation=90)
 
 
 def _ends_text(kind: str, low: float, high: float) -> str:
+    if kind == "all v":
+        return "all together"
     if kind == "equal v":
         return f"{low:g} to {high:g}"
     return f"1/{1 / low:.4g} to 1/{1 / high:.4g}"
@@ -203,8 +225,8 @@ def _groups(test: xr.Dataset) -> list[tuple[str, float]]:
     return [(law, load) for load in test["reduced_pressure"].values for law in test["law"].values]
 
 
-def _style(law: str, load: float, test: xr.Dataset) -> tuple[str, str]:
-    return _LAWS[str(law)], MARKERS[list(test["reduced_pressure"].values).index(load)]
+def _style(load: float, test: xr.Dataset) -> tuple[str, str]:
+    return _OF_EXPONENTS, MARKERS[list(test["reduced_pressure"].values).index(load)]
 
 
 def _side_entries(test: xr.Dataset) -> list:
@@ -212,13 +234,17 @@ def _side_entries(test: xr.Dataset) -> list:
         Line2D([], [], color=colour_of(i + 1), marker=MARKERS[i], ls="none", label=f"{side:g}")
         for i, side in enumerate(test["side"].values)
     ]
-    return [heading("above: side $b$ (nodes)"), *marks]
+    filled = [
+        Line2D([], [], color="0.3", marker="o", ls="none", label="filled: elastic"),
+        Line2D([], [], color="0.3", marker="o", mfc="white", ls="none", label="hollow: capped"),
+    ]
+    return [heading("strength: side $b$ (nodes)"), *marks, *filled]
 
 
 def _law_entries(test: xr.Dataset) -> list:
-    entries: list = [heading("below; hollow: capped")]
+    entries: list = [heading("exponent: $p/(E^* h'_\\mathrm{rms})$")]
     for law, load in _groups(test):
-        colour, marker = _style(law, load, test)
+        colour, marker = _style(load, test)
         fill = colour if law == "elastic" else "white"
         entries.append(
             Line2D(
@@ -228,7 +254,7 @@ def _law_entries(test: xr.Dataset) -> list:
                 marker=marker,
                 ls="none",
                 mfc=fill,
-                label=f"{law}, $p^*$ = {load:g}",
+                label=f"{law}, {load:g}",
             )
         )
     return entries
@@ -236,21 +262,24 @@ def _law_entries(test: xr.Dataset) -> list:
 
 def _line_entries(test: xr.Dataset) -> list:
     return [
-        Line2D([], [], color="0.3", marker="_", ms=12, ls="none", label="by $v$ alone"),
-        Line2D([], [], color="0.6", marker="x", ls="-", label="from $S(v)$"),
-        Line2D([], [], color="0.6", ls=":", label=r"$\tan\varphi_b$"),
+        Line2D([], [], color="0.3", marker="_", ms=12, ls="none", label="as $v$ alone makes it"),
+        Line2D([], [], color="0.6", marker="x", ls="-", label="theory: height differences at $v$"),
+        Line2D([], [], color="0.6", ls=":", label=r"basic friction $\tan\varphi_b$"),
         Patch(color="0.9", label=f"no size effect: within {test.attrs['bound']:g}"),
+        heading(f"side by side; bars: {100 * PROBABILITY:.0f} % intervals"),
     ]
 
 
-def _caption(test: xr.Dataset, strengths: pd.DataFrame, exponents: pd.DataFrame) -> str:
+def _caption(test: xr.Dataset, exponents: pd.DataFrame) -> str:
     pooled = test["pooled_exponent"].values.ravel()
     scaled = exponents[exponents["drawn"] == "equal v/b"]["value"].dropna()
     beyond = test["beyond_exponent"].values
     texts, count = np.unique(test["overall"].values, return_counts=True)
     verdicts = "; ".join(f"{text} ({n})" for text, n in zip(texts, count, strict=True))
     at_v = (
-        f"At equal v the exponent over b is {_range(pooled)}" if np.isfinite(pooled).any() else ""
+        f"At equal v, all together, the exponent is {_range(pooled)}"
+        if np.isfinite(pooled).any()
+        else ""
     )
     at_fraction = (
         f", at equal v/b {_range(scaled)}, within {number(np.nanmax(abs(beyond)), 3)} of what v "
@@ -260,9 +289,8 @@ def _caption(test: xr.Dataset, strengths: pd.DataFrame, exponents: pd.DataFrame)
     )
     found = f"{at_v}{at_fraction}. " if at_v else ""
     return (
-        f"{SUPPLEMENTARY} Strength of mated joints over displacement and over size, its angle not "
-        f"held ({percent(strengths['truncated_share'].mean())} would be). "
-        f"{found}Classes: {verdicts}."
+        f"{SUPPLEMENTARY} Strength of mated joints over the displacement v, and its exponent over "
+        f"their side b. {found}Size effect in the classes of H, law and load: {verdicts}."
     )
 
 

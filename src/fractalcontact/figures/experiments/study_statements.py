@@ -1,6 +1,7 @@
 """Statements of the paper over all specimens of a study: a table of verdicts."""
 
 from collections.abc import Sequence
+from textwrap import wrap
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -9,7 +10,7 @@ from xarray import DataTree
 from ...core.labels import printable
 from ...statements.judge import all_statements
 from ..joint.statements import DATA, SIGNS
-from ..kit.drawing import WIDTH, Drawing, group
+from ..kit.drawing import WIDTH, Drawing, group, settings_of
 from ..kit.tables import LINE_HEIGHT, wrap_rows
 from ..kit.words import PAPER
 
@@ -22,8 +23,13 @@ ORDER = 5
 #: Where the columns of words begin and end, as fractions of the width, and their letters.
 COLUMNS = {"figure": (0.01, 8), "claim": (0.07, 62)}
 FIRST, LAST = 0.53, 0.99
-#: Letters of a specimen's name that are shown, upright, and lines that each takes.
-LONGEST_NAME, LINES_A_LETTER = 40, 0.48
+#: Letters of a specimen's label in a line, upright, lines of the table that each takes, and the
+#: inches that a line of the label is wide.
+LETTERS, LINES_A_LETTER, LABEL_LINE = 24, 0.48, 0.13
+#: What stands where a statement is not asked of a specimen, in the key, and its colour.
+NOT_ASKED = ("–", "not asked of it", "0.7")
+#: What each line of a row takes less than in a table with sentences.
+LESS = 0.45
 #: Group of what is judged for the study as a whole.
 WHOLE = "study"
 
@@ -41,27 +47,38 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     whole = _whole(atlas)
     shown = [*rows.values(), *whole[["figure", "claim"]].to_dict("records")]
     texts, lines = wrap_rows(shown, COLUMNS)
-    heads = {name: printable(name, LONGEST_NAME) for name in tables}
-    top = 1 + LINES_A_LETTER * max(map(len, heads.values()))
-    height = LINE_HEIGHT * (top + sum(lines) + 2)
+    heights = [n - LESS for n in lines]
+    heads = _heads(atlas, list(tables))
+    top = 1 + LINES_A_LETTER * max(len(line) for head in heads.values() for line in head)
+    height = LINE_HEIGHT * (top + sum(heights) + 3.2)
     figure = Figure(figsize=(WIDTH, height))
     figure.set_layout_engine("none")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, 1), ylim=(height / LINE_HEIGHT, 0))
     axes.set_axis_off()
-    places = _draw_words(axes, texts, lines, top)
+    places = _draw_words(axes, texts, heights, top)
     at = {name: FIRST + (i + 0.5) * (LAST - FIRST) / len(tables) for i, name in enumerate(tables)}
     for name, table in tables.items():
         axes.text(
-            at[name], top - 0.6, heads[name], rotation=90, va="bottom", ha="center", fontsize=7
+            at[name],
+            top - 0.6,
+            "\n".join(heads[name]),
+            rotation=90,
+            va="bottom",
+            ha="center",
+            fontsize=7,
+            linespacing=1,
         )
         for statement, y in zip(rows, places, strict=False):
             if statement in table.index:
                 row = table.loc[statement]
                 _draw_sign(axes, at[name], y, row["verdict"], bool(row["circular"]))
+            else:
+                sign, _, colour = NOT_ASKED
+                axes.text(at[name], y, sign, va="top", ha="center", fontsize=8, color=colour)
     for y, verdict in zip(places[len(rows) :], whole["verdict"], strict=True):
         _draw_sign(axes, FIRST, y, verdict, False, words=f" {verdict} (all together)")
-    _draw_key(axes, height / LINE_HEIGHT - 1.5)
+    _draw_key(axes, height / LINE_HEIGHT - 2.7, _counts(tables, whole))
     everything = [table.assign(specimen=name) for name, table in tables.items()]
     data = pd.concat([*everything, whole.assign(specimen="")]).reset_index(names="statement")
     return Drawing(figure, data, _caption(tables, whole))
@@ -99,12 +116,34 @@ def _draw_sign(axes, x, y, verdict, circular, words=""):
         axes.text(x + 0.01, y, words, va="top", fontsize=7)
 
 
-def _draw_key(axes, y):
-    """What the signs say, below the table."""
-    words = {**{verdict: sign for verdict, (sign, _) in SIGNS.items()}, "circular": "*"}
-    for i, (verdict, sign) in enumerate(words.items()):
-        text = f"{sign}  {verdict}"
-        axes.text(0.01 + 0.165 * i, y, text, va="top", fontsize=7, family="DejaVu Sans")
+def _heads(atlas, names):
+    """Labels of the specimens in lines, as many as a column is wide."""
+    width = (LAST - FIRST) * WIDTH / len(names)
+    most = max(1, min(3, int(width / LABEL_LINE)))
+    heads = {}
+    for name in names:
+        label = settings_of(atlas, name)["label"]
+        text = printable(label, LETTERS * most).replace("$", r"\$")
+        heads[name] = wrap(text, LETTERS)[:most] or [name]
+    return heads
+
+
+def _counts(tables, whole):
+    """How often each verdict was given."""
+    return pd.concat([*tables.values(), whole])["verdict"].value_counts()
+
+
+def _draw_key(axes, y, counts):
+    """What the signs say, and how often each stands above, below the table."""
+    style = {"va": "top", "fontsize": 7, "family": "DejaVu Sans"}
+    for i, (verdict, (sign, colour)) in enumerate(SIGNS.items()):
+        x = 0.01 + 0.2 * i
+        axes.text(x, y, sign, color=colour, **style)
+        axes.text(x + 0.02, y, f"{verdict}: {counts.get(verdict, 0)}", **style)
+    axes.text(0.01, y + 1.2, "*", **style)
+    axes.text(0.03, y + 1.2, "circular: the specimen was chosen for it", **style)
+    axes.text(0.41, y + 1.2, NOT_ASKED[0], color=NOT_ASKED[2], **style)
+    axes.text(0.43, y + 1.2, NOT_ASKED[1], **style)
 
 
 def _caption(tables, whole):

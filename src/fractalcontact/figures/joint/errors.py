@@ -12,6 +12,7 @@ from ..kit.drawing import (
     Drawing,
     colour_of,
     entries,
+    force_axis,
     group,
     headline,
     label_short_span,
@@ -19,6 +20,7 @@ from ..kit.drawing import (
     nearest_load,
     settings_of,
 )
+from ..kit.sizes import plain_decades
 from ..kit.words import SUPPLEMENTARY, force_label, percent, place
 
 TITLE = "Error of each quantity by source"
@@ -28,10 +30,10 @@ ORDER = 225
 
 #: Quantities: title of the panel, and its word in the caption.
 QUANTITIES = {
-    "closure": "interface closure $w_\\mathrm{int}$",
+    "closure": "interface closure",
     "separation": "separation of the mean planes",
-    "area_corrected": "corrected area $A_r$",
-    "stiffness": "tangent stiffness $\\mathrm{d}\\sigma_0/\\mathrm{d}w_\\mathrm{int}$",
+    "area_corrected": "real contact area, corrected",
+    "stiffness": "tangent stiffness",
     "delta_sigma": "$\\Delta_\\sigma$ by box counting",
 }
 WORDS = {
@@ -48,13 +50,16 @@ SOURCES = {
     "counting": "counting of contacts",
     "window": "other windows of the scan",
     "registration": "registration of the faces",
-    "resolution": "resolution, $2s$ to $s$ (another surface; in no total)",
+    "resolution": "every second node: another surface, in no total",
 }
 TOTALS = {
-    "relative_total": ("total of this surface", "-"),
-    "relative_total_of_population": ("total of its population", "--"),
+    "relative_total": ("total for this very surface\n(solver, numerical, estimator)", "-"),
+    "relative_total_of_population": (
+        "total for any surface of its kind\n(also counting or windows, registration)",
+        "--",
+    ),
 }
-INTERPOLATED = "interpolated between loads"
+INTERPOLATED = "numerical, interpolated between loads"
 #: What is smaller is drawn here.
 LEAST = 1e-4
 
@@ -64,28 +69,39 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     settings, budget = settings_of(atlas, name), group(atlas, "error_budget", name)
     table = _table(budget)
     figure = Figure(figsize=(WIDTH, 6.6))
-    panels = figure.subplots(3, 2, sharex=True).ravel()
+    panels = figure.subplots(3, 2, sharex=True, sharey=True).ravel()
+    specimen = group(atlas, "specimens", name)
+    forces = budget["normal_force"].values
+    load = nearest_load(forces, settings["map_load"], specimen)
+    here = budget.isel(normal_force=load)
     for i, (quantity, title) in enumerate(QUANTITIES.items()):
         axes = panels[i]
-        _draw_errors(axes, table[table["quantity"] == quantity])
-        letter(axes, "abcde"[i], title)
+        size = force_axis(axes.xaxis, forces)
+        axes.axvline(forces[load] / size, color="0.8", lw=3, zorder=0, label=_of_maps(here))
+        _draw_errors(axes, table[table["quantity"] == quantity], size)
+        total = float(here["relative_total"].sel(quantity=quantity))
+        words = percent(total) if np.isfinite(total) else "not known"
+        letter(axes, "abcde"[i], f"{title}: total {words}")
         axes.set_xscale("log")
         axes.set_yscale("log")
-        axes.set_ylim(bottom=0.7 * LEAST)
         if i % 2 == 0:
-            axes.set_ylabel("relative error, 95 % (1)")
-        if i >= len(QUANTITIES) - 2:
-            axes.set_xlabel("normal force $F$ (N)")
+            axes.set_ylabel("error, 95 % (% of the value)")
+        if i < len(QUANTITIES) - 2:
+            axes.set_xlabel("")
+        else:
             axes.tick_params(labelbottom=True)
+    panels[0].set_ylim(bottom=70 * LEAST)
+    plain_decades(panels[0].yaxis)
     label_short_span(panels[0].xaxis)
     _draw_legend(panels[-1], panels[:-1])
     direction, offset = budget.attrs["direction"], budget.attrs["offset_mm"]
-    where = place(direction, offset)
-    headline(figure, settings["label"], where)
-    specimen = group(atlas, "specimens", name)
-    load = nearest_load(budget["normal_force"].values, settings["map_load"], specimen)
-    caption = _caption(budget, load)
-    return Drawing(figure, table, caption)
+    headline(figure, settings["label"], place(direction, offset))
+    return Drawing(figure, table, _caption(here))
+
+
+def _of_maps(here) -> str:
+    """Entry of the legend for the load whose totals stand above the panels."""
+    return f"load of the totals above the panels: {force_label(float(here['normal_force']))}"
 
 
 def _table(budget) -> pd.DataFrame:
@@ -112,32 +128,40 @@ def _table(budget) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
-def _draw_errors(axes, table) -> None:
+def _draw_errors(axes, table, size) -> None:
     for i, (source, words) in enumerate(SOURCES.items()):
         rows = table[(table["source"] == source) & np.isfinite(table["relative_error"])]
         if rows.empty:
             continue
-        style = {"color": colour_of(i + 1), "marker": MARKERS[i + 1], "ms": 3.5, "lw": 0.9}
-        style["ls"] = ":" if source == "resolution" else LINES[i % 3]
-        drawn = np.maximum(rows["relative_error"], LEAST)
-        (line,) = axes.plot(rows["force_N"], drawn, label=words, **style)
+        in_totals = source != "resolution"
+        style = {"color": colour_of(i + 1) if in_totals else "0.55", "ms": 3.5, "lw": 0.9}
+        style |= {"marker": MARKERS[i + 1], "ls": LINES[i % 3] if in_totals else ":"}
+        drawn = 100 * np.maximum(rows["relative_error"], LEAST)
+        (line,) = axes.plot(rows["force_N"] / size, drawn, label=words, **style)
         if source == "numerical":
             between = rows["numerical_from"].str.startswith("interpolated")
             style |= {"ls": "none", "mfc": "white", "zorder": line.get_zorder() + 1}
-            axes.plot(rows["force_N"][between], drawn[between], label=INTERPOLATED, **style)
+            x = rows["force_N"][between] / size
+            axes.plot(x, drawn[between], label=INTERPOLATED, **style)
     for source, (words, line) in TOTALS.items():
         rows = table[(table["source"] == source) & np.isfinite(table["relative_error"])]
-        drawn = np.maximum(rows["relative_error"], LEAST)
-        axes.plot(rows["force_N"], drawn, color="black", lw=2.2, ls=line, label=words, zorder=1)
+        drawn = 100 * np.maximum(rows["relative_error"], LEAST)
+        axes.plot(
+            rows["force_N"] / size, drawn, color="black", lw=2.2, ls=line, label=words, zorder=1
+        )
 
 
 def _draw_legend(axes, panels) -> None:
     """Every line of any panel, in the place of a panel."""
     axes.set_axis_off()
     found = {entry.get_label(): entry for panel in panels for entry in entries(panel)}
-    drawn = np.concatenate([line.get_ydata() for panel in panels for line in panel.lines])
-    at_bottom = f"errors of {LEAST:g} and less at the bottom" if (drawn <= LEAST).any() else None
-    order = [*SOURCES.values(), INTERPOLATED, *(words for words, _ in TOTALS.values())]
+    of_errors = [line for panel in panels for line in panel.lines if line.get_zorder() > 0]
+    drawn = np.concatenate([line.get_ydata() for line in of_errors])
+    at_bottom = None
+    if (drawn <= 100 * LEAST).any():
+        at_bottom = f"at the bottom: errors of {100 * LEAST:g} % and less"
+    of_maps = [label for label in found if str(label).startswith("load of")]
+    order = [*SOURCES.values(), INTERPOLATED, *(words for words, _ in TOTALS.values()), *of_maps]
     axes.legend(
         handles=[found[words] for words in order if words in found],
         loc="center",
@@ -147,9 +171,8 @@ def _draw_legend(axes, panels) -> None:
     )
 
 
-def _caption(budget, load) -> str:
+def _caption(here) -> str:
     """Sources of error, and the largest at the load of the maps."""
-    here = budget.isel(normal_force=load)
     parts = []
     for quantity, words in WORDS.items():
         of_quantity = here.sel(quantity=quantity)
@@ -161,9 +184,9 @@ def _caption(budget, load) -> str:
         largest = str(errors["source"].values[int(np.nanargmax(errors))])
         parts.append(f"{words} {percent(total)} ({largest})")
     found = (
-        f"Totals at {force_label(float(here['normal_force']))} and their largest sources: "
-        f"{', '.join(parts)}."
+        f"Totals for this surface at {force_label(float(here['normal_force']))} and their largest "
+        f"sources: {', '.join(parts)}; larger for any of its kind (few contacts, other windows)."
         if parts
         else "No total is known at the load of the maps."
     )
-    return f"{SUPPLEMENTARY} Errors by source and in all, half-widths at 95 %. {found}"
+    return f"{SUPPLEMENTARY} Errors by source, half-widths at 95 %. {found}"

@@ -12,7 +12,9 @@ from ..kit.drawing import (
     WIDTH,
     Drawing,
     entries,
+    force_axis,
     group,
+    heading,
     headline,
     legends_below,
     settings_of,
@@ -24,22 +26,21 @@ SUBJECT = "specimen"
 NEEDS = ("choices", "closure", "domains")
 ORDER = 221
 
-#: Errors drawn: stage, variable, its error, whether relative to it, and the words of the legend.
+#: Errors drawn: stage, variable, its error, and the words of the legend.
 ERRORS = (
-    ("closure", "interface_closure", "interface_closure_error", True, "interface closure"),
-    ("closure", "area", "area_error", True, "real contact area"),
-    ("closure", "interface_stiffness", "interface_stiffness_error", True, "interface stiffness"),
-    ("domains", "delta_sigma", "delta_sigma_error", False, "$\\Delta_\\sigma$ (absolute)"),
+    ("closure", "interface_closure", "interface_closure_error", "interface closure"),
+    ("closure", "area", "area_error", "real contact area"),
+    ("closure", "interface_stiffness", "interface_stiffness_error", "interface stiffness"),
+    ("domains", "delta_sigma", "delta_sigma_error", "$\\Delta_\\sigma$ by box counting"),
     (
         "closure",
         "interface_closure",
         "closure_spacing_error",
-        True,
-        "closure, by twice the spacing",
+        "closure: change by twice the spacing",
     ),
 )
-#: What is stated to be exact is drawn here.
-LEAST = 1e-8
+#: What is smaller is drawn here.
+LEAST = 1e-6
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -49,8 +50,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     errors = _errors(atlas, name, direction)
     figure = Figure(figsize=(WIDTH, 3.7))
     axes = figure.subplots()
-    _draw_errors(axes, errors)
-    legends_below(figure, entries(axes)[::2], entries(axes)[1::2])
+    _draw_errors(axes, errors, group(atlas, "closure", name)["normal_force"].values)
+    drawn = entries(axes)
+    by_solver = [one for one in drawn if one.get_label() != ERRORS[-1][-1]]
+    by_spacing = [one for one in drawn if one.get_label() == ERRORS[-1][-1]]
+    spacing = [heading("by the spacing"), *by_spacing] if by_spacing else []
+    legends_below(figure, [heading("by the solver, bounds"), *by_solver], spacing)
     headline(figure, settings["label"], place(direction))
     return Drawing(figure, errors, _caption(errors))
 
@@ -58,10 +63,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _errors(atlas, name, direction):
     """Median and largest error over the offsets under each load, at the finest resolution."""
     rows = []
-    for stage, variable, key, relative, words in ERRORS:
+    for stage, variable, key, words in ERRORS:
         states = group(atlas, stage, name)[[variable, key]].sel(direction=direction)
         states = states.sel(resolution=states["resolution"].min())
-        errors = states[key] / abs(states[variable]) if relative else states[key]
+        size = abs(states[variable])
+        errors = states[key] / size.where(size > 0)
         for load in errors["normal_force"].values:
             here = errors.sel(normal_force=load).values
             known = here[np.isfinite(here)]
@@ -71,28 +77,55 @@ def _errors(atlas, name, direction):
     return pd.DataFrame(rows)
 
 
-def _draw_errors(axes, errors):
+def _draw_errors(axes, errors, forces):
+    size = force_axis(axes.xaxis, forces)
     for i, (words, rows) in enumerate(errors.groupby("quantity", sort=False)):
-        style = {"color": COLOURS[i], "marker": MARKERS[i], "ls": LINES[i % len(LINES)]}
-        drawn = np.maximum(rows["largest"], LEAST)
-        axes.plot(rows["force_N"], drawn, label=words, **style)
+        style = {"color": COLOURS[i + 1], "marker": MARKERS[i], "ls": LINES[i % len(LINES)]}
+        # Lines that lie on each other stay visible: the later ones are smaller.
+        style |= {"ms": 6.5 - i, "lw": 2 - 0.3 * i}
+        if words == ERRORS[-1][-1]:
+            style = {"color": "0.6", "marker": "x", "ls": "-", "lw": 2.5}
+        drawn = 100 * np.maximum(rows["largest"], LEAST)
+        axes.plot(rows["force_N"] / size, drawn, label=words, **style)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlabel("normal force $F$ (N)")
-    axes.set_ylabel("largest relative error (1)")
-    axes.set_title(f"errors of {LEAST:g} and less stand at the bottom", loc="left")
+    axes.set_ymargin(0.12)
+    axes.set_ylabel("largest error (% of the value)")
+    axes.set_title(f"at the bottom: errors of {100 * LEAST:g} % and less", loc="left")
+    solver, spacing = _by_source(errors)
+    quoted = [(solver["largest"].idxmax(), 6)] if len(solver) else []
+    if len(spacing):
+        quoted.append((spacing["largest"].idxmin(), -12))
+        quoted.append((spacing["largest"].idxmax(), 6))
+    for number, above in dict(quoted).items():
+        row = errors.loc[number]
+        at = row["force_N"] / size, 100 * max(row["largest"], LEAST)
+        words = percent(row["largest"])
+        beside = {"xytext": (0, above), "textcoords": "offset points", "ha": "center"}
+        axes.annotate(words, at, bbox={"fc": "white", "ec": "none", "pad": 0.5}, **beside)
+
+
+def _by_source(errors):
+    """Errors by the solver, and by the spacing."""
+    spaced = errors["quantity"] == ERRORS[-1][-1]
+    return errors[~spaced], errors[spaced]
 
 
 def _caption(errors):
-    solver = errors[errors["quantity"] != ERRORS[-1][-1]]
+    solver, spacing = _by_source(errors)
     worst = solver.loc[solver["largest"].idxmax()]
-    spacing = errors[errors["quantity"] == ERRORS[-1][-1]]["largest"]
     by_spacing = ""
     if len(spacing):
-        ends = " to ".join(dict.fromkeys(percent(end) for end in (spacing.min(), spacing.max())))
-        by_spacing = f"; twice the spacing changes the closure by {ends}"
+        ends = spacing["largest"].min(), spacing["largest"].max()
+        words = " to ".join(dict.fromkeys(percent(end) for end in ends))
+        by_spacing = f"; twice the spacing changes the closure by {words}"
     return (
-        f"{SUPPLEMENTARY} Largest error of each quantity under each load. The largest by the "
-        f"solver is {worst['largest']:.2g}, of the {worst['quantity']} at "
-        f"{force_label(worst['force_N'])}{by_spacing}."
+        f"{SUPPLEMENTARY} Largest error of each quantity under each load, over all offsets. The "
+        f"largest by the solver is {percent(worst['largest'])}, of the "
+        f"{_plain(worst['quantity'])} at {force_label(worst['force_N'])}{by_spacing}."
     )
+
+
+def _plain(words):
+    """Words of a legend without formulas."""
+    return words.replace("$\\Delta_\\sigma$", "Delta_sigma")

@@ -1,5 +1,7 @@
 """What the paper says, and whether it holds for this joint: a table."""
 
+from textwrap import fill
+
 import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
@@ -24,6 +26,16 @@ DATA = ("figure", "claim", "verdict", "circular", "numbers", "note", "circular_r
 COLUMNS = {"figure": (0.01, 8), "claim": (0.075, 44), "verdict": (0.44, 16), "numbers": (0.56, 57)}
 
 
+#: What the symbols of the table are, below it, and letters of a line.
+SYMBOLS = (
+    "Brackets: 95 % intervals. F normal force, sigma_0 nominal pressure, sigma_n real and sigma* "
+    "fractal mean pressure, v offset, b side of the window, s spacing, w closure, A_r real and A_0 "
+    "nominal contact area, Delta_g dimension of the surface, Delta_sigma of the contact domain, "
+    "h'_rms rms slope, e and m exponents, r2 squared correlation."
+)
+SYMBOL_LETTERS = 136
+
+
 def draw(atlas: DataTree, name: str) -> Drawing:
     """The statements, one row each."""
     label = settings_of(atlas, name)["label"]
@@ -46,7 +58,9 @@ def draw_table(table: pd.DataFrame, label: str) -> Figure:
     texts, lines = wrap_rows([_texts(row) for row in table.to_dict("records")], COLUMNS)
     title = label_in_lines(label, width=WIDTH)
     top = 1.3 * title.count("\n")
-    height = LINE_HEIGHT * (top + sum(lines) + 4.4)
+    symbols = fill(SYMBOLS, SYMBOL_LETTERS)
+    below = symbols.count("\n") + 1.5
+    height = LINE_HEIGHT * (top + sum(lines) + 4.4 + below)
     figure = Figure(figsize=(WIDTH, height))
     figure.set_layout_engine("none")
     axes = figure.add_axes((0, 0, 1, 1))
@@ -57,6 +71,9 @@ def draw_table(table: pd.DataFrame, label: str) -> Figure:
     for y, verdict in zip(places, table["verdict"], strict=True):
         sign, colour = SIGNS[verdict]
         axes.text(0.42, y, sign, va="top", color=colour, fontsize=8, family="DejaVu Sans")
+    axes.axhline(height / LINE_HEIGHT - below - 0.9, color="0.8", lw=0.5)
+    y = height / LINE_HEIGHT - below - 0.5
+    axes.text(0.01, y, symbols, va="top", fontsize=6.5, color="0.25", linespacing=1.15)
     return figure
 
 
