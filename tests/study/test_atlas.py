@@ -172,9 +172,7 @@ def test_heights_are_kept_in_steps_far_below_their_range(tmp_path, name, steps):
     heights = np.cumsum(generator.normal(size=(80, 90)), axis=0)
     heights[3, 5] = np.nan
     attrs = {"units": "mm", "long_name": "height"}
-    data = xr.Dataset(
-        {name: (("y", "x"), heights, attrs), "other": (("y", "x"), heights, attrs)}
-    )
+    data = xr.Dataset({name: (("y", "x"), heights, attrs), "other": (("y", "x"), heights, attrs)})
     flat = xr.Dataset({name: (("y", "x"), np.full((80, 90), 2.5), attrs)})
     path = tmp_path / "atlas.nc"
     write_atlas({"specimens": {"a": data, "b": flat}}, path, study="t", configuration={})

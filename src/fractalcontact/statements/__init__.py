@@ -20,8 +20,8 @@ __getattr__, __dir__, __all__ = exports(
         "UNGROUPED": ".comparison",
         "all_statements": ".judge",
         "compare_specimens": ".comparison",
-        "judge_study": ".study",
         "compared_pressures": ".comparison",
+        "judge_study": ".study",
         "specimen_row": ".comparison",
     },
 )
