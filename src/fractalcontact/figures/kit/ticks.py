@@ -50,8 +50,8 @@ def axes_of(figure: FigureBase) -> Iterator[tuple[Axes, Axis]]:
     panel : matplotlib.axes.Axes
     axis : matplotlib.axis.Axis
     """
-    panels: list[Any] = figure.axes  # whose own panels types do not know
-    for axes in panels:
+    drawn: Any = figure  # types do not know the panels of its axes
+    for axes in drawn.axes:
         for panel in (axes, *axes.child_axes):
             yield panel, panel.xaxis
             yield panel, panel.yaxis
