@@ -12,6 +12,7 @@ to end, it ends all jobs. The terminal gets a line a job; Snakemake's own words 
 """
 
 import argparse
+import contextlib
 import io
 import json
 import os
@@ -29,6 +30,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
 sys.path.append(str(ROOT / "workflow/scripts"))
 import _running
+import warm
+from _warm import ADDRESS
 from cluster import left_in_queue
 from terminal import Terminal, put
 
@@ -194,13 +197,18 @@ def _run(command, options, results):
     signals, child = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT), None
     terminal = None if options.verbose else Terminal(results, dry_run=options.dry_run)
     listeners = []
+    warmth = contextlib.ExitStack()
     try:
         for number in signals:
             signal.signal(number, _stop)
+        environment = _environment(options)
+        # Jobs of a cluster run elsewhere.
+        if options.profile == "default" and not options.dry_run:
+            environment[ADDRESS] = warmth.enter_context(warm.started())
         if terminal is None:
-            child = subprocess.Popen(command, env=_environment(options), start_new_session=True)
+            child = subprocess.Popen(command, env=environment, start_new_session=True)
         else:
-            child, listeners = _start(command, options, terminal)
+            child, listeners = _start(command, environment, terminal)
         status = child.wait()
     except _Stopped as stopped:
         for number in signals:
@@ -211,6 +219,8 @@ def _run(command, options, results):
         if child is not None:
             _end(child, cluster=options.profile != "default")
         sys.exit(128 + stopped.args[0])
+    finally:
+        warmth.close()
     for number in signals:
         signal.signal(number, signal.SIG_DFL)
     for listener in listeners:
@@ -220,11 +230,11 @@ def _run(command, options, results):
     return status if status >= 0 else 128 - status
 
 
-def _start(command, options, terminal):
+def _start(command, environment, terminal):
     """Snakemake and those who listen to it: events of its logger, and what jobs write to stderr."""
     heard, told = os.pipe()
     path = os.pathsep.join(filter(None, [str(LOGGER), os.environ.get("PYTHONPATH")]))
-    environment = _environment(options) | {"PYTHONPATH": path, "FRACTALCONTACT_EVENTS": str(told)}
+    environment = environment | {"PYTHONPATH": path, "FRACTALCONTACT_EVENTS": str(told)}
     child = subprocess.Popen(
         [*command[:3], "--logger", "fractalcontact", *command[3:]],
         env=environment,

@@ -135,7 +135,8 @@ def test_lifted_upper_face_touches_once_and_never_cuts_the_lower(atlas, specimen
 
 def test_a_single_face_lies_on_its_match_before_sliding(atlas):
     profiles = drawn(atlas, "sliding", "fig03_composite").data.dropna(subset="upper_before_mm")
-    np.testing.assert_allclose(profiles["upper_before_mm"], profiles["lower_mm"], atol=1e-12)
+    step = np.ptp(atlas["specimens/sliding/lower"].values) / 1e6  # the atlas keeps faces so
+    np.testing.assert_allclose(profiles["upper_before_mm"], profiles["lower_mm"], atol=2 * step)
 
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
@@ -146,8 +147,10 @@ def test_composite_drawn_is_that_of_the_joint_at_the_largest_offset(atlas, speci
     again = composite_topography(stored, slid.direction, cells)
     np.testing.assert_array_equal(slid.composite, again)
     mated = composite_topography(stored, slid.direction, 0)
-    assert slid.dilatancy == pytest.approx(again.max() - mated.max(), abs=1e-12)
-    step = np.ptp(again) / 65532
+    # The dilatancy is from faces with all their digits, the composite from those of the atlas.
+    face_step = float(stored["lower"].max() - stored["lower"].min()) / 1e6
+    assert slid.dilatancy == pytest.approx(again.max() - mated.max(), abs=2 * face_step)
+    step = np.ptp(again) / 65532 + 2 * face_step
     kept = atlas[f"joints/{specimen}/composite"].sel(offset=slid.offset, method="nearest")
     np.testing.assert_allclose(kept, again, atol=step)
     assert again[slid.touch] == again.max()

@@ -86,6 +86,9 @@ rule figures:
         f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
     wildcard_constraints:
         specimen=kind_of(SLIDING, FLAT),
+    # After what the atlas of the study waits for: else, at the end, one core joins it and draws from
+    # it alone while the others have nothing to do. Of a campaign nobody wants to wait that long.
+    priority: 0 if IN_PARTS else -2
     conda:
         "../../environment.yml"
     resources:

@@ -1,7 +1,7 @@
 """Solve surfaces of one or more classes of the experiment on the size effect."""
 
-import xarray as xr
 from _job import job
+from xarray import concat
 
 from fractalcontact.core import netcdf
 from fractalcontact.experiments.size_states import solve_task
@@ -10,6 +10,6 @@ from fractalcontact.study.size_tasks import SizeTask
 with job(snakemake) as log:
     params = snakemake.params
     tasks = [SizeTask(*task) for task in params.tasks]
-    states = xr.concat([solve_task(task, params.loads, params.rtol) for task in tasks], "surface")
+    states = concat([solve_task(task, params.loads, params.rtol) for task in tasks], "surface")
     netcdf.write(states, snakemake.output[0])
     log.info("%s, largest residual %s", params.tasks, states.residual.max().item())

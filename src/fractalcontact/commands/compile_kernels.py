@@ -8,6 +8,7 @@ import numpy as np
 from ..contact.full_approximation import LEAST_FINE_SIDE
 from ..contact.solve import solve_contact
 from ..contact.state import ContactState
+from ..domain.correlation import pair_counts
 from ..domain.measures import measures_of_states
 from ..elastic.halfspace import HalfSpace
 from ..elastic.split_convolution import LEAST_SIDE
@@ -48,6 +49,11 @@ def compile_kernels() -> list[float]:
     domains = np.array([state.in_contact for state in small])
     pressures = np.array([state.pressure for state in small])
     measures_of_states(domains, pressures, 1.0, np.arange(1.0, len(small) + 1))
+    # The places of one node, and of several, lie in memory in different ways.
+    domain = np.zeros((9, 9), bool)
+    for place in ((4, 4), (3, 5)):
+        domain[place] = True
+        pair_counts(domain, np.array([1.0, 2.0]))
     return stiffness
 
 

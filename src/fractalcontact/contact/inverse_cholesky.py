@@ -66,7 +66,9 @@ class InverseCholesky:
         dy, dx = (side / space.cell for side in space.spacing)
         side = TABLE_SIDE if max(dy / dx, dx / dy) <= MOST_STRETCHED else max(space.shape)
         self.influence = space.near_influence(side).astype(np.float32)
-        self._sides = np.float32(dy), np.float32(dx)
+        whole = self.influence.shape == self._shape
+        #: For :func:`influence_between`: of any two nodes.
+        self.anywhere = self.influence, np.float32(dy), np.float32(dx), whole
         self._shifts = block_shifts(space)
         self._neighbourhood = neighbourhood
         self._offsets, self._widths = _block_grid(*space.shape, self._shifts)
@@ -108,8 +110,7 @@ class InverseCholesky:
         _mark_affected(changed, representative, blocks, *where, affected, True)
         factor = _empty_factor(nodes.size)
         before, known = tuple(old), (*blocks, affected)
-        whole = self.influence.shape == self._shape
-        grid = *where, (self.influence, *self._sides, whole)
+        grid = *where, self.anywhere
         threads.in_parts(
             lambda start, stop: _factorise(start, stop, nodes, slot, known, grid, before, factor),
             nodes.size,
@@ -352,13 +353,21 @@ def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
             for lane in range(WIDTH):
                 away_y, away_x = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
                 both = present[a, lane] * present[b, lane]
-                lower[here + lane] = both * _influence(influence, away_y, away_x)
+                lower[here + lane] = both * influence_between(influence, away_y, away_x)
     return n
 
 
 @njit(cache=True)
-def _influence(influence, y, x):
-    """From the table, or of a point load."""
+def influence_between(influence: tuple, y: int, x: int) -> float:
+    """Influence at a distance in cells: from the table, or of a point load.
+
+    Parameters
+    ----------
+    influence : tuple
+        :attr:`InverseCholesky.anywhere`.
+    y, x : int
+        Not negative.
+    """
     table, dy, dx, _ = influence
     if y < table.shape[0] and x < table.shape[1]:
         return table[y, x]

@@ -14,7 +14,12 @@ from ..core.kernel_cache import njit
 from ..elastic.halfspace import HalfSpace
 from .coarse_correction import CoarseCorrection
 from .dense import inverted, times
-from .inverse_cholesky import NARROW_NEIGHBOURHOOD, WIDE_NEIGHBOURHOOD, InverseCholesky
+from .inverse_cholesky import (
+    NARROW_NEIGHBOURHOOD,
+    WIDE_NEIGHBOURHOOD,
+    InverseCholesky,
+    influence_between,
+)
 from .node_sets import check_nodes, check_on_set
 
 #: Sets of at most this many nodes are inverted exactly.
@@ -80,7 +85,8 @@ class Preconditioner:
             # Also where so few nodes come first that none is needed yet.
             self._coarse.forget()
         if nodes.size <= DIRECT:
-            self._exact = _exact_inverse(nodes, self._shape[1], self._factor.influence)
+            # Few nodes of a large window may lie further apart than the table reaches.
+            self._exact = _exact_inverse(nodes, self._shape[1], self._factor.anywhere)
             return
         self._factor.update(nodes)
         self._local = self.small or (scattered and nodes.size <= SCATTERED)
@@ -168,5 +174,5 @@ def _exact_inverse(nodes, nx, influence):
     for a in range(n):
         for b in range(n):
             dy = abs(nodes[a] // nx - nodes[b] // nx)
-            inverse[a, b] = influence[dy, abs(nodes[a] % nx - nodes[b] % nx)]
+            inverse[a, b] = influence_between(influence, dy, abs(nodes[a] % nx - nodes[b] % nx))
     return inverted(inverse).astype(np.float32)

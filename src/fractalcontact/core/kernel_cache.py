@@ -23,7 +23,7 @@ import sys
 import tempfile
 import uuid
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -33,6 +33,7 @@ import llvmlite
 import numba
 import numpy as np
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
 from . import sources
@@ -78,7 +79,33 @@ def njit(function: Callable | None = None, /, *, cache: bool = False, **options:
         name = _folder_name(function.__code__.co_filename)
         if name is not None:
             kernel._cache = KernelCache(function, name)
+            _KEPT.append(kernel)
     return kernel
+
+
+#: Kernels that are kept on disk.
+_KEPT: list[Any] = []
+
+
+def load_kept() -> int:
+    """Load from disk what the kernels of all imported modules were compiled to.
+
+    A process that forks does so beforehand: each of its forks would else load them again.
+
+    Returns
+    -------
+    int
+        How many were loaded; nothing is compiled.
+    """
+    loaded = 0
+    for kernel in _KEPT:
+        known = set(kernel.signatures)
+        for signature in kernel._cache.kept():
+            if signature not in known:
+                kernel.compile(signature)
+                known.add(signature)
+                loaded += 1
+    return loaded
 
 
 class KernelCache(FunctionCache):
@@ -110,6 +137,19 @@ class KernelCache(FunctionCache):
         if self._cache_path is not None:
             for path in self._cache_path.glob(f"{self._stem}-*"):
                 path.unlink(missing_ok=True)
+
+    def kept(self) -> Iterator[tuple]:
+        """Signatures for which this kernel is on disk, compiled for this processor."""
+        codegen = cpu_target.target_context.codegen()
+        names = {
+            path.name: path for folder in self._paths for path in folder.glob(f"{self._stem}-*.nbc")
+        }
+        for name, path in sorted(names.items()):
+            content = _intact(path)
+            if content is not None:
+                (_, signature, *_), _ = saved = pickle.loads(content)
+                if saved[0] == self._key(signature, codegen) and self._file_name(saved[0]) == name:
+                    yield signature
 
     def _load_overload(self, sig, target_context):
         if not self._enabled:

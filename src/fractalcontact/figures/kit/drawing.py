@@ -31,6 +31,7 @@ from ...core.labels import printable
 from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
 from .empty import settle_empty_axes
+from .remembered import layouts_remembered, remember_ticks
 from .ticks import keep_labels, plain_ticks
 from .words import force_unit, formulas
 
@@ -127,12 +128,14 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
     # either file, to find the layout; and what the layout has measured, this canvas remembers.
     canvas = FigureCanvasAgg(figure)
     plain_ticks(figure)
-    _lay_out(figure)
-    with atomic_write(folder / f"{name}.png") as path:
-        canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
-    keep_labels(figure)
-    with atomic_write(folder / f"{name}.svg") as path:
-        FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
+    remember_ticks(figure)
+    with layouts_remembered():
+        _lay_out(figure)
+        with atomic_write(folder / f"{name}.png") as path:
+            canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
+        keep_labels(figure)
+        with atomic_write(folder / f"{name}.svg") as path:
+            FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
     with atomic_write(folder / f"{name}.txt") as path:
         path.write_text(drawing.caption + "\n", encoding="utf-8")
     with atomic_write(folder / f"{name}.csv") as path:

@@ -5,9 +5,12 @@ measured and drawn once more for either file.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import FigureBase
 from matplotlib.ticker import Locator, LogFormatterSciNotation
 
@@ -24,20 +27,31 @@ def plain_ticks(figure: FigureBase) -> None:
     ----------
     figure : matplotlib.figure.Figure
     """
-    for panel, axis in _axes_of(figure):
+    for panel, axis in axes_of(figure):
         _spare(panel, axis)
 
 
 def keep_labels(figure: FigureBase) -> None:
     """Leave the labels of all axes where the last drawing has put them, clear of the numbers."""
-    for panel, axis in _axes_of(figure):
+    for panel, axis in axes_of(figure):
         place = axis.label.get_transform().transform(axis.label.get_position())
         axis.set_label_coords(*panel.transAxes.inverted().transform(place))
 
 
-def _axes_of(figure):
-    """Every axis of a figure, after the panel it belongs to."""
-    for axes in figure.axes:
+def axes_of(figure: FigureBase) -> Iterator[tuple[Axes, Axis]]:
+    """Every axis of a figure, after the panel it belongs to.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+
+    Yields
+    ------
+    panel : matplotlib.axes.Axes
+    axis : matplotlib.axis.Axis
+    """
+    drawn: Any = figure  # types do not know the panels of its axes
+    for axes in drawn.axes:
         for panel in (axes, *axes.child_axes):
             yield panel, panel.xaxis
             yield panel, panel.yaxis

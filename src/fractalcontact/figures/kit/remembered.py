@@ -1,0 +1,86 @@
+"""What matplotlib finds out about ticks and texts of a figure, remembered while nothing changes it.
+
+A figure is measured for its layout, and drawn into two files. Each time matplotlib asks every axis
+for its ticks from three sides, and lays every text out anew: the answers are the same, and so are
+the files without this, to the byte.
+"""
+
+import contextlib
+from collections.abc import Iterator
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from .ticks import axes_of
+
+
+def remember_ticks(figure: Figure) -> None:
+    """Find the ticks of each axis once for every size and view that it is given.
+
+    To be called once everything is drawn: a locator, or labels, that change later go unnoticed.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    """
+    for _, axis in axes_of(figure):
+        vars(axis)["_update_ticks"] = _ticks_remembered(axis)
+
+
+def _ticks_remembered(axis):
+    find, known, found = axis._update_ticks, None, []
+
+    def ticks():
+        nonlocal known, found
+        figure, bounds = axis.get_figure(root=True), axis.axes.bbox.bounds
+        # Only the last answer: the ticks themselves are moved, and none may be behind.
+        state = (*axis.get_view_interval(), *bounds, figure.dpi)
+        if state != known:
+            known, found = state, find()
+        return found
+
+    return ticks
+
+
+@contextlib.contextmanager
+def layouts_remembered() -> Iterator[None]:
+    """Every text laid out once on each canvas, for as long as the block."""
+    known: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+    lay_out = Text._get_layout  # type: ignore[attr-defined]
+
+    def layout(text, renderer):
+        of_canvas = known.setdefault(renderer, {})
+        state = _state_of(text)
+        if state is None:
+            return lay_out(text, renderer)
+        found = of_canvas.get(state)
+        if found is None:
+            found = of_canvas[state] = lay_out(text, renderer)
+        return found
+
+    setattr(Text, "_get_layout", layout)  # noqa: B010  # a method that types do not know
+    try:
+        yield
+    finally:
+        setattr(Text, "_get_layout", lay_out)  # noqa: B010
+
+
+def _state_of(text):
+    """All that the layout of a text depends on, its place is not; None of one that wraps."""
+    if text.get_wrap():
+        return None
+    return (
+        text.get_text(),
+        hash(text.get_fontproperties()),
+        text.get_rotation(),
+        text.get_rotation_mode(),
+        text.get_horizontalalignment(),
+        text.get_verticalalignment(),
+        text._multialignment,
+        text._linespacing,
+        text.get_usetex(),
+        text.get_parse_math(),
+        text.get_figure(root=True).dpi,
+    )

@@ -1,0 +1,63 @@
+"""A job handed over to a fork of an interpreter that has all modules and kernels loaded.
+
+To import them takes 1.5 s a job and to load the compiled kernels another half, which is a quarter
+of the work of the default study. The interpreter is ``workflow/warm.py``; where none listens, as on
+a cluster or where Snakemake was started without `make`, the job goes on here as if this did not
+exist. What Snakemake started stays, and stands for the fork: it ends as that ends, a signal to it
+is passed on, and the fork does not outlive it.
+"""
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import sys
+
+#: Where the address of the interpreter stands.
+ADDRESS = "FRACTALCONTACT_WARM"
+#: What Snakemake gives a job of one thread. The interpreter has loaded its libraries for one.
+THREADS = "OMP_NUM_THREADS"
+_PASSED_ON = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
+
+
+def hand_over():
+    """Let a fork run the script of this process and end as it does; return where there is none."""
+    address = os.environ.get(ADDRESS)
+    if not address or os.environ.get(THREADS) != "1" or not sys.argv[0]:
+        return
+    with socket.socket(socket.AF_UNIX) as connection:
+        try:
+            connection.connect(address)
+        except OSError:  # it has ended, or never begun
+            return
+        # For as long as this process lives, and no longer.
+        life, alive = os.pipe()
+        socket.send_fds(connection, [b"\n"], [0, 1, 2, life])
+        os.close(life)
+        connection.sendall(json.dumps(_described()).encode() + b"\n")
+        with connection.makefile("r") as told:
+            number = told.readline()
+            if not number.endswith("\n"):  # it ended before it began: nothing has been run
+                os.close(alive)
+                return
+            for passed in _PASSED_ON:
+                signal.signal(passed, lambda received, frame: _pass_on(int(number), received))
+            code = told.readline()
+    # Without a word: killed, and so this is too, that Snakemake says so.
+    os._exit(int(code) if code else 128 + signal.SIGKILL)
+
+
+def _described():
+    environment = {key: value for key, value in os.environ.items() if key != ADDRESS}
+    return {
+        "words": sys.argv,
+        "path": sys.path,
+        "folder": os.getcwd(),
+        "environment": environment,
+    }
+
+
+def _pass_on(process, number):
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(process, number)
