@@ -136,7 +136,7 @@ def draw_domain(
     Returns
     -------
     bool
-        Whether nodes are drawn enlarged, which the caption then says by `ENLARGED`.
+        Whether nodes are drawn enlarged, which the figure then says, or the caption by `ENLARGED`.
     """
     # No cell is missing in a window, and a node smaller than a pixel must not vanish.
     grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}

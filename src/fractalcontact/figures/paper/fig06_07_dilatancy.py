@@ -28,7 +28,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.maps import ENLARGED, HALO, draw_domain
+from ..kit.maps import HALO, draw_domain
 from ..kit.verdicts import claim, row_of, sentences
 from ..kit.words import TOWARDS, area_label, force_label, opening, place, short
 
@@ -92,7 +92,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         _caption(float(at_map["normal_force"])),
         sentences(*(claim(atlas, name, *said) for said in _PLATEAUS)) or _plateau_words(plateaus),
         claim(atlas, name, "fall of A_r as v^e", "area_falls"),
-        ENLARGED if larger else "",
     )
     return Drawing(figure, table, caption)
 

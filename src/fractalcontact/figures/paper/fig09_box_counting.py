@@ -13,7 +13,7 @@ from ...domain.box_dimension import is_determined, local_slopes, spans
 from ...domain.count_law import LawTerms, law_count
 from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, headline, label_short_span, letter
-from ..kit.maps import ENLARGED, draw_domain
+from ..kit.maps import draw_domain
 from ..kit.verdicts import claim, sentences
 from ..kit.words import force_label, interval, opening, undetermined
 
@@ -59,7 +59,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         _caption(loading, i, counts),
         claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=False),
         claim(atlas, name, "fractal set", "domains_are_fractal"),
-        ENLARGED if larger else "",
     )
     return Drawing(figure, table, caption)
 
