@@ -32,6 +32,7 @@ __getattr__, __dir__, __all__ = exports(
         "measures_of_states": ".measures",
         "nominal_pressure": ".renormalisation",
         "nulls_of_map_states": ".null_models",
+        "pair_counts": ".correlation",
         "read_contact_map": ".measured_map",
         "scaling_over_resolutions": ".analysis",
         "spans": ".box_dimension",
