@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace
+from fractalcontact.elastic.block_influence import ERROR
 from fractalcontact.elastic.multipole import (
-    ERROR,
     MOST_STRETCHED,
     MultipoleLevels,
     MultipoleOperator,

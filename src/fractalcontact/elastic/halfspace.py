@@ -26,7 +26,7 @@ from ..core.arguments import (
 )
 from ..core.threads import computed_once
 from .convolution import Convolution, cosine_transform, fast_length
-from .influence import influence_at, influence_table
+from .influence import far_influence, influence_table
 from .split_convolution import LEAST_SIDE, SplitConvolution
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
@@ -229,9 +229,13 @@ class HalfSpace:
     def _near(self):
         return {}
 
-    def influence_at(self, y: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """The same at any distances, none of them zero, (n,), counted in cells."""
-        return influence_at(y, x, self._sides, self._self_term)
+    def influence_within(self, side: int) -> np.ndarray:
+        """The same up to a distance of ``side`` cells, window or not, (side, side)."""
+        return self._table((side, side))
+
+    def far_influence(self, y: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The same far away, at distances (m,) and (n,) along y and x in cells, (m, n)."""
+        return far_influence(y, x, self._sides, self._self_term)
 
     @property
     def _self_term(self):
