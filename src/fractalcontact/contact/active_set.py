@@ -100,6 +100,8 @@ class ActiveSetMethod:
         Largest violation allowed, as a fraction of the closure.
     operator : Operator, optional
         To count the applications of several solves together.
+    dtype : type
+        Precision in which a solution is judged: float32 where it is but a start on a finer grid.
 
     Raises
     ------
@@ -107,11 +109,17 @@ class ActiveSetMethod:
         If the clearance is not one of the grid.
     """
 
-    def __init__(self, problem: Problem, rtol: float, operator: Operator | None = None):
+    def __init__(
+        self,
+        problem: Problem,
+        rtol: float,
+        operator: Operator | None = None,
+        dtype: type = np.float64,
+    ):
         if operator is None:
             operator = Operator(problem.space, problem.nodes)
         _check_on_nodes(problem.clearance, "clearance", operator)
-        self.problem, self.rtol, self.operator = problem, rtol, operator
+        self.problem, self.rtol, self.operator, self._dtype = problem, rtol, operator, dtype
 
     def solve(
         self, pressure: np.ndarray, displacement: np.ndarray | None = None, *, at_least: int = 0
@@ -157,7 +165,7 @@ class ActiveSetMethod:
             kkt = self._kkt_residual(iterate)
             may_end = iteration >= at_least or kkt.holds_to(SINGLE_PRECISION_FLOOR, iterate.closure)
             if may_end and kkt.holds_to(rtol, iterate.closure):
-                iterate = solution = verified(problem, operator, iterate)
+                iterate = solution = verified(problem, operator, iterate, self._dtype)
                 if solution.residual <= rtol:
                     return solution
                 kkt = self._kkt_residual(iterate)
@@ -173,10 +181,10 @@ class ActiveSetMethod:
             if linear_solve is LinearSolve.SINGLE_STEP:
                 # Once only: where one step gains too little, conjugate gradients must follow.
                 single_step_left = False
-                iterate = solution = verified(problem, operator, iterate)
+                iterate = solution = verified(problem, operator, iterate, self._dtype)
                 if solution.residual <= rtol:
                     return solution
-        return verified(problem, operator, iterate)
+        return verified(problem, operator, iterate, self._dtype)
 
     def _linear_solve(self, kkt, closure, exact, single_step):
         """How far to solve: ``exact`` as a safeguard, or, where one is left, a ``single_step``."""

@@ -9,11 +9,13 @@ reordering would take as long as the product.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from ..core.kernel_cache import njit
 from .halfspace import HalfSpace
+from .influence import expansion
 from .simd import WIDTH
 
 #: Cells along a smallest block.
@@ -26,8 +28,8 @@ _SINGLE, _DOUBLE = np.dtype(np.float32), np.dtype(np.float64)
 SEPARATION = {_SINGLE: 1, _DOUBLE: 2}
 ORDER = {_SINGLE: 8, _DOUBLE: 12}
 ERROR = {_SINGLE: 2e-5, _DOUBLE: 2e-11}
-#: Numbers of a block are filled up with zeros to a multiple of this.
-PADDED = 2 * WIDTH
+#: Numbers of a target that are worked on together: as many as the processor holds of four pairs.
+FILLED = {_SINGLE: 2 * WIDTH, _DOUBLE: WIDTH}
 
 
 @dataclass(frozen=True)
@@ -56,9 +58,9 @@ def reach(separation: int) -> int:
     return 2 * separation + 1
 
 
-def padded(numbers: int) -> int:
-    """Numbers of a block, filled up."""
-    return -(-numbers // PADDED) * PADDED
+def padded(numbers: int, dtype: np.dtype) -> int:
+    """Numbers of a block, filled up with zeros to whole vectors."""
+    return -(-numbers // FILLED[dtype]) * FILLED[dtype]
 
 
 # By what they follow from.
@@ -110,79 +112,89 @@ def transfer(level: int, order: int, dtype: np.dtype) -> np.ndarray:
 
 
 def _level_influence(space, level, dtype):
-    places = chebyshev(level, ORDER[dtype])
-    number, apart = _distances(places)
-    furthest, square = reach(SEPARATION[dtype]), space.spacing[0] == space.spacing[1]
-    least = 0 if level == 0 else SEPARATION[dtype] + 1
-    values = _values(space, level, furthest, apart)
-    if dtype == _SINGLE:
-        positions = np.indices((2 * furthest + 1,) * 2).reshape(2, -1).T - furthest
-        matrix, order = np.arange(len(positions)), np.zeros(len(positions))
-    else:
-        positions, matrix, order = _distinct(furthest, square)
-    positions = positions.astype(np.int32)
-    matrices = np.zeros((len(positions), places.size**2, padded(places.size**2)), dtype)
-    _fill(positions, least, values, number, matrices)
-    orders = _orders(places.size)
-    return BlockInfluence(matrices, matrix.astype(np.int32), order.astype(np.int32), orders)
-
-
-def _distances(places):
-    """Distances (n,) between places of one block and of another on it, and their numbers (i, j).
-
-    Places are symmetric, so those of i to j and of the mirrored j to the mirrored i are the same:
-    the influence, which takes longer than all else, is evaluated at a quarter of all pairs.
-    """
-    i, j = np.indices((places.size, places.size))
-    mirrored = (places.size - 1 - j) * places.size + places.size - 1 - i
-    first, number = np.unique(np.minimum(i * places.size + j, mirrored), return_inverse=True)
-    number = number.reshape(i.shape).astype(np.int32)
-    return number, (places[:, None] - places).ravel()[first]
-
-
-def _values(space, level, furthest, apart):
-    """Influence at all distances (block y, block x, apart y, apart x) of blocks, none negative."""
-    away = np.abs(apart - np.arange(furthest + 1)[:, None] * (LEAF * 2.0**level)).ravel()
+    places, furthest = chebyshev(level, ORDER[dtype]), reach(SEPARATION[dtype])
+    number, first, orders = _pairs_of_places(places.size)
+    square = space.spacing[0] == space.spacing[1]
+    positions, matrix, order = _positions(furthest, square, dtype == _SINGLE)
+    matrices = np.zeros((len(positions), places.size**2, padded(places.size**2, dtype)), dtype)
+    table, least = np.zeros((0, 0)), SEPARATION[dtype] + 1
     if level == 0:
-        cells = np.rint(away).astype(np.int64)
-        values = space.influence_within(LEAF * (furthest + 1))[np.ix_(cells, cells)]
-    else:
-        values = space.far_influence(away, away)
-    values = values.reshape(furthest + 1, apart.size, furthest + 1, apart.size)
-    return values.transpose(0, 2, 1, 3)
+        table, least = space.influence_within((LEAF * (furthest + 1),) * 2), 0
+    apart = (places[:, None] - places).ravel()[first]
+    sides = space.spacing[0] / space.cell, space.spacing[1] / space.cell
+    grid = LEAF * 2.0**level, apart, number, sides
+    _fill(positions, least, grid, table, space.spread, matrices)
+    return BlockInfluence(matrices, matrix, order, orders)
 
 
-def _distinct(furthest, square):
+@cache
+def _pairs_of_places(side):
+    """Numbers (i, j) of the distances between places of one block and of another on it.
+
+    Of each distance the first pair, and the orders of all numbers of a block. Places are symmetric,
+    so the distances of i to j and of the mirrored j to the mirrored i are the same: the influence
+    is evaluated at a quarter of all pairs.
+    """
+    i, j = np.indices((side, side))
+    mirrored = (side - 1 - j) * side + side - 1 - i
+    first, number = np.unique(np.minimum(i * side + j, mirrored), return_inverse=True)
+    # Mirrored along y (2), along x (1), and y and x exchanged after that (4).
+    numbers = np.arange(side**2, dtype=np.int32).reshape(side, side)
+    orders = [numbers[::sy, ::sx] for sy in (1, -1) for sx in (1, -1)]
+    orders += [n.T for n in orders]
+    return number.reshape(i.shape).astype(np.int32), first, np.stack([n.ravel() for n in orders])
+
+
+@cache
+def _positions(furthest, square, single):
     """Relative positions with a matrix of their own; of all, that of which, in which order."""
-    y, x = np.indices((2 * furthest + 1,) * 2).reshape(2, -1) - furthest
+    y, x = np.indices((2 * furthest + 1,) * 2, np.int32).reshape(2, -1) - np.int32(furthest)
+    if single:
+        return np.stack([y, x], axis=1), np.arange(y.size, dtype=np.int32), np.zeros_like(y)
     order = 4 * (square & (np.abs(y) < np.abs(x))) + 2 * (y < 0) + (x < 0)
     y, x = np.abs(y), np.abs(x)
     if square:
         y, x = np.maximum(y, x), np.minimum(y, x)
     distinct, matrix = np.unique(y * (furthest + 1) + x, return_inverse=True)
-    return np.stack(np.divmod(distinct, furthest + 1), axis=1), matrix.ravel(), order
+    positions = np.stack(np.divmod(distinct, furthest + 1), axis=1)
+    return positions.astype(np.int32), matrix.ravel().astype(np.int32), order.astype(np.int32)
 
 
-def _orders(side):
-    """Numbers of a block mirrored along y (2), along x (1), with y and x exchanged after that (4)."""
-    numbers = np.arange(side**2, dtype=np.int32).reshape(side, side)
-    mirrored = [numbers[::sy, ::sx] for sy in (1, -1) for sx in (1, -1)]
-    return np.stack([n.ravel() for n in mirrored + [n.T for n in mirrored]])
+# Divided by is what vanishes only where nothing is read.
+@njit(cache=True, error_model="numpy")
+def _fill(positions, least, grid, table, spread, matrices):
+    """Matrices of some relative positions; of nearer ones than ``least`` they stay zero.
 
-
-@njit(cache=True)
-def _fill(positions, least, values, number, matrices):
-    """Matrices of some relative positions; of nearer ones than ``least`` they stay zero."""
+    Distances between whole cells are looked up in a table, if there is one.
+    """
+    length, apart, number, sides = grid
     side = number.shape[0]
+    values = np.empty((apart.size, apart.size))
+    rows = np.empty((apart.size, side, side), matrices.dtype)
     for k in range(positions.shape[0]):
         y, x = positions[k]
         if max(abs(y), abs(x)) < least:
             continue
-        block = values[abs(y), abs(x)]
-        for s in range(side * side):
-            sy, sx = s // side, s % side
-            row = matrices[k, s]
-            for ty in range(side):
-                line = block[number[sy, ty] if y >= 0 else number[ty, sy]]
-                for tx in range(side):
-                    row[ty * side + tx] = line[number[sx, tx] if x >= 0 else number[tx, sx]]
+        away_y, away_x = np.abs(apart - abs(y) * length), np.abs(apart - abs(x) * length)
+        if table.size:
+            for i in range(apart.size):
+                for j in range(apart.size):
+                    values[i, j] = table[round(away_y[i]), round(away_x[j])]
+        else:
+            away_y, away_x = away_y * sides[0], away_x * sides[1]
+            for i in range(apart.size):
+                line = values[i]
+                for j in range(line.size):
+                    line[j] = expansion(away_y[i], away_x[j], *spread)
+        for i in range(apart.size):
+            for source in range(side):
+                for target in range(side):
+                    j = number[source, target] if x >= 0 else number[target, source]
+                    rows[i, source, target] = values[i, j]
+        for source in range(side):
+            for target in range(side):
+                i = number[source, target] if y >= 0 else number[target, source]
+                for other in range(side):
+                    row = matrices[k, source * side + other, target * side : (target + 1) * side]
+                    for j in range(side):
+                        row[j] = rows[i, other, j]

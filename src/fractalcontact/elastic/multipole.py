@@ -17,7 +17,6 @@ from ..core.kernel_cache import njit
 from .block_influence import (
     LEAF,
     ORDER,
-    PADDED,
     SEPARATION,
     block_influence,
     padded,
@@ -154,7 +153,7 @@ class MultipoleOperator:
                 *(sources[k], loaded[k], sources[k + 1], loaded[k + 1]),
             )
         images = [
-            np.zeros((n + 1) * padded(side**2), self._dtype)
+            np.zeros((n + 1) * padded(side**2, self._dtype), self._dtype)
             for n, side in zip(levels.blocks, sides, strict=True)
         ]
         for k, side in enumerate(sides):
@@ -162,6 +161,7 @@ class MultipoleOperator:
         for k in range(len(levels.parents) - 1, -1, -1):
             _to_children(
                 *(levels.parents[k], self._transfers[k], sides[k], sides[k + 1]),
+                *(padded(sides[k] ** 2, self._dtype), padded(sides[k + 1] ** 2, self._dtype)),
                 *(images[k], images[k + 1]),
             )
         return images[0][levels.place]
@@ -178,7 +178,7 @@ class MultipoleOperator:
         threads.in_parts(
             lambda start, stop: _translate(
                 *(chunks[start], chunks[stop], batches, influence.matrices.ravel(), *which),
-                *(side**2, sources, loaded, images),
+                *(side**2, padded(side**2, self._dtype), sources, loaded, images),
             ),
             len(chunks) - 1,
             smallest=1,
@@ -269,10 +269,8 @@ def _to_parents(parents, weights, side, parent_side, values, loaded, above, load
 
 
 @njit(cache=True)
-def _to_children(parents, weights, side, parent_side, values, above):
+def _to_children(parents, weights, side, parent_side, length, length_above, values, above):
     """Add to each block what its parent is displaced, interpolated."""
-    length = -(-side * side // PADDED) * PADDED
-    length_above = -(-parent_side * parent_side // PADDED) * PADDED
     part = np.empty((side, parent_side), values.dtype)
     for block in range(parents.shape[0]):
         parent, quarter = parents[block, 0], parents[block, 1]
@@ -293,10 +291,9 @@ def _to_children(parents, weights, side, parent_side, values, above):
 
 @njit(cache=True, nogil=True)
 def _translate(
-    start, stop, batches, matrices, matrix, order, orders, numbers, sources, loaded, images
+    start, stop, batches, matrices, matrix, order, orders, numbers, length, sources, loaded, images
 ):
     """Add the images of some batches; pairs of one batch share each number of the matrix read."""
-    length = -(-numbers // PADDED) * PADDED
     held = np.empty(TOGETHER * numbers, sources.dtype)
     moved = np.empty(TOGETHER * length, sources.dtype)
     each = np.arange(TOGETHER)
@@ -311,43 +308,74 @@ def _translate(
             continue
         first = matrix[offset] * numbers * length
         if order[offset] == 0:
-            _multiply(matrices, first, numbers, sources, source, images, target)
+            _multiply(matrices, first, numbers, length, sources, source, images, target)
             continue
         places = orders[order[offset]]
         for pair in range(TOGETHER):
             for j in range(numbers):
                 held[pair * numbers + j] = sources[source[pair] + places[j]]
         moved[:] = 0
-        _multiply(matrices, first, numbers, held, each * numbers, moved, each * length)
+        _multiply(matrices, first, numbers, length, held, each * numbers, moved, each * length)
         for pair in range(TOGETHER):
             for j in range(numbers):
                 images[target[pair] + places[j]] += moved[pair * length + j]
 
 
 @njit(cache=True)
-def _multiply(matrices, first, numbers, sources, source, images, target):
+def _multiply(matrices, first, numbers, length, sources, source, images, target):
     """Add a matrix times the numbers of four sources to their targets, each from some place on."""
-    length = -(-numbers // PADDED) * PADDED
+    if matrices.itemsize == 4:
+        for v in range(0, length, 2 * WIDTH):
+            _multiply_two(
+                *(matrices, first + v, numbers, length, sources, source, images, target, v)
+            )
+    else:
+        for v in range(0, length, WIDTH):
+            _multiply_one(
+                *(matrices, first + v, numbers, length, sources, source, images, target, v)
+            )
+
+
+@njit(cache=True)
+def _multiply_two(matrices, row, numbers, length, sources, source, images, target, v):
+    """The same for two vectors of targets."""
     s0, s1, s2, s3 = source[0], source[1], source[2], source[3]
-    t0, t1, t2, t3 = target[0], target[1], target[2], target[3]
-    for v in range(0, length, PADDED):
-        a0, a1 = load(images, t0 + v), load(images, t0 + v + WIDTH)
-        b0, b1 = load(images, t1 + v), load(images, t1 + v + WIDTH)
-        c0, c1 = load(images, t2 + v), load(images, t2 + v + WIDTH)
-        d0, d1 = load(images, t3 + v), load(images, t3 + v + WIDTH)
-        row = first + v
-        for j in range(numbers):
-            m0, m1 = load(matrices, row), load(matrices, row + WIDTH)
-            p, q = sources[s0 + j], sources[s1 + j]
-            a0, a1, b0, b1 = a0 + p * m0, a1 + p * m1, b0 + q * m0, b1 + q * m1
-            p, q = sources[s2 + j], sources[s3 + j]
-            c0, c1, d0, d1 = c0 + p * m0, c1 + p * m1, d0 + q * m0, d1 + q * m1
-            row += length
-        store(images, t0 + v, a0)
-        store(images, t0 + v + WIDTH, a1)
-        store(images, t1 + v, b0)
-        store(images, t1 + v + WIDTH, b1)
-        store(images, t2 + v, c0)
-        store(images, t2 + v + WIDTH, c1)
-        store(images, t3 + v, d0)
-        store(images, t3 + v + WIDTH, d1)
+    t0, t1, t2, t3 = target[0] + v, target[1] + v, target[2] + v, target[3] + v
+    a0, a1 = load(images, t0), load(images, t0 + WIDTH)
+    b0, b1 = load(images, t1), load(images, t1 + WIDTH)
+    c0, c1 = load(images, t2), load(images, t2 + WIDTH)
+    d0, d1 = load(images, t3), load(images, t3 + WIDTH)
+    for j in range(numbers):
+        m0, m1 = load(matrices, row), load(matrices, row + WIDTH)
+        p, q = sources[s0 + j], sources[s1 + j]
+        a0, a1, b0, b1 = a0 + p * m0, a1 + p * m1, b0 + q * m0, b1 + q * m1
+        p, q = sources[s2 + j], sources[s3 + j]
+        c0, c1, d0, d1 = c0 + p * m0, c1 + p * m1, d0 + q * m0, d1 + q * m1
+        row += length
+    store(images, t0, a0)
+    store(images, t0 + WIDTH, a1)
+    store(images, t1, b0)
+    store(images, t1 + WIDTH, b1)
+    store(images, t2, c0)
+    store(images, t2 + WIDTH, c1)
+    store(images, t3, d0)
+    store(images, t3 + WIDTH, d1)
+
+
+@njit(cache=True)
+def _multiply_one(matrices, row, numbers, length, sources, source, images, target, v):
+    """The same for one, which in double precision takes as much of the processor."""
+    s0, s1, s2, s3 = source[0], source[1], source[2], source[3]
+    t0, t1, t2, t3 = target[0] + v, target[1] + v, target[2] + v, target[3] + v
+    a, b, c, d = load(images, t0), load(images, t1), load(images, t2), load(images, t3)
+    for j in range(numbers):
+        m = load(matrices, row)
+        p, q = sources[s0 + j], sources[s1 + j]
+        a, b = a + p * m, b + q * m
+        p, q = sources[s2 + j], sources[s3 + j]
+        c, d = c + p * m, d + q * m
+        row += length
+    store(images, t0, a)
+    store(images, t1, b)
+    store(images, t2, c)
+    store(images, t3, d)
