@@ -44,7 +44,8 @@ EXACT_REDUCTION = 1e-3
 # have to carry whatever a given force lacks.
 SET_PREDICTIONS, MOST_LEFT_OUT = 2, 0.5
 # Once, where the violation is no larger than this many tolerances, the preconditioned step is made
-# alone and verified in double precision at once: it is expected to be the last.
+# alone and verified in double precision at once: it is expected to be the last. Not so between
+# candidates, where double precision takes as long as several steps.
 SINGLE_STEP_BELOW = 2.0
 # Where violations are no more than this fraction of the closure, single precision leaves a step
 # little to gain.
@@ -153,7 +154,8 @@ class ActiveSetMethod:
         # prolonged from a coarser grid, and its set nearly right, or from another half-space.
         predictions = 0 if displacement is None or operator.inverse.small else SET_PREDICTIONS
         iterate = first_iterate(problem, operator, pressure, displacement)
-        previous_active, violation, single_step_left = np.empty(0, np.int32), 0.0, True
+        previous_active, violation = np.empty(0, np.int32), 0.0
+        single_step_left = problem.nodes is None
         for iteration in range(MAX_ITERATIONS):
             # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
             begun, closure = iteration > 0, iterate.closure

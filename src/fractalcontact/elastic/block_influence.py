@@ -43,14 +43,15 @@ class BlockInfluence:
     matrix, order : (n,) int32 ndarray
         Of each relative position: which matrix, and in which order numbers of both blocks go with
         it. Positions are counted row by row from the one furthest up and left.
-    orders : (8, side^2) int32 ndarray
-        Number 0 leaves numbers as they are.
+    orders, inverses : (8, side^2) int32 ndarray
+        Number 0 leaves numbers as they are. And where each number then stands.
     """
 
     matrices: np.ndarray
     matrix: np.ndarray
     order: np.ndarray
     orders: np.ndarray
+    inverses: np.ndarray
 
 
 def reach(separation: int) -> int:
@@ -113,7 +114,7 @@ def transfer(level: int, order: int, dtype: np.dtype) -> np.ndarray:
 
 def _level_influence(space, level, dtype):
     places, furthest = chebyshev(level, ORDER[dtype]), reach(SEPARATION[dtype])
-    number, first, orders = _pairs_of_places(places.size)
+    number, first, orders, inverses = _pairs_of_places(places.size)
     square = space.spacing[0] == space.spacing[1]
     positions, matrix, order = _positions(furthest, square, dtype == _SINGLE)
     matrices = np.zeros((len(positions), places.size**2, padded(places.size**2, dtype)), dtype)
@@ -124,7 +125,7 @@ def _level_influence(space, level, dtype):
     sides = space.spacing[0] / space.cell, space.spacing[1] / space.cell
     grid = LEAF * 2.0**level, apart, number, sides
     _fill(positions, least, grid, table, space.spread, matrices)
-    return BlockInfluence(matrices, matrix, order, orders)
+    return BlockInfluence(matrices, matrix, order, orders, inverses)
 
 
 @cache
@@ -142,7 +143,9 @@ def _pairs_of_places(side):
     numbers = np.arange(side**2, dtype=np.int32).reshape(side, side)
     orders = [numbers[::sy, ::sx] for sy in (1, -1) for sx in (1, -1)]
     orders += [n.T for n in orders]
-    return number.reshape(i.shape).astype(np.int32), first, np.stack([n.ravel() for n in orders])
+    placed = np.stack([n.ravel() for n in orders])
+    inverses = np.argsort(placed, axis=1).astype(np.int32)
+    return number.reshape(i.shape).astype(np.int32), first, placed, inverses
 
 
 @cache

@@ -30,6 +30,9 @@ from .simd import WIDTH, load, store
 MOST_STRETCHED = 1.25
 #: Pairs of blocks with the same relative position that are worked on together.
 TOGETHER = 4
+#: Where loaded smallest blocks hold no more loaded cells than this in the mean, these are gone
+#: through one by one.
+FEW = 32
 #: Target blocks of a chunk: for each the matrices are read again.
 CHUNK = 128
 
@@ -174,15 +177,27 @@ class MultipoleOperator:
         """Images of the blocks of a level under the others that act on them there."""
         batches, chunks = self._levels.pairs(SEPARATION[self._dtype])[k]
         influence = self._influence[k]
+        matrices = influence.matrices.ravel()
         which = influence.matrix, influence.order, influence.orders
-        threads.in_parts(
-            lambda start, stop: _translate(
-                *(chunks[start], chunks[stop], batches, influence.matrices.ravel(), *which),
-                *(side**2, padded(side**2, self._dtype), sources, loaded, images),
-            ),
-            len(chunks) - 1,
-            smallest=1,
-        )
+        count = padded(side**2, self._dtype)
+
+        def translate(start: int, stop: int) -> None:
+            _translate(
+                *(chunks[start], chunks[stop], batches, matrices, *which),
+                *(side**2, count, sources, loaded, images),
+            )
+
+        def translate_few(start: int, stop: int) -> None:
+            _translate_few(
+                *(chunks[start], chunks[stop], batches, matrices, *which),
+                *(influence.inverses, *listed, sources, images),
+            )
+
+        if k == 0:
+            listed = _listed(sources, loaded)
+            if listed[0].sum() <= FEW * np.count_nonzero(loaded):
+                translate = translate_few
+        threads.in_parts(translate, len(chunks) - 1, smallest=1)
 
 
 def multipole_suits(space: HalfSpace) -> bool:
@@ -379,3 +394,70 @@ def _multiply_one(matrices, row, numbers, length, sources, source, images, targe
     store(images, t1, b)
     store(images, t2, c)
     store(images, t3, d)
+
+
+@njit(cache=True)
+def _listed(sources, loaded):
+    """How many cells of each smallest block are loaded, and which."""
+    counts = np.zeros(loaded.size, np.int64)
+    cells = np.empty(loaded.size * LEAF * LEAF, np.int32)
+    for block in range(loaded.size):
+        if not loaded[block]:
+            continue
+        first = block * LEAF * LEAF
+        for j in range(LEAF * LEAF):
+            if sources[first + j] != 0:
+                cells[first + counts[block]] = j
+                counts[block] += 1
+    return counts, cells
+
+
+@njit(cache=True, nogil=True)
+def _translate_few(
+    start, stop, batches, matrices, matrix, order, orders, inverses, counts, cells, sources, images
+):
+    """The same between smallest blocks, pair by pair, a row of the matrix for each loaded cell."""
+    numbers = LEAF * LEAF
+    moved = np.empty(numbers, images.dtype)
+    for b in range(start, stop):
+        offset = batches[b, 0]
+        first, way = np.int64(matrix[offset]) * numbers * numbers, order[offset]
+        for pair in range(TOGETHER):
+            block = batches[b, 1 + TOGETHER + pair]
+            if counts[block] == 0:
+                continue
+            source, target = np.int64(block) * numbers, np.int64(batches[b, 1 + pair]) * numbers
+            those = cells[source : source + counts[block]]
+            if way == 0:
+                _add_rows(matrices, first, those, inverses[0], sources, source, images, target)
+                continue
+            moved[:] = 0
+            _add_rows(matrices, first, those, inverses[way], sources, source, moved, 0)
+            for j in range(numbers):
+                images[target + orders[way, j]] += moved[j]
+
+
+@njit(cache=True)
+def _add_rows(matrices, first, cells, number, sources, source, images, target):
+    """Add rows of a matrix, each times the pressure of a cell, to 64 numbers."""
+    step = LEAF * LEAF
+    if matrices.itemsize == 4:
+        a, b = load(images, target), load(images, target + WIDTH)
+        c, d = load(images, target + 2 * WIDTH), load(images, target + 3 * WIDTH)
+        for cell in cells:
+            row, p = first + number[cell] * step, sources[source + cell]
+            a, b = a + p * load(matrices, row), b + p * load(matrices, row + WIDTH)
+            c = c + p * load(matrices, row + 2 * WIDTH)
+            d = d + p * load(matrices, row + 3 * WIDTH)
+        store(images, target, a)
+        store(images, target + WIDTH, b)
+        store(images, target + 2 * WIDTH, c)
+        store(images, target + 3 * WIDTH, d)
+        return
+    for v in range(0, step, 2 * WIDTH):
+        a, b = load(images, target + v), load(images, target + v + WIDTH)
+        for cell in cells:
+            row, p = first + number[cell] * step + v, sources[source + cell]
+            a, b = a + p * load(matrices, row), b + p * load(matrices, row + WIDTH)
+        store(images, target + v, a)
+        store(images, target + v + WIDTH, b)
