@@ -301,7 +301,7 @@ def _ours(what):
 
     from fractalcontact import solve_contact
     from fractalcontact.contact.state import CandidateState
-    from fractalcontact.elastic import multipole
+    from fractalcontact.elastic.block_influence import forget_matrices
 
     heights = _heights(what)
     kept = _space(heights)
@@ -310,7 +310,7 @@ def _ours(what):
         space = kept
         if what["solver"] == "with set-up":
             space = _space(heights)
-            multipole._KEPT.clear()
+            forget_matrices()
         forget(space)
         state = solve_contact(heights, space, force=what["force"], rtol=RTOL)
         path = f"convolution, residual {state.residual:.1e}"

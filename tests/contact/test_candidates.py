@@ -6,7 +6,7 @@ from ensembles import ensemble
 
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.accuracy.random_problems import random_problem, violation
-from fractalcontact.contact import candidates
+from fractalcontact.contact import candidates, projected_cg
 from fractalcontact.contact.state import CandidateState
 from fractalcontact.surface.synthesis import self_affine
 
@@ -19,12 +19,19 @@ def rough(shape, seed=1):
     return self_affine(shape, 0.1, 0.8, rms=0.2, seed=seed), space
 
 
-@pytest.fixture
-def always(monkeypatch):
-    """Candidates on every window of 16 nodes or more, however many there are."""
+def restricted_always(monkeypatch, most_pairs):
+    """Candidates on all but the smallest windows, and up to so many pairs summed directly."""
     monkeypatch.setattr(candidates, "LEAST_SIDE", 8)
     monkeypatch.setattr(candidates, "MOST_CANDIDATES", 1.0)
     monkeypatch.setattr(candidates, "BATCH", 0.0)
+    everywhere = dict.fromkeys(projected_cg.MOST_PAIRS, most_pairs)
+    monkeypatch.setattr(projected_cg, "MOST_PAIRS", everywhere)
+
+
+@pytest.fixture
+def always(monkeypatch):
+    """The multipole operator on every window of 16 nodes or more, however many candidates."""
+    restricted_always(monkeypatch, 0)
 
 
 def both(monkeypatch, height, space, **given):
@@ -63,6 +70,19 @@ def test_random_problems_have_the_same_states(monkeypatch, first):
         wrong, rounding = violation(states[0], problem.height)
         assert wrong <= 1.01 * RTOL + rounding, problem.name
     assert solved
+
+
+@pytest.mark.parametrize("most_pairs", [5_000, np.inf])
+def test_pairs_summed_directly_have_the_same_states(monkeypatch, most_pairs):
+    # Also where some applications of one solve sum pairs and others do not.
+    restricted_always(monkeypatch, most_pairs)
+    for seed in range(100, 100 + len(SEEDS) // 4):
+        problem = random_problem(seed, largest=60)
+        if candidates.may_restrict(problem.space, RTOL):
+            states = both(monkeypatch, problem.height, problem.space, rtol=RTOL, **problem.load)
+            check_same(*states)
+            wrong, rounding = violation(states[0], problem.height)
+            assert wrong <= 1.01 * RTOL + rounding, problem.name
 
 
 @pytest.mark.usefixtures("always")

@@ -215,3 +215,16 @@ def test_unknown_kernel_is_refused_and_the_known_ones_named():
 def test_rigid_plates_are_refused_on_cells_that_are_not_square():
     with pytest.raises(ValueError, match="square cells"):
         HalfSpace((4, 4), (1.0, 1.1), 1.0, kernel="rigid square")
+
+
+def test_a_coarser_half_space_makes_single_precision_alone_to_the_same_bit():
+    fine = HalfSpace((64, 90), (0.1, 0.1), 1.0)
+    coarse = fine.coarser(2)
+    field = np.random.default_rng(0).random(coarse.shape).astype(np.float32)
+    found = coarse.convolve(field)
+    assert "_convolutions" not in vars(coarse)
+    both = HalfSpace(coarse.shape, coarse.spacing, 1.0)
+    np.testing.assert_array_equal(found, both.convolve(field))
+    double = coarse.convolve(field.astype(float))
+    np.testing.assert_array_equal(double, both.convolve(field.astype(float)))
+    np.testing.assert_array_equal(found, coarse.convolve(field))

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace
+from fractalcontact.elastic import multipole
+from fractalcontact.elastic.block_influence import ERROR
 from fractalcontact.elastic.multipole import (
-    ERROR,
     MOST_STRETCHED,
     MultipoleLevels,
     MultipoleOperator,
@@ -31,12 +32,15 @@ def error(space, nodes, positions, values):
     return np.abs(found - exact).max() / np.abs(exact).max()
 
 
+@pytest.mark.parametrize("few", [0, 64])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("kernel", ["love", "equal-area disc"])
 @pytest.mark.parametrize(
     "shape", [(1, 1), (8, 8), (49, 50), (1, 300), (97, 260), (256, 256), (500, 333)]
 )
-def test_random_sets(shape, kernel, dtype):
+def test_random_sets(monkeypatch, shape, kernel, dtype, few):
+    # Loaded cells of a smallest block all together, and one by one.
+    monkeypatch.setattr(multipole, "FEW", few)
     rng = np.random.default_rng(shape[0])
     space = HalfSpace(shape, (0.1, 0.1), 1.0, kernel=kernel)
     total = shape[0] * shape[1]

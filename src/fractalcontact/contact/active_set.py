@@ -44,7 +44,8 @@ EXACT_REDUCTION = 1e-3
 # have to carry whatever a given force lacks.
 SET_PREDICTIONS, MOST_LEFT_OUT = 2, 0.5
 # Once, where the violation is no larger than this many tolerances, the preconditioned step is made
-# alone and verified in double precision at once: it is expected to be the last.
+# alone and verified in double precision at once: it is expected to be the last. Not so between
+# candidates, where double precision takes as long as several steps.
 SINGLE_STEP_BELOW = 2.0
 # Where violations are no more than this fraction of the closure, single precision leaves a step
 # little to gain.
@@ -100,6 +101,8 @@ class ActiveSetMethod:
         Largest violation allowed, as a fraction of the closure.
     operator : Operator, optional
         To count the applications of several solves together.
+    dtype : type
+        Precision in which a solution is judged: float32 where it is but a start on a finer grid.
 
     Raises
     ------
@@ -107,11 +110,17 @@ class ActiveSetMethod:
         If the clearance is not one of the grid.
     """
 
-    def __init__(self, problem: Problem, rtol: float, operator: Operator | None = None):
+    def __init__(
+        self,
+        problem: Problem,
+        rtol: float,
+        operator: Operator | None = None,
+        dtype: type = np.float64,
+    ):
         if operator is None:
             operator = Operator(problem.space, problem.nodes)
         _check_on_nodes(problem.clearance, "clearance", operator)
-        self.problem, self.rtol, self.operator = problem, rtol, operator
+        self.problem, self.rtol, self.operator, self._dtype = problem, rtol, operator, dtype
 
     def solve(
         self, pressure: np.ndarray, displacement: np.ndarray | None = None, *, at_least: int = 0
@@ -145,7 +154,8 @@ class ActiveSetMethod:
         # prolonged from a coarser grid, and its set nearly right, or from another half-space.
         predictions = 0 if displacement is None or operator.inverse.small else SET_PREDICTIONS
         iterate = first_iterate(problem, operator, pressure, displacement)
-        previous_active, violation, single_step_left = np.empty(0, np.int32), 0.0, True
+        previous_active, violation = np.empty(0, np.int32), 0.0
+        single_step_left = problem.nodes is None
         for iteration in range(MAX_ITERATIONS):
             # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
             begun, closure = iteration > 0, iterate.closure
@@ -157,7 +167,7 @@ class ActiveSetMethod:
             kkt = self._kkt_residual(iterate)
             may_end = iteration >= at_least or kkt.holds_to(SINGLE_PRECISION_FLOOR, iterate.closure)
             if may_end and kkt.holds_to(rtol, iterate.closure):
-                iterate = solution = verified(problem, operator, iterate)
+                iterate = solution = verified(problem, operator, iterate, self._dtype)
                 if solution.residual <= rtol:
                     return solution
                 kkt = self._kkt_residual(iterate)
@@ -173,10 +183,10 @@ class ActiveSetMethod:
             if linear_solve is LinearSolve.SINGLE_STEP:
                 # Once only: where one step gains too little, conjugate gradients must follow.
                 single_step_left = False
-                iterate = solution = verified(problem, operator, iterate)
+                iterate = solution = verified(problem, operator, iterate, self._dtype)
                 if solution.residual <= rtol:
                     return solution
-        return verified(problem, operator, iterate)
+        return verified(problem, operator, iterate, self._dtype)
 
     def _linear_solve(self, kkt, closure, exact, single_step):
         """How far to solve: ``exact`` as a safeguard, or, where one is left, a ``single_step``."""

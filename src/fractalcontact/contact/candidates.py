@@ -50,6 +50,8 @@ GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.02, 1.1
 STEP_GAIN = 2.0
 #: Where more of the nodes than this are candidates it is not asked what the operator would take.
 MOST_CANDIDATES = 0.15
+#: Nor where they are no more than this: then it is one pair of nodes after the other.
+FEW = 500
 #: A batch of the operator takes as long as a convolution where nodes times their log2 is this many,
 #: and solves on candidates take some more applications: measured from 512 x 512 to 2048 x 2048, at
 #: 1 to 5 % in contact.
@@ -126,9 +128,11 @@ class LoadCase:
         nodes = self.topography.below(bound * self.length, self.level, cells)
         if nodes.size > MOST_CANDIDATES * total:
             return None
-        levels = MultipoleLevels(self.space.shape, nodes)
-        if gain * levels.work * BATCH > total * np.log2(total):
-            return None
+        levels = None
+        if nodes.size > FEW:
+            levels = MultipoleLevels(self.space.shape, nodes)
+            if gain * levels.work * BATCH > total * np.log2(total):
+                return None
         clearance = self.topography.clearance_at(nodes, self.level) / self.length
         problem = Problem(self.space, clearance, self.load, self.by_force, self.cap, nodes)
         return Restricted(problem, nodes, bound, Operator(self.space, nodes, levels))
@@ -258,7 +262,7 @@ def _start(case):
     coarse_case = case.coarser()
     coarse = _start(coarse_case)
     operator = None if coarse.restricted is None else coarse.restricted.operator
-    method = ActiveSetMethod(coarse.problem, COARSE_RTOL, operator)
+    method = ActiveSetMethod(coarse.problem, COARSE_RTOL, operator, np.float32)
     solution = method.solve(coarse.pressure, at_least=COARSE_ITERATIONS)
     if coarse_case.space.shape[0] * coarse_case.space.shape[1] > KEPT_CELLS:
         forget_preconditioner(coarse_case.space)

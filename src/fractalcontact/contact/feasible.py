@@ -38,10 +38,12 @@ def first_iterate(
     return Iterate(pressure, displacement, problem.load)
 
 
-def verified(problem: Problem, operator: Operator, iterate: Iterate) -> Solution:
+def verified(
+    problem: Problem, operator: Operator, iterate: Iterate, dtype: type = np.float64
+) -> Solution:
     """The iterate projected on its bounds, with a displacement in double precision.
 
-    Under a given force it is also scaled to that, as far as the cap allows. Whoever asks for it
+    Or of another ``dtype``: float32 is enough for what is but a start on a finer grid. Under a given force it is also scaled to that, as far as the cap allows. Whoever asks for it
     reads from the ``residual`` whether it is a state of contact.
     """
     closure, lacking = iterate.closure, 0.0
@@ -51,7 +53,7 @@ def verified(problem: Problem, operator: Operator, iterate: Iterate) -> Solution
             pressure = problem.first_touch()
         _scale_to(problem.load, pressure, problem.cap)
         lacking = abs(1 - pressure.sum() / problem.load)
-    displacement = operator(pressure)
+    displacement = operator(pressure.astype(dtype, copy=False)).astype(float, copy=False)
     if problem.by_force:
         closure = problem.closure_at_force(pressure, displacement)
     kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.cap)

@@ -85,7 +85,9 @@ class Iterate:
 
 @dataclass
 class Solution(Iterate):
-    """An iterate within its bounds, whose displacement was computed in double precision.
+    """An iterate within its bounds, whose displacement was computed for itself.
+
+    In double precision, but for solutions on coarser grids that only a start is made of.
 
     Attributes
     ----------

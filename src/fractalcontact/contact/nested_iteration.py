@@ -48,7 +48,7 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
     # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
     load = problem.load / 2 if problem.by_force else problem.load
     coarse = Problem(coarse_space, clearance, load, problem.by_force, 2 * problem.cap)
-    method = ActiveSetMethod(coarse, COARSE_RTOL)
+    method = ActiveSetMethod(coarse, COARSE_RTOL, dtype=np.float32)
     solution = method.solve(nested_iteration_start(coarse), at_least=COARSE_ITERATIONS)
     if clearance.size > KEPT_CELLS:
         forget_preconditioner(coarse_space)

@@ -11,6 +11,7 @@ single precision.
 import numpy as np
 
 from ..core.kernel_cache import njit
+from ..elastic.direct import MOST_PAIRS, DirectOperator
 from ..elastic.halfspace import HalfSpace
 from ..elastic.multipole import MultipoleLevels, MultipoleOperator
 from .preconditioner import preconditioner
@@ -58,11 +59,9 @@ class Operator:
         if nodes is None:
             self._grid = np.zeros(space.shape, np.float32)
         else:
-            levels = MultipoleLevels(space.shape, nodes) if levels is None else levels
-            self._between = {
-                np.dtype(dtype): MultipoleOperator(space, levels, dtype)
-                for dtype in (np.float32, np.float64)
-            }
+            self._levels = levels
+            self._direct: DirectOperator | None = None
+            self._between: dict[np.dtype, MultipoleOperator] = {}
 
     def precondition(self, active: np.ndarray, *, fresh: bool) -> None:
         """Make `inverse` that on a contact set, as `Preconditioner.update`."""
@@ -76,8 +75,22 @@ class Operator:
         self.applications += 1
         if self.nodes is not None:
             loaded = np.flatnonzero(pressure)
-            return self._between[pressure.dtype](loaded, pressure[loaded])
+            return self._on_nodes(loaded, pressure[loaded])
         return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
+
+    def _on_nodes(self, loaded, values):
+        """Displacement of all nodes under some: by the operator that takes less time for so many.
+
+        What it needs is made when it is first asked for.
+        """
+        if loaded.size * self.size <= MOST_PAIRS[values.dtype]:
+            self._direct = self._direct or DirectOperator(self.space, self.nodes)
+            return self._direct(loaded, values)
+        if values.dtype not in self._between:
+            self._levels = self._levels or MultipoleLevels(self.space.shape, self.nodes)
+            multipole = MultipoleOperator(self.space, self._levels, values.dtype)
+            self._between[values.dtype] = multipole
+        return self._between[values.dtype](loaded, values)
 
     def on(self, *pairs: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """The same in single precision under (nodes, values) pairs alone.
@@ -91,7 +104,7 @@ class Operator:
             self.applications += 1
             loaded = np.concatenate([pair[0] for pair in pairs])
             values = np.concatenate([pair[1] for pair in pairs]).astype(np.float32, copy=False)
-            return self._between[values.dtype](loaded, values)
+            return self._on_nodes(loaded, values)
         grid = self._grid.ravel()
         for nodes, values in pairs:
             _put(grid, nodes, values)

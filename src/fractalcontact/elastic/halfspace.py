@@ -26,7 +26,7 @@ from ..core.arguments import (
 )
 from ..core.threads import computed_once
 from .convolution import Convolution, cosine_transform, fast_length
-from .influence import influence_at, influence_table
+from .influence import influence_table, spread
 from .split_convolution import LEAST_SIDE, SplitConvolution
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
@@ -106,6 +106,7 @@ class HalfSpace:
     modulus: float
     kernel: str
     cell: float
+    _is_coarse = False
 
     def __init__(
         self,
@@ -229,9 +230,14 @@ class HalfSpace:
     def _near(self):
         return {}
 
-    def influence_at(self, y: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """The same at any distances, none of them zero, (n,), counted in cells."""
-        return influence_at(y, x, self._sides, self._self_term)
+    def influence_within(self, shape: tuple[int, int]) -> np.ndarray:
+        """The same at so many cell distances each way, whether in the window or not."""
+        return self._table(shape)
+
+    @property
+    def spread(self) -> tuple[float, float, float]:
+        """Sides of what a load is spread over, in units of `cell`, and area: of `expansion`."""
+        return spread(self._sides, self._self_term)
 
     @property
     def _self_term(self):
@@ -272,7 +278,7 @@ class HalfSpace:
         sides = factor * self.spacing[0], factor * self.spacing[1]
         coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
         # To the last bit the same influence.
-        vars(coarse)["_sides"] = self._sides
+        vars(coarse).update(_sides=self._sides, _is_coarse=True)
         return self._coarser.setdefault(factor, coarse)
 
     @computed_once
@@ -316,7 +322,11 @@ class HalfSpace:
 
     @property
     def _single(self):
-        return self._split or self._convolutions[1]
+        if self._split is not None:
+            return self._split
+        if self._is_coarse and "_convolutions" not in vars(self):
+            return self._single_alone
+        return self._convolutions[1]
 
     @computed_once
     def _convolutions(self):
@@ -326,6 +336,11 @@ class HalfSpace:
             Convolution(spectrum, self.shape, self._padded, dtype)
             for dtype in (np.float64, np.float32)
         )
+
+    @computed_once
+    def _single_alone(self):
+        """On coarser grids double precision is hardly ever asked for."""
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
 
     @computed_once
     def _double_alone(self):

@@ -14,27 +14,27 @@ import numpy as np
 
 from ..core import threads
 from ..core.kernel_cache import njit
+from .block_influence import (
+    LEAF,
+    ORDER,
+    SEPARATION,
+    block_influence,
+    padded,
+    reach,
+    transfer,
+)
 from .halfspace import HalfSpace
 from .simd import WIDTH, load, store
 
-#: Cells along a smallest block.
-LEAF = 8
-_SINGLE, _DOUBLE = np.dtype(np.float32), np.dtype(np.float64)
-#: By precision: blocks no further apart than this are neighbours, which are not interpolated
-#: between; Chebyshev nodes along a block; and the error to which they interpolate the influence of
-#: one cell on another, as a fraction, between two blocks as near as any. Of the displacement under
-#: many cells it is a hundredth of that, in single precision less than what rounding leaves.
-SEPARATION = {_SINGLE: 1, _DOUBLE: 2}
-ORDER = {_SINGLE: 8, _DOUBLE: 12}
-ERROR = {_SINGLE: 2e-5, _DOUBLE: 2e-11}
 #: Cells are at most this many times as long as wide: blocks are neighbours by number, not distance.
 MOST_STRETCHED = 1.25
 #: Pairs of blocks with the same relative position that are worked on together.
 TOGETHER = 4
+#: Where loaded smallest blocks hold no more loaded cells than this in the mean, these are gone
+#: through one by one.
+FEW = 32
 #: Target blocks of a chunk: for each the matrices are read again.
 CHUNK = 128
-#: Numbers of a block are filled up with zeros to a multiple of this.
-PADDED = 2 * WIDTH
 
 
 class MultipoleLevels:
@@ -72,7 +72,7 @@ class MultipoleLevels:
             rows, columns = np.divmod(at, grid[1])
             self.blocks.append(at.size)
             self._grids.append((rows, columns, index))
-            if max(grid) <= 2 * _reach(min(SEPARATION.values())) - 2:
+            if max(grid) <= 2 * reach(min(SEPARATION.values())) - 2:
                 return
             grid = tuple(-(-n // 2) for n in grid)
             index = np.zeros(grid, np.int32)
@@ -106,7 +106,7 @@ class MultipoleLevels:
     @property
     def work(self) -> int:
         """Batches of all levels, which take nearly all the time of a search's application."""
-        return sum(len(batches) for batches, _ in self.pairs(SEPARATION[_SINGLE]))
+        return sum(len(batches) for batches, _ in self.pairs(SEPARATION[np.dtype(np.float32)]))
 
 
 class MultipoleOperator:
@@ -125,8 +125,8 @@ class MultipoleOperator:
         self._levels, self._dtype = levels, np.dtype(dtype)
         self._order = ORDER[self._dtype]
         count = len(levels.blocks)
-        self._matrices = _matrices(space, count, self._dtype)
-        self._transfers = [_transfer(level, self._order, self._dtype) for level in range(count - 1)]
+        self._influence = block_influence(space, count, self._dtype)
+        self._transfers = [transfer(level, self._order, self._dtype) for level in range(count - 1)]
 
     def __call__(self, positions: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Displacement of all nodes of the set under pressures on some of them.
@@ -156,7 +156,7 @@ class MultipoleOperator:
                 *(sources[k], loaded[k], sources[k + 1], loaded[k + 1]),
             )
         images = [
-            np.zeros((n + 1) * _padded(side**2), self._dtype)
+            np.zeros((n + 1) * padded(side**2, self._dtype), self._dtype)
             for n, side in zip(levels.blocks, sides, strict=True)
         ]
         for k, side in enumerate(sides):
@@ -164,6 +164,7 @@ class MultipoleOperator:
         for k in range(len(levels.parents) - 1, -1, -1):
             _to_children(
                 *(levels.parents[k], self._transfers[k], sides[k], sides[k + 1]),
+                *(padded(sides[k] ** 2, self._dtype), padded(sides[k + 1] ** 2, self._dtype)),
                 *(images[k], images[k + 1]),
             )
         return images[0][levels.place]
@@ -175,107 +176,33 @@ class MultipoleOperator:
     def _translate(self, k, side, sources, loaded, images):
         """Images of the blocks of a level under the others that act on them there."""
         batches, chunks = self._levels.pairs(SEPARATION[self._dtype])[k]
-        threads.in_parts(
-            lambda start, stop: _translate(
-                *(chunks[start], chunks[stop], batches, self._matrices[k], side**2),
-                *(sources, loaded, images),
-            ),
-            len(chunks) - 1,
-            smallest=1,
-        )
+        influence = self._influence[k]
+        matrices = influence.matrices.ravel()
+        which = influence.matrix, influence.order, influence.orders
+        count = padded(side**2, self._dtype)
 
+        def translate(start: int, stop: int) -> None:
+            _translate(
+                *(chunks[start], chunks[stop], batches, matrices, *which),
+                *(side**2, count, sources, loaded, images),
+            )
 
-def _reach(separation):
-    """How far apart blocks of one level can be whose parents are neighbours."""
-    return 2 * separation + 1
+        def translate_few(start: int, stop: int) -> None:
+            _translate_few(
+                *(chunks[start], chunks[stop], batches, matrices, *which),
+                *(influence.inverses, *listed, sources, images),
+            )
 
-
-def _padded(numbers):
-    return -(-numbers // PADDED) * PADDED
+        if k == 0:
+            listed = _listed(sources, loaded)
+            if listed[0].sum() <= FEW * np.count_nonzero(loaded):
+                translate = translate_few
+        threads.in_parts(translate, len(chunks) - 1, smallest=1)
 
 
 def multipole_suits(space: HalfSpace) -> bool:
     """Whether cells are so nearly square that the errors stated hold."""
     return max(space.spacing) <= MOST_STRETCHED * min(space.spacing)
-
-
-def _chebyshev(level, order):
-    """Places in a block of a level, in cells from its centre: of its cells or Chebyshev nodes."""
-    half = (LEAF * 2**level - 1) / 2
-    if level == 0:
-        return np.arange(LEAF) - half
-    return half * np.cos(np.pi * (2 * np.arange(order) + 1) / (2 * order))
-
-
-def _transfer(level, order, dtype):
-    """Weights of the parent's nodes in each of a child's, along one axis, (2, child, parent)."""
-    own, parent = _chebyshev(level, order), _chebyshev(level + 1, order)
-    weights = np.ones((2, own.size, order))
-    for half in (0, 1):
-        at = own + (half - 0.5) * LEAF * 2**level
-        for j in range(order):
-            for m in range(order):
-                if m != j:
-                    weights[half, :, j] *= (at - parent[m]) / (parent[j] - parent[m])
-    return weights.astype(dtype)
-
-
-# By what they follow from.
-_KEPT: dict[tuple, np.ndarray] = {}
-
-
-def _matrices(space, levels, dtype):
-    """For every level and relative position, the influence of a block's numbers on another's.
-
-    Kept between sets and windows: it depends on the kernel and the ratio of a cell's sides alone.
-    """
-    found = []
-    for level in range(levels):
-        key = space.kernel, space.spacing[0] / space.spacing[1], level, dtype
-        if key not in _KEPT:
-            _KEPT.setdefault(key, _level_matrices(space, level, dtype))
-        found.append(_KEPT[key])
-    return found
-
-
-def _level_matrices(space, level, dtype):
-    """(relative position, source, target) flattened; targets padded."""
-    own = _chebyshev(level, ORDER[dtype])
-    side, separation = own.size, SEPARATION[dtype]
-    reach = _reach(separation)
-    matrices = np.zeros((2 * reach + 1, 2 * reach + 1, side**2, _padded(side**2)), dtype)
-    number, apart = _distances(own)
-    for oy in range(reach + 1):
-        for ox in range(reach + 1):
-            if level > 0 and max(oy, ox) <= separation:
-                continue
-            y, x = (np.abs(apart - offset * LEAF * 2**level) for offset in (oy, ox))
-            values = _influence(space, *(a.ravel() for a in np.meshgrid(y, x, indexing="ij")))
-            # (source y, target y) and (source x, target x) to (source, target).
-            block = values.reshape(y.size, x.size)[number[:, None, :, None], number[None, :, None]]
-            for sy, sx in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-                flipped = block[::sy, ::sx, ::sy, ::sx].reshape(side**2, side**2)
-                matrices[reach + sy * oy, reach + sx * ox, :, : side**2] = flipped
-    return matrices.ravel()
-
-
-def _distances(places):
-    """Distances (n,) between places of one block and of another on it, and their numbers (i, j).
-
-    Places are symmetric, so those of i to j and of the mirrored j to the mirrored i are the same:
-    the influence, which takes longer than all else, is evaluated at a quarter of all pairs.
-    """
-    i, j = np.indices((places.size, places.size))
-    mirrored = (places.size - 1 - j) * places.size + places.size - 1 - i
-    first, number = np.unique(np.minimum(i * places.size + j, mirrored), return_inverse=True)
-    return number.reshape(i.shape), (places[:, None] - places).ravel()[first]
-
-
-def _influence(space, y, x):
-    apart = (y > 0) | (x > 0)
-    values = np.full(y.shape, space.near_influence(1)[0, 0])
-    values[apart] = space.influence_at(y[apart], x[apart])
-    return values
 
 
 def _pairs(rows, columns, index, lowest, separation):
@@ -357,10 +284,8 @@ def _to_parents(parents, weights, side, parent_side, values, loaded, above, load
 
 
 @njit(cache=True)
-def _to_children(parents, weights, side, parent_side, values, above):
+def _to_children(parents, weights, side, parent_side, length, length_above, values, above):
     """Add to each block what its parent is displaced, interpolated."""
-    length = -(-side * side // PADDED) * PADDED
-    length_above = -(-parent_side * parent_side // PADDED) * PADDED
     part = np.empty((side, parent_side), values.dtype)
     for block in range(parents.shape[0]):
         parent, quarter = parents[block, 0], parents[block, 1]
@@ -380,34 +305,159 @@ def _to_children(parents, weights, side, parent_side, values, above):
 
 
 @njit(cache=True, nogil=True)
-def _translate(start, stop, batches, matrices, numbers, sources, loaded, images):
+def _translate(
+    start, stop, batches, matrices, matrix, order, orders, numbers, length, sources, loaded, images
+):
     """Add the images of some batches; pairs of one batch share each number of the matrix read."""
-    length = -(-numbers // PADDED) * PADDED
+    held = np.empty(TOGETHER * numbers, sources.dtype)
+    moved = np.empty(TOGETHER * length, sources.dtype)
+    each = np.arange(TOGETHER)
+    source, target = np.empty(TOGETHER, np.int64), np.empty(TOGETHER, np.int64)
+    for b in range(start, stop):
+        offset, anything = batches[b, 0], False
+        for pair in range(TOGETHER):
+            anything |= loaded[batches[b, 1 + TOGETHER + pair]]
+            source[pair] = batches[b, 1 + TOGETHER + pair] * numbers
+            target[pair] = batches[b, 1 + pair] * length
+        if not anything:
+            continue
+        first = matrix[offset] * numbers * length
+        if order[offset] == 0:
+            _multiply(matrices, first, numbers, length, sources, source, images, target)
+            continue
+        places = orders[order[offset]]
+        for pair in range(TOGETHER):
+            for j in range(numbers):
+                held[pair * numbers + j] = sources[source[pair] + places[j]]
+        moved[:] = 0
+        _multiply(matrices, first, numbers, length, held, each * numbers, moved, each * length)
+        for pair in range(TOGETHER):
+            for j in range(numbers):
+                images[target[pair] + places[j]] += moved[pair * length + j]
+
+
+@njit(cache=True)
+def _multiply(matrices, first, numbers, length, sources, source, images, target):
+    """Add a matrix times the numbers of four sources to their targets, each from some place on."""
+    if matrices.itemsize == 4:
+        for v in range(0, length, 2 * WIDTH):
+            _multiply_two(
+                *(matrices, first + v, numbers, length, sources, source, images, target, v)
+            )
+    else:
+        for v in range(0, length, WIDTH):
+            _multiply_one(
+                *(matrices, first + v, numbers, length, sources, source, images, target, v)
+            )
+
+
+@njit(cache=True)
+def _multiply_two(matrices, row, numbers, length, sources, source, images, target, v):
+    """The same for two vectors of targets."""
+    s0, s1, s2, s3 = source[0], source[1], source[2], source[3]
+    t0, t1, t2, t3 = target[0] + v, target[1] + v, target[2] + v, target[3] + v
+    a0, a1 = load(images, t0), load(images, t0 + WIDTH)
+    b0, b1 = load(images, t1), load(images, t1 + WIDTH)
+    c0, c1 = load(images, t2), load(images, t2 + WIDTH)
+    d0, d1 = load(images, t3), load(images, t3 + WIDTH)
+    for j in range(numbers):
+        m0, m1 = load(matrices, row), load(matrices, row + WIDTH)
+        p, q = sources[s0 + j], sources[s1 + j]
+        a0, a1, b0, b1 = a0 + p * m0, a1 + p * m1, b0 + q * m0, b1 + q * m1
+        p, q = sources[s2 + j], sources[s3 + j]
+        c0, c1, d0, d1 = c0 + p * m0, c1 + p * m1, d0 + q * m0, d1 + q * m1
+        row += length
+    store(images, t0, a0)
+    store(images, t0 + WIDTH, a1)
+    store(images, t1, b0)
+    store(images, t1 + WIDTH, b1)
+    store(images, t2, c0)
+    store(images, t2 + WIDTH, c1)
+    store(images, t3, d0)
+    store(images, t3 + WIDTH, d1)
+
+
+@njit(cache=True)
+def _multiply_one(matrices, row, numbers, length, sources, source, images, target, v):
+    """The same for one, which in double precision takes as much of the processor."""
+    s0, s1, s2, s3 = source[0], source[1], source[2], source[3]
+    t0, t1, t2, t3 = target[0] + v, target[1] + v, target[2] + v, target[3] + v
+    a, b, c, d = load(images, t0), load(images, t1), load(images, t2), load(images, t3)
+    for j in range(numbers):
+        m = load(matrices, row)
+        p, q = sources[s0 + j], sources[s1 + j]
+        a, b = a + p * m, b + q * m
+        p, q = sources[s2 + j], sources[s3 + j]
+        c, d = c + p * m, d + q * m
+        row += length
+    store(images, t0, a)
+    store(images, t1, b)
+    store(images, t2, c)
+    store(images, t3, d)
+
+
+@njit(cache=True)
+def _listed(sources, loaded):
+    """How many cells of each smallest block are loaded, and which."""
+    counts = np.zeros(loaded.size, np.int64)
+    cells = np.empty(loaded.size * LEAF * LEAF, np.int32)
+    for block in range(loaded.size):
+        if not loaded[block]:
+            continue
+        first = block * LEAF * LEAF
+        for j in range(LEAF * LEAF):
+            if sources[first + j] != 0:
+                cells[first + counts[block]] = j
+                counts[block] += 1
+    return counts, cells
+
+
+@njit(cache=True, nogil=True)
+def _translate_few(
+    start, stop, batches, matrices, matrix, order, orders, inverses, counts, cells, sources, images
+):
+    """The same between smallest blocks, pair by pair, a row of the matrix for each loaded cell."""
+    numbers = LEAF * LEAF
+    moved = np.empty(numbers, images.dtype)
     for b in range(start, stop):
         offset = batches[b, 0]
-        t0, t1, t2, t3 = batches[b, 1], batches[b, 2], batches[b, 3], batches[b, 4]
-        s0, s1, s2, s3 = batches[b, 5], batches[b, 6], batches[b, 7], batches[b, 8]
-        if not (loaded[s0] or loaded[s1] or loaded[s2] or loaded[s3]):
-            continue
-        s0, s1, s2, s3 = s0 * numbers, s1 * numbers, s2 * numbers, s3 * numbers
-        for v in range(0, length, PADDED):
-            a0, a1 = load(images, t0 * length + v), load(images, t0 * length + v + WIDTH)
-            b0, b1 = load(images, t1 * length + v), load(images, t1 * length + v + WIDTH)
-            c0, c1 = load(images, t2 * length + v), load(images, t2 * length + v + WIDTH)
-            d0, d1 = load(images, t3 * length + v), load(images, t3 * length + v + WIDTH)
-            row = offset * numbers * length + v
+        first, way = np.int64(matrix[offset]) * numbers * numbers, order[offset]
+        for pair in range(TOGETHER):
+            block = batches[b, 1 + TOGETHER + pair]
+            if counts[block] == 0:
+                continue
+            source, target = np.int64(block) * numbers, np.int64(batches[b, 1 + pair]) * numbers
+            those = cells[source : source + counts[block]]
+            if way == 0:
+                _add_rows(matrices, first, those, inverses[0], sources, source, images, target)
+                continue
+            moved[:] = 0
+            _add_rows(matrices, first, those, inverses[way], sources, source, moved, 0)
             for j in range(numbers):
-                m0, m1 = load(matrices, row), load(matrices, row + WIDTH)
-                p, q = sources[s0 + j], sources[s1 + j]
-                a0, a1, b0, b1 = a0 + p * m0, a1 + p * m1, b0 + q * m0, b1 + q * m1
-                p, q = sources[s2 + j], sources[s3 + j]
-                c0, c1, d0, d1 = c0 + p * m0, c1 + p * m1, d0 + q * m0, d1 + q * m1
-                row += length
-            store(images, t0 * length + v, a0)
-            store(images, t0 * length + v + WIDTH, a1)
-            store(images, t1 * length + v, b0)
-            store(images, t1 * length + v + WIDTH, b1)
-            store(images, t2 * length + v, c0)
-            store(images, t2 * length + v + WIDTH, c1)
-            store(images, t3 * length + v, d0)
-            store(images, t3 * length + v + WIDTH, d1)
+                images[target + orders[way, j]] += moved[j]
+
+
+@njit(cache=True)
+def _add_rows(matrices, first, cells, number, sources, source, images, target):
+    """Add rows of a matrix, each times the pressure of a cell, to 64 numbers."""
+    step = LEAF * LEAF
+    if matrices.itemsize == 4:
+        a, b = load(images, target), load(images, target + WIDTH)
+        c, d = load(images, target + 2 * WIDTH), load(images, target + 3 * WIDTH)
+        for cell in cells:
+            row, p = first + number[cell] * step, sources[source + cell]
+            a, b = a + p * load(matrices, row), b + p * load(matrices, row + WIDTH)
+            c = c + p * load(matrices, row + 2 * WIDTH)
+            d = d + p * load(matrices, row + 3 * WIDTH)
+        store(images, target, a)
+        store(images, target + WIDTH, b)
+        store(images, target + 2 * WIDTH, c)
+        store(images, target + 3 * WIDTH, d)
+        return
+    for v in range(0, step, 2 * WIDTH):
+        a, b = load(images, target + v), load(images, target + v + WIDTH)
+        for cell in cells:
+            row, p = first + number[cell] * step + v, sources[source + cell]
+            a, b = a + p * load(matrices, row), b + p * load(matrices, row + WIDTH)
+        store(images, target + v, a)
+        store(images, target + v + WIDTH, b)
