@@ -5,12 +5,15 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "DirectOperator": ".direct",
         "HalfSpace": ".halfspace",
         "LEAST_SIDE": ".split_convolution",
+        "MOST_PAIRS": ".direct",
         "MultipoleLevels": ".multipole",
         "MultipoleOperator": ".multipole",
         "RIGID_PLATE_SELF_TERMS": ".halfspace",
         "WIDTH": ".simd",
+        "forget_matrices": ".block_influence",
         "load": ".simd",
         "love_displacement": ".influence",
         "multipole_suits": ".multipole",
