@@ -142,7 +142,7 @@ def _load_said(test):
 
 
 def _caption(test, load):
-    words = f"{SUPPLEMENTARY} What parts of the window predict of the whole, over what is solved."
+    words = f"{SUPPLEMENTARY} Predictions for the whole window from parts, over what is solved."
     if load is None:
         return f"{words} No load lets all of them predict closure and contact area."
     here = test.isel(normal_force=load).sel(predictor=list(PREDICTORS))

@@ -233,8 +233,8 @@ def _correlation_words(slid):
 
 def _caption(slid, correlation_left):
     return sentences(
-        f"{opening('Fig. 3')} Window before and after v = {slid.offset:.3g} mm, profile through "
-        f"the first touch, and composite topography. The joint opens by delta_r = "
+        f"{opening('Fig. 3')} Window before and after v = {slid.offset:.3g} mm, profile at first "
+        f"touch, composite topography. The joint opens by delta_r = "
         f"{slid.dilatancy:.3g} mm.",
         correlation_left,
     )
