@@ -88,7 +88,7 @@ def test_states_are_those_of_cold_starts(on_small_grids, monkeypatch, control, h
 def test_applications_are_saved_on_large_grids(monkeypatch, control):
     n = full_approximation.LEAST_FINE_SIDE
     # On candidates for contact there is no such scheme.
-    monkeypatch.setattr(candidates, "LEAST_SIDE", n)
+    monkeypatch.setattr(candidates, "LEAST_WINDOW", n + 1)
     height, space = rough((n, n), seed=1)
     depth = np.ptp(height)
     loads = [{"closure": share * depth} for share in (0.16, 0.18, 0.20)]

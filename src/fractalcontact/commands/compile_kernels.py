@@ -58,11 +58,15 @@ def compile_kernels() -> list[float]:
 
 
 def _light_states() -> list[ContactState]:
-    """States of a window so large, under a load so light, that its candidates alone are solved."""
+    """States of a window so large, under loads so light, that its candidates alone are solved.
+
+    The lightest has so few that pairs of them are summed directly.
+    """
     surface = self_affine((LARGE_SIDE, LARGE_SIDE), 1.0, 0.8, seed=1, rms=1.0)
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
     state = solve_contact(surface, space, force=20.0)
-    return [state, solve_contact(surface, space, force=22.0, start=state)]
+    step = solve_contact(surface, space, force=22.0, start=state)
+    return [state, step, solve_contact(surface, space, force=2.0)]
 
 
 def _large_states() -> list[ContactState]:

@@ -32,8 +32,9 @@ from .preconditioner import forget_preconditioner
 from .projected_cg import Operator
 from .topography import Topography
 
-#: On windows of fewer nodes along the shorter side a convolution takes no longer.
-LEAST_SIDE = 256
+#: On windows of fewer nodes along the shorter side a convolution takes no longer; on coarser grids
+#: of larger ones the few candidates of light contact take less than the kernel's spectrum.
+LEAST_WINDOW, LEAST_SIDE = 512, 64
 #: Tighter tolerances are left to the convolution: this is some hundred times the error of the
 #: operator between candidates.
 LEAST_RTOL = 1e-8
@@ -170,7 +171,7 @@ def may_restrict(space: HalfSpace, rtol: float) -> bool:
     space : HalfSpace
     rtol : float
     """
-    large = min(space.shape) >= 2 * LEAST_SIDE
+    large = min(space.shape) >= LEAST_WINDOW
     return large and LEAST_RTOL <= rtol < MARGIN - 1 and multipole_suits(space)
 
 
