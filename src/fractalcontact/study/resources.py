@@ -2,6 +2,9 @@
 
 A job asks for :data:`ROOM` times what the model says, and for twice as much at every further
 attempt. ``docs/scaling.md`` has the measurements beside what is asked for.
+
+What a scheduler counts is more than the script of a job takes: Snakemake runs twice around it, once
+to start the step of the job and once in it (:data:`AROUND`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -13,6 +16,8 @@ from ..core.units import quantity
 
 #: Megabytes and minutes below which no job asks: the interpreter and its libraries, and the queue.
 LEAST_MEMORY, LEAST_TIME = 300, 5
+#: Megabytes of the two processes of Snakemake around the script of a job on a cluster.
+AROUND = 280
 #: How much more is asked for than the models say, of memory and of time: other nodes are slower,
 #: and surfaces differ in what their contact takes.
 ROOM, ROOM_OF_TIME = 1.6, 5.0
@@ -87,7 +92,7 @@ def memory(rule: str, nodes: float, attempt: int = 1, *, states: int = 1) -> int
     """
     cost = COSTS[rule]
     finer = OF_FINER * min(FINER * nodes, MOST_FINER) if rule == "analysis" else 0.0
-    needed = cost.start + (finer + nodes * (cost.node + cost.state * states)) / 1e6
+    needed = AROUND + cost.start + (finer + nodes * (cost.node + cost.state * states)) / 1e6
     return max(LEAST_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
 
 
@@ -123,7 +128,8 @@ def reading_memory(files: Iterable[Path | str], attempt: int = 1) -> int:
     files = list(map(Path, files))
     read = sum(_size(path) * (_PLAIN if _is_plain(path) else _PACKED) for path in files) / 1e6
     described = memory("specimen", nodes_of_files(files))
-    return max(described, round(2 * COSTS["specimen"].start + read)) * 2 ** (attempt - 1)
+    least = ROOM * AROUND + 2 * COSTS["specimen"].start
+    return max(described, round(least + read)) * 2 ** (attempt - 1)
 
 
 def nodes_of_files(files: Iterable[Path | str]) -> float:
