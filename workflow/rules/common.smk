@@ -18,6 +18,8 @@ sys.path.append(str(SCRIPTS))
 os.environ.update(
     PYTHONPATH=os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
 )
+# On a cluster jobs are begun again after any error: theirs, which stay, they then only repeat.
+os.environ["FRACTALCONTACT_ATTEMPT"] = str(workflow.attempt)
 
 import _running
 
