@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from projects import copy_project, made
+from projects import copy_project
 from slurm_node import Node, missing
 
 pytestmark = pytest.mark.skipif(
