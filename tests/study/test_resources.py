@@ -16,7 +16,7 @@ from fractalcontact.study.resources import (
     states_of,
 )
 
-#: Largest resident memory, MB, of the scripts of jobs: rule, nodes along a side, states, MB. The last
+#: Largest resident memory of the scripts of jobs: rule, nodes along a side, states, MB. The last
 #: column of the table in docs/scaling.md.
 MEASURED = [
     ("specimen", 128, 3, 306),
