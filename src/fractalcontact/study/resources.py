@@ -34,18 +34,21 @@ class Cost:
     node : float
         Bytes for each node of the grid.
     seconds : float
-        Whatever its grid is.
-    solve : float
-        Microseconds a node and solve, or a node where nothing is solved.
+        Of the clock on a core of its own, whatever its grid is.
+    of_node : float
+        Microseconds for each node of the grid.
     state : float
         Bytes kept of each node of each state.
+    solve : float
+        Microseconds for each node of each state.
     """
 
     start: float
     node: float
     seconds: float
-    solve: float
+    of_node: float
     state: float = 0.0
+    solve: float = 0.0
 
 
 #: By rule, fitted to grids of 128 to 2048 nodes along a side (``docs/scaling.md``). Of ``specimen``
@@ -96,8 +99,8 @@ def memory(rule: str, nodes: float, attempt: int = 1, *, states: int = 1) -> int
     return max(LEAST_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
 
 
-def minutes(rule: str, nodes: float, solves: int = 1, attempt: int = 1) -> int:
-    """Minutes that a job asks for.
+def seconds(rule: str, nodes: float, states: int = 1) -> float:
+    """Seconds that the model says a job takes on a core of its own.
 
     Parameters
     ----------
@@ -105,13 +108,24 @@ def minutes(rule: str, nodes: float, solves: int = 1, attempt: int = 1) -> int:
         Of :data:`COSTS`.
     nodes : float
         Of its grid.
-    solves : int, optional
-        Contact states that it solves, or 1.
+    states : int, optional
+        Contact states that it keeps.
+    """
+    cost = COSTS[rule]
+    return cost.seconds + nodes * (cost.of_node + cost.solve * states) / 1e6
+
+
+def minutes(rule: str, nodes: float, states: int = 1, attempt: int = 1) -> int:
+    """Minutes that a job asks for.
+
+    Parameters
+    ----------
+    rule, nodes, states
+        As of :func:`seconds`.
     attempt : int, optional
         1 at first.
     """
-    cost = COSTS[rule]
-    needed = (cost.seconds + cost.solve * nodes * solves / 1e6) / 60
+    needed = seconds(rule, nodes, states) / 60
     return max(LEAST_TIME, round(ROOM_OF_TIME * needed)) * 2 ** (attempt - 1)
 
 
