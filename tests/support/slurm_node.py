@@ -180,6 +180,15 @@ class Node:
         )
         return [job for job in jobs if rule in ("", job.rule)]
 
+    @contextlib.contextmanager
+    def drained(self):
+        """Jobs wait in the queue, and none begins."""
+        _require("scontrol", "update", f"NodeName={self.host}", "State=DRAIN", "Reason=test")
+        try:
+            yield
+        finally:
+            _require("scontrol", "update", f"NodeName={self.host}", "State=RESUME")
+
     @staticmethod
     def let_time_be_over(number):
         """Let the time of a running job be over in a second: SLURM then ends it itself."""

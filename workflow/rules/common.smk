@@ -28,7 +28,7 @@ from fractalcontact.core import checksums, sources
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import one_of
-from fractalcontact.study import campaign, crate, guards, resources, stages
+from fractalcontact.study import campaign, crate, guards, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, study_figures_of
@@ -135,8 +135,19 @@ def digests_of(scan):
 
 # Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
 DIGEST_OF_SCAN = {path: digest_of(path) for scan in SCANS.values() for path in scan.files}
+NOW = plan.plan_of(config, SETTINGS, OPTIONS, {str(p): d for p, d in DIGEST_OF_SCAN.items()})
+PLAN = ".snakemake/fractalcontact-plan.json"
+# What a job of a cluster, which reads all this again, has to say before it works.
+os.environ["FRACTALCONTACT_CHANGED"] = ""
 if workflow.is_main_process:
     DIGESTS.save()
+else:
+    try:
+        PLANNED = plan.read_plan(PLAN)
+        DIGEST_OF_SCAN |= {p: PLANNED["scans"].get(str(p), d) for p, d in DIGEST_OF_SCAN.items()}
+        os.environ["FRACTALCONTACT_CHANGED"] = plan.changed_since(PLANNED, NOW, SOURCE)
+    except InputError as error:
+        os.environ["FRACTALCONTACT_CHANGED"] = str(error)
 
 
 # Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever

@@ -55,6 +55,8 @@ def job(snakemake):
         sys.exit(found_before)
     try:
         with _running.marked():
+            if changed := os.environ.get("FRACTALCONTACT_CHANGED"):
+                raise InputError(changed)
             for path in _below(results, snakemake.input):
                 checksums.require_intact(results, path)
             yield log
