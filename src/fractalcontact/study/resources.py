@@ -14,7 +14,8 @@ from typing import Any
 
 from ..core.units import quantity
 
-#: Megabytes and minutes below which no job asks: the interpreter and its libraries, and the queue.
+#: Megabytes and minutes below which no job asks: the interpreter and its libraries, and Snakemake
+#: twice before the first second of work, on a busy file system.
 LEAST_MEMORY, LEAST_TIME = 300, 5
 #: Megabytes of the two processes of Snakemake around the script of a job on a cluster.
 AROUND = 280
@@ -51,17 +52,18 @@ class Cost:
     solve: float = 0.0
 
 
-#: By rule, fitted to grids of 128 to 2048 nodes along a side (``docs/scaling.md``). Of ``specimen``
+#: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024 of
+#: a surface against a plane and to joints of up to 520 states (``docs/scaling.md``). Of ``specimen``
 #: the nodes are those of a face, else of the window; ``atlas_part`` is ``figures`` without any.
 COSTS = {
-    "embedded": Cost(80, 130, 3, 1),
-    "specimen": Cost(270, 100, 6, 15),
-    "contact": Cost(210, 380, 4, 4, 1),
-    "analysis": Cost(190, 450, 8, 8, 5),
-    "windows": Cost(420, 620, 6, 60),
-    "strength": Cost(190, 10, 4, 0),
-    "figures": Cost(380, 300, 40, 10, 8),
-    "atlas_part": Cost(190, 180, 5, 1, 1),
+    "embedded": Cost(80, 130, 0.5, 0.4),
+    "specimen": Cost(270, 100, 4, 3.5),
+    "contact": Cost(210, 380, 2.5, 4, 1, 0.2),
+    "analysis": Cost(190, 450, 8, 9, 5, 0.3),
+    "windows": Cost(420, 620, 6, 45),
+    "strength": Cost(190, 10, 2.5, 0),
+    "figures": Cost(380, 300, 25, 4, 8),
+    "atlas_part": Cost(190, 180, 3, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
 #: The analysis solves some states again on finer grids: up to four times as fine, up to this many
