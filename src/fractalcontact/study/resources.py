@@ -52,8 +52,8 @@ class Cost:
     solve: float = 0.0
 
 
-#: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024 of
-#: a surface against a plane and to joints of up to 520 states (``docs/scaling.md``). Of ``specimen``
+#: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024
+#: of a surface against a plane and to a joint of 520 states (``docs/scaling.md``). Of ``specimen``
 #: the nodes are those of a face, else of the window; ``atlas_part`` is ``figures`` without any.
 COSTS = {
     "embedded": Cost(80, 130, 0.5, 0.4),
