@@ -58,9 +58,9 @@ class Cost:
 COSTS = {
     "embedded": Cost(80, 130, 0.5, 0.4),
     "specimen": Cost(270, 100, 4, 3.5),
-    "contact": Cost(210, 380, 2.5, 4, 1, 0.2),
+    "contact": Cost(210, 380, 2.5, 2.5, 1, 0.2),
     "analysis": Cost(190, 450, 8, 9, 5, 0.3),
-    "windows": Cost(420, 620, 6, 45),
+    "windows": Cost(420, 620, 6, 55),
     "strength": Cost(190, 10, 2.5, 0),
     "figures": Cost(380, 300, 25, 4, 8),
     "atlas_part": Cost(190, 180, 3, 1, 1),
