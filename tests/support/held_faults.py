@@ -43,7 +43,7 @@ HERE = (
     "full disk",
     "read-only",
 )
-SLURM = ("scan queued", "memory", "time", "daemon", "node lost", "killed", "stopped")
+SLURM = ("scan queued", "scan added", "memory", "time", "daemon", "node lost", "killed", "stopped")
 
 
 class Skipped(Exception):
@@ -279,6 +279,20 @@ class HeldStudy:
         running.wait(PATIENCE)
         self.scan.write_bytes(content)
         return self.verdict(running)
+
+    def scan_added(self):
+        """A scan that comes while jobs wait: of the next run, whose atlas nobody compares here."""
+        files = [self.scan.with_name(f"new{ending}") for ending in (".npy", ".yaml")]
+        try:
+            with self.node.drained():
+                running = self.start()
+                self.wait(self.node.queue)
+                write_scan(self.project, "new", rough_heights(seed=5, n=64))
+                self.notes.append(f"scans/new.npy: added; in the queue: {self._left()}")
+            return self.verdict(running, refusals=0)
+        finally:
+            for path in files:
+                path.unlink(missing_ok=True)
 
     def memory(self):
         """A job that takes what it asked for and more: SLURM ends it, the second may have twice."""

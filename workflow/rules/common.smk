@@ -68,6 +68,19 @@ except InputError as error:
 
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels
 SOLVER = STUDY.solver
+#: What the run was planned with, for its jobs on a cluster, each of which reads all this again: what
+#: they have to say before they work, and specimens that came meanwhile, which are the next run's.
+PLAN, PLANNED = ".snakemake/fractalcontact-plan.json", None
+os.environ["FRACTALCONTACT_CHANGED"] = ""
+if not workflow.is_main_process:
+    try:
+        PLANNED = plan.read_plan(PLAN)
+    except InputError as error:
+        os.environ["FRACTALCONTACT_CHANGED"] = str(error)
+    else:
+        for named in (SCANS, SETTINGS, OPTIONS, LABELS):
+            for name in named.keys() - PLANNED["specimens"]:
+                del named[name]
 #: What is wrong with scans that are left out; each has a job that says so.
 REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 
@@ -136,18 +149,11 @@ def digests_of(scan):
 # Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
 DIGEST_OF_SCAN = {path: digest_of(path) for scan in SCANS.values() for path in scan.files}
 NOW = plan.plan_of(config, SETTINGS, OPTIONS, {str(p): d for p, d in DIGEST_OF_SCAN.items()})
-PLAN = ".snakemake/fractalcontact-plan.json"
-# What a job of a cluster, which reads all this again, has to say before it works.
-os.environ["FRACTALCONTACT_CHANGED"] = ""
 if workflow.is_main_process:
     DIGESTS.save()
-else:
-    try:
-        PLANNED = plan.read_plan(PLAN)
-        DIGEST_OF_SCAN |= {p: PLANNED["scans"].get(str(p), d) for p, d in DIGEST_OF_SCAN.items()}
-        os.environ["FRACTALCONTACT_CHANGED"] = plan.changed_since(PLANNED, NOW, SOURCE)
-    except InputError as error:
-        os.environ["FRACTALCONTACT_CHANGED"] = str(error)
+elif PLANNED:
+    DIGEST_OF_SCAN |= {p: PLANNED["scans"].get(str(p), d) for p, d in DIGEST_OF_SCAN.items()}
+    os.environ["FRACTALCONTACT_CHANGED"] = plan.changed_since(PLANNED, NOW, SOURCE)
 
 
 # Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
