@@ -19,7 +19,7 @@ os.environ.update(
     PYTHONPATH=os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
 )
 # On a cluster jobs are begun again after any error: theirs, which stay, they then only repeat.
-os.environ["FRACTALCONTACT_ATTEMPT"] = str(workflow.attempt)
+os.environ.update(FRACTALCONTACT_ATTEMPT=str(workflow.attempt))
 
 import _running
 
@@ -71,12 +71,12 @@ SOLVER = STUDY.solver
 #: What the run was planned with, for its jobs on a cluster, each of which reads all this again: what
 #: they have to say before they work, and specimens that came meanwhile, which are the next run's.
 PLAN, PLANNED = ".snakemake/fractalcontact-plan.json", None
-os.environ["FRACTALCONTACT_CHANGED"] = ""
+os.environ.update(FRACTALCONTACT_CHANGED="")
 if not workflow.is_main_process:
     try:
         PLANNED = plan.read_plan(PLAN)
     except InputError as error:
-        os.environ["FRACTALCONTACT_CHANGED"] = str(error)
+        os.environ.update(FRACTALCONTACT_CHANGED=str(error))
     else:
         for named in (SCANS, SETTINGS, OPTIONS, LABELS):
             for name in named.keys() - PLANNED["specimens"]:
@@ -153,7 +153,7 @@ if workflow.is_main_process:
     DIGESTS.save()
 elif PLANNED:
     DIGEST_OF_SCAN |= {p: PLANNED["scans"].get(str(p), d) for p, d in DIGEST_OF_SCAN.items()}
-    os.environ["FRACTALCONTACT_CHANGED"] = plan.changed_since(PLANNED, NOW, SOURCE)
+    os.environ.update(FRACTALCONTACT_CHANGED=plan.changed_since(PLANNED, NOW, SOURCE))
 
 
 # Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
