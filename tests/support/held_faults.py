@@ -114,7 +114,7 @@ class HeldStudy:
     def start(self):
         """What `make`, or `make slurm`, runs."""
         words = (
-            ("--profile", "slurm", "--", "--slurm-init-seconds-before-status-checks", "2", "--")
+            ("--profile", "slurm", "--", "--slurm-init-seconds-before-status-checks", "1", "--")
             if self.node
             else ("--", "--cores", "2")
         )
