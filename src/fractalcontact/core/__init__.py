@@ -52,6 +52,7 @@ __getattr__, __dir__, __all__ = exports(
         "length_unit": ".units",
         "listed": ".labels",
         "load": ".units",
+        "load_kept": ".kernel_cache",
         "mean_interval": ".intervals",
         "modules_of": ".modules",
         "njit": ".kernel_cache",
