@@ -164,6 +164,7 @@ $(VENV)/bin/python:
 $(VENV)/installed: requirements.lock pyproject.toml | $(VENV)/bin/python
 	$(PIP) install --require-hashes --compile -r requirements.lock
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
+	$(BIN)/python -m compileall -q src
 # Compiled now too: else the first jobs of the first study would all do it.
 	$(BIN)/python -m fractalcontact.commands.compile_kernels
 	@touch $@

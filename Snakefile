@@ -25,6 +25,10 @@ include: "workflow/rules/pages.smk"
 include: "workflow/rules/accuracy.smk"
 
 
+onstart:
+    plan.write_plan(PLAN, NOW)
+
+
 onsuccess:
     write_records()
 

@@ -372,3 +372,46 @@ def test_what_is_passed_over_and_likely_pairs_stand_below_the_table(folder, chec
     assert "passed over, as systems and editors leave such files: Thumbs.db" in text
     assert "rename them rock.lower.npy and rock.upper.npy" in text
     assert "2 ok, 0 with warnings, 0 refused" in text
+
+
+@pytest.fixture
+def check_groups(folder, capsys, tmp_path):
+    """`make check-scans` of a study whose specimens are in groups."""
+
+    def run(groups):
+        study = (ROOT / "config/paper.yaml").read_text()
+        (tmp_path / "study.yaml").write_text(f"{study}\ngroups: {groups}\n")
+        code = main([str(folder), "--study", str(tmp_path / "study.yaml"), *ARGUMENTS[2:]])
+        return code, " ".join(capsys.readouterr().out.split())
+
+    return run
+
+
+def test_scans_in_folders_of_groups_are_read_with_what_their_group_says(folder, check_groups):
+    for name in ("hard/a", "soft/a"):
+        write_scan(folder / f"{name}.npy", surface(), 0.2, sidecar={})
+        (folder / f"{name}.yaml").unlink()  # the group says it
+    (folder / "hard.yaml").write_text("unit: mm\nspacing: 0.2\n")
+    (folder / "soft.yaml").write_text("unit: mm\nspacing: 0.2\nhieghts: 3\n")
+    code, out = check_groups("folders")
+    assert code == 1
+    assert "hard_a 1 64 x 64" in out
+    assert "group hard: a.npy + hard.yaml" in out
+    assert "REFUSED: " in out
+    assert "soft.yaml: " in out
+    assert "1 ok" in out
+    assert "1 refused" in out
+
+
+def test_scans_of_a_table_are_read_with_what_their_row_says(folder, check_groups, tmp_path):
+    write_scan(folder / "a.npy", surface(), 0.2, sidecar={})
+    write_scan(folder / "unlisted.npy", surface(), 0.2, sidecar={})
+    table = tmp_path / "table.csv"
+    table.write_text("file,name,group,material\na.npy,one,hard,sandstone\nb.npy,two,soft,\n")
+    code, out = check_groups(table)
+    assert code == 1
+    assert "one 1 64 x 64" in out
+    assert f"{table}: line 2" in out
+    assert "line 3: file: no file" in out
+    assert "unlisted" not in out
+    assert "1 refused" in out

@@ -43,7 +43,7 @@ HERE = (
     "full disk",
     "read-only",
 )
-SLURM = ("memory", "time", "daemon", "node lost", "killed", "stopped")
+SLURM = ("scan queued", "scan added", "memory", "time", "daemon", "node lost", "killed", "stopped")
 
 
 class Skipped(Exception):
@@ -114,7 +114,7 @@ class HeldStudy:
     def start(self):
         """What `make`, or `make slurm`, runs."""
         words = (
-            ("--profile", "slurm", "--", "--slurm-init-seconds-before-status-checks", "2", "--")
+            ("--profile", "slurm", "--", "--slurm-init-seconds-before-status-checks", "1", "--")
             if self.node
             else ("--", "--cores", "2")
         )
@@ -200,15 +200,20 @@ class HeldStudy:
 
     def scan_replaced(self):
         """The scan replaced, its times kept, while its job runs; then put back."""
-        content, times = self.scan.read_bytes(), self.scan.stat()
         with self.held("specimen") as running:
-            write_scan(self.project, "rock", rough_heights(seed=5, n=64))
-            os.utime(self.scan, ns=(times.st_atime_ns, times.st_mtime_ns))
-            self.notes.append("scans/rock.npy: replaced, time kept")
+            content = self._replace_scan()
             self.release("specimen")
             running.wait(PATIENCE)
             self.scan.write_bytes(content)
             return self.verdict(running)
+
+    def _replace_scan(self):
+        """Another scan in the place of the first, whose content is given back, with its times."""
+        content, times = self.scan.read_bytes(), self.scan.stat()
+        write_scan(self.project, "rock", rough_heights(seed=5, n=64))
+        os.utime(self.scan, ns=(times.st_atime_ns, times.st_mtime_ns))
+        self.notes.append("scans/rock.npy: replaced, time kept")
+        return content
 
     def scan_removed(self):
         """The scan removed while its job runs; then put back."""
@@ -263,6 +268,31 @@ class HeldStudy:
             return self.verdict(running)
 
     # -- faults of SLURM ---------------------------------------------------------------------------
+
+    def scan_queued(self):
+        """The scan replaced while its job waits, which reads the study only when it begins."""
+        with self.node.drained():
+            running = self.start()
+            self.wait(self.node.queue)
+            content = self._replace_scan()
+            self.notes.append(f"in the queue: {self._left()}")
+        running.wait(PATIENCE)
+        self.scan.write_bytes(content)
+        return self.verdict(running)
+
+    def scan_added(self):
+        """A scan that comes while jobs wait: of the next run, whose atlas nobody compares here."""
+        files = [self.scan.with_name(f"new{ending}") for ending in (".npy", ".yaml")]
+        try:
+            with self.node.drained():
+                running = self.start()
+                self.wait(self.node.queue)
+                write_scan(self.project, "new", rough_heights(seed=5, n=64))
+                self.notes.append(f"scans/new.npy: added; in the queue: {self._left()}")
+            return self.verdict(running, refusals=0)
+        finally:
+            for path in files:
+                path.unlink(missing_ok=True)
 
     def memory(self):
         """A job that takes what it asked for and more: SLURM ends it, the second may have twice."""

@@ -15,16 +15,16 @@ from fractalcontact.study.stages import EXPERIMENT, paths_of
 
 
 def copy_project(folder):
-    """A working copy without results, with the kernels that are compiled already."""
+    """A working copy without results, with the bytecode and kernels that are compiled already."""
     for name in ("Snakefile", "CITATION.cff", "environment.yml", "config", "workflow", "src"):
         source = ROOT / name
         if source.is_dir():
-            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("kernels"))
         else:
             shutil.copy(source, folder / name)
     (folder / "scans").mkdir()
     kernels = Path("src/fractalcontact/__pycache__/kernels")
-    (folder / kernels).parent.mkdir()
+    (folder / kernels).parent.mkdir(exist_ok=True)
     (folder / kernels).symlink_to(ROOT / kernels)
     return folder
 

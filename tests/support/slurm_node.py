@@ -26,6 +26,7 @@ PR_SET_PDEATHSIG = 1  # of <linux/prctl.h>
 PATIENCE = 60
 
 SLURM_CONF = """\
+# of the tests of fractalcontact
 ClusterName=fractalcontact
 SlurmctldHost={host}(127.0.0.1)
 SlurmUser=root
@@ -57,6 +58,8 @@ SlurmdLogFile={folder}/log/slurmd.log
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} RealMemory={memory} State=UNKNOWN
 PartitionName={partition} Nodes={host} Default=YES MaxTime=120 DefMemPerCPU=256 State=UP
 """
+#: By what one that was killed left behind is known.
+OURS = SLURM_CONF.splitlines()[0]
 NO_ACCOUNTING = "AccountingStorageType=accounting_storage/none"
 WITH_ACCOUNTING = """\
 AccountingStorageType=accounting_storage/slurmdbd
@@ -177,6 +180,15 @@ class Node:
         )
         return [job for job in jobs if rule in ("", job.rule)]
 
+    @contextlib.contextmanager
+    def drained(self):
+        """Jobs wait in the queue, and none begins."""
+        _require("scontrol", "update", f"NodeName={self.host}", "State=DRAIN", "Reason=test")
+        try:
+            yield
+        finally:
+            _require("scontrol", "update", f"NodeName={self.host}", "State=RESUME")
+
     @staticmethod
     def let_time_be_over(number):
         """Let the time of a running job be over in a second: SLURM then ends it itself."""
@@ -227,7 +239,10 @@ class Node:
         return sorted(left)
 
     def _configure(self):
-        if CONFIGURATION.exists():
+        ours = CONFIGURATION / "slurm.conf"
+        if ours.is_file() and ours.read_text(errors="replace").startswith(OURS):
+            shutil.rmtree(CONFIGURATION)
+        elif CONFIGURATION.exists():
             self.kept = self.folder / "etc-slurm-before"
             shutil.move(CONFIGURATION, self.kept)
         self.configured = True

@@ -46,20 +46,32 @@ def test_an_unknown_specimen_is_named(project):
 @pytest.mark.full
 def test_one_more_specimen_runs_its_own_jobs_and_the_gather(project):
     write_groups(project, ["a/s1", "b/s1"])
-    study = small_study(project, groups="folders", atlas="parts")
+    study = small_study(project, groups="folders", atlas="parts", figures=["fig02_relief"])
     first = run(project, study)
     assert first.returncode == 0, first.stderr[-3000:]
     assert jobs_of(run(project, study, "--dry-run")) == {}
-    write_groups(project, ["a/s1", "b/s1", "b/s2"])
-    added = run(project, study, "--dry-run")
-    assert jobs_of(added) == {
+    before = times_of(project / "results/test", ("a_s1", "b_s1"))
+    assert any("fig02_relief.png" in name for name in before)
+    write_groups(project, ["b/s2"])
+    assert jobs_of(run(project, study)) == {  # what it ran, not what it planned
         **dict.fromkeys(OF_SPECIMEN, 1),
         **dict.fromkeys(("atlas", "study_figures", "all_drawn", "all"), 1),
     }
-    assert run(project, study).returncode == 0
+    assert times_of(project / "results/test", ("a_s1", "b_s1")) == before
+    assert (project / "results/test/figures/b_s2/fig02_relief.png").stat().st_size > 10_000
     atlas = open_atlas(project / "results/test")
     assert atlas.specimens == ("a_s1", "b_s1", "b_s2")
     assert atlas.groups == {"a_s1": "a", "b_s1": "b", "b_s2": "b"}
     compared = atlas["study_comparison/study"]
     assert compared["group"].values.tolist() == ["a", "b", "b"]
     assert json.loads(atlas.attrs["scan_checksums"]).keys() == set(atlas.specimens)
+    assert jobs_of(run(project, study, "--dry-run")) == {}
+
+
+def times_of(results, specimens):
+    """When each file of some specimens was written, by name."""
+    return {
+        str(path): path.stat().st_mtime_ns
+        for path in results.rglob("*")
+        if path.is_file() and any(name in str(path) for name in specimens)
+    }

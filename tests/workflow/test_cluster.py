@@ -107,3 +107,39 @@ def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():
         assert why in ended_by_cluster(["Building DAG of jobs...", line, ""])
     assert not ended_by_cluster(["a room DUE TO TIME LIMIT", "Finished jobid: 0"])
     assert not ended_by_cluster([])
+
+
+SCRIPT = """
+import sys
+from types import SimpleNamespace
+sys.path[:0] = [{scripts!r}, {package!r}]
+from _job import job
+from fractalcontact.core.errors import InputError, OutputError
+snakemake = SimpleNamespace(log=["job.log"], config={{"study": "test"}}, input=[], output=[])
+with job(snakemake):
+    print("works")
+    raise {error}("rock.npy: no numbers; write some")
+"""
+
+
+@pytest.mark.parametrize(
+    ("error", "attempt", "works"),
+    [
+        ("InputError", 2, False),
+        ("InputError", 1, True),  # of another run: what was wrong may have been mended
+        ("OutputError", 2, True),  # there may be room by now
+        ("RuntimeError", 2, True),
+    ],
+)
+def test_further_attempt_repeats_an_error_that_it_would_find_again(
+    tmp_path, monkeypatch, error, attempt, works
+):
+    paths = {"scripts": str(ROOT / "workflow/scripts"), "package": str(ROOT / "src")}
+    command = [sys.executable, "-c", SCRIPT.format(error=error, **paths)]
+    for number, expected in ((1, True), (attempt, works), (attempt, works)):
+        monkeypatch.setenv("FRACTALCONTACT_ATTEMPT", str(number))
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+        assert done.returncode == 1
+        assert "rock.npy: no numbers; write some" in done.stderr
+        assert "rock.npy: no numbers; write some" in (tmp_path / "job.log").read_text()
+        assert ("works" in done.stdout) == expected

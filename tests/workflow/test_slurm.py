@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from projects import copy_project, made
+from projects import copy_project
 from slurm_node import Node, missing
 
 pytestmark = pytest.mark.skipif(
@@ -15,8 +15,7 @@ pytestmark = pytest.mark.skipif(
 )
 ACCOUNTING = os.environ.get("SLURM") == "accounting"
 STUDY = "config/smoke.yaml"
-#: Drawn anew they may differ in the last digit of a place: figures, and the pages that hold them.
-DRAWN = (".svg", ".png", ".html")
+ATLAS = "results/smoke/atlas.nc"
 
 
 @pytest.fixture(scope="module")
@@ -32,43 +31,73 @@ def node(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory):
-    """The smoke study made on this machine, without SLURM."""
+def beside(tmp_path_factory):
+    """The atlas of the smoke study made on this machine without SLURM, in what time that leaves.
+
+    Yields
+    ------
+    folder : pathlib.Path
+    made : subprocess.Popen
+    """
     project = copy_project(tmp_path_factory.mktemp("local"))
-    done = made(project, STUDY)
-    assert done.returncode == 0, done.stderr[-3000:]
-    return project
+    command = (sys.executable, "workflow/run.py", STUDY, "--", "--cores", "2", ATLAS)
+    with open(project / "said.txt", "w") as said:
+        running = subprocess.Popen(
+            ("nice", "-n", "10", *command), cwd=project, stdout=said, stderr=said
+        )
+    try:
+        yield project, running
+    finally:
+        running.terminate()
+        running.wait(60)
 
 
 @pytest.fixture(scope="module")
-def by_slurm(node, tmp_path_factory):
-    """The same made by what `make slurm` runs, and what that said."""
+def by_slurm(node, beside, tmp_path_factory):
+    """The whole of it made by what `make slurm` runs."""
     project = copy_project(tmp_path_factory.mktemp("cluster"))
-    words = ("--profile", "slurm", "--", "--slurm-init-seconds-before-status-checks", "2")
+    words = ("--profile", "slurm", "--", "--slurm-init-seconds-before-status-checks", "1")
     command = (sys.executable, "workflow/run.py", STUDY, *words)
     done = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return project
 
 
+@pytest.fixture(scope="module")
+def undisturbed(by_slurm, beside):
+    """Folder of the atlas made without SLURM, once it is there."""
+    project, running = beside
+    assert running.wait(600) == 0, (project / "said.txt").read_text()[-3000:]
+    return project
+
+
 def made_files(project):
-    """Checksums of all that was made, but of what is drawn, by name."""
+    """Checksums of all that was made, by name."""
     lines = (project / "results/smoke/manifest.sha256").read_text().splitlines()
-    names = {line[66:]: line[:64] for line in lines}
-    return {name: digest for name, digest in names.items() if not name.endswith(DRAWN)}, set(names)
+    return {line[66:]: line[:64] for line in lines}
 
 
 def test_study_is_the_same_to_the_byte_on_slurm_and_here(by_slurm, undisturbed):
-    ours, theirs = (
-        (place / "results/smoke/atlas.nc").read_bytes() for place in (by_slurm, undisturbed)
-    )
+    ours, theirs = ((place / ATLAS).read_bytes() for place in (by_slurm, undisturbed))
     assert ours == theirs
-    assert made_files(by_slurm) == made_files(undisturbed)
+    ours, theirs = made_files(by_slurm), made_files(undisturbed)
+    assert len(theirs) > 20
+    assert theirs.items() <= ours.items()
 
 
-def test_jobs_ran_on_slurm_and_none_is_left(by_slurm, node):
-    rules = {job.rule for job in node.jobs() if job.state == "COMPLETED"}
-    assert {"specimen", "contact", "analysis", "atlas", "figures"} <= rules
+def test_figures_and_pages_are_there(by_slurm):
+    names = made_files(by_slurm)
+    for name in ("index.html", "explorer.html", "figures/area_slope.png"):
+        assert name in names
+    pictures = [name for name in names if name.startswith("figures/small_") and ".png" in name]
+    assert len(pictures) > 40
+
+
+def test_each_job_ran_on_slurm_once_and_none_is_left(by_slurm, node):
+    jobs = node.jobs()
+    assert {"specimen", "contact", "analysis", "atlas", "figures"} <= {job.rule for job in jobs}
+    # A job that took more than it asked for is begun again, and hides that it asks for too little.
+    assert [job for job in jobs if job.state != "COMPLETED"] == []
     assert node.queue() == []
 
 

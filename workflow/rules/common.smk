@@ -18,6 +18,8 @@ sys.path.append(str(SCRIPTS))
 os.environ.update(
     PYTHONPATH=os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
 )
+# On a cluster jobs are begun again after any error: theirs, which stay, they then only repeat.
+os.environ.update(FRACTALCONTACT_ATTEMPT=str(workflow.attempt))
 
 import _running
 
@@ -26,7 +28,7 @@ from fractalcontact.core import checksums, sources
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import one_of
-from fractalcontact.study import campaign, crate, guards, resources, stages
+from fractalcontact.study import campaign, crate, guards, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, study_figures_of
@@ -66,6 +68,19 @@ except InputError as error:
 
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels
 SOLVER = STUDY.solver
+#: What the run was planned with, for its jobs on a cluster, each of which reads all this again: what
+#: they have to say before they work, and specimens that came meanwhile, which are the next run's.
+PLAN, PLANNED = ".snakemake/fractalcontact-plan.json", None
+os.environ.update(FRACTALCONTACT_CHANGED="")
+if not workflow.is_main_process:
+    try:
+        PLANNED = plan.read_plan(PLAN)
+    except InputError as error:
+        os.environ.update(FRACTALCONTACT_CHANGED=str(error))
+    else:
+        for named in (SCANS, SETTINGS, OPTIONS, LABELS):
+            for name in named.keys() - PLANNED["specimens"]:
+                del named[name]
 #: What is wrong with scans that are left out; each has a job that says so.
 REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 
@@ -133,8 +148,12 @@ def digests_of(scan):
 
 # Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
 DIGEST_OF_SCAN = {path: digest_of(path) for scan in SCANS.values() for path in scan.files}
+NOW = plan.plan_of(config, SETTINGS, OPTIONS, {str(p): d for p, d in DIGEST_OF_SCAN.items()})
 if workflow.is_main_process:
     DIGESTS.save()
+elif PLANNED:
+    DIGEST_OF_SCAN |= {p: PLANNED["scans"].get(str(p), d) for p, d in DIGEST_OF_SCAN.items()}
+    os.environ.update(FRACTALCONTACT_CHANGED=plan.changed_since(PLANNED, NOW, SOURCE))
 
 
 # Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever

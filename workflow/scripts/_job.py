@@ -2,6 +2,7 @@
 
 import contextlib
 import logging
+import os
 import signal
 import sys
 import time
@@ -18,6 +19,8 @@ _warm.hand_over()  # before the script imports what takes long
 
 #: What a job says, and exits with, that is told to end.
 STOPPED, STOPPED_CODE = "stopped before it was done", 143
+#: What stands in a log below an error that every further attempt would find again.
+CERTAIN = "no further attempt can do better"
 
 
 @contextlib.contextmanager
@@ -25,6 +28,7 @@ def job(snakemake):
     """One job: its inputs are as they were made, its outputs leave their checksums, it has a log.
 
     Where the input is at fault, or the disk is full, it ends with one clear line and no traceback.
+    What a further attempt on a cluster would find again it says at once, without working again.
     The log's last line says what the job spent on its work, imports not counted, and of that on
     contact solves: ``benchmarks/study_cost.py`` adds them up.
 
@@ -37,6 +41,7 @@ def job(snakemake):
     ------
     logging.Logger
     """
+    found_before = _found_before(snakemake.log[0])
     try:
         logging.basicConfig(
             filename=snakemake.log[0], filemode="w", level=logging.INFO, format="%(message)s"
@@ -48,8 +53,13 @@ def job(snakemake):
     results = Path("results") / snakemake.config["study"]
     signal.signal(signal.SIGTERM, _stop)
     begin = time.perf_counter()
+    if found_before:
+        log.error("%s\n%s", found_before, CERTAIN)
+        sys.exit(found_before)
     try:
         with _running.marked():
+            if changed := os.environ.get("FRACTALCONTACT_CHANGED"):
+                raise InputError(changed)
             for path in _below(results, snakemake.input):
                 checksums.require_intact(results, path)
             yield log
@@ -69,6 +79,8 @@ def job(snakemake):
         message = "error: " + "; ".join(lines)
         logging.raiseExceptions = False  # the log may stand on the same full disk
         log.error(message)
+        if not isinstance(error, OutputError):
+            log.info(CERTAIN)
         sys.exit(message)
     except (Exception, KeyboardInterrupt) as error:
         # Inside a compiled kernel the interrupt ends as an error of another kind.
@@ -77,6 +89,15 @@ def job(snakemake):
             sys.exit(STOPPED_CODE)
         log.exception("error in the program")
         raise
+
+
+def _found_before(log):
+    """The error of the attempt before this one, if it would be that of this one too."""
+    if int(os.environ.get("FRACTALCONTACT_ATTEMPT", 1)) == 1 or not Path(log).is_file():
+        return ""
+    *before, last = Path(log).read_text(encoding="utf-8").splitlines() or [""]
+    errors = [line for line in before if line.startswith("error: ")]
+    return errors[-1] if errors and last == CERTAIN else ""
 
 
 _told_to_stop = []

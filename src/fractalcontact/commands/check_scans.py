@@ -21,12 +21,11 @@ from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import length_words, overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
-from ..study.checks import check_study, read_sidecar, with_coordinates
+from ..study.checks import check_study, stated_of, with_coordinates
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
-from ..study.idle_keys import refuse_idle_keys
 from ..study.preparation import prepare_specimen
-from ..study.scan_files import folder_notes, list_scans
+from ..study.scan_groups import grouped_notes, list_grouped
 from ..study.sidecar import is_contact_map
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
@@ -99,26 +98,27 @@ def check_scans(
     Checked
         Sorted by name; what is wrong with one does not keep the others from being read.
     """
-    scans, refused = list_scans(folder)
-    scans = _with_coordinates(scans, refused, schema)
+    scans, refused = list_grouped(folder, study.get("groups"))
+    shared: dict[Path, tuple[dict, dict]] = {}
+    scans = _with_coordinates(scans, refused, schema, shared)
     for name in sorted(scans.keys() | refused.keys()):
         if name in refused:
             yield Checked(name, refusal=str(refused[name]))
             continue
         try:
-            yield _check(scans[name], study, schema, source)
+            yield _check(scans[name], study, source, stated_of(scans[name], schema, shared))
         except InputError as error:
             yield Checked(
                 name, lines=[_file_names(scans[name])], refusal=_shown(error, scans[name])
             )
 
 
-def _with_coordinates(scans, refused, schema):
+def _with_coordinates(scans, refused, schema, shared):
     """Scans without the files of x and y of others; what is wrong with one goes to `refused`."""
     options = {}
     for name, scan in scans.items():
         try:
-            keys, _ = read_sidecar(scan.sidecar, schema)
+            keys, _ = stated_of(scan, schema, shared)
             with_coordinates(scans, {name: keys})
         except InputError as error:
             refused.setdefault(name, InputError(_shown(error, scan)))
@@ -127,16 +127,21 @@ def _with_coordinates(scans, refused, schema):
     return with_coordinates(scans, options)
 
 
-def _check(scan, study, schema, source):
-    """Read one specimen as the rules of the study do."""
+def _check(scan, study, source, stated):
+    """Read one specimen as the rules of the study do, with its scan keys and settings."""
     if scan.name in study.get("embedded", {}):
         raise InputError(f"'{scan.name}' is also an embedded specimen of {source}; rename one")
-    options, own = read_sidecar(scan.sidecar, schema)
-    refuse_idle_keys(scan, options, own)
+    options, own = stated
     if is_contact_map(options):
         return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
     settings = resolve_settings(
-        study, scan.name, own, source, pair=scan.upper is not None, sidecar_file=scan.sidecar
+        study,
+        scan.name,
+        own,
+        source,
+        pair=scan.upper is not None,
+        sidecar_file=scan.sidecar or scan.row_of or scan.shared,
+        group=scan.group,
     )
     specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
     _require_solvable(specimen, settings)
@@ -244,14 +249,17 @@ def _pair(lengths):
 
 
 def _file_names(scan):
-    files = [*scan.files, *([scan.sidecar] if scan.sidecar else [])]
-    return " + ".join(printable(path.name) for path in files)
+    """Files of a specimen and who says what of it, with the folder of its group."""
+    names = [path.name for path in (*scan.files, scan.sidecar, scan.shared) if path]
+    within = f"group {printable(scan.group)}: " if scan.group else ""
+    stated = f", {printable(scan.row_of)}" if scan.row_of else ""
+    return f"{within}{' + '.join(map(printable, names))}{stated}"
 
 
 def _shown(error, scan):
     """The message with file names that no terminal acts on."""
     message = str(error)
-    for path in (scan.lower, scan.upper, scan.sidecar):
+    for path in (scan.lower, scan.upper, scan.sidecar, scan.shared):
         if path is not None:
             message = message.replace(path.name, printable(path.name))
     return message
@@ -332,7 +340,7 @@ def _print_table(folder, study, schema, source):
         counts[state] += 1
         _write(table_lines(checked))
     _write(["-" * WIDTH, *_wrapped(LEGEND)])
-    for note in folder_notes(folder):
+    for note in grouped_notes(folder, study.get("groups")):
         _write(_wrapped(f"NOTE: {note}"))
     words = ", ".join(f"{n} {state}" for state, n in counts.items())
     _write([f"{printable(folder)}: {words}"])

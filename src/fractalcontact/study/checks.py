@@ -84,7 +84,7 @@ def resolve_study(
     shared: dict[Path, tuple[dict, dict]] = {}
     for name, scan in list(scans.items()):
         with _refusing(refused, name):
-            sidecars[name] = _stated_of(scan, schema, shared)
+            sidecars[name] = stated_of(scan, schema, shared)
             with_coordinates(scans, {name: sidecars[name][0]})
     scans = with_coordinates(
         scans, {name: keys for name, (keys, _) in sidecars.items() if name not in refused}
@@ -115,12 +115,29 @@ def resolve_study(
     return Study(scans, settings, options, labels, solver_settings(config, source), refused)
 
 
-def _stated_of(
+def stated_of(
     scan: ScanFiles, schema: Mapping, shared: dict[Path, tuple[dict, dict]]
 ) -> tuple[dict, dict]:
     """Scan keys and settings of a specimen: of its group, then its sidecar's, then its table's.
 
-    What its group says is read once, and may have no meaning for some of the group.
+    What its group says may have no meaning for some of the group.
+
+    Parameters
+    ----------
+    scan : ScanFiles
+    schema : mapping
+        config/schema/study.schema.yaml.
+    shared : dict of Path to tuple
+        What sidecars of groups say, which is kept here, to be read once.
+
+    Returns
+    -------
+    scan, settings : dict
+        As of :func:`read_sidecar`.
+
+    Raises
+    ------
+    InputError
     """
     if scan.shared is not None and scan.shared not in shared:
         shared[scan.shared] = read_sidecar(scan.shared, schema)

@@ -2,6 +2,9 @@
 
 A job asks for :data:`ROOM` times what the model says, and for twice as much at every further
 attempt. ``docs/scaling.md`` has the measurements beside what is asked for.
+
+What a scheduler counts is more than the script of a job takes: Snakemake runs twice around it, once
+to start the step of the job and once in it (:data:`AROUND`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -11,8 +14,11 @@ from typing import Any
 
 from ..core.units import quantity
 
-#: Megabytes and minutes below which no job asks: the interpreter and its libraries, and the queue.
+#: Megabytes and minutes below which no job asks: the interpreter and its libraries, and Snakemake
+#: twice before the first second of work, on a busy file system.
 LEAST_MEMORY, LEAST_TIME = 300, 5
+#: Megabytes of the two processes of Snakemake around the script of a job on a cluster.
+AROUND = 280
 #: How much more is asked for than the models say, of memory and of time: other nodes are slower,
 #: and surfaces differ in what their contact takes.
 ROOM, ROOM_OF_TIME = 1.6, 5.0
@@ -29,31 +35,35 @@ class Cost:
     node : float
         Bytes for each node of the grid.
     seconds : float
-        Whatever its grid is.
-    solve : float
-        Microseconds a node and solve, or a node where nothing is solved.
+        Of the clock on a core of its own, whatever its grid is.
+    of_node : float
+        Microseconds for each node of the grid.
     state : float
         Bytes kept of each node of each state.
+    solve : float
+        Microseconds for each node of each state.
     """
 
     start: float
     node: float
     seconds: float
-    solve: float
+    of_node: float
     state: float = 0.0
+    solve: float = 0.0
 
 
-#: By rule, fitted to grids of 128 to 2048 nodes along a side (``docs/scaling.md``). Of ``specimen``
+#: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024
+#: of a surface against a plane and to a joint of 520 states (``docs/scaling.md``). Of ``specimen``
 #: the nodes are those of a face, else of the window; ``atlas_part`` is ``figures`` without any.
 COSTS = {
-    "embedded": Cost(80, 130, 3, 1),
-    "specimen": Cost(270, 100, 6, 15),
-    "contact": Cost(210, 380, 4, 4, 1),
-    "analysis": Cost(190, 450, 8, 8, 5),
-    "windows": Cost(420, 620, 6, 60),
-    "strength": Cost(190, 10, 4, 0),
-    "figures": Cost(380, 300, 40, 10, 8),
-    "atlas_part": Cost(190, 180, 5, 1, 1),
+    "embedded": Cost(80, 130, 0.5, 0.4),
+    "specimen": Cost(270, 100, 4, 3.5),
+    "contact": Cost(210, 380, 2.5, 2.5, 1, 0.2),
+    "analysis": Cost(190, 450, 8, 9, 5, 0.3),
+    "windows": Cost(420, 620, 6, 55),
+    "strength": Cost(190, 10, 2.5, 0),
+    "figures": Cost(380, 300, 25, 4, 8),
+    "atlas_part": Cost(190, 180, 3, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
 #: The analysis solves some states again on finer grids: up to four times as fine, up to this many
@@ -87,12 +97,12 @@ def memory(rule: str, nodes: float, attempt: int = 1, *, states: int = 1) -> int
     """
     cost = COSTS[rule]
     finer = OF_FINER * min(FINER * nodes, MOST_FINER) if rule == "analysis" else 0.0
-    needed = cost.start + (finer + nodes * (cost.node + cost.state * states)) / 1e6
+    needed = AROUND + cost.start + (finer + nodes * (cost.node + cost.state * states)) / 1e6
     return max(LEAST_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
 
 
-def minutes(rule: str, nodes: float, solves: int = 1, attempt: int = 1) -> int:
-    """Minutes that a job asks for.
+def seconds(rule: str, nodes: float, states: int = 1) -> float:
+    """Seconds that the model says a job takes on a core of its own.
 
     Parameters
     ----------
@@ -100,13 +110,24 @@ def minutes(rule: str, nodes: float, solves: int = 1, attempt: int = 1) -> int:
         Of :data:`COSTS`.
     nodes : float
         Of its grid.
-    solves : int, optional
-        Contact states that it solves, or 1.
+    states : int, optional
+        Contact states that it keeps.
+    """
+    cost = COSTS[rule]
+    return cost.seconds + nodes * (cost.of_node + cost.solve * states) / 1e6
+
+
+def minutes(rule: str, nodes: float, states: int = 1, attempt: int = 1) -> int:
+    """Minutes that a job asks for.
+
+    Parameters
+    ----------
+    rule, nodes, states
+        As of :func:`seconds`.
     attempt : int, optional
         1 at first.
     """
-    cost = COSTS[rule]
-    needed = (cost.seconds + cost.solve * nodes * solves / 1e6) / 60
+    needed = seconds(rule, nodes, states) / 60
     return max(LEAST_TIME, round(ROOM_OF_TIME * needed)) * 2 ** (attempt - 1)
 
 
@@ -123,7 +144,8 @@ def reading_memory(files: Iterable[Path | str], attempt: int = 1) -> int:
     files = list(map(Path, files))
     read = sum(_size(path) * (_PLAIN if _is_plain(path) else _PACKED) for path in files) / 1e6
     described = memory("specimen", nodes_of_files(files))
-    return max(described, round(2 * COSTS["specimen"].start + read)) * 2 ** (attempt - 1)
+    least = ROOM * AROUND + 2 * COSTS["specimen"].start
+    return max(described, round(least + read)) * 2 ** (attempt - 1)
 
 
 def nodes_of_files(files: Iterable[Path | str]) -> float:
