@@ -202,7 +202,7 @@ def _run(command, options, results):
         for number in signals:
             signal.signal(number, _stop)
         environment = _environment(options)
-        # Jobs of a cluster run elsewhere; and only Linux is sure to fork what libraries have loaded.
+        # Jobs of a cluster run elsewhere; only Linux is sure to fork what libraries have loaded.
         local = options.profile == "default" and sys.platform == "linux"
         if local and not options.dry_run:
             environment[ADDRESS] = warmth.enter_context(warm.started())

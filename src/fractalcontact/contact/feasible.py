@@ -43,8 +43,9 @@ def verified(
 ) -> Solution:
     """The iterate projected on its bounds, with a displacement in double precision.
 
-    Or of another ``dtype``: float32 is enough for what is but a start on a finer grid. Under a given force it is also scaled to that, as far as the cap allows. Whoever asks for it
-    reads from the ``residual`` whether it is a state of contact.
+    Or of another ``dtype``: float32 is enough for what is but a start on a finer grid. Under a
+    given force it is also scaled to that, as far as the cap allows. Whoever asks for it reads from
+    the ``residual`` whether it is a state of contact.
     """
     closure, lacking = iterate.closure, 0.0
     pressure = np.clip(iterate.pressure, 0.0, problem.cap)
