@@ -16,6 +16,8 @@ __all__ = ["project"]  # a fixture
 sys.path.append(str(ROOT / "workflow"))
 import warm
 
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux alone")
+
 JOB = """import sys
 sys.path.insert(0, {scripts!r})
 import _warm

@@ -26,11 +26,23 @@ def hand_over():
     address = os.environ.get(ADDRESS)
     if not address or os.environ.get(THREADS) != "1" or not sys.argv[0]:
         return
+    # Until the fork is known a signal waits: it would end this process and not be passed on.
+    signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
+    code = _handed_over(address)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
+    if code is None:
+        return
+    # Without a word: killed, and so this is too, that Snakemake says so.
+    os._exit(int(code) if code else 128 + signal.SIGKILL)
+
+
+def _handed_over(address):
+    """What the fork ended with, nothing where it was killed; None where there is no fork."""
     with socket.socket(socket.AF_UNIX) as connection:
         try:
             connection.connect(address)
         except OSError:  # it has ended, or never begun
-            return
+            return None
         # For as long as this process lives, and no longer.
         life, alive = os.pipe()
         socket.send_fds(connection, [b"\n"], [0, 1, 2, life])
@@ -40,12 +52,11 @@ def hand_over():
             number = told.readline()
             if not number.endswith("\n"):  # it ended before it began: nothing has been run
                 os.close(alive)
-                return
+                return None
             for passed in _PASSED_ON:
                 signal.signal(passed, lambda received, frame: _pass_on(int(number), received))
-            code = told.readline()
-    # Without a word: killed, and so this is too, that Snakemake says so.
-    os._exit(int(code) if code else 128 + signal.SIGKILL)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
+            return told.readline()
 
 
 def _described():

@@ -50,6 +50,9 @@ SINGLE_STEP_BELOW = 2.0
 # Where violations are no more than this fraction of the closure, single precision leaves a step
 # little to gain.
 SINGLE_PRECISION_FLOOR = 1e-5
+# Clearance, in the closures or lengths that a problem is stated in, beyond which single precision
+# cannot judge even a start: what it rounds off may then be more than the closure.
+SINGLE_PRECISION_CLEARANCE = 1e6
 _FLOAT64 = np.dtype(np.float64)
 
 
@@ -120,7 +123,9 @@ class ActiveSetMethod:
         if operator is None:
             operator = Operator(problem.space, problem.nodes)
         _check_on_nodes(problem.clearance, "clearance", operator)
-        self.problem, self.rtol, self.operator, self._dtype = problem, rtol, operator, dtype
+        self.problem, self.rtol, self.operator = problem, rtol, operator
+        wide = problem.clearance.max(initial=0.0) > SINGLE_PRECISION_CLEARANCE
+        self._dtype = np.float64 if wide else dtype
 
     def solve(
         self, pressure: np.ndarray, displacement: np.ndarray | None = None, *, at_least: int = 0

@@ -54,7 +54,11 @@ def verified(
             pressure = problem.first_touch()
         _scale_to(problem.load, pressure, problem.cap)
         lacking = abs(1 - pressure.sum() / problem.load)
-    displacement = operator(pressure.astype(dtype, copy=False)).astype(float, copy=False)
+    if dtype is np.float64:
+        displacement = operator(pressure)
+    else:  # in units of their largest, as no pressure may be beyond what single precision holds
+        unit = float(pressure.max(initial=0.0)) or 1.0
+        displacement = unit * operator((pressure / unit).astype(dtype)).astype(float)
     if problem.by_force:
         closure = problem.closure_at_force(pressure, displacement)
     kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.cap)
