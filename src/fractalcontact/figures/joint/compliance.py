@@ -107,7 +107,7 @@ def _stages(atlas, name, ends, offsets):
 
 def _limits(between):
     """What decides about the later stages; whether offsets were solved in the second."""
-    before = "stage 2" if between else "the last of stage 1"
+    before = "2" if between else "end of 1"
     return {
         "curves_overlap": f"limit {percent(NEARLY)}, in part {percent(LOOSELY)}",
         "compliance_rises_again": f"mean of stage 3 over {before}, limit {percent(NEARLY, '+')}",
