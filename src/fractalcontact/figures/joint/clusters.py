@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from ...core.fitting import fit_line
 from ...core.resolved import RESOLVED_NODES
-from ...domain.clusters import follows_law
+from ...domain.clusters import LARGEST_DISTANCE, follows_law
 from ...surface.specimen import cell_side
 from ..kit.drawing import (
     COLOURS,
@@ -44,6 +44,10 @@ DISTRIBUTIONS = 3
 #: Colours and markers of these; the loads have the others.
 _OFFSET_COLOURS = (COLOURS[3], COLOURS[4], COLOURS[5])
 _OFFSET_MARKERS = ("D", "v", "P")
+#: Symbol of the test whether sizes follow their law: largest distance, number of clusters fitted.
+_TEST = r"$D\sqrt{n}$"
+#: Opacity of the bands of random nodes.
+_FAINT = 0.15
 
 #: Numbers of a domain that are drawn and kept, with the names of their columns.
 COLUMNS = {
@@ -90,24 +94,24 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     table = _domain_table(domains, curves["area"] / cell, shown)
     sizes = _size_table(domains.isel(normal_force=mapped), cell)
 
-    figure = Figure(figsize=(WIDTH, 6.0))
+    figure = Figure(figsize=(WIDTH, 6.5))
     number, share, localised, distribution = figure.subplots(2, 2).ravel()
     _draw_domains((number, share, localised), table)
     _draw_sizes(distribution, sizes)
     by_load = [heading(r"(a) to (c): Morisita's index $I \sim v^x$ [95 %]"), *entries(number)]
     by_load += _other_entries(table)
-    law = r": number $\sim a^{-\beta}$ [95 %]" if np.isfinite(sizes["exponent"]).any() else ""
-    at = f"(d) at $F$ = {force_label(loads[mapped])}{law}"
-    legends_below(figure, by_load, [heading(at), *entries(distribution)])
+    by_offset = [*_size_heading(sizes, force_label(loads[mapped])), *entries(distribution)]
+    legends_below(figure, by_load, by_offset + _band_entries(table))
     headline(figure, settings["label"], place(direction))
     clustered = claim(
         atlas,
         name,
         "growing clustering with v",
         "domains_cluster",
-        why=f"I ~ v^e over all v at {force_label(loads[mapped])}",
+        why=f"I ~ v^x over all v at {force_label(loads[mapped])}",
     )
-    caption = _caption(clustered, sizes)
+    # One letter for the exponent here and in the key; e is the table's.
+    caption = _caption(clustered.replace("(e = ", "(x = "), sizes)
     data = pd.concat([table.assign(kind="domain"), sizes.assign(kind="sizes")], ignore_index=True)
     return Drawing(figure, data, caption)
 
@@ -123,7 +127,38 @@ def _other_entries(table):
     for null, marker in NULLS.items():
         if table[f"clusters_{null}"].notna().any():
             found.append(Line2D([], [], marker=marker, label=words[null], **style))
-    return [*found, Patch(color="0.4", alpha=0.15, lw=0, label="as many random nodes, 95 %")]
+    return found
+
+
+def _band_entries(table):
+    """The bands of random nodes in (c), in the colours of their loads."""
+    return [
+        Patch(
+            color=colour_of(n),
+            alpha=_FAINT,
+            lw=0,
+            label=f"(c) as many random nodes, 95 %: $F$ = {force_label(force)}",
+        )
+        for n, force in enumerate(table["force_N"].unique())
+    ]
+
+
+def _size_heading(sizes, force):
+    """What the numbers and lines of (d) are: fitted laws, and when sizes follow them."""
+    at = f"(d) at $F$ = {force}"
+    fitted = sizes[np.isfinite(sizes["exponent"])]
+    if fitted.empty:
+        return [heading(at)]
+    low, high = (short(end) for end in (fitted["fit_min_mm2"].min(), fitted["fit_max_mm2"].max()))
+    return [
+        heading(rf"{at}: number $\sim a^{{-\beta}}$ [95 %]; {_TEST} at most {LARGEST_DISTANCE:g}"),
+        Line2D([], [], color="0.4", lw=0.8, label=f"lines: fits, $a$ = {low} to {high} mm$^2$"),
+    ]
+
+
+def _distance(law):
+    """Largest distance of the sizes from their law, times the root of the number fitted."""
+    return law["fit_distance"] * np.sqrt(law["fit_clusters"])
 
 
 def _domain_table(domains, nodes, shown):
@@ -179,7 +214,7 @@ def _draw_domains(panels, table):
         number.plot([], [], lw=0.8, label=name, **style)
         above = 1 + 1.96 * points["morisita_scatter"]
         below = (1 - 1.96 * points["morisita_scatter"]).clip(lower=0.1)
-        localised.fill_between(v, below, above, color=colour_of(n), alpha=0.15, lw=0)
+        localised.fill_between(v, below, above, color=colour_of(n), alpha=_FAINT, lw=0)
         for axes, column in ((number, "clusters"), (localised, "morisita")):
             for null, marker in NULLS.items():
                 if f"{column}_{null}" in points:
@@ -210,8 +245,11 @@ def _draw_sizes(axes, sizes):
         style = {"color": colour, "marker": _OFFSET_MARKERS[n], "ls": "none"}
         fits = np.isfinite(law["exponent"])
         words = rf"$\beta$ = {exponent}" if fits else "too few for a law"
-        if fits and not follows_law(law["fit_clusters"], law["fit_distance"]):
-            words += ", not followed"
+        if fits:
+            words += f", {_TEST} = {_distance(law):.2f}"
+            words += (
+                "" if follows_law(law["fit_clusters"], law["fit_distance"]) else ": not followed"
+            )
         name = f"$v$ = {short(offset)} mm: {words}"
         axes.plot(area, at_least, label=name, **style)
         if fits:
@@ -250,12 +288,21 @@ def _size_words(sizes):
     fitted = laws[np.isfinite(laws["exponent"])]
     if fitted.empty:
         return "Too few clusters for a law of sizes."
-    low, high = (short(end) for end in (fitted["fit_min_mm2"].min(), fitted["fit_max_mm2"].max()))
     if len(fitted) == 1:
         law = fitted.iloc[0]
         values = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
     else:
         values = f"{short(fitted['exponent'].min())} to {short(fitted['exponent'].max())}"
-    broken = sum(not follows_law(law.fit_clusters, law.fit_distance) for law in fitted.itertuples())
-    words = f"Their number falls as a^-beta, beta {values} ({low}–{high} mm2)"
-    return f"{words}, not followed at {broken} of {len(fitted)} offsets." if broken else f"{words}."
+    broken = [
+        law
+        for _, law in fitted.iterrows()
+        if not follows_law(law["fit_clusters"], law["fit_distance"])
+    ]
+    words = f"Their number falls as a^-beta, beta {values}"
+    if not broken:
+        return f"{words}."
+    places = " and ".join(short(law["offset_mm"]) for law in broken)
+    return (
+        f"{words}; not followed at v = {places} mm, where the largest distance D of n sizes from "
+        f"it exceeds {LARGEST_DISTANCE:g}/sqrt(n)."
+    )

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.resolved import RESOLVED_NODES
+from ...statements.findings import LOOSELY, NEARLY, UNDETERMINED
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -26,7 +27,7 @@ from ..kit.drawing import (
 )
 from ..kit.empty import TOO_FULL, say_empty
 from ..kit.sizes import draw_bars, plain_decades
-from ..kit.verdicts import sentences, verdict_words
+from ..kit.verdicts import row_of, sentences, verdict_words
 from ..kit.words import TOWARDS, force_label, opening, percent, place, pressure_label, short
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
@@ -36,7 +37,7 @@ ORDER = 70
 
 #: What the paper says of the stages of sliding (:mod:`statements.judge`).
 STAGES = {
-    "compliance_rises_at_first": "rising as v^e",
+    "compliance_rises_at_first": "rising as v^x",
     "curves_overlap": "the same",
     "compliance_rises_again": "rising again on average",
 }
@@ -60,7 +61,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     shown = dilatancy_loads(curves["normal_force"].values, settings, specimen)
     closures = _closure_table(curves, shown)
 
-    figure = Figure(figsize=(WIDTH, 7.0))
+    figure = Figure(figsize=(WIDTH, 7.3))
     correlation, closed, compliance = figure.subplots(
         3, 1, sharex=True, height_ratios=[1.1, 1, 1.2]
     )
@@ -74,29 +75,43 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for upper in (correlation, closed):
         upper.set_xlabel("")
     force = group(atlas, "statements", name).attrs["force"]
-    stages = _stages(atlas, name, joint, direction)
+    stages = _stages(atlas, name, _ends_of_correlation(joint, direction), curves["offset"].values)
     if np.isfinite(closures["interface_compliance_mm_per_MPa"]).any():
         _number_stages(compliance, stages)
     columns = [entries(correlation), entries(compliance), *_judged(stages, force)]
     legends_below(figure, *columns, columnspacing=1.5)
     headline(figure, settings["label"], place(direction))
     caption = sentences(
-        _caption(direction, joint), _stage_words([text for text, *_ in stages], force)
+        _caption(direction, joint, brief=bool(stages)),
+        _stage_words([text for text, *_ in stages], force),
     )
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
 
-def _stages(atlas, name, joint, direction):
+def _stages(atlas, name, ends, offsets):
     """What the paper says of each stage with its verdict, and from which to which offset it is."""
-    length, uncorrelated = _ends_of_correlation(joint, direction)
-    ends = ((-np.inf, length), (length, uncorrelated), (uncorrelated, np.inf))
+    length, uncorrelated = ends
+    bounds = ((-np.inf, length), (length, uncorrelated), (uncorrelated, np.inf))
+    whys = _limits(bool(((offsets > length) & (offsets < uncorrelated)).any()))
     found = []
-    for (statement, words), (first, last) in zip(STAGES.items(), ends, strict=True):
-        verdict = verdict_words(atlas, name, statement)
-        if verdict:
-            found.append((f"{words}: {verdict}", first, last))
+    for (statement, words), (first, last) in zip(STAGES.items(), bounds, strict=True):
+        row = row_of(atlas, "statements", name, statement)
+        if row is not None:
+            why = "" if str(row["verdict"].item()) == UNDETERMINED else whys.get(statement, "")
+            verdict = verdict_words(atlas, name, statement, why=why)
+            # 1/e stands in the same figure: the exponent has another letter than in the table.
+            found.append((f"{words}: {verdict.replace('(e = ', '(x = ')}", first, last))
     return found
+
+
+def _limits(between):
+    """What decides about the later stages; whether offsets were solved in the second."""
+    before = "2" if between else "end of 1"
+    return {
+        "curves_overlap": f"limit {percent(NEARLY)}, in part {percent(LOOSELY)}",
+        "compliance_rises_again": f"mean of stage 3 over {before}, limit {percent(NEARLY, '+')}",
+    }
 
 
 def _judged(stages, force):
@@ -105,8 +120,10 @@ def _judged(stages, force):
         return []
     words = [f"(c): the paper's stages, judged at $F$ = {force_label(force)}"]
     for n, (text, *_) in enumerate(stages, 1):
-        lines = textwrap.wrap(f"{n}: {text}", _LINE, subsequent_indent="    ")
-        words += [line.replace("v^e", "$v^e$") for line in lines]
+        lines = textwrap.wrap(
+            f"{n}: {text}".replace(" %", "\u00a0%"), _LINE, subsequent_indent="    "
+        )
+        words += [line.replace("v^x", "$v^x$") for line in lines]
     return [[heading(line) for line in words]]
 
 
@@ -298,20 +315,21 @@ def _ends_of_correlation(joint, direction):
     return float(along["correlation_length"]), float(along["uncorrelated_offset"])
 
 
-def _caption(direction, joint):
-    ends = _ends_of_correlation(joint, direction)
-    return (
-        f"{opening('Figs. 4 and 5')} Correlation of the faces "
-        f"({_correlation_words(ends, np.isfinite(float(joint['correlation_limit'])))}), closure "
-        "and compliance."
-    )
+def _caption(direction, joint, *, brief):
+    """What is drawn; where the correlation falls, as the key says too, unless it is to be brief."""
+    start = f"{opening('Figs. 4 and 5')} Correlation of the faces"
+    if brief:
+        return f"{start}, closure and compliance."
+    known = np.isfinite(float(joint["correlation_limit"]))
+    fall = _correlation_words(_ends_of_correlation(joint, direction), known)
+    return f"{start} ({fall}), closure and compliance."
 
 
 def _stage_words(stages, force):
     """What the paper says of the compliance as v grows, and the verdicts that were asked for."""
     if not stages:
         return ""
-    return f"The paper's compliance at {force_label(force)}, {'; '.join(stages)}."
+    return f"The paper's compliance at {force_label(force)}, by stages: {'; '.join(stages)}."
 
 
 def _correlation_words(ends, decidable):

@@ -41,6 +41,8 @@ _DIMENSIONS = (("boxes", "delta_sigma"), ("pairs", "correlation_dimension"))
 _LINE: dict[str, Any] = {"color": "0.6", "ls": (0, (1, 1)), "lw": 1.2, "zorder": 0}
 _PLANE: dict[str, Any] = {"color": "0.6", "ls": "-", "lw": 1.2, "zorder": 0}
 _EVEN: dict[str, Any] = {"color": "0.6", "ls": (0, (6, 2)), "lw": 1.2, "zorder": 0}
+#: Opacity of intervals.
+_FAINT = 0.15
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -60,7 +62,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_lacunarity(lacunarity, table, forces[mapped])
     _draw_spectrum(spectrum, table, forces[mapped])
     handles, _ = lacunarity.get_legend_handles_labels()
-    mapped_entries = _key(measures.isel(normal_force=mapped), forces[mapped])
+    mapped_entries = _key(measures.isel(normal_force=mapped), table)
     legends_below(figure, handles, mapped_entries[:3], mapped_entries[3:])
     where = place(str(measures["direction"].item()), float(measures["offset"]))
     headline(figure, settings["label"], where)
@@ -125,10 +127,12 @@ def _draw_lacunarity(axes, table, mapped):
     for force, points, style in _styles(table, "lacunarity"):
         r = points["box_side_mm"]
         label = f"$F$ = {force_label(force)}"
+        if not ((table["kind"] == "spectrum") & (table["force_N"] == force)).any():
+            label += ": no $D_q$"
         axes.loglog(r, points["value"], ms=3, lw=0.8, label=label, **style)
         if force == mapped:
             low, high = points["low"].clip(lower=1), points["high"]
-            axes.fill_between(r, low, high, color=style["color"], alpha=0.15, lw=0)
+            axes.fill_between(r, low, high, color=style["color"], alpha=_FAINT, lw=0)
     axes.axhline(1, **_EVEN)
     most = table.loc[table["kind"] == "lacunarity", "value"].max()
     if np.isfinite(most):
@@ -147,20 +151,24 @@ def _draw_spectrum(axes, table, mapped):
         axes.plot(points["order_q"], points["value"], ms=3, lw=0.8, **style)
         if force == mapped:
             low, high = points["low"], points["high"]
-            axes.fill_between(points["order_q"], low, high, color=style["color"], alpha=0.15, lw=0)
+            axes.fill_between(
+                points["order_q"], low, high, color=style["color"], alpha=_FAINT, lw=0
+            )
     axes.axhline(2, **_PLANE)
     axes.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")
     letter(axes, "c", "pressure: level if monofractal")
 
 
-def _key(state, mapped):
+def _key(state, table):
     """What is no curve of a load: grey lines, shaded intervals, and dimensions in words."""
+    mapped = float(state["normal_force"])
+    colours = {force: style["color"] for force, _, style in _styles(table, "lacunarity")}
     greys = ((_LINE, "(a) 1: as of a line"), (_PLANE, "(a), (c) 2: as of a filled plane"))
     entries = [Line2D([], [], label=label, **style) for style, label in greys]
     entries.append(Line2D([], [], label="(b) 1: evenly filled", **_EVEN))
-    entries.append(
-        Patch(color="0.5", alpha=0.3, lw=0, label=f"95 % interval, {force_label(mapped)} alone")
-    )
+    # In the colour drawn; without a domain there nothing is.
+    shade = {"color": colours.get(mapped, "0.5"), "alpha": _FAINT, "lw": 0}
+    entries.append(Patch(label=f"95 % interval, {force_label(mapped)} alone", **shade))
     return entries + [
         heading(rf"$\Delta_\sigma$ by {words}: {_interval(state, key)}")
         for words, key in _DIMENSIONS
@@ -206,5 +214,5 @@ def _law(state, table):
         return "Too few local slopes to test for one power law."
     return (
         f"Slopes of one contact domain range from {inside.min():.2f} to {inside.max():.2f} over "
-        "the box side, where a fractal has one."
+        "the box side; a fractal's would all be equal."
     )

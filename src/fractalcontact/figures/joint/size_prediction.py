@@ -144,7 +144,7 @@ def _load_said(test):
 def _caption(test, load):
     words = f"{SUPPLEMENTARY} Predictions for the whole window from parts, over what is solved."
     if load is None:
-        return f"{words} No load lets all of them predict closure and contact area."
+        return f"{words} {_drawn_words(test)}"
     here = test.isel(normal_force=load).sel(predictor=list(PREDICTORS))
     beyond = ", beyond the study's loads," if bool(here["beyond_study"]) else ""
     pressure = short(float(here["nominal_pressure"]))
@@ -153,6 +153,24 @@ def _caption(test, load):
         f"{words} At {pressure} MPa{beyond} (dotted) predictions of closure are, best and worst, "
         f"{closure}; of contact area {area}."
     )
+
+
+def _drawn_words(test):
+    """Range of what is drawn where no load has every prediction: within the study's, else all."""
+    of_study = test.where(~test["beyond_study"].astype(bool))
+    errors = [f"{quantity}_error" for quantity in ("closure", "area")]
+    inside = any(np.isfinite(of_study[error]).any() for error in errors)
+    where = "Within the study's loads" if inside else "Beyond the study's loads"
+    found = []
+    for error, words in zip(errors, ("closure", "contact area"), strict=True):
+        ratios = (1 + (of_study if inside else test)[error].sel(predictor=list(PREDICTORS))).values
+        known = ratios[np.isfinite(ratios)]
+        if known.size:
+            ends = " to ".join(dict.fromkeys(short(end, 2) for end in (known.min(), known.max())))
+            found.append(f"{ends} times the solved {words}")
+    if not found:
+        return "No load lets any of them predict closure or contact area."
+    return f"{where} those drawn give {' and '.join(found)}; no load has all of them."
 
 
 def _range_words(ratios):

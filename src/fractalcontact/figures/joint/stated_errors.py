@@ -41,6 +41,8 @@ ERRORS = (
 )
 #: What is smaller is drawn here.
 LEAST = 1e-6
+#: Room at the right for a number beside the last point: a third of a decade.
+_ROOM = 10 ** (1 / 3)
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -92,17 +94,30 @@ def _draw_errors(axes, errors, forces):
     axes.set_ymargin(0.12)
     axes.set_ylabel("largest error (% of the value)")
     axes.set_title(f"at the bottom: errors of {100 * LEAST:g} % and less", loc="left")
+    _write_ends(axes, errors, size)
+
+
+def _write_ends(axes, errors, size):
+    """The largest error by the solver, and both ends of those by the spacing, beside their points.
+
+    They stand above their points, that by the solver at the heaviest load at the right of its own:
+    there those by the spacing may be near.
+    """
     solver, spacing = _by_source(errors)
-    quoted = [(solver["largest"].idxmax(), 6)] if len(solver) else []
+    quoted = {}
+    if len(solver):
+        worst = solver["largest"].idxmax()
+        quoted[worst] = bool(solver.loc[worst, "force_N"] == solver["force_N"].max())
     if len(spacing):
-        quoted.append((spacing["largest"].idxmin(), -12))
-        quoted.append((spacing["largest"].idxmax(), 6))
-    for number, above in dict(quoted).items():
+        quoted |= {spacing["largest"].idxmin(): False, spacing["largest"].idxmax(): False}
+    for number, beside in quoted.items():
         row = errors.loc[number]
         at = row["force_N"] / size, 100 * max(row["largest"], LEAST)
-        words = percent(row["largest"])
-        beside = {"xytext": (0, above), "textcoords": "offset points", "ha": "center"}
-        axes.annotate(words, at, bbox={"fc": "white", "ec": "none", "pad": 0.5}, **beside)
+        where = {"xytext": (6, 0) if beside else (0, 6), "textcoords": "offset points"}
+        where |= {"ha": "left", "va": "center"} if beside else {"ha": "center"}
+        axes.annotate(percent(row["largest"]), at, **where)
+    low, high = axes.get_xlim()
+    axes.set_xlim(low, high * _ROOM)
 
 
 def _by_source(errors):

@@ -8,11 +8,8 @@ from xarray import DataTree
 
 from ...core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ...mechanics.closure_laws import (
-    GOOD_FIT,
     HYPERBOLA,
-    NEITHER,
     SEMI_LOGARITHMIC,
-    UNDECIDED,
 )
 from ...surface.specimen import nominal_area
 from ..kit.drawing import (
@@ -42,6 +39,7 @@ from ..kit.words import (
     place,
     short,
 )
+from ._closure_words import all_offsets, laws_words, linear_words, no_law
 from ._stiffness import draw_stiffness, stiffness_table, stiffness_words
 
 TITLE = "Figs. 4 and 5: closure curves with their laws, real contact area, and stiffness"
@@ -57,14 +55,6 @@ _LEGEND = "(a), (b): rms misfit of logarithmic law, of hyperbola; $k_{ni}$ (MPa/
 #: One line for each law, whatever its curve and panel; beyond the loads fitted; of the area.
 _OF_LAW = {SEMI_LOGARITHMIC: "-", HYPERBOLA: (0, (4, 2))}
 _BEYOND, _OF_AREA = ":", "-."
-
-#: How captions name what curves follow.
-_FOLLOWED = {
-    SEMI_LOGARITHMIC: "the logarithmic law",
-    HYPERBOLA: "the hyperbola",
-    UNDECIDED: "both",
-    NEITHER: f"neither (misfits above {percent(GOOD_FIT)})",
-}
 
 #: Marker of states of too few nodes: open, and smaller than the others.
 _OPEN = {"mfc": "none", "ms": 3, "mew": 0.6}
@@ -90,16 +80,18 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_area(panels["c"], curves, drawn, direction, laws, area)
     draw_stiffness(panels["d"], stiffness)
     area_line = [_line(_OF_AREA, "power law")] if _has_lines(panels["c"]) else []
+    count = curves.sizes["offset"]
+    of_laws, of_areas = all_offsets(curves, laws) if len(drawn) < count else ([], [])
     legends_below(
         figure,
-        _keyed(_LEGEND, panels["a"], _line_entries(panels)),
+        [*_keyed(_LEGEND, panels["a"], _line_entries(panels)), *of_laws],
         [
             *_keyed(r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]", panels["c"], area_line),
             *_hollow_entries(panels),
+            *of_areas,
         ],
     )
-    count = curves.sizes["offset"]
-    some = f", {len(drawn)} of {count} offsets solved" if len(drawn) < count else ""
+    some = f", {len(drawn)} of the {count} offsets drawn" if len(drawn) < count else ""
     letter(panels["a"], "a", f"closure{some}")
     letter(panels["b"], "b", f"light loads{_initial_words(curves)}")
     letter(panels["c"], "c", "contact area")
@@ -108,7 +100,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = sentences(
         _caption(curves, stiffness),
         claim(atlas, name, "hyperbola", "closure_is_hyperbolic"),
-        claim(atlas, name, "A_r ~ F", "area_is_linear"),
+        claim(atlas, name, "A_r ~ F", "area_is_linear", why=linear_words(laws)),
     )
     table = [_table(curves, drawn, laws), stiffness.assign(panel="d")]
     return Drawing(figure, pd.concat(table, ignore_index=True), caption)
@@ -197,14 +189,10 @@ def _law_words(curve):
     """Misfits of both laws, and k_ni with its interval, as the legend's heading says."""
     misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
     if not np.isfinite(misfits).any():
-        return f"no fit: {_no_law(curve)}"
+        return f"no fit: {no_law(curve)}"
     ends = [float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")]
     known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
     return f"{', '.join(known)}; {estimate(*ends)}"
-
-
-def _no_law(curve):
-    return str(curve["closure_law_reason"].values)
 
 
 def _line(style, label):
@@ -340,7 +328,7 @@ def _table(curves, drawn, laws):
 def _caption(curves, stiffness):
     return (
         f"{opening('Figs. 4 and 5')} Closure, contact area, stiffness. "
-        f"{_laws_words(curves)} {stiffness_words(stiffness)}"
+        f"{laws_words(curves)} {stiffness_words(stiffness)}"
     )
 
 
@@ -355,18 +343,3 @@ def _initial_words(curves):
     less = k_ni * curves["interface_closure"] > curves["nominal_pressure"]
     softer = int(less.any("normal_force").sum())
     return f": softer than $k_{{ni}}$ at {softer} of {fitted} offsets" if softer else ""
-
-
-def _laws_words(curves):
-    """Which law the curves follow, beside the paper's hyperbola."""
-    misfits = [curves[f"{name}_misfit"].values for name in ("hyperbola", "semi_logarithmic")]
-    fitted = np.isfinite(misfits[1])
-    if not fitted.any():
-        return f"No law could be fitted ({_no_law(curves.isel(offset=-1))})."
-    laws = curves["closure_law"].values.astype(str)[fitted]
-    named = {words: int((laws == law).sum()) for law, words in _FOLLOWED.items()}
-    if len(laws) == 1:
-        followed = next(words for words, n in named.items() if n)
-        return f"The curve follows {followed.replace('neither', 'neither law')}."
-    counts = ", ".join(f"{n} {words}" for words, n in named.items() if n)
-    return f"Of {len(laws)} curves {counts.replace(' ', ' follow ', 1)}."

@@ -9,13 +9,14 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.ranges import within
-from ...domain.box_dimension import is_determined, local_slopes, spans
+from ...domain.box_dimension import WIDEST, is_determined, local_slopes, spans
 from ...domain.count_law import LawTerms, law_count
+from ...statements.findings import LOOSELY, NEARLY
 from ..kit.domains import Loading
-from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, headline, label_short_span, letter
+from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, heading, headline, label_short_span, letter
 from ..kit.maps import draw_domain
 from ..kit.verdicts import claim, sentences
-from ..kit.words import force_label, interval, opening, undetermined
+from ..kit.words import force_label, interval, opening, short, undetermined
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
@@ -51,13 +52,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     if larger:
         left.set_title("nodes enlarged", loc="right", fontsize=7)
     handles, _ = middle.get_legend_handles_labels()
+    if np.isfinite(table["law_count"]).any():
+        handles.append(heading(_law_form(counts)))
     handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) 95 % of both fits"))
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
+    why = _width_words(counts)
     caption = sentences(
         _caption(loading, i, counts),
-        claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=False),
+        claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=not why, why=why),
         claim(atlas, name, "fractal set", "domains_are_fractal"),
     )
     return Drawing(figure, table, caption)
@@ -181,7 +185,9 @@ def _draw_slopes(axes, table, counts):
     axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    letter(axes, "c", "local slopes")
+    slopes = table["local_slope"].dropna()
+    ends = f": {slopes.min():.1f} to {slopes.max():.1f}" if len(slopes) > 1 else ""
+    letter(axes, "c", f"local slopes{ends}")
 
 
 def _caption(loading, i, counts):
@@ -191,6 +197,28 @@ def _caption(loading, i, counts):
     if reason:
         return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
     return f"{start}Delta_sigma is {loading.estimates[1].text(i)}, the ordinary slope {ordinary}."
+
+
+def _width_words(counts):
+    """How wide the interval of Delta_sigma is, and beside which limit: it decides on one law."""
+    low, high = (counts[f"delta_sigma_{end}"].item() for end in ("low", "high"))
+    if str(counts["reason"].item()) or not np.isfinite(high - low):
+        return ""
+    limits = (2 * NEARLY, 2 * LOOSELY, WIDEST)
+    # The widest that is exceeded decides; else the narrowest, which is kept to.
+    limit = max((one for one in limits if high - low > one), default=limits[0])
+    return f"interval of Delta_sigma {high - low:.2g} wide, limit {limit:g}"
+
+
+def _law_form(counts):
+    """The count law as a formula: its curve in (b), its level in (c)."""
+    terms = LawTerms(*(counts[f"law_{name}"].item() for name in LawTerms._fields))
+    power, node = r"r^{-\Delta_\sigma}", ""
+    if terms.node_width:
+        node = f"; $c$ = {short(terms.node_width)} mm"
+        power = r"(r-c)^{2-\Delta_\sigma}/r^2"
+    outline = r"\,[1+\ldots]" if terms.outline or terms.outline_square else ""
+    return rf"(b) $N \sim {power}{outline}$, (c) level{node}"
 
 
 def _by_law(counts):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from xarray import DataTree
@@ -46,7 +47,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(left), entries(right))
     headline(figure, *loading.title)
     table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
-    falls = claim(atlas, name, "power-law fall of A_r", "area_is_lacunar")
+    why = _why(loading.estimates[0], i)
+    paper = "power-law fall of A_r", "area_is_lacunar"
+    falls = claim(atlas, name, *paper, numbers=not why, why=why)
     return Drawing(figure, table, _caption(loading, i, falls))
 
 
@@ -74,7 +77,7 @@ def _area_table(loading):
 
 
 def _draw_areas(axes, loading, map_load, table):
-    by_area = loading.estimates[0]
+    by_area, thin = loading.estimates[0], False
     for n, i in enumerate(loading.spread_loads(_MOST_LOADS, map_load)):
         force = loading.forces[i]
         rows = table[table["load_N"] == force]
@@ -88,6 +91,7 @@ def _draw_areas(axes, loading, map_load, table):
         full = axes.plot(used["spacing_mm"], used["area_corrected_mm2"], **style)
         (hollow if used.empty else full)[0].set_label(label)
         weak = {} if by_area.determined[i] else WEAK
+        thin |= bool(weak) and np.isfinite(used["fitted_area_mm2"]).any()
         axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=COLOURS[n], **weak)
     spacings = loading.scaling["spacing"].sortby(RESOLUTION).values
     axes.set(xscale="log", yscale="log")
@@ -99,6 +103,9 @@ def _draw_areas(axes, loading, map_load, table):
         [], [], "o", color="0.3", ls="-", ms=4, label="filled: corrected for the edge, fitted"
     )
     axes.plot([], [], "o", color="0.3", mfc="none", mew=0.6, ms=4, label="hollow: raw, not fitted")
+    if thin:
+        label = r"thin line: $\Delta_\sigma$ undetermined"
+        axes.plot([], [], color="0.3", label=label, **WEAK)
     letter(axes, "a", r"contact area, $A_r \sim s^{2-\Delta_\sigma}$ [95 %]")
 
 
@@ -120,10 +127,12 @@ def _draw_pressures(axes, loading, i, table):
     for estimate in loading.estimates:
         rows = table[table["estimator"] == estimate.label]
         ends = rows["sigma_0_low_MPa"], rows["sigma_0_high_MPa"]
-        faint = 0.15 if estimate.determined[i] else 0.06
-        axes.fill_between(rows["b_mm"], *ends, color=estimate.style["color"], alpha=faint, lw=0)
-    if any(np.isfinite(estimate.value[i]) for estimate in loading.estimates):
-        axes.plot([], [], lw=5, color="0.85", label="shaded: 95 % interval, of both")
+        colour, faint = estimate.style["color"], 0.2 if estimate.determined[i] else 0.1
+        # The edges show whose band it is where both lie on each other.
+        style = {"fc": to_rgba(colour, faint), "ec": to_rgba(colour, 0.5), "lw": 0.5}
+        style["ls"] = estimate.style["linestyle"]
+        if np.isfinite(ends).any():
+            axes.fill_between(rows["b_mm"], *ends, label=f"95 %, {estimate.symbol}", **style)
     letter(axes, "b", f"eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
 
 
@@ -135,6 +144,18 @@ def _caption(loading, i, falls):
         f"{_determined_words(loading, i)}, {by_box.text(i)} by box counting. "
         f"{disagreement(loading.scaling.isel(normal_force=i))}"
     )
+
+
+def _why(by_area, i):
+    """What decides whether A_r falls: where the interval of the exponent lies, however wide."""
+    low, high = by_area.low[i], by_area.high[i]
+    if by_area.reason[i] or not np.isfinite([low, high]).all():
+        return ""
+    if low <= 2 <= high:
+        return "the interval of Delta_sigma includes 2"
+    side, way = ("below", "falls as s does") if high < 2 else ("above", "grows as s falls")
+    words = f"the whole interval of Delta_sigma lies {side} 2: A_r {way}"
+    return words if by_area.determined[i] else f"{words}; how fast is undetermined"
 
 
 def _determined_words(loading, i):
