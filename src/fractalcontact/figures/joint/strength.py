@@ -43,17 +43,19 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     strength = group(atlas, "strength", name).sel(contact_direction=direction)
     shown = dilatancy_loads(strength["normal_force"].values, settings, specimen)
 
-    figure = Figure(figsize=(WIDTH, 5.6))
+    figure = Figure(figsize=(WIDTH, 6.2))
     (angles, curves), (summary, legends) = figure.subplots(2, 2)
     _draw_angles(angles, strength, shown)
     _draw_strength(curves, strength, shown)
     _draw_summary(summary, strength)
     legends.axis("off")
     shared = [*entries(angles), *entries(curves), *map(heading, _residual_note(strength, shown))]
-    legends.add_artist(legends.legend(handles=shared, loc="upper left", title="(a), (b)"))
-    if entries(summary):
-        of_peaks = [*entries(summary), *map(heading, _scan_words(strength))]
-        legends.legend(handles=of_peaks, loc="lower left", title="(c)")
+    legends.add_artist(
+        legends.legend(handles=shared, loc="upper left", title="(a), (b)", labelspacing=_CLOSE)
+    )
+    of_peaks = [*entries(summary), *map(heading, _scan_words(strength))]
+    if of_peaks:
+        legends.legend(handles=of_peaks, loc="lower left", title="(c)", labelspacing=_CLOSE)
     headline(figure, settings["label"], place(direction))
     table = pd.concat([_table(strength, shown), _summary_table(strength)], ignore_index=True)
     return Drawing(figure, table, _caption(strength, shown))
@@ -146,6 +148,8 @@ def _peak_held(strength):
     return _held_at(strength)[at.argmin(axis=0), np.arange(peak.size)] & np.isfinite(peak)
 
 
+#: Between the lines of the legends, in letters.
+_CLOSE = 0.25
 #: Of strengths whose angle was held at its bound.
 _NO_RESULT = f"angle held at {LARGEST_FRICTION_ANGLE:g}°, no result"
 

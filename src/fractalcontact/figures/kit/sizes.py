@@ -7,6 +7,7 @@ from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from xarray import DataTree
 
+from ...core.fitting import FEWEST_POINTS
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from .empty import MARK
@@ -120,10 +121,17 @@ def points_held(laws: xr.Dataset, share: int) -> tuple[int, int]:
 
 
 def cases_words(laws: xr.Dataset, share: int) -> str:
-    """What a verdict on strength counts as cases: pressures at all v/b, one of which is drawn."""
-    others = [share_words(laws, i) for i in range(laws.sizes["share"]) if i != share]
-    beside = f"; also at $v/b$ = {', '.join(others)}, not drawn" if others else ""
-    return f"cases: {laws.sizes['normal_force']} pressures{beside}"
+    """What a verdict on strength counts as cases, where it does; empty where points are counted.
+
+    A case is a pressure at a v/b that enough sizes have.
+    """
+    held, drawn = points_held(laws, share)
+    sizes = np.isfinite(laws["similar_strength"]).sum("part")
+    judged = np.flatnonzero((sizes >= FEWEST_POINTS).any("normal_force").values)
+    if 2 * held > drawn or not len(judged):
+        return ""
+    places = ", ".join(share_words(laws, i) for i in judged)
+    return f"cases: every pressure at $v/b$ = {places}; drawn: {share_words(laws, share)}"
 
 
 def nothing_in(axes: Axes, why: str) -> None:

@@ -89,7 +89,8 @@ def _draw_strength(axes, laws, share):
         logarithmic(axes, laws["similar_strength"].values[share])
         if held.any():
             axes.plot([], [], "o", color="0.4", mfc="white", label=HELD)
-        axes.plot([], [], " ", label=cases_words(laws, share))
+        if cases := cases_words(laws, share):
+            axes.plot([], [], " ", label=cases)
     else:
         nothing_in(axes, NO_STRENGTH)
     if np.isfinite(laws["barton_strength"]).any():

@@ -100,10 +100,8 @@ def _draw_angle(axes, laws, share, drawn, beyond):
     if np.isfinite(laws["barton_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
     axes.plot([], [], " ", label=SHIFTED)
-    if drawn:
-        axes.plot([], [], " ", label=cases_words(laws, share))
-    if beyond:
-        axes.plot([], [], " ", label=beyond)
+    for words in filter(None, (drawn and cases_words(laws, share), beyond)):
+        axes.plot([], [], " ", label=words)
     size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)
     axes.set_ylabel(r"limit slope angle $\arctan(\tau/\sigma_0)$ (degrees)")

@@ -37,7 +37,7 @@ _MOST_LOADS = 6
 #: Bars of the n-th load stand the n-th power of this factor of b beyond the ends of its line.
 _BESIDE = 1.04
 #: Letters of a line above a panel.
-_TITLE = 60
+_TITLE = 58
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -67,7 +67,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _numbers(atlas, name, estimate):
     """The numbers that decide about the rise by one estimate, in lines of a panel's title."""
     row = row_of(atlas, "statements", name, RISES[estimate.key])
-    return [] if row is None else textwrap.wrap(str(row["numbers"].item()), _TITLE)
+    if row is None:
+        return []
+    # As many nodes as touch: the legend of Fig. 12 has the room to say so.
+    numbers = str(row["numbers"].item()).replace("as many random", "random")
+    return textwrap.wrap(numbers.replace(" of F", " of $F$"), _TITLE)
 
 
 def _draw_lines(axes, loading, estimate, shown, table):
