@@ -121,7 +121,8 @@ def _coincide(own, kind) -> bool:
 
 def _of_maps(here) -> str:
     """Entry of the legend for the load whose totals stand above the panels."""
-    return f"load of the totals above the panels: {force_label(float(here['normal_force']))}"
+    force = force_label(float(here["normal_force"]))
+    return f"load of the totals above the panels\n(of this surface, of its kind): {force}"
 
 
 def _table(budget) -> pd.DataFrame:
