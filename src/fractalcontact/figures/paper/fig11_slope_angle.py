@@ -126,7 +126,8 @@ def _draw_ratio(axes, laws, share, drawn):
         axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     slope = QUOTED_DELTA - 2
     label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work of the same school"
-    axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
+    if drawn:
+        axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
     axes.plot([], [], " ", label="bars: 95 % intervals; none of the whole window")
     size_axis(axes, b, "joint")
     axes.set_yscale("log")
