@@ -39,7 +39,7 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     return Finding(
         share(better, int(decided.sum())),
         f"the better law at {better} of {decided.sum()} offsets",
-        f"median rms misfit {misfits} of w_int = a + b ln sigma_0",
+        f"median rms misfit {misfits} of w_int = c + d ln sigma_0",
     )
 
 

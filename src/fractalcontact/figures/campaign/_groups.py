@@ -107,6 +107,13 @@ def means_in_words(comparison: xr.Dataset, name: str, state: xr.Dataset, unit: s
     return "; ".join(found[:MOST_NAMED]) + (f"; {more} more groups" if more > 0 else "")
 
 
+def values_range(values: np.ndarray, unit: str = "") -> str:
+    """Least and largest of values as the captions round them; empty where none is known."""
+    known = values[np.isfinite(values)]
+    ends = dict.fromkeys(short(end) for end in (known.min(), known.max())) if known.size else ()
+    return " to ".join(ends) + unit if ends else ""
+
+
 def range_in_words(values: np.ndarray, labels: Sequence[str], unit: str = "") -> str:
     """Least and largest of some values with their specimens: "2.13 (one) to 2.51 (other)"."""
     known = np.flatnonzero(np.isfinite(values))

@@ -20,6 +20,7 @@ from ._groups import (
     range_in_words,
     settle_axis,
     specimen_labels,
+    values_range,
 )
 
 TITLE = "Specimens and groups compared: surface, stiffness, contact, dilatancy and size effect"
@@ -33,6 +34,8 @@ MOST_BARS = 40
 #: Half the width that the specimens of a group take, of the distance between groups; where the
 #: mean stands.
 HALF_WIDTH, MEAN_AT = 0.25, 0.38
+#: Quantities whose ends the caption quotes, and their units there.
+_QUOTED = {"delta_g": "", "stiffness": " MPa/mm"}
 #: Letters of a line of a specimen's label along an axis.
 _LETTERS = 24
 
@@ -52,7 +55,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
             _draw_specimens(axes, name, values, specimen_labels(comparison, _LETTERS))
         else:
             _draw_strip(axes, name, values, at_load)
-        letter(axes, which, TITLES[name])
+        quoted = by_specimen and name in _QUOTED
+        ends = values_range(values[_column(name).format("")].values) if quoted else ""
+        letter(axes, which, "\n".join(filter(None, (TITLES[name], ends))))
     _draw_key(panels[-1], values, by_specimen=by_specimen)
     figure.suptitle(rf"under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE)
     return Drawing(figure, values, _caption(comparison, at_load, pressure, values))
@@ -145,7 +150,7 @@ def _caption(comparison, at_load, pressure, values):
         labels = comparison["label"].values
         ends = {
             name: range_in_words(values[_column(name).format("")].values, labels, unit)
-            for name, unit in (("delta_g", ""), ("stiffness", " MPa/mm"))
+            for name, unit in _QUOTED.items()
         }
         return (
             f"{SUPPLEMENTARY} {n} specimens under {pressure_label(pressure)}. Delta_g is "

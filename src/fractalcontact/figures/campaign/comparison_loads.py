@@ -31,6 +31,7 @@ from ._groups import (
     range_in_words,
     settle_axis,
     specimen_labels,
+    values_range,
 )
 
 TITLE = "Specimens and groups over the nominal pressure: stiffness, contact, dilatancy, size effect"
@@ -55,7 +56,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels = figure.subplots(2, 2, sharex=True)
     for axes, name, which in zip(panels.ravel(), UNDER_LOAD, "abcd", strict=True):
         (_draw_alone if by_specimen else _draw_quantity)(axes, comparison, name)
-        letter(axes, which, TITLES[name])
+        ends = ""
+        if by_specimen and name == "stiffness":
+            where = pressure_label(float(comparison["pressure"][common_pressure(comparison)]))
+            ends = values_range(_stiffness_quoted(comparison), f" MPa/mm at {where}")
+        letter(axes, which, f"{TITLES[name]}: {ends}" if ends else TITLES[name])
     for axes in panels[1]:
         axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
     shown = [*entries(panels[0, 0]), *_marks(comparison, by_specimen=by_specimen)]
@@ -146,17 +151,21 @@ def _table(comparison: xr.Dataset):
     return table.rename(columns={**renamed, "group_name": "group", "pressure": "pressure_MPa"})
 
 
+def _stiffness_quoted(comparison):
+    """Tangent stiffness of each specimen under the pressure of the comparison, (n,); or NaN."""
+    values = comparison[["stiffness", "nominal_pressure"]]
+    compared = compared_pressures(values["nominal_pressure"].values)
+    here = np.isclose(compared, float(comparison["pressure"][common_pressure(comparison)]))
+    at = np.where(here, values["stiffness"].values, np.nan)
+    return np.where(np.isfinite(at).any(axis=1), np.nansum(at, axis=1), np.nan)
+
+
 def _caption(comparison):
     number = common_pressure(comparison)
     state = comparison.isel(pressure=number)
     if alone(comparison):
-        values = comparison[["stiffness", "nominal_pressure"]]
-        compared = compared_pressures(values["nominal_pressure"].values)
-        here = np.isclose(compared, float(comparison["pressure"][number]))
-        at = np.where(here, values["stiffness"].values, np.nan)
-        found = np.where(np.isfinite(at).any(axis=1), np.nansum(at, axis=1), np.nan)
         where = pressure_label(float(comparison["pressure"][number]))
-        words = range_in_words(found, comparison["label"].values, " MPa/mm")
+        words = range_in_words(_stiffness_quoted(comparison), comparison["label"].values, " MPa/mm")
         return (
             f"{SUPPLEMENTARY} Each specimen at the offset of its contact maps (dilatancy: the "
             f"largest). Tangent stiffness under {where}: {words}."

@@ -72,16 +72,23 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
                 _draw_curves(axes, one, _OTHERS, colours=(i + 3, i + 3), of=f", $H$ = {hurst:g}")
             letter(axes, next(letters), str(name))
         others[0].set_ylabel("correlation dimension $D_2$ (1)")
-        legends_below(parts[0], handles[:2], [_bars(), *handles[2:]])
+        legends_below(parts[0], handles[:2], [_bars(test), *handles[2:]])
         legends_below(parts[1], entries(others[0]))
     else:
-        legends_below(figure, handles[:2], [_bars(), *handles[2:]])
+        legends_below(figure, handles[:2], [_bars(test), *handles[2:]])
     return Drawing(figure, _table(test), _caption(test))
 
 
-def _bars() -> Line2D:
+def _bars(test) -> Line2D:
     """What bars and places of points are."""
-    return heading(f"side by side; bars: {100 * PROBABILITY:.0f} % intervals")
+    drawn = f"{_count(test)} surfaces of each $H$, side by side"
+    return heading(f"{drawn}; bars: {100 * PROBABILITY:.0f} % intervals")
+
+
+def _count(test) -> int:
+    """Surfaces of each H."""
+    arm = test.isel(surface=(test["of_arm"] == "R").values)
+    return int(arm["number"].max()) + 1
 
 
 def _draw_curves(axes, one, curves, *, colours, of="") -> None:
@@ -112,14 +119,12 @@ def _table(test) -> pd.DataFrame:
 
 
 def _caption(test) -> str:
-    arm = test.isel(surface=(test["of_arm"] == "R").values)
-    count = int(arm["number"].max()) + 1
     low, high = (test[f"band_delta_{end}"] for end in ("low", "high"))
     known = ((high - low) <= WIDEST) & ((test["cut_delta_high"] - test["cut_delta_low"]) <= WIDEST)
     beyond = known & ((low > test["cut_delta_high"]) | (high < test["cut_delta_low"]))
     return (
-        f"{SUPPLEMENTARY} Correlation dimension of contact domains, {count} synthetic surfaces of "
-        f"each H. It differs from the bearing-area cut's beyond both intervals at "
+        f"{SUPPLEMENTARY} Correlation dimension of contact domains, {_count(test)} synthetic "
+        f"surfaces of each H. It differs from the bearing-area cut's beyond both intervals at "
         f"{int(beyond.sum())} of {known.size} states ({known.size - int(known.sum())} "
         f"undetermined, hollow), and rises with load from {_span(test, 0)} to {_span(test, -1)}."
     )
@@ -129,4 +134,4 @@ def _span(test, load: int) -> str:
     """Dimensions of the contact domains of all H under one load."""
     values = test["band_delta"].isel(reduced_pressure=load).values
     ends = (number(end) for end in (np.nanmin(values), np.nanmax(values)))
-    return " - ".join(dict.fromkeys(ends))
+    return "–".join(dict.fromkeys(ends))

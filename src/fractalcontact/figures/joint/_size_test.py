@@ -22,6 +22,8 @@ _COLOURS = {"area": COLOURS[1], "box": COLOURS[2]}
 #: Loads shown over the side b, and the marker of each in both panels; "." are all others.
 MOST_LOADS = 3
 _LOAD_MARKERS = ("o", "s", "^")
+#: Entry of a legend below that of a line.
+_BAND = "its 95 % interval"
 #: Verdicts that decide.
 DECIDED = (AGREES, FLATTER, STEEPER)
 #: Verdicts and their reasons: of the well-conditioned form, of eq. 6's own, and of both.
@@ -84,16 +86,22 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
             one[f"predicted_slope{end}"].values[known] for end in ("", "_low", "_high")
         )
         colour = _COLOURS[estimator]
-        axes.fill_between(pressure[known], low, high, color=colour, alpha=0.15, lw=0)
-        label = f"eq. 6, $\\Delta_\\sigma$ by {words}{'' if known.any() else ' (unknown)'}"
-        axes.plot(pressure[known], value, color=colour, ls=line, label=label)
+        absent = "" if known.any() else " (not known here)"
+        label = f"eq. 6, $\\Delta_\\sigma$ by {words}{absent}"
+        # A single value is no line, and its interval no band.
+        single = known.sum() == 1
+        mark = "_" if single else None
+        axes.plot(pressure[known], value, color=colour, ls=line, label=label, marker=mark)
+        if single:
+            axes.vlines(pressure[known], low, high, color=colour, lw=0.8, label=_BAND)
+        elif (np.isfinite(low) & np.isfinite(high)).any():
+            style: dict[str, Any] = {"color": colour, "alpha": 0.15, "lw": 0}
+            axes.fill_between(pressure[known], low, high, label=_BAND, **style)
         if decided:
             decides = deciding(one)
             any_decides |= bool(decides.any())
             predicted = one["predicted_slope"].values
             axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5)
-    style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.15, "lw": 0}
-    axes.fill_between([], [], [], label="bands and bars: 95 % intervals", **style)
     if any_decides:
         axes.plot([], [], "D", color="0.4", ms=5, label=_counted(test))
     elif decided:
@@ -141,6 +149,8 @@ def draw_measured(
         face = "white" if open_at is not None and open_at[i] else "k"
         axes.vlines(pressure[i], low[i], high[i], color="k", lw=0.8, alpha=alpha)
         axes.plot(pressure[i], value[i], marker, color="k", mfc=face, ms=5, alpha=alpha)
+    if np.isfinite(value).any():
+        axes.plot([], [], "|", color="k", ms=8, mew=0.8, label="measured, bars: 95 % intervals")
     if np.isfinite(value).sum() > len(shown):
         axes.plot([], [], ".", color="k", ms=5, label="measured, at other loads")
     if faint:

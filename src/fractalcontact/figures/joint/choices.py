@@ -17,6 +17,11 @@ ORDER = 220
 #: Columns of the table: where they begin, in fractions of the width, and the letters they hold.
 COLUMNS = {"choice": (0.0, 18), "value": (0.155, 32), "reason": (0.42, 56), "error": (0.86, 18)}
 HEADS = {"choice": "Choice", "value": "Value", "reason": "Reason", "error": "Largest error"}
+#: What an error of the plan is called: one is of another surface.
+_SPACINGS = {
+    "by the spacing": "by every second node (another surface)",
+    "by the grid": "by the grid (same surface)",
+}
 #: Of what the errors are that the caption compares, as the plan has it.
 _BY_SOLVER, _BY_GRID = "interface closure", "interface closure, by the grid"
 
@@ -54,6 +59,8 @@ def _table(plan):
     for i, choice in enumerate(plan["choice"].values):
         error = float(plan["error"][i])
         of = str(plan["error_of"].values[i])
+        for words, plain in _SPACINGS.items():
+            of = of.replace(words, plain)
         rows.append(
             {
                 "choice": str(choice),
@@ -82,6 +89,6 @@ def _error_words(plan):
         return ""
     limits = "grid" if grid > solver else "solver"
     return (
-        f" The {limits} limits the accuracy: the grid's error is up to {percent(grid)} of the "
-        f"closure, the solver's {percent(solver)}."
+        f" The {limits} limits the accuracy: the grid's error (same surface) is up to "
+        f"{percent(grid)} of the closure, the solver's {percent(solver)}."
     )

@@ -1,5 +1,7 @@
 """Error of each published quantity against load, split by source."""
 
+import re
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -62,6 +64,8 @@ TOTALS = {
 INTERPOLATED = "numerical, interpolated between loads"
 #: What is smaller is drawn here.
 LEAST = 1e-4
+#: Totals less than this factor apart lie on each other.
+_APART = 1.05
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -79,9 +83,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         size = force_axis(axes.xaxis, forces)
         axes.axvline(forces[load] / size, color="0.8", lw=3, zorder=0, label=_of_maps(here))
         _draw_errors(axes, table[table["quantity"] == quantity], size)
-        total = float(here["relative_total"].sel(quantity=quantity))
-        words = percent(total) if np.isfinite(total) else "not known"
-        letter(axes, "abcde"[i], f"{title}: total {words}")
+        letter(axes, "abcde"[i], f"{title}: {_totals_words(here.sel(quantity=quantity))}")
         axes.set_xscale("log")
         axes.set_yscale("log")
         if i % 2 == 0:
@@ -99,9 +101,28 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     return Drawing(figure, table, _caption(here))
 
 
+def _totals_words(of_quantity) -> str:
+    """Both totals at the load of the maps, for the title of a panel."""
+    own, kind = (float(of_quantity[key]) for key in TOTALS)
+    if not np.isfinite(own):
+        return "total not known"
+    if not np.isfinite(kind):
+        return f"total {percent(own)}"
+    if _coincide(own, kind):
+        ends = " to ".join(dict.fromkeys((percent(own), percent(kind))))
+        return f"both totals {ends}"
+    return f"totals {percent(own)}, {percent(kind)}"
+
+
+def _coincide(own, kind) -> bool:
+    """Whether the lines of both totals lie on each other."""
+    return bool(kind < _APART * own)
+
+
 def _of_maps(here) -> str:
     """Entry of the legend for the load whose totals stand above the panels."""
-    return f"load of the totals above the panels: {force_label(float(here['normal_force']))}"
+    force = force_label(float(here["normal_force"]))
+    return f"load of the totals above the panels\n(of this surface, of its kind): {force}"
 
 
 def _table(budget) -> pd.DataFrame:
@@ -171,6 +192,25 @@ def _draw_legend(axes, panels) -> None:
     )
 
 
+def _kind_words(here) -> str:
+    """In which panels the total is larger for any surface of its kind, and what adds most there."""
+    letters, added = [], []
+    for which, quantity in zip("abcde", QUANTITIES, strict=True):
+        of_quantity = here.sel(quantity=quantity)
+        own, kind = (float(of_quantity[key]) for key in TOTALS)
+        if np.isfinite([own, kind]).all() and not _coincide(own, kind):
+            errors = of_quantity["relative_error"].sel(source=["counting", "window"])
+            if np.isfinite(errors).any():
+                letters.append(f"({which})")
+                added.append(str(errors["source"].values[int(np.nanargmax(errors))]))
+    if not letters:
+        return ""
+    words = " or ".join(SOURCES[source] for source in dict.fromkeys(added))
+    run = "abcde".find(re.sub(r"\W", "", "".join(letters))) >= 0 and len(letters) > 2
+    where = f"{letters[0]} to {letters[-1]}" if run else ", ".join(letters)
+    return f"; larger in {where} for any surface of its kind ({words})"
+
+
 def _caption(here) -> str:
     """Sources of error, and the largest at the load of the maps."""
     parts = []
@@ -185,7 +225,7 @@ def _caption(here) -> str:
         parts.append(f"{words} {percent(total)} ({largest})")
     found = (
         f"Totals for this surface at {force_label(float(here['normal_force']))} and their largest "
-        f"sources: {', '.join(parts)}; larger for any of its kind (few contacts, other windows)."
+        f"sources: {', '.join(parts)}{_kind_words(here)}."
         if parts
         else "No total is known at the load of the maps."
     )

@@ -108,7 +108,8 @@ def _draw_slopes(axes, test, loads):
         axes.plot([], [], "o", color="k", mfc="white", ms=5, label=words)
     load_axis(axes, test)
     axes.set_ylabel(r"slope of $\log\sigma_0$ over $\log b$ (1)")
-    letter(axes, "b", "its slope (0: no size effect)")
+    none = "" if np.isfinite(test["slope"].values).any() else "; no measured slope"
+    letter(axes, "b", f"its slope (0: no size effect){none}")
 
 
 def _table(test):

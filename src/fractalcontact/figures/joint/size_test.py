@@ -100,7 +100,8 @@ def _draw_exponents(axes, test, loads):
     draw_measured(axes, test, "area_exponent", loads)
     load_axis(axes, test)
     axes.set_ylabel("exponent of $A_r/A_0$ over $b$ (1)")
-    letter(axes, "b", "its exponent (0: no size effect)")
+    none = "" if np.isfinite(test["area_exponent"].values).any() else "; none measured"
+    letter(axes, "b", f"its exponent (0: no size effect){none}")
 
 
 def _table(test):

@@ -56,7 +56,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     drawn = entries(axes)
     by_solver = [one for one in drawn if one.get_label() != ERRORS[-1][-1]]
     by_spacing = [one for one in drawn if one.get_label() == ERRORS[-1][-1]]
-    spacing = [heading("by the spacing"), *by_spacing] if by_spacing else []
+    spacing = [heading("by every second node: another surface"), *by_spacing] if by_spacing else []
     legends_below(figure, [heading("by the solver, bounds"), *by_solver], spacing)
     headline(figure, settings["label"], place(direction))
     return Drawing(figure, errors, _caption(errors))

@@ -31,7 +31,8 @@ SYMBOLS = (
     "Brackets: 95 % intervals. F normal force, sigma_0 nominal pressure, sigma_n real and sigma* "
     "fractal mean pressure, v offset, b side of the window, s spacing, w closure, A_r real and A_0 "
     "nominal contact area, Delta_g dimension of the surface, Delta_sigma of the contact domain, "
-    "h'_rms rms slope, e and m exponents, r2 squared correlation."
+    "h'_rms rms slope, sigma_z roughness, e and m exponents, c and d constants, r2 squared "
+    "correlation."
 )
 SYMBOL_LETTERS = 136
 
@@ -41,11 +42,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     label = settings_of(atlas, name)["label"]
     judged = group(atlas, "statements", name)
     table = pd.DataFrame({key: judged[key].values for key in DATA})
-    figure = draw_table(table, label)
+    figure = draw_table(table, label, float(judged.attrs["force"]))
     return Drawing(figure, table, _caption(judged, table))
 
 
-def draw_table(table: pd.DataFrame, label: str) -> Figure:
+def draw_table(table: pd.DataFrame, label: str, force: float) -> Figure:
     """Figure of a table of statements, one row each under a title.
 
     Parameters
@@ -54,11 +55,14 @@ def draw_table(table: pd.DataFrame, label: str) -> Figure:
         Columns :data:`DATA`.
     label : str
         The title.
+    force : float
+        Load at which what no row says otherwise is judged, N.
     """
     texts, lines = wrap_rows([_texts(row) for row in table.to_dict("records")], COLUMNS)
     title = label_in_lines(label, width=WIDTH)
     top = 1.3 * title.count("\n")
-    symbols = fill(SYMBOLS, SYMBOL_LETTERS)
+    judged_at = f"Judged at F = {force_label(force)} unless a row says otherwise. "
+    symbols = fill(judged_at + SYMBOLS, SYMBOL_LETTERS)
     below = symbols.count("\n") + 1.5
     height = LINE_HEIGHT * (top + sum(lines) + 4.4 + below)
     figure = Figure(figsize=(WIDTH, height))

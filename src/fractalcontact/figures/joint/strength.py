@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...mechanics.jrc import JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
     COLOURS,
@@ -16,6 +17,7 @@ from ..kit.drawing import (
     dilatancy_loads,
     entries,
     group,
+    heading,
     headline,
     letter,
     offset_axis,
@@ -41,16 +43,19 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     strength = group(atlas, "strength", name).sel(contact_direction=direction)
     shown = dilatancy_loads(strength["normal_force"].values, settings, specimen)
 
-    figure = Figure(figsize=(WIDTH, 5.6))
+    figure = Figure(figsize=(WIDTH, 6.2))
     (angles, curves), (summary, legends) = figure.subplots(2, 2)
     _draw_angles(angles, strength, shown)
     _draw_strength(curves, strength, shown)
     _draw_summary(summary, strength)
     legends.axis("off")
-    shared = [*entries(angles), *entries(curves)]
-    legends.add_artist(legends.legend(handles=shared, loc="upper left", title="(a), (b)"))
-    if entries(summary):
-        legends.legend(handles=entries(summary), loc="lower left", title="(c)")
+    shared = [*entries(angles), *entries(curves), *map(heading, _residual_note(strength, shown))]
+    legends.add_artist(
+        legends.legend(handles=shared, loc="upper left", title="(a), (b)", labelspacing=_CLOSE)
+    )
+    of_peaks = [*entries(summary), *map(heading, _scan_words(strength))]
+    if of_peaks:
+        legends.legend(handles=of_peaks, loc="lower left", title="(c)", labelspacing=_CLOSE)
     headline(figure, settings["label"], place(direction))
     table = pd.concat([_table(strength, shown), _summary_table(strength)], ignore_index=True)
     return Drawing(figure, table, _caption(strength, shown))
@@ -87,7 +92,7 @@ def _draw_strength(axes, strength, shown):
     v = strength["midpoint"].values
     if not np.isfinite(strength["shear_strength"]).any():
         axes.set_xlabel(_OFFSET)
-        nothing_in(axes, _NO_STRENGTH)
+        nothing_in(axes, _why_none(strength))
         return
     for n, j in enumerate(shown):
         tau, held = strength["shear_strength"].values[:, j], _held_at(strength)[:, j]
@@ -106,7 +111,7 @@ def _draw_summary(axes, strength):
     sigma = strength["nominal_pressure"].values
     known = {key: strength[key].values for key in _SUMMARY if np.isfinite(strength[key]).any()}
     if not known:
-        nothing_in(axes, _NO_STRENGTH)
+        nothing_in(axes, _why_none(strength))
         return
     for n, (key, words) in enumerate(_SUMMARY.items()):
         if key not in known:
@@ -143,10 +148,36 @@ def _peak_held(strength):
     return _held_at(strength)[at.argmin(axis=0), np.arange(peak.size)] & np.isfinite(peak)
 
 
+#: Between the lines of the legends, in letters.
+_CLOSE = 0.25
 #: Of strengths whose angle was held at its bound.
 _NO_RESULT = f"angle held at {LARGEST_FRICTION_ANGLE:g}°, no result"
 
-_NO_STRENGTH = "no strength: the study states no\nbasic friction angle, or one offset alone"
+
+def _why_none(strength):
+    """Why there is no strength at all."""
+    if not np.isfinite(float(strength["basic_friction_angle"])):
+        return "no strength: the study states\nno basic friction angle"
+    one = not strength.sizes["interval"]
+    return "no strength: one offset alone" if one else "no strength: no angle is known"
+
+
+def _residual_note(strength, shown):
+    """Entry of a legend: the residual angle under the largest of the loads shown, if known."""
+    one = strength.isel(normal_force=shown[-1])
+    if not strength.sizes["interval"] or not int(one["residual_n"]):
+        return []
+    pressure = short(one["nominal_pressure"])
+    return [rf"residual $i$ at {pressure} MPa:" + f"\n{_residual_words(one)}"]
+
+
+def _scan_words(strength):
+    """Entry of a legend: the JRC of the scan, if known."""
+    jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
+    step = float(strength["step"].sel(sampling=JRC_SAMPLING))
+    known = np.isfinite(jrc)
+    return [f"JRC of the scan: {short(jrc)} (steps of {short(step)} mm)"] if known else []
+
 
 #: What (c) shows: variable and words.
 _SUMMARY = {
@@ -215,34 +246,30 @@ def _summary_table(strength):
 
 def _caption(strength, shown):
     return (
-        f"{opening('section 5')} Dilatancy angle i, strength sigma_0 tan(phi_b + i), its peak "
-        "and residual. "
+        f"{opening('section 5')} Dilatancy angle i, strength sigma_0 tan(phi_b + i) with the "
+        "basic friction angle phi_b, its peak and residual. "
         f"{_strength_words(strength, shown)} {_barton_words(strength)}"
     )
 
 
 def _strength_words(strength, shown):
-    """The residual angle, after the warning that peaks held at their bound are no result."""
+    """The warning that peaks held at their bound are no result."""
     if not strength.sizes["interval"]:
         return "One offset alone: there is no angle."
     if not np.isfinite(float(strength["basic_friction_angle"])):
         peaks = [short(a) for a in strength["peak_dilatancy_angle"].values[shown]]
+        rigid = strength["rigid_dilatancy_angle"].values
+        beside = f" (rigid {short(np.nanmax(rigid))})" if np.isfinite(rigid).any() else ""
         return (
-            "The study states no basic friction angle, so there is no strength; the largest "
-            f"dilatancy angles are {', '.join(peaks)} degrees."
+            "The study states no basic friction angle, so there is no strength; the largest i "
+            f"under the pressures are {', '.join(peaks)} degrees{beside}."
         )
     held = strength["held_high"].values[shown].astype(int)
     n = strength.sizes["interval"]
-    words = "No angle had to be held."
-    if (held > 0).any():
-        words = (
-            f"{_counts(held)} of {n} angles were held at {LARGEST_FRICTION_ANGLE:g} degrees: no "
-            "result."
-        )
-    j = shown[-1]
-    pressure = short(strength["nominal_pressure"][j])
+    if not (held > 0).any():
+        return "No angle had to be held."
     return (
-        f"{words} Residual i at {pressure} MPa: {_residual_words(strength.isel(normal_force=j))}."
+        f"{_counts(held)} of {n} angles were held at {LARGEST_FRICTION_ANGLE:g} degrees: no result."
     )
 
 

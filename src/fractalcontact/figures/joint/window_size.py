@@ -89,9 +89,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         )
         for entry in (heading(words), *entries(axes))
     ]
+    fits = [laws[quantity.exponent].values[mapped] for quantity in (CLOSURE, COMPLIANCE)]
+    fit = Line2D([], [], color="0.4", label="line: fit (thin: undetermined)", lw=0.8)
+    lines = [fit] if np.isfinite(fits).any() else []
     handles += [
         Line2D([], [], ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW),
-        Line2D([], [], color="0.4", label="line: fit (thin: undetermined)", lw=0.8),
+        *lines,
         heading("bars: 95 % intervals; none of the whole window"),
     ]
     legends.legend(handles=handles, loc="center left", labelspacing=0.4)
@@ -123,12 +126,13 @@ def _draw_roughness(axes, laws, shown):
     hurst = interval_text(laws, "face_hurst")
     style = {"color": "k", "marker": "o"}
     _with_intervals(axes, b, laws, "face_sigma_z", (), used, **style)
-    axes.plot([], [], **style, ls="none", label=rf"face: $\sigma_z \sim b^H$, $H$ = {hurst}")
+    face_mark = style | _hollow(used)
+    axes.plot([], [], **face_mark, ls="none", label=rf"face: $\sigma_z \sim b^H$, $H$ = {hurst}")
     for i in shown:
         style = {"color": "0.65", "marker": "D"}
         _with_intervals(axes, b, laws, "sigma_z_all", (i,), used, **style)
         label = f"gap of both faces: $H$ = {interval_text(laws, 'hurst', i)}"
-        axes.plot([], [], **style, ls="none", label=label)
+        axes.plot([], [], **style | _hollow(used), ls="none", label=label)
     expected = float(laws["expected_hurst"])
     if np.isfinite(expected) and used.any():
         ends = b[used][[0, -1]]
@@ -162,7 +166,7 @@ def _draw_contact(axes, laws, mapped, quantity):
             axes.plot(b[fitted], level * b[fitted] ** ends[0], **line)
         _with_intervals(axes, b, laws, quantity.name, (mapped, j), fitted, **style)
         label = f"{pressure_label(pressure)}: $x$ = {estimate(*ends)}"
-        axes.plot([], [], **style, ls="none", label=label)
+        axes.plot([], [], **style | _hollow(fitted), ls="none", label=label)
     size_axis(axes, b, "sub-windows")
     values = laws[quantity.name].values[:, mapped]
     if (values > 0).any():
@@ -172,6 +176,11 @@ def _draw_contact(axes, laws, mapped, quantity):
     axes.set_ylabel(quantity.label)
     where = place(str(laws["direction"].values), float(laws["offset"][mapped]))
     letter(axes, quantity.letter, f"{quantity.words}, {where}")
+
+
+def _hollow(fitted):
+    """Face of the marker in a legend: white where no symbol drawn is filled."""
+    return {} if fitted.any() else {"mfc": "white"}
 
 
 def _with_intervals(axes, b, laws, name, index, fitted, **style):

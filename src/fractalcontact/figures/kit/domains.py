@@ -189,20 +189,24 @@ class Loading:
         return np.unique(chosen)
 
 
-def departures(counts: xr.Dataset) -> str:
+def departures(counts: xr.Dataset, determined: np.ndarray) -> str:
     """Words on the loads at which domains depart from both null models.
 
     Parameters
     ----------
     counts : xr.Dataset
         Of the stage ``domains``, over load, of domains that are looked at closely.
+    determined : (n_load,) bool ndarray
+        Loads whose Delta_sigma by box counting is drawn in full colour.
     """
     found = counts["null_verdict"].values.astype(str)
     decided = found[found != UNDETERMINED]
     if not decided.size:
         return "Nulls: undetermined."
     departing = int((decided == BEYOND_BOTH).sum())
-    return f"It departs from both null models at {departing} of {decided.size} loads."
+    same = ((found != UNDETERMINED) == determined).all()
+    which = "that determine Delta_sigma by boxes (full colour)" if same else "that decide it"
+    return f"Departs from both null models at {departing} of the {decided.size} loads {which}."
 
 
 def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = True) -> str:

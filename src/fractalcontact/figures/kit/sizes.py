@@ -5,10 +5,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+from xarray import DataTree
 
+from ...core.fitting import FEWEST_POINTS
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from .empty import MARK
+from .verdicts import claim
 from .words import estimate, length_unit, short
 
 #: Where more than this fraction of the sub-windows had their angle held, a marker is left open.
@@ -70,7 +73,7 @@ def roughness_words(strength: xr.Dataset) -> str:
     jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
     used = float(strength["jrc_used"])
     step = float(strength["step"].sel(sampling=JRC_SAMPLING))
-    words = f"JRC {short(jrc)} ({short(step)} mm steps)"
+    words = f"JRC {short(jrc)} (steps of {short(step)} mm)"
     if used != jrc:
         words += f", {short(used)} used"
     if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
@@ -85,6 +88,50 @@ def draw_means(
     mostly = held > MOSTLY
     for chosen, face in ((mostly, "white"), (~mostly, colour)):
         axes.plot(b[chosen], mean[chosen], ls="none", marker=marker, mec=colour, mfc=face)
+
+
+def strength_verdict(atlas: DataTree, name: str, laws: xr.Dataset, share: int, says: str) -> str:
+    """A sentence on the fall of strength with size, with the numbers that can be counted.
+
+    Parameters
+    ----------
+    atlas : DataTree
+        With the stage ``statements``.
+    name : str
+        The specimen.
+    laws : xr.Dataset
+        Stage ``windows``.
+    share : int
+        Index of the v/b drawn.
+    says : str
+        What the paper says, short.
+    """
+    held, drawn = points_held(laws, share)
+    bound = f"{held} of {drawn} points in (a) held at {LARGEST_FRICTION_ANGLE:g} degrees"
+    mostly = 2 * held > drawn
+    why = bound if mostly else ""
+    return claim(atlas, name, says, "strength_falls_with_size", numbers=not mostly, why=why)
+
+
+def points_held(laws: xr.Dataset, share: int) -> tuple[int, int]:
+    """How many mean strengths at a v/b are hollow, being mostly held, and how many are drawn."""
+    drawn = np.isfinite(laws["similar_strength"].values[share])
+    hollow = drawn & (laws["similar_held"].values[share] > MOSTLY)
+    return int(hollow.sum()), int(drawn.sum())
+
+
+def cases_words(laws: xr.Dataset, share: int) -> str:
+    """What a verdict on strength counts as cases, where it does; empty where points are counted.
+
+    A case is a pressure at a v/b that enough sizes have.
+    """
+    held, drawn = points_held(laws, share)
+    sizes = np.isfinite(laws["similar_strength"]).sum("part")
+    judged = np.flatnonzero((sizes >= FEWEST_POINTS).any("normal_force").values)
+    if 2 * held > drawn or not len(judged):
+        return ""
+    places = ", ".join(share_words(laws, i) for i in judged)
+    return f"cases: every pressure at $v/b$ = {places}; drawn: {share_words(laws, share)}"
 
 
 def nothing_in(axes: Axes, why: str) -> None:

@@ -7,7 +7,7 @@ from ...statements.judge import all_statements
 from ...statements.study import STATEMENTS as OF_STUDY
 
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
-CIRCULAR, CIRCULAR_SHORT = "circular: chosen for it", "circular"
+CIRCULAR, CIRCULAR_SHORT = "circular: the specimen was chosen for it", "circular"
 
 
 def verdict_words(

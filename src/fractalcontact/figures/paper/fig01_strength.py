@@ -24,6 +24,7 @@ from ..kit.sizes import (
     SHIFTED,
     along_size,
     apart,
+    cases_words,
     draw_bars,
     draw_means,
     interval_text,
@@ -32,8 +33,9 @@ from ..kit.sizes import (
     share_shown,
     share_words,
     size_axis,
+    strength_verdict,
 )
-from ..kit.verdicts import claim, sentences
+from ..kit.verdicts import sentences
 from ..kit.words import opening, place, short
 
 TITLE = "Fig. 1b: shear strength against the size of the joint, at equal offset over size"
@@ -60,7 +62,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(strength), entries(slope))
     direction = str(laws["direction"].values)
     headline(figure, settings["label"], place(direction))
-    falls = claim(atlas, name, "fall of strength with size", "strength_falls_with_size")
+    falls = strength_verdict(atlas, name, laws, share, "fall of strength with size")
     return Drawing(figure, _table(laws), _caption(laws, share, falls))
 
 
@@ -87,6 +89,8 @@ def _draw_strength(axes, laws, share):
         logarithmic(axes, laws["similar_strength"].values[share])
         if held.any():
             axes.plot([], [], "o", color="0.4", mfc="white", label=HELD)
+        if cases := cases_words(laws, share):
+            axes.plot([], [], " ", label=cases)
     else:
         nothing_in(axes, NO_STRENGTH)
     if np.isfinite(laws["barton_strength"]).any():
@@ -179,10 +183,11 @@ def _slope_words(laws, share):
         return "Too few sizes can be compared at one v/b."
     falls = int((laws["similar_slope_exponent_high"][share] < 0).sum())
     rises = int((laws["similar_slope_exponent_low"][share] > 0).sum())
-    words = (
-        f"The slope falls with b beyond its interval under {falls} of {int(known.sum())} pressures"
-    )
-    return f"{words} and rises under {rises}." if rises else f"{words}."
+    n = int(known.sum())
+    if falls == n:
+        return f"The slope falls with b under all {n} pressures (intervals of x below 0)."
+    words = f"Intervals of x of the slope lie below 0 under {falls} of {n} pressures"
+    return f"{words}, above under {rises}." if rises else f"{words}."
 
 
 def _limit_words(laws, share):

@@ -16,7 +16,7 @@ from scipy.ndimage import distance_transform_edt
 from xarray import DataTree
 
 from ...roughness.recommended import dimension_table
-from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
+from ..kit.drawing import COLOURS, WIDTH, Drawing, group, heading, headline, letter, settings_of
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.words import interval, length_unit, opening, percent
 
@@ -57,6 +57,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     estimates = _draw_dimensions(axes[-1], dimension)
     letter(axes[-1], "abc"[len(faces)], r"$\Delta_g$ of the lower face")
     handles = [outline, *([missing_patch()] if any(missing) else []), *estimates]
+    handles += map(heading, _fit_words(dimension))
     figure.legend(handles=handles, loc="outside lower left", ncols=3, columnspacing=1)
     headline(figure, label, below=_size_words(specimen, sides))
     return Drawing(figure, _table(dimension), _caption(specimen, faces, dimension))
@@ -240,22 +241,24 @@ def _words(dimension):
     if reason:
         return f"No dimension is recommended: {reason}."
     estimator = str(dimension["recommended"].item())
-    first, last = (
-        float(dimension[f"fit_{end}"].sel(estimator=estimator)) for end in ("min", "max")
-    )
-    kind = str(dimension["length_kind"].sel(estimator=estimator).item())
     return (
-        f"Delta_g is {_recommended_words(dimension)} by "
-        f"{estimator.replace('_', ' ')}, {kind}s {first:.3g} to {last:.3g} mm"
-        f"{_roll_off_words(dimension)}{_known_words(dimension)}; {table['n']} estimators give "
-        f"{table['lowest']:.2f} to {table['highest']:.2f}. {_axes_words(dimension)}"
+        f"Delta_g is {_recommended_words(dimension)} by {estimator.replace('_', ' ')}"
+        f"{_known_words(dimension)}; {table['n']} estimators give "
+        f"{table['lowest']:.2f} to {table['highest']:.2f}."
     )
 
 
-def _roll_off_words(dimension):
-    """The roll-off, where one is seen."""
+def _fit_words(dimension):
+    """Entries of a legend: the range that gives the recommended Delta_g, roll-off, both axes."""
+    words = []
+    if dimension_table(dimension)["n"] and not dimension["no_dimension"].item():
+        one = dimension.sel(estimator=str(dimension["recommended"].item()))
+        ends = f"{float(one['fit_min']):.3g} to {float(one['fit_max']):.3g} mm"
+        words.append(f"recommended: {one['length_kind'].item()}s {ends}")
     roll_off = float(dimension["roll_off"])
-    return f" (roll-off {roll_off:.3g} mm)" if np.isfinite(roll_off) else ""
+    if np.isfinite(roll_off):
+        words.append(f"roll-off of the face at {roll_off:.3g} mm")
+    return [*words, *_axes_words(dimension)]
 
 
 def _known_words(dimension):
@@ -269,13 +272,13 @@ def _known_words(dimension):
 
 
 def _axes_words(dimension):
-    """Whether profiles along x and along y have the same Hurst exponent."""
+    """Entry of a legend: whether profiles along x and y have the same Hurst exponent, if known."""
     along = [dimension[f"hurst_{axis}"].values for axis in "xy"]
     both = np.isfinite(along).all(axis=0)
     if not both.any():
-        return "No estimator separates the axes."
+        return []
     apart = (dimension["hurst_x_low"] > dimension["hurst_y_high"]) | (
         dimension["hurst_y_low"] > dimension["hurst_x_high"]
     )
     separated = int(apart.values[both].sum())
-    return f"{separated} of {both.sum()} separate the axes by H."
+    return [f"Hurst exponent: $x$, $y$ differ by\n{separated} of {both.sum()} estimators"]

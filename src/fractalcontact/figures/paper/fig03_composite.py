@@ -135,8 +135,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     bottom.legend(handles=handles, loc="outside lower center", ncols=3)
     _draw_composite(top, composite, slid)
     letter(plan, "a", "lower face and window")
-    letter(profile, "b", "profile through the point of first touch")
-    letter(composite, "c", f"composite topography $h$\n{_correlation_words(slid)}")
+    letter(profile, "c", "profile through the point of first touch")
+    letter(composite, "b", f"composite topography $h$\n{_correlation_words(slid)}")
     headline(figure, label, place(slid.direction, slid.offset))
     says = "loss of all correlation"
     says += "" if np.isfinite(slid.chance) else f" ({_TOO_SMALL})"

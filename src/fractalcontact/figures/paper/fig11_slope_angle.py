@@ -25,6 +25,7 @@ from ..kit.sizes import (
     SHIFTED,
     along_size,
     apart,
+    cases_words,
     draw_bars,
     draw_means,
     interval_text,
@@ -34,8 +35,9 @@ from ..kit.sizes import (
     share_shown,
     share_words,
     size_axis,
+    strength_verdict,
 )
-from ..kit.verdicts import claim, sentences
+from ..kit.verdicts import sentences
 from ..kit.words import opening, place, short
 
 TITLE = "Fig. 11: limit slope angle against the size of the joint, computed"
@@ -58,15 +60,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, 4.4))
     angle, ratio = figure.subplots(1, 2)
     drawn = bool(np.isfinite(laws["similar_strength"].values[share]).all(axis=1).any())
-    _draw_angle(angle, laws, share, drawn)
+    strength = group(atlas, "strength", name)
+    strength = strength.sel(contact_direction=str(laws["direction"].values))
+    beyond = _beyond_barton(settings, laws, strength)
+    _draw_angle(angle, laws, share, drawn, beyond.rstrip(".").replace(", for", ",\nfor"))
     _draw_ratio(ratio, laws, share, drawn)
     headline(figure, settings["label"], place(str(laws["direction"].values)))
     if drawn:
         legends_below(figure, entries(angle), entries(ratio), columnspacing=2)
-    falls = claim(atlas, name, "fall with size", "strength_falls_with_size")
-    strength = group(atlas, "strength", name)
-    strength = strength.sel(contact_direction=str(laws["direction"].values))
-    caption = _caption(laws, share, drawn, falls, _beyond_barton(settings, laws, strength))
+    falls = strength_verdict(atlas, name, laws, share, "fall with size")
+    caption = _caption(laws, share, drawn, falls, beyond)
     return Drawing(figure, _table(laws), caption)
 
 
@@ -81,7 +84,7 @@ def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
     return np.degrees(np.arctan(np.asarray(strength) / pressure))
 
 
-def _draw_angle(axes, laws, share, drawn):
+def _draw_angle(axes, laws, share, drawn, beyond):
     b, pressures = laws["side"].values, laws["nominal_pressure"].values
     for j, pressure in enumerate(pressures):
         colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
@@ -97,6 +100,8 @@ def _draw_angle(axes, laws, share, drawn):
     if np.isfinite(laws["barton_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
     axes.plot([], [], " ", label=SHIFTED)
+    for words in filter(None, (drawn and cases_words(laws, share), beyond)):
+        axes.plot([], [], " ", label=words)
     size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)
     axes.set_ylabel(r"limit slope angle $\arctan(\tau/\sigma_0)$ (degrees)")
@@ -121,7 +126,8 @@ def _draw_ratio(axes, laws, share, drawn):
         axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     slope = QUOTED_DELTA - 2
     label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work of the same school"
-    axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
+    if drawn:
+        axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
     axes.plot([], [], " ", label="bars: 95 % intervals; none of the whole window")
     size_axis(axes, b, "joint")
     axes.set_yscale("log")

@@ -237,7 +237,8 @@ def _draw_dimensions(axes, loading, rises):
 
 
 def _caption(loading, rises):
+    departing = departures(loading.counts, loading.estimates[1].determined)
     return (
         f"{opening('Fig. 12')} Contact domains with A_r/A_0, and Delta_sigma over load. The "
-        f"paper's rise with F: {rises}. {departures(loading.counts)}"
+        f"paper's rise with F: {rises}. {departing}"
     )

@@ -1,5 +1,6 @@
 """Fig. 13: what eq. 6 makes of the size of the joint, for growing load."""
 
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from ..kit.drawing import (
     letter,
 )
 from ..kit.sizes import nothing_in, plain_decades
-from ..kit.verdicts import verdict_words
+from ..kit.verdicts import row_of, verdict_words
 from ..kit.words import force_label, interval, opening
 from ._size_effect import draw_axes, size_effect
 
@@ -35,6 +36,8 @@ SECTION = "size effect"
 _MOST_LOADS = 6
 #: Bars of the n-th load stand the n-th power of this factor of b beyond the ends of its line.
 _BESIDE = 1.04
+#: Letters of a line above a panel.
+_TITLE = 58
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -49,8 +52,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         columns.append(_draw_lines(axes, loading, estimate, shown, table))
         draw_axes(axes)
         rises = verdict_words(atlas, name, RISES[estimate.key], numbers=False)
-        words = rf"$\Delta_\sigma$ by {estimate.symbol}"
-        letter(axes, which, f"{words}; the paper's rise with $F$: {rises}")
+        words = rf"$\Delta_\sigma$ by {estimate.symbol}; the paper's rise with $F$: {rises}"
+        letter(axes, which, "\n".join([words, *_numbers(atlas, name, estimate)]))
     plain_decades(panels[0].xaxis)
     panels[1].set_ylabel("")
     # Of both panels.
@@ -58,7 +61,17 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     columns[0].append(heading("bars at the ends: 95 % interval; thin, no bar: undetermined"))
     legends_below(figure, *columns, columnspacing=2)
     headline(figure, *loading.title)
-    return Drawing(figure, table, _caption(rise_words(atlas, name, loading)))
+    return Drawing(figure, table, _caption(rise_words(atlas, name, loading, numbers=False)))
+
+
+def _numbers(atlas, name, estimate):
+    """The numbers that decide about the rise by one estimate, in lines of a panel's title."""
+    row = row_of(atlas, "statements", name, RISES[estimate.key])
+    if row is None:
+        return []
+    # As many nodes as touch: the legend of Fig. 12 has the room to say so.
+    numbers = str(row["numbers"].item()).replace("as many random", "random")
+    return textwrap.wrap(numbers.replace(" of F", " of $F$"), _TITLE)
 
 
 def _draw_lines(axes, loading, estimate, shown, table):
