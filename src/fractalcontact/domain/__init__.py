@@ -7,6 +7,7 @@ __getattr__, __dir__, __all__ = exports(
     {
         "BEYOND_BOTH": ".departure",
         "FEWEST_NODES": ".renormalisation",
+        "LARGEST_DISTANCE": ".clusters",
         "LIKE_CUT": ".departure",
         "LIKE_RANDOM": ".departure",
         "LawTerms": ".count_law",

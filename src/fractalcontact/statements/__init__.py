@@ -8,6 +8,7 @@ __getattr__, __dir__, __all__ = exports(
         "FAILS": ".judge",
         "HOLDS": ".judge",
         "ILL_POSED": ".judge",
+        "LOOSELY": ".findings",
         "NEARLY": ".findings",
         "ONCE": ".comparison",
         "PARTLY": ".judge",

@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.resolved import RESOLVED_NODES
-from ...statements.findings import LOOSELY, NEARLY, UNDETERMINED
+from ...statements.findings import LOOSELY, NEARLY
+from ...statements.judge import UNDETERMINED
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
