@@ -131,7 +131,9 @@ def _other_entries(table):
 
 
 def _band_entries(table):
-    """The bands of random nodes in (c), in the colours of their loads."""
+    """The bands of random nodes in (c), in the colours of their loads; none of a single offset."""
+    if table["offset_mm"].nunique() < 2:
+        return []
     return [
         Patch(
             color=colour_of(n),
@@ -150,8 +152,10 @@ def _size_heading(sizes, force):
     if fitted.empty:
         return [heading(at)]
     low, high = (short(end) for end in (fitted["fit_min_mm2"].min(), fitted["fit_max_mm2"].max()))
+    rule = rf"followed if {_TEST} $\leq$ {LARGEST_DISTANCE:g}; $D$: largest distance from it"
     return [
-        heading(rf"{at}: number $\sim a^{{-\beta}}$ [95 %]; {_TEST} at most {LARGEST_DISTANCE:g}"),
+        heading(rf"{at}: number $\sim a^{{-\beta}}$ [95 %]"),
+        heading(rule),
         Line2D([], [], color="0.4", lw=0.8, label=f"lines: fits, $a$ = {low} to {high} mm$^2$"),
     ]
 
