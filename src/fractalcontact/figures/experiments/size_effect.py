@@ -162,6 +162,6 @@ def _caption(test: xr.Dataset) -> str:
     return (
         f"{SUPPLEMENTARY} Exponent alpha of the contact area over the side b, and eq. 6's. "
         f"Eq. 6 is refuted for {refuted} of {classes.size} classes and supported for "
-        f"{supported}: |alpha| is at most {number(largest)}, shown to be below "
+        f"{supported}: |alpha| is at most {number(largest)}, shown below "
         f"{NO_EFFECT:g} in {flat} of {test['no_size_effect'].size} cases (H, pressure)."
     )

@@ -61,8 +61,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, measured + others, laws)
     headline(figure, settings_of(atlas, name)["label"], place_of(test))
     caption = sentences(
-        f"{SUPPLEMENTARY} Contact area of parts of the window over their side b at equal sigma_0, "
-        "and its exponent.",
+        f"{SUPPLEMENTARY} Contact area of parts of the window over side b at equal sigma_0; its "
+        "exponent.",
         claim(atlas, name, "eq. 6", "size_effect_follows", why=verdict_reason(test)),
         _few_words(test),
     )

@@ -126,9 +126,9 @@ def cases_words(laws: xr.Dataset, share: int) -> str:
     A case is a pressure at a v/b that enough sizes have.
     """
     held, drawn = points_held(laws, share)
-    sizes = np.isfinite(laws["similar_strength"]).sum("part")
-    judged = np.flatnonzero((sizes >= FEWEST_POINTS).any("normal_force").values)
-    if 2 * held > drawn or not len(judged):
+    sizes = np.isfinite(laws["similar_strength"].transpose("share", "part", ...).values).sum(axis=1)
+    judged = np.flatnonzero((sizes >= FEWEST_POINTS).any(axis=1)).tolist()
+    if 2 * held > drawn or not judged:
         return ""
     places = ", ".join(share_words(laws, i) for i in judged)
     return f"cases: every pressure at $v/b$ = {places}; drawn: {share_words(laws, share)}"
