@@ -8,7 +8,8 @@ LABEL = "Dr. Who's joint. 2.1 (A_r) <b>bold</b>"
 CAPTION = (
     f"After Figs. 4 and 5 of Borri-Brunetto et al. (1999): {LABEL}, sliding towards West. "
     "(a) Closure, eq. 6, h = 0.3 mm; (b) area. The paper's plateau: holds (2 of 4 directions "
-    "level; circular: the specimen was chosen for it). sigma_n reaches 18.2 GPa. Delta_g is 2.23 [2.18, 2.33]."
+    "level; circular: the specimen was chosen for it). sigma_n reaches 18.2 GPa. "
+    "Delta_g is 2.23 [2.18, 2.33]."
 )
 
 
