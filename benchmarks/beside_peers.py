@@ -41,6 +41,9 @@ HURST, RMS, RTOL = 0.8, 0.02, 1e-6
 MET = 0.05
 #: Windows with more nodes along a side have single precision heights in a file mapped to memory.
 MAPPED = 4096
+#: Of more nodes along a side the surface is made in single precision too: in double, 16384 nodes
+#: along a side take more than 22 GB.
+LARGEST_IN_DOUBLE = 8192
 OURS = ("with set-up", "without")
 PEERS = ("ASPHER active set", "ASPHER fft")
 #: Seconds to load a surface and to judge an answer, beside those of the solve.
@@ -346,8 +349,11 @@ def _made(what):
 
     path, size = Path(what["make"]), what["size"]
     if not path.exists():
-        heights = self_affine((size, size), 1 / size, HURST, rms=RMS, seed=what["seed"])
-        np.save(path, heights if size <= MAPPED else heights.astype(np.float32))
+        if size > LARGEST_IN_DOUBLE:
+            heights = _large(size, what["seed"])
+        else:
+            heights = self_affine((size, size), 1 / size, HURST, rms=RMS, seed=what["seed"])
+        np.save(path, heights if size <= MAPPED else heights.astype(np.float32, copy=False))
     heights = _heights({"heights": path})
     space, wanted = _space(heights), what["percent"] / 100
     force, state, low, high = RMS * wanted, None, 0.0, np.inf
@@ -364,6 +370,27 @@ def _made(what):
         exact = solve_contact(heights, space, force=force, start=state, rtol=1e-8)
         found["closure"] = _closure(exact.pressure, space, np.asarray(heights, float))
     return found
+
+
+def _large(size, seed):
+    """A surface as ``self_affine`` makes it, but in single precision."""
+    import scipy.fft
+
+    from fractalcontact.core.mean_plane import without_mean_plane
+
+    side = 2 * size
+    noise = np.random.default_rng(seed).standard_normal((side, side), dtype=np.float32)
+    spectrum = scipy.fft.rfft2(noise, overwrite_x=True)
+    del noise
+    along_x = np.fft.rfftfreq(side)
+    for row, along_y in zip(spectrum, np.fft.fftfreq(side), strict=True):
+        waves = np.hypot(along_x, along_y)
+        waves[waves == 0] = np.inf
+        row *= (waves ** -(1 + HURST)).astype(np.float32)
+    heights = scipy.fft.irfft2(spectrum, (side, side), overwrite_x=True)[:size, :size].copy()
+    del spectrum
+    heights = without_mean_plane(heights.astype(float))
+    return (heights * (RMS / heights.std())).astype(np.float32)
 
 
 # What is written.
