@@ -133,8 +133,8 @@ def judged_as(atlas, verdict, reason):
 @pytest.mark.parametrize(
     ("verdict", "reason", "said"),
     [
-        ("agrees", "", "it agrees at {n} of {n} loads that decide"),
-        ("measured flatter", "", "it agrees at 0 of {n} loads that decide"),
+        ("agrees", "", "agrees at {n} of {n} deciding loads by A_r(s), agrees at {n} of {n}"),
+        ("measured flatter", "", "agrees at 0 of {n} deciding loads by A_r(s), agrees at 0 of {n}"),
         ("undecided", "the cat ate it", "no load decides, mostly as the cat ate it"),
     ],
 )
@@ -142,13 +142,13 @@ def test_a_verdict_on_eq_6_carries_its_reason(atlas, verdict, reason, said):
     tree = judged_as(atlas, verdict, reason)
     drawing = drawn(size_test, tree, "sliding")
     test = _size_test.size_test_of(tree, "sliding")
-    n = test["normal_force"].size * len(_size_test.ESTIMATORS)
+    n = test["normal_force"].size
     assert said.format(n=n) in drawing.caption
     assert _size_test.deciding(test.sel(estimator=list(_size_test.ESTIMATORS))).sum() == (
-        0 if verdict == "undecided" else n
+        0 if verdict == "undecided" else n * len(_size_test.ESTIMATORS)
     )
     labels = [line.get_label() for line in drawing.figure.axes[1].lines]
-    assert any("load that decides" in str(label) for label in labels) == (verdict != "undecided")
+    assert any("decides, by" in str(label) for label in labels) == (verdict != "undecided")
 
 
 def test_measured_and_predicted_have_colours_of_their_own(atlas):

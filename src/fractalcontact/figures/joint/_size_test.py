@@ -101,18 +101,18 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
             decides = deciding(one)
             any_decides |= bool(decides.any())
             predicted = one["predicted_slope"].values
-            axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5)
-    if any_decides:
-        axes.plot([], [], "D", color="0.4", ms=5, label=_counted(test))
-    elif decided:
+            counted = f"decides, by {words}: eq. 6 agrees at {_agreement(one)}"
+            label = counted if decides.any() else None
+            axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5, label=label)
+    if decided and not any_decides:
         axes.plot([], [], " ", label="no load decides about eq. 6")
 
 
-def _counted(test):
-    """Legend of the loads that decide about eq. 6: at how many it agrees."""
+def _agreement(test):
+    """At how many of the loads that decide eq. 6 agrees: "1 of 3"."""
     decides = deciding(test)
     agree = int((decides & (test["verdict"].values == AGREES)).sum())
-    return f"load that decides: eq. 6 agrees at {agree} of {int(decides.sum())}"
+    return f"{agree} of {int(decides.sum())}"
 
 
 def deciding(test: xr.Dataset) -> np.ndarray:
@@ -171,8 +171,13 @@ def verdict_reason(test: xr.Dataset) -> str:
     tested = of_study["reason"].values[of_study["verdict"].values != NOT_TESTED].astype(str)
     decides = deciding(of_study)
     if decides.any():
-        agree = int((of_study["verdict"].values == AGREES).sum())
-        return f"it agrees at {agree} of {int(decides.sum())} loads that decide"
+        found = []
+        for estimator, (_, words) in ESTIMATORS.items():
+            part = of_study.sel(estimator=estimator)
+            by = f"by {words.replace('$', '')}"
+            agrees = f"agrees at {_agreement(part)} deciding loads {by}"
+            found.append(agrees if deciding(part).any() else f"no load decides {by}")
+        return ", ".join(found)
     if not tested.size:
         beyond = np.isfinite(test["area_exponent"].values).any()
         return "what is drawn lies beyond the study's loads" if beyond else ""

@@ -89,12 +89,15 @@ def _draw_errors(axes, test, quantity, which, load):
                 axes.vlines(at, max(low, 1e-3), high, color=style["color"], lw=0.8)
     axes.axhline(1, color="0.5", lw=0.6)
     if load is not None:
-        axes.axvline(pressure[load], color="0.4", ls=":", lw=0.8, label="load of the caption")
+        axes.axvline(
+            pressure[load], color="0.4", ls=":", lw=0.8, label=f"{short(float(pressure[load]))} MPa"
+        )
         axes.plot([], [], color="0.4", lw=0.8, marker="|", ls="none", ms=8, label=_BARS)
     grey_beyond(axes, test)
     axes.set_xlabel(r"nominal pressure $\sigma_0$ of the whole window (MPa)")
     axes.set_ylabel(f"{words}: predicted / solved (1)")
-    letter(axes, which, f"{words} (1: as solved)")
+    at = "" if load is None else _ends_words(test, quantity, load)
+    letter(axes, which, f"{words} (1: as solved){at}")
     if not drawn:
         # Without data a logarithmic axis has no limits.
         nothing_in(axes, "nothing to predict from")
@@ -178,4 +181,18 @@ def _range_words(ratios):
     away = abs(np.log(ratios.values))
     ends = (int(away.argmin()), int(away.argmax()))
     names = [PREDICTORS[key].replace("$", "") for key in ratios["predictor"].values]
-    return " and ".join(f"{short(float(ratios[i]))} ({names[i]})" for i in dict.fromkeys(ends))
+    found = []
+    for i in dict.fromkeys(ends):
+        # Two predictors may be one here.
+        same = [name for name, one in zip(names, away, strict=True) if np.isclose(one, away[i])]
+        found.append(f"{short(float(ratios[i]))} ({', '.join(same)})")
+    return " and ".join(found)
+
+
+def _ends_words(test, quantity, load):
+    """Best and worst ratio under the load of the caption, for a panel's title."""
+    ratios = 1 + test[f"{quantity}_error"].sel(predictor=list(PREDICTORS))[..., load].values
+    away = abs(np.log(ratios))
+    best, worst = (short(float(ratios[end])) for end in (away.argmin(), away.argmax()))
+    pressure = short(float(test["nominal_pressure"][load]))
+    return f"\nat {pressure} MPa: {best} (best) to {worst} (worst)"

@@ -74,6 +74,25 @@ class Estimate:
         }
 
 
+def fall_reason(by_area: Estimate, i: int) -> str:
+    """What decides whether A_r falls: where the interval of the exponent lies, however wide.
+
+    Parameters
+    ----------
+    by_area : Estimate
+        Delta_sigma by A_r(s).
+    i : int
+        Index of the load.
+    """
+    low, high = by_area.low[i], by_area.high[i]
+    if by_area.reason[i] or not np.isfinite([low, high]).all():
+        return ""
+    if low <= 2 <= high:
+        return "the interval of Delta_sigma includes 2"
+    side, way = ("below", "falls as s does") if high < 2 else ("above", "grows as s falls")
+    return f"the whole interval of Delta_sigma lies {side} 2: A_r {way}"
+
+
 @dataclass(frozen=True)
 class Loading:
     """One joint at the offset whose contact domains are drawn, under every load.

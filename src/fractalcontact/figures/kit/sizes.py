@@ -17,7 +17,7 @@ from .words import estimate, length_unit, short
 #: Where more than this fraction of the sub-windows had their angle held, a marker is left open.
 MOSTLY = 0.5
 #: What such a marker says.
-HELD = f"hollow: most sub-windows held at {LARGEST_FRICTION_ANGLE:g}°, no result"
+HELD = f"hollow: friction angle of most held at {LARGEST_FRICTION_ANGLE:g}°, no result"
 #: How :func:`apart` is declared in a legend.
 SHIFTED = "pressures at one $b$ are drawn side by side"
 #: Why no strength is drawn.
@@ -77,7 +77,7 @@ def roughness_words(strength: xr.Dataset) -> str:
     if used != jrc:
         words += f", {short(used)} used"
     if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
-        words += f", for this length beyond Barton's {JRC_RANGE[1]:g}"
+        words += f", scaled to this length above Barton's {JRC_RANGE[1]:g}"
     return words
 
 
@@ -107,7 +107,7 @@ def strength_verdict(atlas: DataTree, name: str, laws: xr.Dataset, share: int, s
         What the paper says, short.
     """
     held, drawn = points_held(laws, share)
-    bound = f"{held} of {drawn} points in (a) held at {LARGEST_FRICTION_ANGLE:g} degrees"
+    bound = f"friction angle held at {LARGEST_FRICTION_ANGLE:g} degrees at {held} of {drawn} points"
     mostly = 2 * held > drawn
     why = bound if mostly else ""
     return claim(atlas, name, says, "strength_falls_with_size", numbers=not mostly, why=why)

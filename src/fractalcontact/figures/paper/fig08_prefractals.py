@@ -9,7 +9,7 @@ from xarray import DataTree
 from ...core.resolved import CORRECTED_NODES
 from ...domain.renormalisation import RESOLUTION
 from ...mechanics.model_validity import elastic_model_validity, usual_strengths
-from ..kit.domains import Loading
+from ..kit.domains import Loading, fall_reason
 from ..kit.drawing import (
     COLOURS,
     WIDTH,
@@ -68,10 +68,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(axes, letters[len(table)], title)
     wide = f"nodes drawn {times} times as wide in all maps" if times > 1 else ""
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}", below=wide)
+    why = fall_reason(loading.estimates[0], i)
     caption = sentences(
         f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}.",
         _model_words(loading, table, slope),
-        claim(atlas, name, "fall of A_r as a power", "area_is_lacunar"),
+        claim(atlas, name, "fall of A_r as a power", "area_is_lacunar", numbers=not why, why=why),
     )
     return Drawing(figure, table.assign(rms_slope=slope), caption)
 
@@ -114,7 +115,8 @@ def _exponent_words(by_area, i):
     if by_area.reason[i]:
         return f"no fit (fewer than {CORRECTED_NODES} nodes)"
     ends = (number(end[i]) for end in (by_area.value, by_area.low, by_area.high))
-    return r"$\Delta_\sigma$ = {} [{}, {}]".format(*ends)
+    doubt = "" if by_area.determined[i] else " (undetermined)"
+    return r"$\Delta_\sigma$ = {} [{}, {}]".format(*ends) + doubt
 
 
 def _area_words(row):

@@ -54,7 +54,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles, _ = middle.get_legend_handles_labels()
     if np.isfinite(table["law_count"]).any():
         handles.append(heading(_law_form(counts)))
-    handles.append(Patch(color="0.5", alpha=0.25, lw=0, label="(c) 95 % of both fits"))
+    for colour, fit in ((COLOURS[2], "the count law"), (COLOURS[0], "the ordinary slope")):
+        label = f"(c) 95 % of {fit}"
+        handles.append(Patch(color=colour, alpha=0.2, lw=0, label=label))
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
@@ -131,7 +133,7 @@ def _draw_counts(axes, table, counts):
         label="bearing-area cut: highest nodes",
     )
     for used, face in ((table["ordinary_used"], COLOURS[0]), (~table["ordinary_used"], "white")):
-        words = "boxes, fewest" + (", fitted" if face != "white" else ", not fitted")
+        words = "boxes, fewest" + (", fitted" if face != "white" else ", not fitted; (c) all")
         axes.loglog(
             r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
         )

@@ -8,7 +8,7 @@ from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
 from ...domain.renormalisation import RESOLUTION
-from ..kit.domains import Loading, disagreement
+from ..kit.domains import Loading, disagreement, fall_reason
 from ..kit.drawing import (
     COLOURS,
     MARKERS,
@@ -32,6 +32,8 @@ SECTION = "size effect"
 
 #: Loads in panel (a).
 _MOST_LOADS = 5
+#: Colours of loads: none of those of the two estimates.
+_LOAD_COLOURS = ("0.65", COLOURS[4], "0.4", COLOURS[3], COLOURS[0])
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -47,7 +49,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(left), entries(right))
     headline(figure, *loading.title)
     table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
-    why = _why(loading.estimates[0], i)
+    why = fall_reason(loading.estimates[0], i)
     paper = "power-law fall of A_r", "area_is_lacunar"
     falls = claim(atlas, name, *paper, numbers=not why, why=why)
     return Drawing(figure, table, _caption(loading, i, falls))
@@ -81,7 +83,7 @@ def _draw_areas(axes, loading, map_load, table):
     for n, i in enumerate(loading.spread_loads(_MOST_LOADS, map_load)):
         force = loading.forces[i]
         rows = table[table["load_N"] == force]
-        style = {"color": COLOURS[n], "marker": MARKERS[n], "linestyle": "none"}
+        style = {"color": _LOAD_COLOURS[n], "marker": MARKERS[n], "linestyle": "none"}
         # Low loads may share their few nodes: the later marker lets the earlier one show.
         style["markersize"] = 7.5 - n
         label = f"{force_label(force)}: {by_area.entry(i)}"
@@ -92,7 +94,8 @@ def _draw_areas(axes, loading, map_load, table):
         (hollow if used.empty else full)[0].set_label(label)
         weak = {} if by_area.determined[i] else WEAK
         thin |= bool(weak) and np.isfinite(used["fitted_area_mm2"]).any()
-        axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=COLOURS[n], **weak)
+        colour = _LOAD_COLOURS[n]
+        axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=colour, **weak)
     spacings = loading.scaling["spacing"].sortby(RESOLUTION).values
     axes.set(xscale="log", yscale="log")
     axes.set_xticks(spacings, [short(s) for s in spacings])
@@ -144,18 +147,6 @@ def _caption(loading, i, falls):
         f"{_determined_words(loading, i)}, {by_box.text(i)} by box counting. "
         f"{disagreement(loading.scaling.isel(normal_force=i))}"
     )
-
-
-def _why(by_area, i):
-    """What decides whether A_r falls: where the interval of the exponent lies, however wide."""
-    low, high = by_area.low[i], by_area.high[i]
-    if by_area.reason[i] or not np.isfinite([low, high]).all():
-        return ""
-    if low <= 2 <= high:
-        return "the interval of Delta_sigma includes 2"
-    side, way = ("below", "falls as s does") if high < 2 else ("above", "grows as s falls")
-    words = f"the whole interval of Delta_sigma lies {side} 2: A_r {way}"
-    return words if by_area.determined[i] else f"{words}; how fast is undetermined"
 
 
 def _determined_words(loading, i):
