@@ -75,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _draw_equal(axes, test, loads):
     """sigma_0 over b at the sigma* of the whole, with the slopes predicted; legend entries."""
     b = test["side"].values
-    handles = [heading("measured (no intervals), slope [95 % interval]")]
+    handles = [heading("(a) measured (no intervals), slope [95 % interval]")]
     for n, i in enumerate(loads):
         style = {"color": "k", "marker": load_marker(n)}
         pressure = test["equal_pressure"].values[i]
@@ -108,7 +108,7 @@ def _draw_slopes(axes, test, loads):
     load_axis(axes, test)
     axes.set_ylabel(r"slope of $\log\sigma_0$ over $\log b$ (1)")
     none = "" if np.isfinite(test["slope"].values).any() else "; no measured slope"
-    letter(axes, "b", f"its slope (0: no size effect){none}")
+    letter(axes, "b", rf"slope (0: no size effect; eq. 6: $\Delta_\sigma - 2$){none}")
 
 
 def _table(test):

@@ -101,7 +101,7 @@ def _draw_exponents(axes, test, loads):
     load_axis(axes, test)
     axes.set_ylabel("exponent of $A_r/A_0$ over $b$ (1)")
     none = "" if np.isfinite(test["area_exponent"].values).any() else "; none measured"
-    letter(axes, "b", f"its exponent (0: no size effect){none}")
+    letter(axes, "b", rf"exponent (0: no size effect; eq. 6: $\Delta_\sigma - 2$){none}")
 
 
 def _table(test):

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...mechanics.jrc import JRC_SAMPLING
+from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
     COLOURS,
@@ -175,15 +175,18 @@ def _scan_words(strength):
     """Entry of a legend: the JRC of the scan, if known."""
     jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
     step = float(strength["step"].sel(sampling=JRC_SAMPLING))
-    known = np.isfinite(jrc)
-    return [f"JRC of the scan: {short(jrc)} (steps of {short(step)} mm)"] if known else []
+    if not np.isfinite(jrc):
+        return []
+    beyond = np.isfinite(strength["jrc_used"]) and np.isnan(strength["scaled_roughness"])
+    scaled = f",\nscaled to this length above Barton's {JRC_RANGE[1]:g}" if beyond else ""
+    return [f"JRC of the scan: {short(jrc)} (steps of {short(step)} mm){scaled}"]
 
 
 #: What (c) shows: variable and words.
 _SUMMARY = {
     "peak_strength": "peak over the offsets",
     "residual_strength": "residual; bar: 95 % interval, if known",
-    "barton_strength": "peak by Barton, JRC of the scan",
+    "barton_strength": f"peak by Barton, at most {LARGEST_FRICTION_ANGLE:g}°, JRC of the scan",
     "barton_scaled_strength": "peak by Barton and Bandis, for this length",
 }
 #: Of peak and residual in (c): colours and markers of no pressure.

@@ -120,7 +120,7 @@ def _draw_slope(axes, laws, share):
         side = b[anchored]
         level = np.exp(np.mean(np.log(slopes[anchored])))
         middle = np.exp(np.mean(np.log(side)))
-        label = rf"self-affine: $x = H - 1$ = {short(expected)} (slope alone)"
+        label = rf"self-affine, Hurst exponent $H$: $x = H - 1$ = {short(expected)}"
         axes.plot(side, level * (side / middle) ** expected, color="0.5", ls=":", label=label)
     axes.plot([], [], " ", label="bars: 95 % intervals; none of the whole window")
     axes.plot([], [], " ", label=SHIFTED)

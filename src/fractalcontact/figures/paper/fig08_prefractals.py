@@ -66,13 +66,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {_exponent_words(loading.estimates[0], i)}"
     title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(slope)}"
     letter(axes, letters[len(table)], title)
-    wide = f"nodes drawn {times} times as wide in all maps" if times > 1 else ""
+    wide = "black: real contact area $A_r$ of the nominal $A_0$"
+    wide += f"; nodes drawn {times} times as wide in all maps" if times > 1 else ""
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}", below=wide)
     why = fall_reason(loading.estimates[0], i)
     caption = sentences(
         f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}.",
         _model_words(loading, table, slope),
-        claim(atlas, name, "fall of A_r as a power", "area_is_lacunar", numbers=not why, why=why),
+        claim(atlas, name, "fall of A_r", "area_is_lacunar", numbers=not why, why=why),
     )
     return Drawing(figure, table.assign(rms_slope=slope), caption)
 

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
@@ -54,13 +55,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles, _ = middle.get_legend_handles_labels()
     if np.isfinite(table["law_count"]).any():
         handles.append(heading(_law_form(counts)))
-    for colour, fit in ((COLOURS[2], "the count law"), (COLOURS[0], "the ordinary slope")):
-        label = f"(c) 95 % of {fit}"
-        handles.append(Patch(color=colour, alpha=0.2, lw=0, label=label))
+    why = _width_words(counts)
+    wide = why.replace("interval of Delta_sigma", ":", 1)
+    handles.append(Patch(**_band(COLOURS[2]), label=f"(c) 95 % of the count law{wide}"))
+    handles.append(Patch(**_band(COLOURS[0]), label="(c) 95 % of the ordinary slope"))
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
-    why = _width_words(counts)
     caption = sentences(
         _caption(loading, i, counts),
         claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=not why, why=why),
@@ -183,13 +184,20 @@ def _draw_slopes(axes, table, counts):
             weak = {} if sure else WEAK
             axes.plot(ends, [counts[name].item()] * 2, color=colour, ls=style, **weak)
             low, high = (counts[f"{name}_{end}"].item() for end in ("low", "high"))
-            axes.fill_between(ends, low, high, color=colour, alpha=0.12, lw=0)
+            axes.fill_between(ends, low, high, **_band(colour))
     axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
     slopes = table["local_slope"].dropna()
     ends = f": {slopes.min():.1f} to {slopes.max():.1f}" if len(slopes) > 1 else ""
     letter(axes, "c", f"local slopes{ends}")
+
+
+def _band(colour):
+    """How the interval of a fit is drawn in (c): that of the black one hides nothing grey."""
+    if colour == COLOURS[0]:
+        return {"fc": "none", "ec": colour, "ls": ":", "lw": 0.8}
+    return {"fc": to_rgba(colour, 0.15), "ec": "none"}
 
 
 def _caption(loading, i, counts):

@@ -1,5 +1,7 @@
 """Fig. 11: the limit slope angle against the size of the joint."""
 
+import textwrap
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -45,6 +47,8 @@ SUBJECT = "joint"
 NEEDS = ("windows", "strength", "statements")
 ORDER = 180
 
+#: Letters in a line of the legend, of which two columns fit side by side.
+_LINE = 48
 #: Delta_sigma that later work of the paper's school takes from Bandis' shear tests.
 QUOTED_DELTA = 1.66
 
@@ -101,7 +105,7 @@ def _draw_angle(axes, laws, share, drawn, beyond):
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
     axes.plot([], [], " ", label=SHIFTED)
     for words in filter(None, (drawn and cases_words(laws, share), beyond)):
-        axes.plot([], [], " ", label=words)
+        axes.plot([], [], " ", label=textwrap.fill(words, _LINE))
     size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)
     axes.set_ylabel(r"limit slope angle $\arctan(\tau/\sigma_0)$ (degrees)")
@@ -125,10 +129,10 @@ def _draw_ratio(axes, laws, share, drawn):
         label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
         axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
     slope = QUOTED_DELTA - 2
-    label = rf"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work of the same school"
+    label = f"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work\nof the same school"
     if drawn:
         axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
-    axes.plot([], [], " ", label="bars: 95 % intervals; none of the whole window")
+    axes.plot([], [], " ", label="bars: 95 % intervals;\nnone of the whole window")
     size_axis(axes, b, "joint")
     axes.set_yscale("log")
     axes.set_ylabel(r"$\tau$ / $\tau$ of the whole window (1)")
