@@ -102,8 +102,8 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
             any_decides |= bool(decides.any())
             predicted = one["predicted_slope"].values
             counted = f"decides, by {words}: eq. 6 agrees at {_agreement(one)}"
-            label = counted if decides.any() else None
-            axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5, label=label)
+            named = counted if decides.any() else None
+            axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5, label=named)
     if decided and not any_decides:
         axes.plot([], [], " ", label="no load decides about eq. 6")
 

@@ -30,7 +30,8 @@ COLUMNS = {"figure": (0.01, 8), "claim": (0.075, 44), "verdict": (0.44, 16), "nu
 SYMBOLS = (
     "Brackets: 95 % intervals. F normal force, sigma_0 nominal pressure, sigma_n real and sigma* "
     "fractal mean pressure, v offset, b side of the window, s spacing, w and w_int closure, "
-    "delta_r rigid dilatancy, A_r real and A_0 nominal contact area, Delta_g dimension of the surface, Delta_sigma of the contact domain, "
+    "delta_r rigid dilatancy, A_r real and A_0 nominal contact area, Delta_g dimension of the "
+    "surface, Delta_sigma of the contact domain, "
     "h'_rms rms slope, sigma_z roughness, e and m exponents, c and d constants, r2 squared "
     "correlation."
 )
