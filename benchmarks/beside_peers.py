@@ -350,7 +350,7 @@ def _made(what):
     path, size = Path(what["make"]), what["size"]
     if not path.exists():
         if size > LARGEST_IN_DOUBLE:
-            heights = _large(size, what["seed"])
+            heights = _in_single_precision(size, what["seed"])
         else:
             heights = self_affine((size, size), 1 / size, HURST, rms=RMS, seed=what["seed"])
         np.save(path, heights if size <= MAPPED else heights.astype(np.float32, copy=False))
@@ -372,25 +372,27 @@ def _made(what):
     return found
 
 
-def _large(size, seed):
-    """A surface as ``self_affine`` makes it, but in single precision."""
+def _in_single_precision(size, seed):
+    """The surface of ``self_affine``, but for rounding: its noise is filtered row by row."""
     import scipy.fft
 
-    from fractalcontact.core.mean_plane import without_mean_plane
+    from fractalcontact.surface.synthesis import EMBEDDING, levelled
 
-    side = 2 * size
-    noise = np.random.default_rng(seed).standard_normal((side, side), dtype=np.float32)
+    side = EMBEDDING * size
+    generator = np.random.Generator(np.random.PCG64(seed))
+    noise = np.empty((side, side), np.float32)
+    for row in noise:
+        row[:] = generator.standard_normal(side)
     spectrum = scipy.fft.rfft2(noise, overwrite_x=True)
     del noise
-    along_x = np.fft.rfftfreq(side)
-    for row, along_y in zip(spectrum, np.fft.fftfreq(side), strict=True):
+    along_x = scipy.fft.rfftfreq(side)
+    for row, along_y in zip(spectrum, scipy.fft.fftfreq(side), strict=True):
         waves = np.hypot(along_x, along_y)
         waves[waves == 0] = np.inf
         row *= (waves ** -(1 + HURST)).astype(np.float32)
-    heights = scipy.fft.irfft2(spectrum, (side, side), overwrite_x=True)[:size, :size].copy()
+    patch = scipy.fft.irfft2(spectrum, (side, side), overwrite_x=True)[:size, :size].copy()
     del spectrum
-    heights = without_mean_plane(heights.astype(float))
-    return (heights * (RMS / heights.std())).astype(np.float32)
+    return levelled(patch, RMS).astype(np.float32)
 
 
 # What is written.

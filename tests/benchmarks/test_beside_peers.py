@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from places import BENCHMARKS
 
+from fractalcontact.surface.synthesis import self_affine
+
 sys.path.insert(0, str(BENCHMARKS))
 import beside_peers
 
@@ -90,3 +92,10 @@ def test_the_summary_takes_the_fastest_mode_of_each_cell():
     assert lines[0] == "1 threads: least 2 times, in 4 cells"
     assert lines[1].endswith("4 times in the median")
     assert lines[2].endswith("12 times in the median")
+
+
+def test_a_surface_in_single_precision_is_that_in_double():
+    expected = self_affine((64, 64), 1 / 64, beside_peers.HURST, rms=beside_peers.RMS, seed=3)
+    found = beside_peers._in_single_precision(64, 3)
+    assert found.dtype == np.float32
+    np.testing.assert_allclose(found, expected, atol=1e-5 * beside_peers.RMS)
