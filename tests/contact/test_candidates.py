@@ -20,7 +20,7 @@ def rough(shape, seed=1):
 
 
 def restricted_always(monkeypatch, most_pairs):
-    """Candidates on all but the smallest windows, and up to so many pairs summed directly."""
+    """Candidates on all but the smallest windows, and up to this many pairs summed directly."""
     monkeypatch.setattr(candidates, "LEAST_WINDOW", 16)
     monkeypatch.setattr(candidates, "LEAST_SIDE", 8)
     monkeypatch.setattr(candidates, "MOST_CANDIDATES", 1.0)

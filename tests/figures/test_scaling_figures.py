@@ -35,7 +35,7 @@ UNITS = ("(mm)", "(mm$^2$)", "(MPa)", "(N)", "(1)")
 
 @pytest.fixture(scope="module")
 def atlas(atlas):
-    """The atlas as if each node were 40: so many that their areas can be corrected."""
+    """The atlas as if each node were 40: enough that their areas can be corrected."""
     changed = atlas.copy()
     for name in SPECIMENS:
         curves, domains = (common.group(atlas, stage, name) for stage in ("closure", "domains"))

@@ -79,7 +79,7 @@ class Operator:
         return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
 
     def _on_nodes(self, loaded, values):
-        """Displacement of all nodes under some: by the operator that takes less time for so many.
+        """Displacement of all nodes under some: by the faster operator for their number.
 
         What it needs is made when it is first asked for.
         """

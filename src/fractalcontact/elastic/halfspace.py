@@ -231,7 +231,7 @@ class HalfSpace:
         return {}
 
     def influence_within(self, shape: tuple[int, int]) -> np.ndarray:
-        """The same at so many cell distances each way, whether in the window or not."""
+        """The same at that many cell distances each way, whether in the window or not."""
         return self._table(shape)
 
     @property

@@ -43,7 +43,7 @@ STAGES = {
     "compliance_rises_again": "rising again on average",
 }
 
-#: A bar so many times as high as its value leaves the frame.
+#: A bar this many times as high as its value leaves the frame.
 _UNBOUNDED = 1e4
 #: Letters of a line of the stages in the legend.
 _LINE = 50

@@ -98,7 +98,7 @@ def _draw_errors(axes, errors, forces):
 
 
 def _write_ends(axes, errors, size):
-    """The largest error by the solver, and both ends of those by the spacing, beside their points.
+    """The largest solver error, and both ends of those by the spacing, beside their points.
 
     They stand above their points, that by the solver at the heaviest load at the right of its own:
     there those by the spacing may be near.
