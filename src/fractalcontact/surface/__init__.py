@@ -5,6 +5,7 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "EMBEDDING": ".synthesis",
         "STEEP_TILT": ".specimen",
         "band_limited": ".synthesis",
         "band_slope": ".synthesis",
@@ -16,6 +17,7 @@ __getattr__, __dir__, __all__ = exports(
         "find_outliers": ".cleaning",
         "hole_free_square": ".window",
         "largest_offset": ".specimen",
+        "levelled": ".synthesis",
         "make_specimen": ".specimen",
         "nominal_area": ".specimen",
         "overlap_statistics": ".suspect",
