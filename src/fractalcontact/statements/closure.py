@@ -102,8 +102,8 @@ def larger_samples_close_more(joint: Joint) -> Finding:
     closure = float(windows["closure_exponent"])
     return Finding(
         by_sign(low, high, rising=True),
-        f"e = {value:z.2f} [{low:z.2f}, {high:z.2f}]",
-        f"compliance ~ b^e at {float(windows['nominal_pressure']):.3g} MPa; closure from first "
+        f"x = {value:z.2f} [{low:z.2f}, {high:z.2f}]",
+        f"compliance ~ b^x at {float(windows['nominal_pressure']):.3g} MPa; closure from first "
         f"contact, b^{closure:.2f}, grows as any largest value does",
     )
 

@@ -175,8 +175,8 @@ def trend(
     v = v[chosen]
     return Finding(
         by_sign(line.slope_low, line.slope_high, rising=rising),
-        f"e = {line.slope:z.2f} [{line.slope_low:z.2f}, {line.slope_high:z.2f}]",
-        f"{symbol} ~ v^e, v = {v[0]:.3g} to {v[-1]:.3g} mm",
+        f"x = {line.slope:z.2f} [{line.slope_low:z.2f}, {line.slope_high:z.2f}]",
+        f"{symbol} ~ v^x, v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 
 

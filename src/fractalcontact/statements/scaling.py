@@ -145,7 +145,7 @@ def size_effect_follows(joint: Joint) -> Finding:
     value, low, high = (float(best[f"area_exponent{end}"]) for end in ("", "_low", "_high"))
     wanted = zip(ESTIMATES.values(), best["predicted_slope"].values, strict=True)
     numbers = (
-        f"A_r/A_0 ~ b^e, e = {value:z.2f} [{low:z.2f}, {high:z.2f}] at "
+        f"A_r/A_0 ~ b^x, x = {value:z.2f} [{low:z.2f}, {high:z.2f}] at "
         f"{float(best['nominal_pressure']):.3g} MPa, eq. 6 has "
         + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
     )
@@ -186,8 +186,8 @@ def larger_domains_are_less_dense(joint: Joint) -> Finding:
     none = max(abs(low), abs(high)) < NO_EFFECT
     return Finding(
         FAILS if none else by_sign(low, high, rising=False),
-        f"e = {value:z.2f} [{low:z.2f}, {high:z.2f}]",
-        f"A_r/A_0 ~ b^e at {pressure:.3g} MPa",
+        f"x = {value:z.2f} [{low:z.2f}, {high:z.2f}]",
+        f"A_r/A_0 ~ b^x at {pressure:.3g} MPa",
     )
 
 
@@ -226,7 +226,7 @@ def _exponents(value, low, high, known):
     ends = " to ".join(dict.fromkeys(f"{e:.2f}" for e in (value[known].min(), value[known].max())))
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     return (
-        f"tau ~ b^e at equal v/b, e = {ends}, falls beyond its interval in {falls} of "
+        f"tau ~ b^x at equal v/b, x = {ends}, falls beyond its interval in {falls} of "
         f"{known.sum()} cases, rises in {rises}"
     )
 

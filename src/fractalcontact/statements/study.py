@@ -64,13 +64,13 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
     """Exponents of A_r against v, concrete beside rock."""
     lines = _by_material(joints, lambda joint: joint.area_fraction)
-    return _compared(lines, "A_r ~ v^e", steeper=-1)
+    return _compared(lines, "A_r ~ v^x", steeper=-1)
 
 
 def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
     """Exponents of Morisita's index against v, concrete beside rock."""
     lines = _by_material(joints, lambda joint: joint.at_load("domains", "morisita"))
-    return _compared(lines, "Morisita's index ~ v^e", steeper=1)
+    return _compared(lines, "Morisita's index ~ v^x", steeper=1)
 
 
 def _by_material(joints, values_of):
@@ -101,7 +101,7 @@ def _compared(lines, law, steeper):
     high = concrete.slope_high - rock.slope_low
     sure, opposite = (low > 0, high < 0) if steeper > 0 else (high < 0, low > 0)
     verdict = HOLDS if sure else FAILS if opposite else UNDETERMINED
-    return Finding(verdict, f"{law}, e = {words}")
+    return Finding(verdict, f"{law}, x = {words}")
 
 
 #: All of them, in the order of the paper.

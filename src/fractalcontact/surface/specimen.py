@@ -199,9 +199,9 @@ def _mean_plane(scans, valid: np.ndarray) -> tuple[np.ndarray, dict]:
     offset = height - slope_x * x_mean - slope_y * y_mean
     tilt = math.degrees(math.atan(math.hypot(slope_x, slope_y)))
     of = "the scanned face" if len(scans) == 1 else "the mean of both faces, subtracted from both"
-    sentence = (
-        f"least-squares plane of {of}, over the cells present in all; tilt {tilt:.3g} degrees"
-    )
+    # Below it is rounding: of faces that had no tilt.
+    tilted = f"{tilt:.3g}" if tilt > 1e-6 else "below 1e-6"
+    sentence = f"least-squares plane of {of}, over the cells present in all; tilt {tilted} degrees"
     if tilt > STEEP_TILT:
         sentence += (
             f". NOTE: above {STEEP_TILT:g} degrees; heights stay vertical, not normal to the plane"

@@ -91,7 +91,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = sentences(
         _caption(float(at_map["normal_force"])),
         sentences(*(claim(atlas, name, *said) for said in _PLATEAUS)) or _plateau_words(plateaus),
-        claim(atlas, name, "fall of A_r as v^e", "area_falls"),
+        claim(atlas, name, "fall of A_r as v^x", "area_falls"),
     )
     return Drawing(figure, table, caption)
 
@@ -159,7 +159,7 @@ def _fall(atlas, name):
     """The exponent of A_r over the offset, where the statement on it gives one."""
     row = row_of(atlas, "statements", name, "area_falls")
     numbers = "" if row is None else str(row["numbers"].item())
-    return rf"; all offsets: $A_r \sim v^e$, {numbers}" if numbers.startswith("e =") else ""
+    return rf"; all offsets: $A_r \sim v^x$, {numbers}" if numbers.startswith("x =") else ""
 
 
 def _draw_elastic(axes, dilatancy, opened, shown, mapped, points):
