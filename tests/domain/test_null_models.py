@@ -8,6 +8,7 @@ from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 from fractalcontact.domain.box_counts import mean_count, whole_sizes
 from fractalcontact.domain.box_dimension import dimension_of_domain, is_determined
 from fractalcontact.domain.correlation import pair_counts, pair_distances, pairs_slope
+from fractalcontact.domain.counted_domain import QUANTITIES
 from fractalcontact.domain.departure import (
     BEYOND_BOTH,
     BEYOND_RANDOM,
@@ -19,7 +20,7 @@ from fractalcontact.domain.departure import (
     is_fractal,
     verdict_of,
 )
-from fractalcontact.domain.null_models import QUANTITIES, bearing_area_cut, null_models
+from fractalcontact.domain.null_models import bearing_area_cut, null_models
 from fractalcontact.domain.random_nodes import (
     band_of,
     expected_mean_counts,
@@ -64,16 +65,16 @@ def test_band_is_that_of_one_more_normal_draw():
 
 
 BESIDE = [
-    ([Comparison(1.0, 1.2, 1.4, -0.3, -0.1)], True, BEYOND_BOTH),
-    ([Comparison(1.5, 1.2, 1.4, -0.3, 0.1)], True, LIKE_CUT),
-    ([Comparison(1.3, 1.2, 1.4, -0.3, -0.1)], True, LIKE_RANDOM),
-    ([Comparison(1.5, 1.2, 1.4)], True, UNDETERMINED),
-    ([Comparison(1.5, 1.2, 1.4)], False, BEYOND_RANDOM),
-    ([Comparison(np.nan, 1.2, 1.4, 0.1, 0.2)], True, UNDETERMINED),
+    ([Comparison(-0.4, -0.2, -0.3, -0.1)], True, BEYOND_BOTH),
+    ([Comparison(0.1, 0.3, -0.3, 0.1)], True, LIKE_CUT),
+    ([Comparison(-0.1, 0.1, -0.3, -0.1)], True, LIKE_RANDOM),
+    ([Comparison(0.1, 0.3)], True, UNDETERMINED),
+    ([Comparison(0.1, 0.3)], False, BEYOND_RANDOM),
+    ([Comparison(np.nan, np.nan, 0.1, 0.2)], True, UNDETERMINED),
     # Two estimates of one dimension: one alone shows nothing.
-    ([Comparison(1.5, 1.2, 1.4, 1, 2), Comparison(1.3, 1.2, 1.4, 1, 2)], True, LIKE_RANDOM),
-    ([Comparison(1.5, 1.2, 1.4, 1, 2), Comparison(1.5, 1.2, 1.4, -1, 2)], True, LIKE_CUT),
-    ([Comparison(1.5, 1.2, 1.4, 1, 2), Comparison(1.0, 1.2, 1.4, -2, -1)], True, BEYOND_BOTH),
+    ([Comparison(0.1, 0.3, 1, 2), Comparison(-0.1, 0.1, 1, 2)], True, LIKE_RANDOM),
+    ([Comparison(0.1, 0.3, 1, 2), Comparison(0.1, 0.3, -1, 2)], True, LIKE_CUT),
+    ([Comparison(0.1, 0.3, 1, 2), Comparison(-0.4, -0.2, -2, -1)], True, BEYOND_BOTH),
 ]
 
 
@@ -182,6 +183,22 @@ def test_a_cut_is_not_distinguished_from_itself():
         assert found[f"{name}_departure"].item() in (LIKE_CUT, LIKE_RANDOM)
     assert found["null_departure"].item() in (LIKE_CUT, LIKE_RANDOM)
     assert not is_fractal(found["null_verdict"].item())
+
+
+def test_interval_beside_random_nodes_holds_the_errors_of_both():
+    """A domain of four clusters differs from one window to the next by more than the band."""
+    domain = np.zeros((96, 96), bool)
+    for y, x in ((5, 8), (20, 70), (64, 30), (80, 85)):
+        domain[y : y + 9, x : x + 9] = scattered((9, 9), 60, y)
+    found = null_models(domain[np.newaxis], 0.1).isel(normal_force=0)
+    for name in ("delta_sigma", "morisita", "clusters"):
+        low, mean, high = (found[f"{name}_random{end}"].item() for end in ("_low", "", "_high"))
+        lower, value, upper = (
+            found[f"{name}_random_difference{end}"].item() for end in ("_low", "", "_high")
+        )
+        assert value - lower >= high - mean
+        assert upper - value >= mean - low
+    assert upper - value > 1.01 * (mean - low)
 
 
 def test_the_same_question_has_the_same_answer_bit_for_bit():

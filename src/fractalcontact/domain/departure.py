@@ -21,15 +21,18 @@ DEPARTURES = (BEYOND_BOTH, BEYOND_RANDOM, LIKE_RANDOM, LIKE_CUT, UNDETERMINED)
 
 
 class Comparison(NamedTuple):
-    """A quantity of a domain beside its null models; NaN where there is none."""
+    """A quantity of a domain less that of its null models: 95 % intervals; NaN where there is none.
 
-    value: float
+    They hold what other parts of the window would change of the domain's, and the scatter of the
+    random nodes: that one domain lies outside a narrow band shows nothing of domains like it.
+    """
+
     random_low: float
-    """Band of as many random nodes."""
+    """Less that of as many random nodes."""
     random_high: float
-    difference_low: float = float("nan")
-    """Interval of the value less that of the bearing-area cut."""
-    difference_high: float = float("nan")
+    cut_low: float = float("nan")
+    """Less that of the bearing-area cut."""
+    cut_high: float = float("nan")
 
 
 def departure_of(comparisons: Sequence[Comparison], *, surface: bool) -> str:
@@ -49,20 +52,26 @@ def departure_of(comparisons: Sequence[Comparison], *, surface: bool) -> str:
     str
         One of :data:`DEPARTURES`.
     """
-    values = np.array([one.value for one in comparisons])
-    low = np.array([one.random_low for one in comparisons])
-    high = np.array([one.random_high for one in comparisons])
-    if not np.isfinite([values, low, high]).all():
+    random, cut = (
+        np.array(
+            [(getattr(one, f"{null}_low"), getattr(one, f"{null}_high")) for one in comparisons]
+        )
+        for null in ("random", "cut")
+    )
+    if np.isnan(random).any():
         return UNDETERMINED
-    if not ((values < low) | (values > high)).all():
+    if not _leaves_zero_out(random):
         return LIKE_RANDOM
     if not surface:
         return BEYOND_RANDOM
-    below = np.array([one.difference_high for one in comparisons])
-    above = np.array([one.difference_low for one in comparisons])
-    if np.isnan([below, above]).any():
+    if np.isnan(cut).any():
         return UNDETERMINED
-    return BEYOND_BOTH if ((below < 0) | (above > 0)).all() else LIKE_CUT
+    return BEYOND_BOTH if _leaves_zero_out(cut) else LIKE_CUT
+
+
+def _leaves_zero_out(intervals):
+    """Whether every one of the intervals does."""
+    return bool(((intervals[:, 0] > 0) | (intervals[:, 1] < 0)).all())
 
 
 def verdict_of(departure: str, determined: bool) -> str:

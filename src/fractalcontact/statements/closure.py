@@ -3,6 +3,7 @@
 import numpy as np
 
 from .findings import (
+    BY_CONSTRUCTION,
     FAILS,
     HOLDS,
     ILL_POSED,
@@ -16,6 +17,7 @@ from .findings import (
     level,
     no_offsets,
     trend,
+    under_every_load,
 )
 
 #: Closure from first contact is an extreme of the sample; compliance is a property of the joint.
@@ -28,25 +30,37 @@ def compliance_rises_at_first(joint: Joint) -> Finding:
 
 
 def curves_overlap(joint: Joint) -> Finding:
-    """Spread of the compliance of the interface beyond the correlation length."""
-    return level(joint.compliance[joint.between], _COMPLIANCE, joint.offset[joint.between])
+    """Spread of the compliance of the interface beyond the correlation length, at every load."""
+    v = joint.offset[joint.between]
+
+    def spread(force):
+        return level(joint.compliance_under(force)[joint.between], _COMPLIANCE, v)
+
+    return under_every_load(joint, spread)
 
 
 def compliance_rises_again(joint: Joint) -> Finding:
-    """Compliance where the faces no longer correlate, against that at the offsets just before.
+    """Compliance where the faces no longer correlate, against that just before, at every load.
 
-    Those are the ones beyond the correlation length or, if none was solved there, the last within.
+    Before are the offsets beyond the correlation length or, if none was solved there, the last
+    within.
     """
-    before, after = joint.between, joint.unrelated
+    before = joint.between
     if not before.any() and joint.initial.any():
         before = joint.offset == joint.offset[joint.initial].max()
-    known = np.isfinite(joint.compliance)
-    before, after = before & known, after & known
+    return under_every_load(joint, lambda force: _rise(joint, force, before))
+
+
+def _rise(joint, force, before):
+    """Compliance at the offsets without correlation less that at the ones before, under a load."""
+    compliance = joint.compliance_under(force)
+    known = np.isfinite(compliance)
+    before, after = before & known, joint.unrelated & known
     if not after.any() or not before.any():
         return Finding(UNDETERMINED, no_offsets("both before and after the faces lose correlation"))
     spread = joint.stages["closure"]["composite_spread"].sel(direction=joint.direction).values
     change, of_spread = (
-        values[after].mean() / values[before].mean() - 1 for values in (joint.compliance, spread)
+        values[after].mean() / values[before].mean() - 1 for values in (compliance, spread)
     )
     ends = joint.offset[before].max(), joint.offset[after].min()
     return Finding(
@@ -110,6 +124,8 @@ def larger_samples_close_more(joint: Joint) -> Finding:
 
 def area_is_linear(joint: Joint) -> Finding:
     """Exponent m of A_r ~ F^m at every offset, A_r corrected for the perimeter."""
+    if joint.yields_everywhere:
+        return Finding(ILL_POSED, BY_CONSTRUCTION)
     law = joint.stages["area"].sel(direction=joint.direction)
     value, low, high = (law[f"corrected_exponent{end}"].values for end in ("", "_low", "_high"))
     known = np.isfinite(value)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..core.fitting import fit_line
+from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.resolved import RESOLVED_NODES
 from ..mechanics.states import chosen_offset, forces_of
 from ..surface.specimen import nominal_area
@@ -17,6 +17,9 @@ HOLDS, PARTLY, FAILS = "holds", "holds in part", "does not hold"
 #: The data cannot decide; the question has no meaning as it is put.
 UNDETERMINED, ILL_POSED = "undetermined", "ill-posed"
 VERDICTS = (HOLDS, PARTLY, FAILS, UNDETERMINED, ILL_POSED)
+
+#: Why a joint under a hardness may be asked nothing of its contact area.
+BY_CONSTRUCTION = "A_r = F/H at every load, so by construction: all that touches yields"
 
 #: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
 NEARLY, LOOSELY = 0.1, 0.25
@@ -87,21 +90,24 @@ class Joint:
         specimen = self.stages["specimens"]
         return float(forces_of([self.settings["map_load"]], nominal_area(specimen))[0])
 
-    def at_load(self, stage: str, name: str) -> np.ndarray:
-        """A variable over offsets, at the load of the maps; NaN below ten nodes in contact."""
-        return np.where(self._resolved, self._over_offsets(stage, name), np.nan)
+    def at_load(self, stage: str, name: str, force: float | None = None) -> np.ndarray:
+        """A variable over offsets, NaN below ten nodes in contact.
 
-    def _over_offsets(self, stage, name):
+        At the load of the maps, or another one, N.
+        """
+        nodes, values = (
+            self._over_offsets(*of, force) for of in (("closure", "nodes"), (stage, name))
+        )
+        return np.where(nodes >= RESOLVED_NODES, values, np.nan)
+
+    def _over_offsets(self, stage, name, force):
         values = self.stages[stage][name].sel(direction=self.direction)
         if "resolution" in values.dims:
             values = values.sel(resolution=values["resolution"].min())
         if "normal_force" in values.dims:
-            values = values.sel(normal_force=self.force, method="nearest")
+            force = self.force if force is None else force
+            values = values.sel(normal_force=force, method="nearest")
         return values.values
-
-    @cached_property
-    def _resolved(self) -> np.ndarray:
-        return self._over_offsets("closure", "nodes") >= RESOLVED_NODES
 
     def map_states(self, stage: str) -> xr.Dataset:
         """A stage at the offset of the contact maps (and the finest resolution), over loads."""
@@ -132,14 +138,29 @@ class Joint:
 
     @cached_property
     def compliance(self) -> np.ndarray:
+        """Compliance of the interface over offsets at the load of the maps, mm/MPa."""
+        return self.compliance_under(self.force)
+
+    def compliance_under(self, force: float) -> np.ndarray:
         """Compliance d w_int / d sigma_0 of the interface over offsets, mm/MPa; NaN where flush."""
-        return 1 / self.at_load("closure", "interface_stiffness")
+        return 1 / self.at_load("closure", "interface_stiffness", force)
 
     @cached_property
     def area_fraction(self) -> np.ndarray:
         """A_r/A_0 over offsets, corrected for the perimeter."""
         area = self.at_load("closure", "area_corrected")
         return area / nominal_area(self.stages["specimens"])
+
+    @cached_property
+    def yields_everywhere(self) -> bool:
+        """Whether A_r = F/H within 1 % in every state: its pressure is the hardness alone."""
+        hardness = self.settings["material"]["hardness"]
+        curves = self.stages["closure"]
+        if not np.isfinite(hardness):
+            return False
+        share = curves["area_corrected"] * hardness / curves["normal_force"]
+        share = share.values[np.isfinite(share.values)]
+        return bool(share.size and (np.abs(share - 1) < 0.01).all())
 
     def of_direction(self, name: str) -> np.ndarray:
         """A variable of the joint in the direction judged."""
@@ -180,6 +201,30 @@ def trend(
     )
 
 
+def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
+    """Finding of a rule at the load nearest to the maps' that decides, its verdict that of all.
+
+    What a rule with a fixed limit finds at one load may be otherwise at the next.
+
+    Parameters
+    ----------
+    joint : Joint
+    rule : callable
+        From a load, N, to its finding.
+    """
+    found = {force: rule(force) for force in joint.stages["closure"]["normal_force"].values}
+    decided = {force: one for force, one in found.items() if one.verdict != UNDETERMINED}
+    if not decided:
+        return rule(joint.force)
+    force = min(decided, key=lambda one: abs(np.log(one / joint.force)))
+    verdicts = [one.verdict for one in decided.values()]
+    good = verdicts.count(HOLDS)
+    return decided[force]._replace(
+        verdict=verdicts[0] if len(set(verdicts)) == 1 else PARTLY,
+        numbers=f"{decided[force].numbers} at {force:.3g} N; so at {good} of {len(decided)} loads",
+    )
+
+
 def by_sign(low: float, high: float, *, rising: bool) -> str:
     """Verdict on a claim of a sign, from the interval of what is to have it."""
     above, below = (low > 0, high < 0) if rising else (high < 0, low > 0)
@@ -190,8 +235,8 @@ def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
     """Whether values stay the same: their range over their mean."""
     known = np.isfinite(values)
     values, v = values[known], v[known]
-    if len(values) < 2:
-        return Finding(UNDETERMINED, no_offsets("two"))
+    if len(values) < FEWEST_POINTS:
+        return Finding(UNDETERMINED, no_offsets("three"))
     spread = np.ptp(values) / np.mean(values)
     verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS
     return Finding(

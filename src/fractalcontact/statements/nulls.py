@@ -18,6 +18,11 @@ from .findings import (
     share,
 )
 
+_OF_SLIDING = ("along sliding", "across")
+
+#: What is compared with the bearing-area cut.
+_BESIDE_CUT = ("delta_sigma", "correlation_dimension")
+
 #: What a departure that is not fractal leaves of "lacunar fractal sets".
 _LEFT = {LIKE_RANDOM: FAILS, LIKE_CUT: PARTLY}
 
@@ -47,45 +52,54 @@ def domains_are_fractal(joint: Joint) -> Finding:
     """Box-counting dimension beside as many random nodes and the bearing-area cut."""
     state = joint.map_state("domains")
     verdict = str(state["null_verdict"].item())
-    value, random, low, high, cut = (
-        float(state[f"delta_sigma{end}"])
-        for end in ("", "_random", "_random_low", "_random_high", "_cut")
-    )
+    value, cut = (float(state[f"delta_sigma{end}"]) for end in ("", "_cut"))
     if not np.isfinite(value):
         return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
     if verdict == departure.UNDETERMINED:
         low, high = (float(state[f"delta_sigma_{end}"]) for end in ("low", "high"))
         return Finding(UNDETERMINED, f"interval of Delta_sigma {high - low:.1f} wide")
+    less, low, high = (
+        float(state[f"delta_sigma_random_difference{end}"]) for end in ("", "_low", "_high")
+    )
+    pairs = float(state["correlation_dimension_random_difference"])
+    found = HOLDS if is_fractal(verdict) else _LEFT[verdict]
+    if found == FAILS and max(-low, high) > LOOSELY:
+        # Not distinguished by a difference that is not known well enough.
+        found = UNDETERMINED
     return Finding(
-        HOLDS if is_fractal(verdict) else _LEFT[verdict],
+        found,
         verdict,
-        f"Delta_sigma = {value:.2f}, as many random nodes {low:.2f} to {high:.2f} "
-        f"(mean {random:.2f}), the cut {cut:.2f}",
+        f"Delta_sigma = {value:.2f}, less that of as many random nodes {less:+.2f} [{low:+.2f}, "
+        f"{high:+.2f}], of the cut {cut:.2f}; correlation dimension less that of random nodes "
+        f"{pairs:+.2f}: contact is clustered, which alone is no fractal",
     )
 
 
 def domains_differ_from_cuts(joint: Joint) -> Finding:
     """Elastic contact domain against the cut of the composite topography, over the loads.
 
-    Related where their dimensions never differ by more than a quarter; not coincident where the
-    interval of the difference leaves out zero.
+    Not coincident where box-counting and correlation dimension both differ by more than their
+    intervals (as :func:`domain.departure.departure_of` has it); not related where the interval of
+    the difference of either lies beyond a quarter.
     """
     states = joint.map_states("domains")
-    value, low, high = (
-        states[f"delta_sigma_cut_difference{end}"].values for end in ("", "_low", "_high")
-    )
-    known = np.isfinite(low) & np.isfinite(high) & np.isfinite(value)
+    less = {
+        end: np.array([states[f"{name}_cut_difference{end}"].values for name in _BESIDE_CUT])
+        for end in ("", "_low", "_high")
+    }
+    known = np.isfinite([*less.values()]).all(axis=(0, 1))
     if not known.any():
-        return Finding(UNDETERMINED, "no load at which domain and cut have a dimension")
-    value, low, high = value[known], low[known], high[known]
-    apart = int(((low > 0) | (high < 0)).sum())
-    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in (value.min(), value.max())))
-    related = np.abs(value).max() <= LOOSELY
-    verdict = share(apart, value.size) if apart else UNDETERMINED
+        return Finding(UNDETERMINED, "no load at which domain and cut have their dimensions")
+    value, low, high = (less[end][:, known] for end in ("", "_low", "_high"))
+    apart = int(((low > 0) | (high < 0)).all(axis=0).sum())
+    unrelated = bool(((low > LOOSELY) | (high < -LOOSELY)).any())
+    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in (value[0].min(), value[0].max())))
+    total = value.shape[1]
+    verdict = FAILS if unrelated else share(apart, total) if apart else UNDETERMINED
     return Finding(
-        verdict if related else FAILS,
+        verdict,
         f"domain less cut {ends}",
-        f"apart beyond the interval at {apart} of {value.size} loads",
+        f"apart beyond the interval, by boxes and by pairs, at {apart} of {total} loads",
     )
 
 
@@ -101,9 +115,10 @@ def domains_are_isotropic(joint: Joint) -> Finding:
     )
     if not np.isfinite([along, across]).all() or along + across == 0:
         return Finding(UNDETERMINED, "no contact at that lag from another")
+    ways = ("along x", "along y") if joint.settings["opposite"] == "flat" else _OF_SLIDING
     numbers = (
-        f"contact at a lag {along:.2f} [{low:.2f}, {high:.2f}] along, {across:.2f} "
-        f"[{other[0]:.2f}, {other[1]:.2f}] across sliding"
+        f"contact at a lag {along:.2f} [{low:.2f}, {high:.2f}] {ways[0]}, {across:.2f} "
+        f"[{other[0]:.2f}, {other[1]:.2f}] {ways[1]}"
     )
     apart = max(low, other[0]) > min(high, other[1])
     difference = abs(across - along) / (across + along)
