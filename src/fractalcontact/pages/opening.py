@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from markupsafe import Markup, escape
 
 from ..mechanics.model_validity import GOOD, PARTLY, POOR
-from ..statements.judge import FAILS, HOLDS, UNDETERMINED, all_statements
+from ..statements.judge import FAILS, HOLDS, ILL_POSED, UNDETERMINED, all_statements
 from ..statements.judge import PARTLY as IN_PART
 from .captions import symbols
 from .common_loads import CommonLoad
@@ -19,8 +19,9 @@ from .words import measured, percent, short, with_unit
 
 #: Names listed one by one; more are counted.
 _LISTED = 3
-#: Statements that are quoted by name: on eq. 6, and on the plateau of the dilatancy.
+#: Statements that are quoted by name: on eq. 6, the contact domain, the plateau of the dilatancy.
 _EQ6 = "size_effect_follows"
+_FRACTAL, _LACUNAR = "domains_are_fractal", "area_is_lacunar"
 _PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 _VERDICTS = {
     HOLDS: "holds",
@@ -55,7 +56,7 @@ def opening_of(
         _closure(found, under, len(specimens)),
         _model(found, under),
         _dilatancy(specimens, rows),
-        _dimensions(found, under),
+        _dimensions(found, under, rows),
         _size_effect(rows),
     )
     return [sentence for sentence in sentences if sentence]
@@ -204,21 +205,34 @@ def _listed(names: Sequence[str], most: int = _LISTED) -> str:
     return " and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else names[0]
 
 
-def _dimensions(found: _At, under: str) -> Markup:
-    """Delta_sigma by both estimators, of those specimens where it is determined."""
+def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
+    """Delta_sigma by both estimators where it is determined, and the verdict beside nulls."""
+    verdicts = {row.name: {n: cell.verdict for n, cell in row.cells.items()} for row in rows}
+    # Where all that touches yields, A_r(s) has the dimension 2 by construction.
+    asked = [
+        (one, at) for one, at in found if verdicts.get(_LACUNAR, {}).get(one.name) != ILL_POSED
+    ]
     by_boxes = _determined([at.delta_sigma_boxes for _, at in found])
-    by_areas = _determined([at.delta_sigma_areas for _, at in found])
-    return symbols(f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s).")
+    by_areas = _determined([at.delta_sigma_areas for _, at in asked])
+    text = f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s)"
+    beside = list(verdicts.get(_FRACTAL, {}).values())
+    if beside:
+        text += f"; that the domains are fractal sets {_counted(beside, _VERDICTS)}"
+    return symbols(f"{text}.")
 
 
 def _determined(estimates):
-    """Range of the estimates that are determined, and how many are."""
-    values = [one.value for one in estimates if one.determined]
-    if not values:
+    """Range of the estimates that are determined with its intervals, and how many are."""
+    known = sorted((one for one in estimates if one.determined), key=lambda one: one.value)
+    if not known:
         return "undetermined"
-    some = len(values) < len(estimates)
-    counted = f" ({len(values)} of {len(estimates)} determined)" if some else ""
-    return _range(values, measured) + counted
+    some = len(known) < len(estimates)
+    counted = f" ({len(known)} of {len(estimates)} determined)" if some else ""
+    ends = [
+        f"{measured(one.value)} [{measured(one.low)}, {measured(one.high)}]"
+        for one in (known[0], known[-1])
+    ]
+    return " to ".join(dict.fromkeys(ends)) + counted
 
 
 def _size_effect(rows: Sequence[Row]) -> Markup | None:
