@@ -176,7 +176,7 @@ def nodes_of_window(settings: Mapping[str, Any], spacing: object, of_face: float
     """
     window = settings["window"]
     if window is None:
-        # Half the side of the largest square without holes, so that it can slide; all against a plane.
+        # Half the side of the largest hole-free square, so that it can slide; all against a plane.
         return of_face if settings["opposite"] == "flat" else of_face / 4
     if spacing is None:
         return of_face
