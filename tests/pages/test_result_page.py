@@ -487,11 +487,12 @@ def test_a_page_states_material_and_opposite_face(results, pages):
         text = "".join(pages[results / f"pages/{name}.html"].texts)
         row = table.loc[[name]].iloc[0]
         assert row["material"] == "rock"
-        assert f"rock: E = {with_unit(row['modulus_MPa'], 'MPa')}, ν = {row['poisson']:g}" in text
+        modulus = with_unit(row["modulus_MPa"], "MPa")
+        assert f"material rock: E = {modulus}, ν = {row['poisson']:g}" in text
         assert words in text
         assert np.isnan(row["hardness_MPa"])
     own = Material("own", 40e3, 0.25, 1e3)
-    assert own.words == "its own material: E = 40 GPa, ν = 0.25, hardness 1 GPa"
+    assert own.words == "own material: E = 40 GPa, ν = 0.25, hardness 1 GPa"
     assert "perfect match" in opposite_words("match")
 
 

@@ -39,7 +39,7 @@ class Material:
     @property
     def words(self) -> str:
         """In a line: the name, E, Poisson's ratio and, if stated, the hardness."""
-        name = "its own material" if self.name == _OWN else printable(self.name)
+        name = "own material" if self.name == _OWN else f"material {printable(self.name)}"
         line = f"{name}: E = {with_unit(self.modulus, 'MPa')}, ν = {short(self.poisson)}"
         if self.hardness is None:
             return line
