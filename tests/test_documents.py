@@ -1,10 +1,13 @@
 """The documents name keys, commands, files and links that exist."""
 
 import re
+import textwrap
 
 import pytest
 import yaml
 from places import ROOT
+
+from fractalcontact.study.checks import read_sidecar, resolve_study
 
 #: All but the changelog, which names things as they were called at its time.
 DOCUMENTS = [
@@ -35,6 +38,59 @@ def test_every_key_of_a_study_and_of_a_sidecar_is_explained():
         for group in re.findall(r"`\{([a-z_, ]+)\}`", line):
             explained |= set(group.split(", "))
     assert set(keys_of(schema)) - explained == set()
+
+
+def block_of(name, first):
+    """The indented block of a document that begins with this line, as text."""
+    lines = re.search(
+        rf"^    {re.escape(first)}.*\n(?:    .+\n)*", (ROOT / name).read_text(), re.MULTILINE
+    )
+    return textwrap.dedent(lines[0])
+
+
+@pytest.fixture(scope="module")
+def schema():
+    return yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+
+
+def test_the_study_of_the_first_hour_takes_what_is_dropped_in(schema, tmp_path, monkeypatch):
+    """It is valid, without twins, and its own: nothing is solved here."""
+    (tmp_path / "scans").mkdir()
+    (tmp_path / "scans/rock.npy").touch()
+    (tmp_path / "scans/rock.yaml").write_text(block_of("docs/first_hour.md", "unit: mm"))
+    config = yaml.safe_load(block_of("docs/first_hour.md", "study: mine"))
+    monkeypatch.chdir(tmp_path)
+    study = resolve_study(config, schema, "config/mine.yaml")
+    assert config["study"] == "mine"
+    assert set(study.settings) == {"rock"}
+    assert study.settings["rock"]["material"]["modulus"] == 40e3  # of the sidecar, not the study
+    assert study.options["rock"] == {"unit": "mm", "spacing": "0.05 mm"}
+
+
+def test_the_sidecar_of_the_readme_is_one(schema, tmp_path):
+    path = tmp_path / "rock.yaml"
+    path.write_text(block_of("README.md", "label: granite"))
+    keys, settings = read_sidecar(path, schema)
+    assert keys == {"unit": "mm", "spacing": "0.05 mm"}
+    assert set(settings["material"]) == {
+        "modulus",
+        "poisson",
+        "basic_friction_angle",
+        "joint_wall_strength",
+    }
+    assert settings["opposite"] == "flat"
+
+
+def test_the_readme_states_the_material_that_scans_get():
+    """That of the default study, where nothing else is stated."""
+    study = yaml.safe_load((ROOT / "config/paper.yaml").read_text())
+    material = study["materials"][study["defaults"]["material"]]
+    text = " ".join((ROOT / "README.md").read_text().split())
+    strength = material["joint_wall_strength"]
+    for words in (f"E = {material['modulus']}", f"ratio {material['poisson']}", strength):
+        assert words in text
+    assert study["defaults"]["material"] in text
+    assert study["defaults"]["opposite"] == "match"
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))

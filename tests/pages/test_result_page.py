@@ -21,6 +21,7 @@ from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.lights import lights_of, validity_at
+from fractalcontact.pages.material import Material, opposite_words
 from fractalcontact.pages.matrix import (
     Cell,
     Row,
@@ -32,10 +33,11 @@ from fractalcontact.pages.matrix import (
 )
 from fractalcontact.pages.opening import opening_of
 from fractalcontact.pages.result_page import Place, write_result_page
+from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
 from fractalcontact.pages.summary import summarised
 from fractalcontact.pages.words import with_unit
 from fractalcontact.statements.judge import all_statements
-from fractalcontact.study.atlas import read_atlas, write_atlas
+from fractalcontact.study.atlas import group_names, read_atlas, write_atlas
 from fractalcontact.study.figure_list import figures_of
 
 NAMES = ("flat.1", "pair")
@@ -162,16 +164,18 @@ def test_summary_has_the_numbers_of_the_atlas(results, atlas):
         assert here["nominal_pressure"].item() == pytest.approx(pressure)
         budget = atlas[f"error_budget/{name}"].to_dataset()
         budget = budget.sel(normal_force=row["normal_force_N"], method="nearest")
+        closures = budget.sel(quantity="closure")
         surface = atlas[f"surface_dimension/{name}"].to_dataset()
         domains = atlas[f"domains/{name}"].to_dataset().sel(direction=row["direction"])
         domains = domains.sel(resolution=1).sel(state, method="nearest")
         wanted = {
-            "closure_mm": here["interface_closure"],
+            "interface_closure_mm": here["interface_closure"],
             "stiffness_MPa_per_mm": here["interface_stiffness"],
             "contact_nodes": here["nodes"],
             "k_ni_MPa_per_mm": here["hyperbola_k_ni"],
-            "closure_error_surface_mm": budget["total"].sel(quantity="closure"),
-            "closure_error_population_mm": budget["total_of_population"].sel(quantity="closure"),
+            "interface_closure_error_surface_mm": closures["total"],
+            "interface_closure_error_population_mm": closures["total_of_population"],
+            "k_ni_change_at_twice_the_spacing": here["hyperbola_k_ni_change"],
             "delta_g": surface["recommended_value"],
             "delta_sigma_boxes": domains["delta_sigma"],
             "delta_sigma_boxes_high": domains["delta_sigma_high"],
@@ -185,7 +189,7 @@ def test_the_page_prints_the_numbers_of_the_summary(results, pages):
     table = pd.read_csv(results / "summary.csv")
     text = (results / "index.html").read_text(encoding="utf-8")
     for _, row in table.iterrows():
-        shown = float(f"{row['closure_mm']:.3g}")
+        shown = float(f"{row['interface_closure_mm']:.3g}")
         in_micrometres = f"{1000 * shown:.6g} µm" if shown < 1 else f"{shown:.3g} mm"
         assert f">{in_micrometres}<small>" in text
         assert f'data-sort="{float(row["contact_nodes"])}"' in text
@@ -363,7 +367,8 @@ def test_the_page_opens_with_numbers_and_verdicts(results):
     assert 2 <= len(sentences) <= 5
     assert html.index('opening">') < html.index('class="links"')
     sure = at_maps[at_maps["suspect_load_share"] <= 0.5]
-    for closure in (sure["closure_mm"].min(), sure["closure_mm"].max()):
+    column = sure["interface_closure_mm"]
+    for closure in (column.min(), column.max()):
         assert with_unit(closure, "mm") in opening
     least = with_unit(at_maps["real_pressure_MPa"].min(), "MPa").split()[0]
     assert f"at a real mean pressure of {least}" in opening
@@ -399,7 +404,8 @@ def test_verdicts_of_several_specimens_are_counted(verdicts, words):
 def test_the_lines_on_the_page_draw_the_figure_again(
     results, pages, tmp_path, monkeypatch, figure, specimen
 ):
-    code = redrawn(figure, specimen, "results/tiny/atlas.nc")
+    groups = group_names(results / "atlas.nc")
+    code = redrawn(figure, specimen, "results/tiny/atlas.nc", groups)
     if specimen:
         assert code in "".join(pages[results / f"pages/{specimen}.html"].texts)
     (tmp_path / "results").symlink_to(results.parent)
@@ -409,6 +415,85 @@ def test_the_lines_on_the_page_draw_the_figure_again(
     assert (tmp_path / f"{figure}.pdf").read_bytes().startswith(b"%PDF")
     assert len(values["drawing"].data) > 0
     values["atlas"].close()
+
+
+def test_the_lines_on_the_page_read_groups_that_exist(results, pages):
+    """Those of every figure: run on the atlas, each leads to a group with numbers in it."""
+    whole = read_atlas(results / "atlas.nc")
+    assert group_names(results / "atlas.nc") == {
+        name.strip("/") for name in whole.groups if name != "/"
+    }
+    for name, opposite in (("pair", "match"), ("flat.1", "flat")):
+        text = "".join(pages[results / f"pages/{name}.html"].texts)
+        for figure in figures_of(opposite):
+            code = redrawn(figure, name, "results/tiny/atlas.nc", group_names(results / "atlas.nc"))
+            assert code in text
+            read = re.findall(r"^(\w+) = (atlas\[.+\])$", code, re.MULTILINE)
+            assert read, figure
+            for _, expression in read:
+                assert eval(expression, {"atlas": whole}).to_dataset().data_vars, expression
+
+
+def test_measured_maps_are_read_where_the_atlas_has_them():
+    """They are no specimen's."""
+    specimens = {"specimens", "specimens/a", "contact/a"}
+    code = redrawn("fig12_evolution", "a", "atlas.nc", specimens)
+    assert "contact_maps" not in code
+    assert "specimens = atlas['specimens/a']" in code
+    code = redrawn("fig12_evolution", "a", "atlas.nc", specimens | {"contact_maps"})
+    assert "contact_maps = atlas['contact_maps']\n" in code
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ([0.5], "larger for 1 and smaller for none of 1 specimen (+50 %): it falls"),
+        ([0.021, 2.8], "larger for 2 and smaller for none of 2 specimens (+2.1 % to +280 %): it f"),
+        (
+            [-0.1, -0.2, None],
+            "none and smaller for 2 of 2 specimens (−20 % to −10 %): it rises",
+        ),
+        ([-0.1, 0.2], "larger for 1 and smaller for 1 of 2 specimens (−10 % to +20 %): it has no"),
+    ],
+)
+def test_which_way_k_ni_goes_with_the_spacing_follows_from_the_data(changes, words):
+    found = spacing_words([Doubled(change, None) for change in changes])
+    assert words in found
+    assert "tangent" not in found
+    assert "changes by −3.3 %." in spacing_words([Doubled(0.1, -0.033)])
+    assert spacing_words([Doubled(None, 0.1)]) == ""
+
+
+def test_the_page_states_what_twice_the_spacing_changes(results, atlas):
+    """As the caption of the closure figure has it."""
+    found = [doubled_spacing(Chosen(atlas, name)) for name in NAMES]
+    for name, one in zip(NAMES, found, strict=True):
+        chosen = Chosen(atlas, name)
+        curves = chosen.stage("closure").sel(direction=chosen.direction)
+        curves = curves.sel(offset=chosen.offset, method="nearest")
+        tangent = curves["interface_stiffness"].isel(normal_force=chosen.map_load).values
+        assert one.stiffness == pytest.approx(tangent[1] / tangent[0] - 1)
+        initial = curves["hyperbola_k_ni"].values
+        change = initial[1] / initial[0] - 1
+        assert one.k_ni == (pytest.approx(change) if np.isfinite(change) else None)
+    index = (results / "index.html").read_text(encoding="utf-8")
+    assert spacing_words(found) in index
+    assert "for design" not in index
+
+
+def test_a_page_states_material_and_opposite_face(results, pages):
+    table = pd.read_csv(results / "summary.csv").set_index("specimen")
+    for name, words in (("pair", "both faces scanned"), ("flat.1", "against a rigid plane")):
+        text = "".join(pages[results / f"pages/{name}.html"].texts)
+        row = table.loc[[name]].iloc[0]
+        assert row["material"] == "rock"
+        modulus = with_unit(row["modulus_MPa"], "MPa")
+        assert f"material rock: E = {modulus}, ν = {row['poisson']:g}" in text
+        assert words in text
+        assert np.isnan(row["hardness_MPa"])
+    own = Material("own", 40e3, 0.25, 1e3)
+    assert own.words == "own material: E = 40 GPa, ν = 0.25, hardness 1 GPa"
+    assert "perfect match" in opposite_words("match")
 
 
 def test_tables_and_configuration_can_be_used_again(results):

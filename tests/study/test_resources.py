@@ -2,7 +2,9 @@
 
 import os
 
+import numpy as np
 import pytest
+from samples import scan_of
 
 from fractalcontact.study.resources import (
     AROUND,
@@ -16,6 +18,7 @@ from fractalcontact.study.resources import (
     seconds,
     states_of,
 )
+from fractalcontact.surface.specimen import make_specimen
 
 #: Largest resident memory of the scripts of jobs: rule, nodes along a side, states, MB. The last
 #: column of the table in docs/scaling.md.
@@ -142,8 +145,18 @@ def test_nodes_follow_from_files_and_windows(tmp_path):
     assert nodes_of_window(settings, 0.1, 1e6) == pytest.approx(2500)
     assert nodes_of_window(settings, "100 um", 1e6) == pytest.approx(2500)
     assert nodes_of_window({"window": [5.0, 10.0]}, 0.1, 1e6) == pytest.approx(5000)
-    for window, spacing in ((None, 0.1), (5.0, None), (5.0, ["1 mm", "2 mm"]), (500.0, 0.1)):
+    for window, spacing in ((5.0, None), (5.0, ["1 mm", "2 mm"]), (500.0, 0.1)):
         assert nodes_of_window({"window": window}, spacing, 4000.0) == 4000
+
+
+def test_an_automatic_window_has_no_more_nodes_than_are_asked_for():
+    """Half the side of the face where it slides, all of it against a plane."""
+    scan = scan_of(np.random.default_rng(1).normal(size=(24, 24)))
+    for opposite in ("match", "flat"):
+        specimen = make_specimen(scan, opposite=opposite)
+        nodes = specimen.attrs["window_ny"] * specimen.attrs["window_nx"]
+        settings = {"window": None, "opposite": opposite}
+        assert nodes == nodes_of_window(settings, None, 24**2)
 
 
 def test_states_are_directions_offsets_and_loads():

@@ -1,7 +1,7 @@
 """Cards of figures: heading, caption, numbers, files, and the lines that draw one again."""
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
@@ -66,6 +66,7 @@ def cards_of(
     address: str,
     *,
     atlas: str,
+    groups: Collection[str],
     specimen: str = "",
     label: str = "",
     warnings: Sequence[str] = (),
@@ -81,6 +82,8 @@ def cards_of(
         Of that folder, relative to the page.
     atlas : str
         Path of the atlas, as a user would type it.
+    groups : collection of str
+        Names of the groups that it has.
     specimen, label : str, optional
         Of which they are; of a whole study neither.
     warnings : sequence of str, optional
@@ -110,13 +113,13 @@ def cards_of(
                     for ending, words in FILES.items()
                     if (folder / f"{name}.{ending}").is_file()
                 },
-                code=redrawn(name, specimen, atlas),
+                code=redrawn(name, specimen, atlas, groups),
             )
         )
     return found
 
 
-def redrawn(name: str, specimen: str, atlas: str) -> str:
+def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> str:
     """Lines of Python that read what a figure shows with xarray, and draw it again.
 
     Parameters
@@ -127,6 +130,8 @@ def redrawn(name: str, specimen: str, atlas: str) -> str:
         Empty for a figure of a study.
     atlas : str
         Path of the atlas.
+    groups : collection of str
+        Names of the groups that it has; what a figure would read of others is not there to read.
     """
     stages = all_figures()[name].needs
     subject = repr(specimen)
@@ -134,10 +139,8 @@ def redrawn(name: str, specimen: str, atlas: str) -> str:
         # A study of synthetic surfaces, or of measured maps, alone has no specimens to list.
         of_specimens = any(STAGES[stage].grain in (SPECIMEN, JOINT) for stage in stages)
         subject = "sorted(atlas['specimens'].children)" if of_specimens else "[]"
-    read = [
-        f"{stage} = atlas['{stage}/{specimen}']" if specimen else f"{stage} = atlas['{stage}']"
-        for stage in stages
-    ]
+    of_stages = {stage: _group_of(stage, specimen) for stage in stages}
+    read = [f"{stage} = atlas['{group}']" for stage, group in of_stages.items() if group in groups]
     return "\n".join(
         [
             "import xarray as xr",
@@ -151,6 +154,12 @@ def redrawn(name: str, specimen: str, atlas: str) -> str:
             "drawing.data  # the numbers, a table",
         ]
     )
+
+
+def _group_of(stage, specimen):
+    """Group of a stage: the specimen's, where the stage has one of each; maps have their own."""
+    each = bool(specimen) and STAGES[stage].grain in (SPECIMEN, JOINT)
+    return f"{stage}/{specimen}" if each else stage
 
 
 def png_size(path: Path) -> tuple[int, int]:

@@ -9,7 +9,7 @@ import io
 import json
 import re
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ import yaml
 
 from ..core.atomic import atomic_write
 from ..core.labels import printable
-from ..study.atlas import read_atlas
+from ..study.atlas import group_names, read_atlas
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import JOINT, SPECIMEN
 from ..study.stages import STAGES as ALL_STAGES
@@ -32,8 +32,10 @@ from .common_loads import common_loads, main_load
 from .curves import curves_table
 from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
 from .lights import warnings_of
+from .material import opposite_words
 from .matrix import Row, counted, matrix_of, of_study
 from .opening import opening_of
+from .spacing import spacing_words
 from .summary import AtLoad, Estimate, Quantity, Specimen, summarised, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
@@ -96,18 +98,20 @@ def write_result_page(place: Place) -> list[str]:
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
     head = _head(place, atlas)
+    groups = group_names(place.atlas)
     rows = matrix_of(atlas, [one.name for one in chosen])
     for one, specimen in zip(chosen, specimens, strict=True):
-        values = _specimen_values(place, one, specimen, rows)
+        values = _specimen_values(place, one, specimen, rows, groups)
         path = place.folder / SPECIMEN_PAGE.format(specimen=one.name)
         write_page(path, "specimen.html", head | values)
     reliefs = {one.name: relief_thumbnail(one.stage("specimens")) for one in chosen}
     first = main_load(loads, chosen)
-    values = _index_values(place, atlas, specimens, rows, curves) | {
+    values = _index_values(place, atlas, specimens, rows, curves, groups) | {
         "reliefs": reliefs,
         "loads": loads,
         "first_load": first,
         "opening": opening_of(specimens, first, rows),
+        "over_spacing": spacing_words([one.doubled for one in specimens]),
     }
     write_page(place.folder / INDEX, "index.html", head | values)
     return [one.name for one in chosen]
@@ -211,6 +215,7 @@ def _index_values(
     specimens: list[Specimen],
     rows: list[Row],
     curves: pd.DataFrame,
+    groups: Collection[str],
 ) -> dict[str, Any]:
     own = [name for name, figure in all_figures().items() if figure.subject == STUDY]
     together = of_study(atlas)
@@ -221,7 +226,13 @@ def _index_values(
         "verdicts": counted([*rows, *together]),
         "together": together,
         "maps": _maps(atlas),
-        "cards": cards_of(own, place.figures, "figures", atlas=_as_typed(place.atlas)),
+        "cards": cards_of(
+            own,
+            place.figures,
+            "figures",
+            atlas=_as_typed(place.atlas),
+            groups=groups,
+        ),
         "curves": _records(curves),
         "pictures": _pictures(rows, place),
     }
@@ -253,7 +264,11 @@ def _pictures(rows: Iterable[Row], place: Place) -> set[tuple[str, str]]:
 
 
 def _specimen_values(
-    place: Place, chosen: Chosen, specimen: Specimen, rows: list[Row]
+    place: Place,
+    chosen: Chosen,
+    specimen: Specimen,
+    rows: list[Row],
+    groups: Collection[str],
 ) -> dict[str, Any]:
     figures = all_figures()
     names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
@@ -263,6 +278,7 @@ def _specimen_values(
         place.figures / chosen.name,
         f"../figures/{chosen.name}",
         atlas=_as_typed(place.atlas),
+        groups=groups,
         specimen=chosen.name,
         label=chosen.label,
         warnings=warnings,
@@ -274,6 +290,7 @@ def _specimen_values(
     return {
         "specimen": specimen,
         "label": printable(chosen.label),
+        "opposite": opposite_words(specimen.opposite),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "bars": bars_of(specimen),
         "statements": [(row, row.cells[chosen.name]) for row in rows if chosen.name in row.cells],

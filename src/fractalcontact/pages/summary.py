@@ -19,12 +19,16 @@ from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
+from .material import Material, material_of
+from .spacing import Doubled, doubled_spacing
 from .words import in_table, percent
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
 #: Dimensions are determined as figures have it: 0 and 2 need no interval.
 DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
+#: Columns of the summary that are not called as the error budget calls their quantity.
+_COLUMNS = {"closure": "interface_closure"}
 
 #: Why a number is undetermined where its stage gives no other reason.
 _WIDE = "its 95 % interval leaves nearly everything open"
@@ -162,6 +166,7 @@ class Specimen:
     name: str
     label: str
     opposite: str
+    material: Material
     direction: str
     offset: float
     window: tuple[float, float]
@@ -170,6 +175,7 @@ class Specimen:
     estimator: str
     rms_slope: float | None
     k_ni: Estimate
+    doubled: Doubled
     closure_law: str
     dilatancy: Dilatancy
     loads: list[AtLoad]
@@ -204,6 +210,7 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
         name=chosen.name,
         label=chosen.label,
         opposite=str(specimen.attrs["opposite"]),
+        material=material_of(chosen),
         direction=chosen.direction,
         offset=chosen.offset,
         window=(side_x, side_y),
@@ -212,6 +219,7 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
         estimator=str(surface["recommended"].item()).replace("_", " "),
         rms_slope=finite(chosen.values("area", "rms_slope")["rms_slope"]),
         k_ni=_initial_stiffness(curve),
+        doubled=doubled_spacing(chosen),
         closure_law=str(curve["closure_law"].item()),
         dilatancy=dilatancy_of(chosen),
         loads=[_at_load(chosen, curve, i) for i in sorted(compared.union(chosen.quoted))],
@@ -323,6 +331,10 @@ def _of_specimen(one):
         "specimen": one.name,
         "label": in_table(one.label),
         "opposite": one.opposite,
+        "material": in_table(one.material.name),
+        "modulus_MPa": one.material.modulus,
+        "poisson": one.material.poisson,
+        "hardness_MPa": one.material.hardness,
         "direction": one.direction,
         "offset_mm": one.offset,
         "window_x_mm": one.window[0],
@@ -333,6 +345,8 @@ def _of_specimen(one):
         "rms_slope": one.rms_slope,
         **_columns("k_ni_MPa_per_mm", one.k_ni),
         "k_ni_reason": one.k_ni.why,
+        "k_ni_change_at_twice_the_spacing": one.doubled.k_ni,
+        "stiffness_change_at_twice_the_spacing": one.doubled.stiffness,
         "closure_law": one.closure_law,
         "dilatancy": one.dilatancy.kind,
         "dilatancy_level_mm": one.dilatancy.level,
@@ -356,6 +370,7 @@ def _of_load(load):
     for name, quantity in load.quantities.items():
         if name == "delta_sigma":  # stands below, with its interval
             continue
+        name = _COLUMNS.get(name, name)
         unit = quantity.unit.replace("/", "_per_")
         row[f"{name}_{unit}"] = quantity.value
         row |= {f"{name}_error_{which}_{unit}": error for which, error in quantity.errors.items()}

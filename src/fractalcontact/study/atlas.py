@@ -216,6 +216,25 @@ def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
     return xr.DataTree.from_dict(loaded)
 
 
+def group_names(path: Path | str) -> frozenset[str]:
+    """Names of the groups of an atlas: "STAGE" and "STAGE/SPECIMEN"; nothing in them is read.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    frozenset of str
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        members = (group for stage in file.groups.values() for group in stage.groups.values())
+        names = [group.path.strip("/") for group in (*file.groups.values(), *members)]
+    return frozenset(names)
+
+
 def _checksums(specimens):
     """SHA-256 of every scan file, by specimen and face."""
     return {

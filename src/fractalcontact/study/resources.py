@@ -175,7 +175,10 @@ def nodes_of_window(settings: Mapping[str, Any], spacing: object, of_face: float
         Nodes of a face, of which it is a part.
     """
     window = settings["window"]
-    if window is None or spacing is None:
+    if window is None:
+        # Half the side of the largest hole-free square, so that it can slide; all against a plane.
+        return of_face if settings["opposite"] == "flat" else of_face / 4
+    if spacing is None:
         return of_face
     length = quantity(spacing, "length", "spacing") if isinstance(spacing, str) else spacing
     if not isinstance(length, int | float) or length <= 0:  # two spacings, of x and y

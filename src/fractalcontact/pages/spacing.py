@@ -1,0 +1,77 @@
+"""What twice the spacing makes of the stiffness: whether k_ni rises or falls with finer scans."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from .captions import symbols
+from .chosen import Chosen, finite
+from .words import percent
+
+
+@dataclass(frozen=True)
+class Doubled:
+    """Changes when only every second node is kept, at the offset of the contact maps.
+
+    Attributes
+    ----------
+    k_ni : float or None
+        Of k_ni, as a fraction of it; None where twice the spacing was not solved, or nothing fits.
+    stiffness : float or None
+        Of the tangent stiffness under the load of the maps.
+    """
+
+    k_ni: float | None
+    stiffness: float | None
+
+
+def doubled_spacing(chosen: Chosen) -> Doubled:
+    """What twice the spacing of a specimen makes of both stiffnesses."""
+    curves = chosen.stage("closure").sel(direction=chosen.direction)
+    curves = curves.sel(offset=chosen.offset, method="nearest")
+    finest = curves["resolution"].values.min()
+    change = curves["hyperbola_k_ni_change"].sel(resolution=finest)
+    tangent = curves["interface_stiffness"].isel(normal_force=chosen.map_load)
+    tangent = tangent.reindex(resolution=[finest, 2 * finest])
+    return Doubled(finite(change), finite(tangent[1] / tangent[0] - 1))
+
+
+def spacing_words(found: Sequence[Doubled]) -> Markup:
+    """A sentence on k_ni and the tangent stiffness over the spacing; empty where none is known.
+
+    Parameters
+    ----------
+    found : sequence of Doubled
+        Of all specimens.
+    """
+    initial = [one.k_ni for one in found if one.k_ni is not None]
+    if not initial:
+        return Markup("")
+    larger, smaller = sum(one > 0 for one in initial), sum(one < 0 for one in initial)
+    text = (
+        f"At twice the spacing the k_ni fitted is larger for {larger or 'none'} and smaller for "
+        f"{smaller or 'none'} of {len(initial)} specimen{'s' if len(initial) > 1 else ''} "
+        f"({_range(initial)}): {_verdict(larger, smaller)}"
+    )
+    tangent = [one.stiffness for one in found if one.stiffness is not None]
+    if tangent:
+        text += f"; the tangent stiffness under the load of the maps changes by {_range(tangent)}"
+    return symbols(f"{text}.")
+
+
+def _verdict(larger, smaller):
+    """Which way k_ni goes with finer scans, if it goes one way."""
+    if bool(larger) == bool(smaller):
+        return "it has no one direction with finer scans"
+    return "it falls with finer scans" if larger else "it rises with finer scans"
+
+
+def _range(changes):
+    """Least to largest change, with their signs."""
+    low, high = (_signed(change) for change in (min(changes), max(changes)))
+    return low if low == high else f"{low} to {high}"
+
+
+def _signed(change):
+    return f"{'+' if change > 0 else ''}{percent(change)}"
