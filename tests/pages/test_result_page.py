@@ -421,7 +421,9 @@ def test_the_lines_on_the_page_read_groups_that_exist(results, pages):
     """Those of every figure: run on the atlas, each leads to a group with numbers in it."""
     whole = read_atlas(results / "atlas.nc")
     assert group_names(results / "atlas.nc") == {
-        name.strip("/") for name in whole.groups if name != "/"
+        node.path.strip("/")
+        for node in whole.subtree
+        if node.path != "/" and (node.data_vars or node.children)
     }
     for name, opposite in (("pair", "match"), ("flat.1", "flat")):
         text = "".join(pages[results / f"pages/{name}.html"].texts)

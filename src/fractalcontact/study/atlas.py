@@ -217,7 +217,7 @@ def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
 
 
 def group_names(path: Path | str) -> frozenset[str]:
-    """Names of the groups of an atlas: "STAGE" and "STAGE/SPECIMEN"; nothing in them is read.
+    """Names of the groups of an atlas that hold anything: "STAGE" and "STAGE/SPECIMEN".
 
     Parameters
     ----------
@@ -231,8 +231,8 @@ def group_names(path: Path | str) -> frozenset[str]:
 
     with netCDF4.Dataset(path) as file:
         members = (group for stage in file.groups.values() for group in stage.groups.values())
-        names = [group.path.strip("/") for group in (*file.groups.values(), *members)]
-    return frozenset(names)
+        groups = (*file.groups.values(), *members)
+        return frozenset(one.path.strip("/") for one in groups if one.variables or one.groups)
 
 
 def _checksums(specimens):
