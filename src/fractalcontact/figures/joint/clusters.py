@@ -31,6 +31,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
+from ..kit.points import draw_points
 from ..kit.verdicts import claim, sentences
 from ..kit.words import estimate, force_label, opening, place, short, slope_text
 
@@ -211,8 +212,7 @@ def _draw_domains(panels, table):
             # No contact is no number, and an index of 0 has no place on a logarithmic axis.
             y = points[column].where(points[column] > 0)
             axes.plot(v, y, lw=0.8, color=colour_of(n))
-            axes.plot(v[many], y[many], ls="none", **style)
-            axes.plot(v[~many], y[~many], ls="none", mfc="white", **style)
+            draw_points(axes, v, y, many, **style)
         exponent = slope_text(_trend(points, "morisita"))
         name = rf"$F$ = {force_label(force)}: $x$ = {exponent}"
         number.plot([], [], lw=0.8, label=name, **style)
