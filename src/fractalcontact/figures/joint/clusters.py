@@ -8,6 +8,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.fitting import fit_line
+from ...core.intervals import bounds
 from ...core.resolved import RESOLVED_NODES
 from ...domain.clusters import LARGEST_DISTANCE, follows_law
 from ...surface.specimen import cell_side
@@ -243,7 +244,7 @@ def _draw_sizes(axes, sizes):
     """Clusters of some area or more, with the laws fitted to them."""
     for n, (offset, points) in enumerate(sizes.groupby("offset_mm")):
         law = points.iloc[0]
-        exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+        exponent = estimate(*bounds(law, "exponent"))
         area, at_least = points["cluster_area_mm2"], points["clusters_at_least"]
         colour = _OFFSET_COLOURS[n]
         style = {"color": colour, "marker": _OFFSET_MARKERS[n], "ls": "none"}
@@ -294,7 +295,7 @@ def _size_words(sizes):
         return "Too few clusters for a law of sizes."
     if len(fitted) == 1:
         law = fitted.iloc[0]
-        values = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+        values = estimate(*bounds(law, "exponent"))
     else:
         values = f"{short(fitted['exponent'].min())} to {short(fitted['exponent'].max())}"
     broken = [

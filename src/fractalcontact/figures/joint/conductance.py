@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...core.ranges import within
 from ...core.resolved import RESOLVED_NODES
 from ..kit.drawing import (
@@ -99,7 +100,7 @@ def _state(direction, offset):
 
 def _draw_curve(axes, n, state, points):
     law, fitted = points.iloc[0], points["fitted"]
-    exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+    exponent = estimate(*bounds(law, "exponent"))
     words = (
         f"exponent {exponent}"
         if np.isfinite(points["conductance_per_mm"]).any()
