@@ -91,8 +91,8 @@ def test_the_same_atlas_gives_the_same_files(atlas_file, tmp_path):
 
 def test_every_rough_point_stands_in_the_table(atlas):
     table = drawn(atlas, "error_time").data
-    assert set(table["scene"]) == {n for n in problems_of(RECIPE) if "_h0" in n}
-    for name, rows in table.groupby("scene"):
+    assert set(table["test_problem"]) == {n for n in problems_of(RECIPE) if "_h0" in n}
+    for name, rows in table.groupby("test_problem"):
         scene = atlas[f"speed/{name}"]
         assert rows["seconds_s"].to_numpy() == pytest.approx(scene["seconds"].values, nan_ok=True)
 
@@ -127,7 +127,7 @@ def test_scenes_not_solved_are_named(atlas):
     table = drawing.data.set_index(["kind", "solver"])
     assert table.loc[("H = 0.8", "dense"), "draws_silently_wrong"] == "0 2"
     assert table.loc[("H = 0.8", "nnls"), "draws_honest_failure"] == "1"
-    assert table.loc[("H = 0.8", "dense"), "silently wrong (scenes)"] == 2
+    assert table.loc[("H = 0.8", "dense"), "silently wrong (test problems)"] == 2
     named = table[["draws_honest_failure", "draws_silently_wrong"]].to_numpy()
     assert (named != "").sum() == 2
     assert "dense 7/9 (2)" in drawing.caption

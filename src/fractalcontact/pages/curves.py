@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from ..core.determined import determined
+from ..core.intervals import INTERVAL, bounds
 from .chosen import Chosen, finite
 from .summary import DIMENSION
 from .words import in_table
@@ -91,6 +92,5 @@ def _quantities(one):
         error = abs(values) * budget["relative_total"].sel(quantity=name).values
         yield words, unit, values, values - error, values + error
     for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
-        found = one.values(stage, *(f"delta_sigma{end}" for end in ("", "_low", "_high")))
-        values = [found[f"delta_sigma{end}"].values for end in ("", "_low", "_high")]
-        yield f"Delta_sigma {words}", DIMENSION_UNIT, *values
+        found = one.values(stage, *(f"delta_sigma{end}" for end in INTERVAL))
+        yield f"Delta_sigma {words}", DIMENSION_UNIT, *bounds(found, "delta_sigma")

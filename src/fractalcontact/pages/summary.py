@@ -9,6 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from ..core.determined import determined
+from ..core.intervals import bounds
 from ..domain.box_dimension import WIDEST
 from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
 from ..mechanics.model_validity import Validity
@@ -57,7 +58,7 @@ class Estimate:
     @classmethod
     def of(cls, found: xr.Dataset, name: str, note: str = "", **kind: Any) -> "Estimate":
         """Variable ``name`` of a dataset with its ends; ``kind`` is handed to `determined`."""
-        return cls.between([float(found[name + end]) for end in ("", "_low", "_high")], note, kind)
+        return cls.between(bounds(found, name), note, kind)
 
     @classmethod
     def between(cls, ends: Sequence[float], note: str, kind: dict[str, Any]) -> "Estimate":

@@ -1,4 +1,4 @@
-"""What the figures of accuracy and speed share: scenes, how a method looks, the axes of a chart."""
+"""What the figures of accuracy and speed share: test problems, styles of methods, axes."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -33,7 +33,7 @@ OURS_STYLE = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "
 
 
 def scenes_of(atlas: DataTree) -> dict[str, xr.Dataset]:
-    """Datasets of the scenes measured, by name, in order of size, H and contact."""
+    """Datasets of the test problems measured, by name, in order of size, H and contact."""
     found = {name: node.to_dataset().load() for name, node in atlas["speed"].children.items()}
     return dict(sorted(found.items(), key=lambda item: _place(item[1].attrs)))
 
@@ -60,11 +60,11 @@ def middle_contact(scenes: dict[str, xr.Dataset]) -> float:
 
 
 def pick(scenes: dict[str, xr.Dataset], **wanted: object) -> xr.Dataset:
-    """The scene whose attributes are these."""
+    """The test problem whose attributes are these."""
     for scene in scenes.values():
         if all(scene.attrs[key] == value for key, value in wanted.items()):
             return scene
-    raise KeyError(f"no scene with {wanted}")
+    raise KeyError(f"no test problem with {wanted}")
 
 
 def styles(scenes: dict[str, xr.Dataset]) -> dict[str, dict]:
@@ -110,13 +110,13 @@ def legend_of(figure: FigureBase, panels: Iterable[Axes], ncols: int = 4) -> Non
 
 
 def table_of(scenes: dict[str, xr.Dataset]) -> pd.DataFrame:
-    """One row a point drawn, every scene below the other."""
+    """One row a point drawn, every test problem below the other."""
     columns = ["method", "kind", "tolerance", *ERRORS, "seconds", "seconds_low", "seconds_high"]
     columns += ["runs", "memory", "on_front", "on_pressure_front", "said"]
     frames = []
     for name, scene in scenes.items():
         frame = scene[columns].to_dataframe().reset_index(drop=True)
-        frame.insert(0, "scene", name)
+        frame.insert(0, "test_problem", name)
         frames.append(frame)
     table = pd.concat(frames, ignore_index=True)
     return table.rename(columns={"seconds": "seconds_s", "memory": "memory_B"})

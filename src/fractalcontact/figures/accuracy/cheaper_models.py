@@ -30,7 +30,7 @@ _COSTS = (("seconds", "wall time (s)", 1.0), ("memory", "peak memory (MB)", 1e6)
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """A panel for each quantity and one for the time, over the scenes of the largest size."""
+    """A panel for each quantity and one for the time, over the largest test problems."""
     scenes = scenes_of(atlas)
     looks = styles(scenes)
     size = values_of(scenes, "size")[-1]

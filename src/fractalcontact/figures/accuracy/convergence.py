@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...accuracy.convergence import QUANTITIES
+from ...core.intervals import INTERVAL, bounds
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
 from ..kit.words import SUPPLEMENTARY, estimate
 
@@ -17,8 +18,6 @@ NEEDS = ("convergence",)
 KEY = "convergence"
 ORDER = 90
 
-#: Endings of an interval.
-_ENDS = ("", "_low", "_high")
 _TITLES = {"hertz": "paraboloid (Hertz)", "punch": "flat circular punch"}
 
 
@@ -44,7 +43,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 def _draw_errors(axes, result, quantities):
     spacing = 1 / result["cells_per_radius"].values
     for i, name in enumerate(quantities):
-        order = [float(result[f"{name}_order{end}"]) for end in ("", "_low", "_high")]
+        order = bounds(result, f"{name}_order")
         label = f"{name.replace('_', ' ')}: order {estimate(*order)}"
         style = {"color": colour_of(i), "marker": MARKERS[i]}
         axes.plot(spacing, result[f"{name}_error"], ls="none", label=label, **style)
@@ -89,7 +88,7 @@ def _table(found, trials):
             "quantity": name,
             "cells_per_radius": float(cells),
             "error": float(result[f"{name}_error"].sel(cells_per_radius=cells)),
-            **{f"order{end}": float(result[f"{name}_order{end}"]) for end in ("", "_low", "_high")},
+            **{f"order{end}": float(result[f"{name}_order{end}"]) for end in INTERVAL},
         }
         for problem, result in found.items()
         for name in QUANTITIES[problem]
@@ -103,7 +102,7 @@ def _table(found, trials):
 
 def _caption(found, trials):
     orders = [
-        f"{problem} {estimate(*(float(result[f'force_order{end}']) for end in _ENDS))}"
+        f"{problem} {estimate(*bounds(result, 'force_order'))}"
         for problem, result in found.items()
         if "force" in QUANTITIES[problem]
     ]

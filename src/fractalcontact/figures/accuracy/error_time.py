@@ -1,4 +1,4 @@
-"""Error of the force against time on the rough scenes, with the Pareto front."""
+"""Error of the force against time on the rough test problems, with the Pareto front."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Errors of area, Delta_sigma and pressure against time on the largest rough scenes."""
+"""Errors of area, Delta_sigma and pressure against time on the largest rough test problems."""
 
 from collections.abc import Sequence
 

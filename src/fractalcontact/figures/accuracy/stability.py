@@ -75,13 +75,13 @@ def _wrapped(name):
 
 
 def _counts(stability):
-    """Scenes by (solver, kind, verdict)."""
+    """Test problems by (solver, kind, verdict)."""
     verdict = stability["verdict"].transpose("solver", "kind", "draw").values
     return np.stack([(verdict == code).sum(axis=2) for code in range(len(VERDICTS))], axis=2)
 
 
 def _table(stability, counts):
-    """One row a kind and solver, with the draws that make each scene not solved again."""
+    """One row a kind and solver, with the draws that make each problem not solved again."""
     rows = []
     for k, kind in enumerate(stability["kind"].values):
         for n, solver in enumerate(stability["solver"].values):
@@ -90,7 +90,10 @@ def _table(stability, counts):
             words = {_unmeasured(said) for said in one["said"].values[failed]}
             rows.append(
                 {"kind": kind, "solver": solver}
-                | {f"{name} (scenes)": counts[n, k, code] for code, name in enumerate(VERDICTS)}
+                | {
+                    f"{name} (test problems)": counts[n, k, code]
+                    for code, name in enumerate(VERDICTS)
+                }
                 | {"draws_honest_failure": _draws(one, HONEST)}
                 | {"draws_silently_wrong": _draws(one, SILENT)}
                 | {"violation_of_closure": one["violation"].where(failed).max().item()}

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...accuracy.speed import OURS
+from ...core.intervals import bounds
 from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
 from ..kit.words import SUPPLEMENTARY, estimate, short
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles
@@ -98,4 +99,4 @@ def _caption(growth, columns):
 
 
 def _exponent(one, name):
-    return estimate(*(float(one[f"{name}_exponent{end}"]) for end in ("", "_low", "_high")))
+    return estimate(*bounds(one, f"{name}_exponent"))

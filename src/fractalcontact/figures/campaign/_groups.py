@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from ...core.intervals import bounds
 from ...core.labels import printable
 from ..kit.drawing import label_short_span
 from ..kit.empty import say_empty
@@ -96,8 +97,7 @@ def means_in_words(comparison: xr.Dataset, name: str, state: xr.Dataset, unit: s
     found = []
     for group, label in zip(state["group_name"].values, _plain(comparison), strict=True):
         one = state.sel(group_name=group)
-        ends = [float(one[f"{name}_mean{end}"]) for end in ("", "_low", "_high")]
-        value, low, high = ends
+        value, low, high = bounds(one, f"{name}_mean")
         n = int(one[f"{name}_n"])
         words = estimate(value, low, high, unit) if unit else interval(value, low, high)
         if n == 1:

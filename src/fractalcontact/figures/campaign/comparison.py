@@ -8,8 +8,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...statements.comparison import ONCE, QUANTITIES, compared_pressures
 from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, group, letter
+from ..kit.points import reach
 from ..kit.words import SUPPLEMENTARY, pressure_label
 from ._groups import (
     TITLES,
@@ -69,7 +71,7 @@ def _values_at(comparison: xr.Dataset, pressure: float) -> pd.DataFrame:
     same = np.isclose(rounded, pressure, rtol=1e-9)
     columns = {"specimen": comparison["specimen"].values, "group": comparison["group"].values}
     for name, (unit, _) in QUANTITIES.items():
-        for end in ("", "_low", "_high"):
+        for end in INTERVAL:
             found = comparison[f"{name}{end}"].values
             if name not in ONCE:
                 known = np.where(same, found, np.nan)
@@ -84,9 +86,10 @@ def _column(name):
 
 def _draw_specimens(axes, name, values, labels):
     """A bar for each specimen, at its label."""
-    found, low, high = (values[_column(name).format(end)].values for end in ("", "_low", "_high"))
-    bars = np.maximum(np.nan_to_num([found - low, high - found]), 0)
-    axes.errorbar(range(len(labels)), found, bars, fmt="o", lw=1, color=colour_of(1))
+    found, low, high = (values[_column(name).format(end)].values for end in INTERVAL)
+    axes.errorbar(
+        range(len(labels)), found, reach(found, low, high), fmt="o", lw=1, color=colour_of(1)
+    )
     axes.set_xticks(range(len(labels)), labels, rotation=90, fontsize=6.5, linespacing=1)
     axes.set_xlim(-0.6, len(labels) - 0.4)
     axes.grid(axis="x", color="0.9", lw=0.6)
@@ -98,30 +101,19 @@ def _draw_strip(axes, name, values, at_load):
     labels = group_labels(at_load)
     for i, of_group in enumerate(at_load["group_name"].values):
         members = values[values["group"] == of_group].dropna(subset=column.format(""))
-        found, low, high = (members[column.format(end)].values for end in ("", "_low", "_high"))
+        found, low, high = (members[column.format(end)].values for end in INTERVAL)
         place = i + HALF_WIDTH * _spread(len(members))
         colour = colour_of(i + 1)
         if len(members) <= MOST_BARS:
-            bars = np.nan_to_num([found - low, high - found])
-            axes.errorbar(
-                place, found, np.maximum(bars, 0), fmt="o", ms=2.5, lw=0.5, color=colour, alpha=0.7
-            )
+            bars = reach(found, low, high)
+            axes.errorbar(place, found, bars, fmt="o", ms=2.5, lw=0.5, color=colour, alpha=0.7)
         else:
             axes.plot(
                 place, found, "o", ms=1.5, color=colour, alpha=0.4, mec="none", rasterized=True
             )
-        mean, mean_low, mean_high = (
-            float(at_load[f"{name}_mean{end}"][i]) for end in ("", "_low", "_high")
-        )
-        if np.isfinite(mean_low):
-            axes.errorbar(
-                i + MEAN_AT,
-                mean,
-                [[mean - mean_low], [mean_high - mean]],
-                fmt="D",
-                color="k",
-                capsize=3,
-            )
+        mean, low, high = (ends[i] for ends in bounds(at_load, f"{name}_mean"))
+        if np.isfinite(low):
+            axes.errorbar(i + MEAN_AT, mean, reach(mean, low, high), fmt="D", color="k", capsize=3)
     axes.set_xticks(range(len(labels)), labels, rotation=20 if len(labels) > 2 else 0)
     axes.set_xlim(-0.6, len(labels) - 0.4)
     settle_axis(axes, name, drawn=bool(np.isfinite(values[column.format("")]).any()))

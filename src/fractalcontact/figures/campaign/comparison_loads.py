@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...statements.comparison import UNDER_LOAD, compared_pressures
 from ..kit.drawing import (
     LINES,
@@ -21,6 +22,7 @@ from ..kit.drawing import (
     heading,
     letter,
 )
+from ..kit.points import reach
 from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, pressure_label
 from ._groups import (
     TITLES,
@@ -73,8 +75,8 @@ def _draw_alone(axes, comparison, name):
     axes.set_xscale("log")
     for i, label in enumerate(specimen_labels(comparison, _LETTERS)):
         one = comparison.isel(specimen=i)
-        found, low, high = (one[f"{name}{end}"].values for end in ("", "_low", "_high"))
-        bars = np.maximum(np.nan_to_num([found - low, high - found]), 0)
+        found, low, high = bounds(one, name)
+        bars = reach(found, low, high)
         # Present in every panel, so that one legend serves all.
         style = {"color": colour_of(i), "marker": MARKERS[i], "ls": LINES[i % len(LINES)]}
         pressure = one["nominal_pressure"].values
@@ -124,8 +126,9 @@ def _draw_quantity(axes, comparison, name):
             pressure, mean - deviation, mean + deviation, color=colour, alpha=0.15, lw=0
         )
         low, high = one[f"{name}_mean_low"].values, one[f"{name}_mean_high"].values
-        bars = np.nan_to_num([mean - low, high - mean])
-        axes.errorbar(pressure, mean, bars, fmt="none", ecolor=colour, capsize=2, lw=0.8)
+        axes.errorbar(
+            pressure, mean, reach(mean, low, high), fmt="none", ecolor=colour, capsize=2, lw=0.8
+        )
     drawn = bool(np.isfinite(comparison[f"{name}_mean"]).any())
     settle_axis(axes, name, drawn=drawn)
     _draw_no_effect(axes, name, drawn=drawn)

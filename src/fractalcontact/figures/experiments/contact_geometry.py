@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...domain.box_dimension import WIDEST
 from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
@@ -20,6 +21,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
+from ..kit.points import reach
 from ..kit.words import SUPPLEMENTARY, number
 from ._reduced_pressure import load_axis
 
@@ -96,14 +98,14 @@ def _draw_curves(axes, one, curves, *, colours, of="") -> None:
     load = one["reduced_pressure"].values
     pairs = zip(curves, colours, strict=True)
     for beside, ((name, label, marker, line), colour) in zip(_BESIDE, pairs, strict=True):
-        low, high = one[f"{name}_low"], one[f"{name}_high"]
+        value, low, high = bounds(one, name)
         narrow = (high - low) <= WIDEST
-        error = [(one[name] - low).where(narrow), (high - one[name]).where(narrow)]
+        error = np.where(narrow, reach(value, low, high), np.nan)
         style = {"marker": marker, "ls": line, "color": colour_of(colour)}
         x = load * beside
-        axes.errorbar(x, one[name], yerr=error, label=f"{label}{of}", **style)
+        axes.errorbar(x, value, yerr=error, label=f"{label}{of}", **style)
         hollow = style | {"ls": "none", "mfc": "white", "zorder": 3}
-        axes.plot(x, one[name].where(~narrow), **hollow)
+        axes.plot(x, np.where(narrow, np.nan, value), **hollow)
     axes.axhline(2, color="k", lw=0.8, label="random nodes: 2" if not of else None)
     load_axis(axes, load)
     axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
@@ -113,7 +115,7 @@ def _table(test) -> pd.DataFrame:
     """One row a Hurst exponent, load and (of arm G) construction."""
     tables = []
     for curves in (_CURVES, _OTHERS):
-        columns = [f"{name}{end}" for name, *_ in curves for end in ("", "_low", "_high")]
+        columns = [f"{name}{end}" for name, *_ in curves for end in INTERVAL]
         tables.append(test[columns].to_dataframe().reset_index())
     return pd.concat(tables, ignore_index=True)
 

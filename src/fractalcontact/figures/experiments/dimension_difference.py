@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -59,7 +60,7 @@ def _draw_difference(axes, test, which):
     for i in range(test.sizes["dimension"]):
         for n, j in enumerate(_shown(test)):
             one = test.isel(dimension=i, reduced_pressure=j)
-            mean, low, high = (one[f"mean_difference{end}"].values for end in ("", "_low", "_high"))
+            mean, low, high = bounds(one, "mean_difference")
             beside = size * 1.03 ** (n + 2 * i - 2)
             colour = colour_of(i)
             axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])
@@ -138,7 +139,7 @@ def _legends(test):
 
 
 def _table(test):
-    ends = ("", "_low", "_high", "_n")
+    ends = (*INTERVAL, "_n")
     free = test[[f"mean_difference{end}" for end in ends]].to_dataframe().reset_index()
     ratio = test["boxes_per_node"].mean("seed").to_dataframe().reset_index()
     tables = [

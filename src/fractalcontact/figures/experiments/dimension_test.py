@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ..kit.drawing import (
     COLOURS,
     MARKERS,
@@ -63,7 +64,7 @@ def _draw_loads(axes, test, dimension, which):
     one = test.sel(dimension=dimension)
     load = one["reduced_pressure"].values
     for n, (name, (colour, line, _)) in enumerate(_ESTIMATORS.items()):
-        mean, low, high = (one[f"mean_{name}{end}"].values for end in ("", "_low", "_high"))
+        mean, low, high = bounds(one, f"mean_{name}")
         beside = load * 1.04 ** (n - 1)
         axes.plot(beside, mean, color=colour, ls=line, marker=MARKERS[n])
         axes.vlines(beside, low, high, color=colour, lw=0.8)
@@ -97,7 +98,7 @@ def _legends(test):
 
 
 def _table(test):
-    names = [f"mean_{name}{end}" for name in _ESTIMATORS for end in ("", "_low", "_high", "_n")]
+    names = [f"mean_{name}{end}" for name in _ESTIMATORS for end in (*INTERVAL, "_n")]
     return (
         test[names]
         .to_dataframe()

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...experiments.size_decision import PROBABILITY
 from ...mechanics.theory import fudged_persson_area, persson_area
 from ..kit.drawing import (
@@ -24,6 +25,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
+from ..kit.points import reach
 from ..kit.words import SUPPLEMENTARY, number
 from ._reduced_pressure import load_axis
 
@@ -86,7 +88,7 @@ def _draw_slopes(axes: Axes, table: pd.DataFrame) -> None:
             axes.errorbar(
                 one.index * _BESIDE ** (i - (len(hursts) - 1) / 2),
                 one["mean"],
-                yerr=[one["mean"] - one["min"], one["max"] - one["mean"]],
+                yerr=reach(one["mean"], one["min"], one["max"]),
                 marker=MARKERS[j % len(MARKERS)],
                 ms=3.5,
                 color=colour_of(_colour(i)),
@@ -148,10 +150,7 @@ def _draw_exponents(axes: Axes, test: xr.Dataset) -> None:
     hursts = test["hurst"].values
     for i, hurst in enumerate(hursts):
         one = test.sel(hurst=hurst)
-        error = [
-            one["area_delta"] - one["area_delta_low"],
-            one["area_delta_high"] - one["area_delta"],
-        ]
+        error = reach(*bounds(one, "area_delta"))
         beside = load * _BESIDE ** (2 * i - len(hursts) + 1)
         colour = colour_of(_colour(i))
         axes.errorbar(beside, one["area_delta"], yerr=error, fmt="o", color=colour)
@@ -189,7 +188,8 @@ def _caption(test: xr.Dataset, table: pd.DataFrame) -> str:
         else ""
     )
     return (
-        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s (a), "
-        f"its exponent (b). {words}Delta_sigma from areas and from slopes alone differ by at most "
+        f"{SUPPLEMENTARY} Real contact area of synthetic surfaces cut off at wavelengths s (a), at "
+        f"least {table['cut_off_nodes'].min():g} nodes, which the grid resolves; its exponent (b). "
+        f"{words}Delta_sigma from areas and from slopes alone differ by at most "
         f"{number(_departure(test))}."
     )

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...experiments.size_decision import NO_EFFECT, PROBABILITY, REFUTED, UPHELD
 from ..kit.drawing import (
     MARKERS,
@@ -22,6 +23,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
+from ..kit.points import reach
 from ..kit.words import SUPPLEMENTARY, number
 
 TITLE = "Size effect of the contact area on synthetic surfaces: measured against eq. 6"
@@ -39,7 +41,6 @@ _ARMS = {
 }
 #: Estimators of Delta_sigma: variable, words, filled.
 _ESTIMATORS = (("area_delta", "$A_r(s)$", True), ("box_delta", "box counts", False))
-_ENDS = ("", "_low", "_high")
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -82,8 +83,8 @@ def _table(test: xr.Dataset) -> pd.DataFrame:
                             "hurst": hurst,
                             "p_over_E_slope": load,
                             "estimator": words.strip("$"),
-                            **{f"alpha{end}": float(one[f"alpha{end}"]) for end in _ENDS},
-                            **{f"eq6{end}": float(one[f"{name}{end}"]) - 2 for end in _ENDS},
+                            **{f"alpha{end}": float(one[f"alpha{end}"]) for end in INTERVAL},
+                            **{f"eq6{end}": float(one[f"{name}{end}"]) - 2 for end in INTERVAL},
                             "central_alpha": float(one["central_alpha"]),
                             "theory_alpha": float(one["theory_alpha"]),
                             "verdict": str(one["verdict"].values),
@@ -104,17 +105,13 @@ def _draw_arm(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         axes.errorbar(
             row["eq6"],
             row["alpha"],
-            xerr=_reach(row, "eq6"),
-            yerr=_reach(row, "alpha"),
+            xerr=reach(*bounds(row, "eq6")),
+            yerr=reach(*bounds(row, "alpha")),
             fmt=MARKERS[loads.index(row["p_over_E_slope"])],
             color=colour,
             mfc=colour if filled else "white",
             elinewidth=0.7,
         )
-
-
-def _reach(row: pd.Series, name: str) -> list[list[float]]:
-    return [[row[name] - row[f"{name}_low"]], [row[f"{name}_high"] - row[name]]]
 
 
 def _classes(test: xr.Dataset) -> list:

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
     MARKERS,
@@ -22,6 +23,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
+from ..kit.points import reach
 from ..kit.words import SUPPLEMENTARY, number
 
 TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
@@ -30,7 +32,6 @@ NEEDS = ("size_strength",)
 KEY = "size_strength"
 ORDER = 8
 
-_ENDS = ("", "_low", "_high")
 #: Labels of ticks stand at least this fraction of the axis apart.
 _CLEAR = 0.15
 #: Colour of exponents: those of the sides stand for sides alone.
@@ -76,7 +77,7 @@ def _strengths(test: xr.Dataset) -> pd.DataFrame:
                         "side": side,
                         "low": float(one["interval_low"]),
                         "high": float(one["interval_high"]),
-                        **{f"value{end}": float(of_side[f"strength{end}"]) for end in _ENDS},
+                        **{f"value{end}": float(of_side[f"strength{end}"]) for end in INTERVAL},
                         "by_theory": float(one["theory_strength"]),
                         "truncated_share": float(of_side["truncated_share"]),
                     }
@@ -105,7 +106,7 @@ def _exponents(test: xr.Dataset) -> pd.DataFrame:
                         "p_over_E_slope": load,
                         "low": float(one[f"{dim}_low"]),
                         "high": float(one[f"{dim}_high"]),
-                        **{f"value{end}": float(one[f"{name}{end}"]) for end in _ENDS},
+                        **{f"value{end}": float(one[f"{name}{end}"]) for end in INTERVAL},
                         "by_v_alone": float(one["predicted_exponent"]) if scaled else 0.0,
                         "by_theory": float(one["theory_exponent"]) if scaled else 0.0,
                         "verdict": one[f"{name}_verdict"].item(),
@@ -124,7 +125,7 @@ def _pooled(test: xr.Dataset, hurst: float, law: str, load: float) -> dict:
         "p_over_E_slope": load,
         "low": float(test["interval_low"].min()),
         "high": float(test["interval_high"].max()),
-        **{f"value{end}": float(one[f"pooled_exponent{end}"]) for end in _ENDS},
+        **{f"value{end}": float(one[f"pooled_exponent{end}"]) for end in INTERVAL},
         "by_v_alone": 0.0,
         "by_theory": 0.0,
         "verdict": one["pooled_exponent_verdict"].item(),
@@ -152,7 +153,7 @@ def _draw_strength(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         axes.errorbar(
             middles[one.index] * shift,
             one["value"],
-            yerr=[one["value"] - one["value_low"], one["value_high"] - one["value"]],
+            yerr=reach(*bounds(one, "value")),
             fmt=MARKERS[i],
             color=colour,
             mfc=colour if law == "elastic" else "white",
@@ -198,7 +199,7 @@ def _draw_exponents(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         axes.errorbar(
             x,
             one["value"],
-            yerr=[one["value"] - one["value_low"], one["value_high"] - one["value"]],
+            yerr=reach(*bounds(one, "value")),
             fmt=marker,
             color=colour,
             mfc=colour if law == "elastic" else "white",

@@ -11,7 +11,7 @@ from ...core.labels import printable
 from ...statements.judge import all_statements
 from ..joint.statements import DATA, SIGNS
 from ..kit.drawing import WIDTH, Drawing, group, settings_of
-from ..kit.tables import LINE_HEIGHT, wrap_rows
+from ..kit.tables import LINE_HEIGHT, draw_texts, wrap_rows
 from ..kit.words import PAPER
 
 TITLE = "Statements of the paper over the specimens of the study"
@@ -56,7 +56,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, 1), ylim=(height / LINE_HEIGHT, 0))
     axes.set_axis_off()
-    places = _draw_words(axes, texts, heights, top)
+    places = draw_texts(axes, texts, heights, COLUMNS, top)
     at = {name: FIRST + (i + 0.5) * (LAST - FIRST) / len(tables) for i, name in enumerate(tables)}
     for name, table in tables.items():
         axes.text(
@@ -94,17 +94,6 @@ def _whole(atlas):
     if "study_statements" in atlas.children:
         return _table(atlas, "study_statements", WHOLE)
     return pd.DataFrame({key: [] for key in DATA})
-
-
-def _draw_words(axes, texts, lines, top):
-    places, y = [], top
-    for row, rows in zip(texts, lines, strict=True):
-        axes.axhline(y - 0.35, color="0.8", lw=0.5)
-        for key, (x, _) in COLUMNS.items():
-            axes.text(x, y, row[key], va="top", fontsize=7, linespacing=1.15)
-        places.append(y)
-        y += rows
-    return places
 
 
 def _draw_sign(axes, x, y, verdict, circular, words=""):

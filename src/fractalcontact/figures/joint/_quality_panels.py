@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 from ...roughness.quality_words import AXES, length_words
 from ...surface.specimen import window_slices
 from ..kit.drawing import COLOURS, label_short_span
+from ..kit.empty import say_empty
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.words import length_unit
 
@@ -147,7 +148,7 @@ def draw_spectrum(axes: Axes, quality: xr.Dataset, face: str) -> None:
     if measured.size:
         axes.set_ylim(measured.min() / 4, measured.max() * 4)
     else:
-        axes.text(0.5, 0.5, "too small for a spectrum", ha="center", transform=axes.transAxes)
+        say_empty(axes, "too small for a spectrum")
     axes.set(xlabel="wavelength (mm)", ylabel="spectrum of profiles (mm³)")
     label_short_span(axes.xaxis)
 
@@ -194,7 +195,7 @@ def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
             axes.axhline(np.min(noise) ** 2 * area, color=FACE_COLOURS[face], lw=0.8, ls="--")
     _mark_range(axes, quality)
     if not np.isfinite(quality["radial_spectrum"]).any():
-        axes.text(0.5, 0.5, "too small for a spectrum", ha="center", transform=axes.transAxes)
+        say_empty(axes, "too small for a spectrum")
     axes.set(xlabel="wavelength (mm)", ylabel="radial spectrum (mm⁴)")
     label_short_span(axes.xaxis)
 

@@ -10,6 +10,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...domain.box_dimension import is_determined
 from ...size_effect.size_verdict import AGREES, FLATTER, NOT_TESTED, STEEPER
 from ..kit.drawing import COLOURS, entries, group, label_short_span
@@ -82,9 +83,7 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
     for estimator, (line, words) in ESTIMATORS.items():
         one = test.sel(estimator=estimator)
         known = np.isfinite(one["predicted_slope"].values)
-        value, low, high = (
-            one[f"predicted_slope{end}"].values[known] for end in ("", "_low", "_high")
-        )
+        value, low, high = (ends[known] for ends in bounds(one, "predicted_slope"))
         colour = _COLOURS[estimator]
         absent = "" if known.any() else " (not known here)"
         label = f"eq. 6, $\\Delta_\\sigma$ by {words}{absent}"
@@ -138,7 +137,7 @@ def draw_measured(
         Which markers are hollow.
     """
     pressure = test["nominal_pressure"].values
-    value, low, high = (test[f"{name}{end}"].values for end in ("", "_low", "_high"))
+    value, low, high = bounds(test, name)
     faint = False
     for i in np.flatnonzero(np.isfinite(value)):
         sure = is_determined(low[i], high[i])
@@ -244,10 +243,7 @@ def predicted_table(test: xr.Dataset, i: int, common: dict) -> pd.DataFrame:
             "quantity": "predicted_slope",
             **common,
             "estimator": test["estimator"].values,
-            **{
-                f"slope{end}": test[f"predicted_slope{end}"].values[:, i]
-                for end in ("", "_low", "_high")
-            },
+            **{f"slope{end}": test[f"predicted_slope{end}"].values[:, i] for end in INTERVAL},
             **{name: test[name].values[:, i] for name in JUDGED},
         }
     )

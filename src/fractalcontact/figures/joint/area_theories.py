@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...mechanics.area import LIGHT_LOAD
 from ...mechanics.states import chosen_offset
 from ..experiments.area_slope import kappa_lines
@@ -23,6 +24,8 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
+from ..kit.empty import say_empty
+from ..kit.points import reach
 from ..kit.verdicts import claim, sentences
 from ..kit.words import NOMINAL_PRESSURE, UNDETERMINED, estimate, number, opening, place, short
 
@@ -86,8 +89,8 @@ def _draw_area(axes, curve, law):
     axes.plot(pressure[enough], corrected[enough], label=words, **points)
     axes.plot(pressure, 100 * curve["area_share"], mfc="none", label="computed, raw", **points)
     if not str(law["no_corrected_law"].values):
-        ends = (float(law[f"corrected_exponent{end}"]) for end in ("", "_low", "_high"))
-        axes.plot([], [], " ", label=f"corrected: $A_r \\sim F^m$, $m$ = {estimate(*ends)}")
+        exponent = estimate(*bounds(law, "corrected_exponent"))
+        axes.plot([], [], " ", label=f"corrected: $A_r \\sim F^m$, $m$ = {exponent}")
     for variable, words, colour, line in THEORIES:
         share = law[variable].values
         drawn = share <= 1  # nothing but Persson's saturates, and beyond A_0 there is no area
@@ -158,7 +161,7 @@ def _draw_kappa(axes, laws, law):
     if reduced.max(initial=0) > LIGHT_LOAD:
         axes.axvline(LIGHT_LOAD, color=_GREY, lw=0.6, label="end of light load")
     if not law["fitted"].any():
-        axes.text(0.5, 0.5, _no_points(law), transform=axes.transAxes, ha="center", fontsize=7)
+        say_empty(axes, _no_points(law))
     axes.set_ylim(bottom=0)
     axes.set_xlabel(r"reduced pressure $\sigma_0/(E^* h'_\mathrm{rms})$ (1)")
     axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/\sigma_0$ (1)")
@@ -175,12 +178,11 @@ def _draw_means(axes, law):
     for prefix, face, at in (("corrected_", COLOURS[0], 0.05), ("", "white", 0.02)):
         if str(law[f"no_{prefix}mean_kappa"].values):
             continue
-        value, low, high = (float(law[f"{prefix}mean_kappa{end}"]) for end in ("", "_low", "_high"))
-        reach = [[value - low], [high - value]] if np.isfinite(low) else None
+        value, low, high = bounds(law, f"{prefix}mean_kappa")
         axes.errorbar(
             [at],
             [value],
-            yerr=reach,
+            yerr=reach(value, low, high),
             fmt="s",
             color=COLOURS[0],
             mfc=face,
@@ -219,7 +221,7 @@ def _kappa_words(law):
 
 
 def _mean(law, prefix):
-    value, low, high = (float(law[f"{prefix}mean_kappa{end}"]) for end in ("", "_low", "_high"))
+    value, low, high = bounds(law, f"{prefix}mean_kappa")
     return estimate(value, low, high) if np.isfinite(low) else f"{short(value)} (one load)"
 
 
@@ -253,8 +255,8 @@ def _law_words(law):
     reason = str(law["no_corrected_law"].values)
     if reason:
         return f"No power law here ({reason})."
-    low, high = (float(law[f"corrected_exponent_{end}"]) for end in ("low", "high"))
-    fit = estimate(float(law["corrected_exponent"]), low, high)
+    value, low, high = bounds(law, "corrected_exponent")
+    fit = estimate(value, low, high)
     levels = [
         f"{level}"
         for level, exponent in zip(

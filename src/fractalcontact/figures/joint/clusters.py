@@ -8,6 +8,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.fitting import fit_line
+from ...core.intervals import bounds
 from ...core.resolved import RESOLVED_NODES
 from ...domain.clusters import LARGEST_DISTANCE, follows_law
 from ...surface.specimen import cell_side
@@ -31,6 +32,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
+from ..kit.points import draw_points
 from ..kit.verdicts import claim, sentences
 from ..kit.words import estimate, force_label, opening, place, short, slope_text
 
@@ -211,8 +213,7 @@ def _draw_domains(panels, table):
             # No contact is no number, and an index of 0 has no place on a logarithmic axis.
             y = points[column].where(points[column] > 0)
             axes.plot(v, y, lw=0.8, color=colour_of(n))
-            axes.plot(v[many], y[many], ls="none", **style)
-            axes.plot(v[~many], y[~many], ls="none", mfc="white", **style)
+            draw_points(axes, v, y, many, **style)
         exponent = slope_text(_trend(points, "morisita"))
         name = rf"$F$ = {force_label(force)}: $x$ = {exponent}"
         number.plot([], [], lw=0.8, label=name, **style)
@@ -243,7 +244,7 @@ def _draw_sizes(axes, sizes):
     """Clusters of some area or more, with the laws fitted to them."""
     for n, (offset, points) in enumerate(sizes.groupby("offset_mm")):
         law = points.iloc[0]
-        exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+        exponent = estimate(*bounds(law, "exponent"))
         area, at_least = points["cluster_area_mm2"], points["clusters_at_least"]
         colour = _OFFSET_COLOURS[n]
         style = {"color": colour, "marker": _OFFSET_MARKERS[n], "ls": "none"}
@@ -294,7 +295,7 @@ def _size_words(sizes):
         return "Too few clusters for a law of sizes."
     if len(fitted) == 1:
         law = fitted.iloc[0]
-        values = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+        values = estimate(*bounds(law, "exponent"))
     else:
         values = f"{short(fitted['exponent'].min())} to {short(fitted['exponent'].max())}"
     broken = [

@@ -27,6 +27,7 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.empty import TOO_FULL, say_empty
+from ..kit.points import draw_points, hollow_entry
 from ..kit.sizes import draw_bars, plain_decades
 from ..kit.verdicts import row_of, sentences, verdict_words
 from ..kit.words import TOWARDS, force_label, opening, percent, place, pressure_label, short
@@ -76,50 +77,54 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for upper in (correlation, closed):
         upper.set_xlabel("")
     force = group(atlas, "statements", name).attrs["force"]
-    stages = _stages(atlas, name, _ends_of_correlation(joint, direction), curves["offset"].values)
+    ends = _ends_of_correlation(joint, direction)
+    stages = _stages(atlas, name, ends, curves["offset"].values, force)
     if np.isfinite(closures["interface_compliance_mm_per_MPa"]).any():
         _number_stages(compliance, stages)
-    columns = [entries(correlation), entries(compliance), *_judged(stages, force)]
+    columns = [entries(correlation), entries(compliance), *_judged(stages)]
     legends_below(figure, *columns, columnspacing=1.5)
     headline(figure, settings["label"], place(direction))
     caption = sentences(
         _caption(direction, joint, brief=bool(stages)),
-        _stage_words([text for text, *_ in stages], force),
+        _stage_words([text for text, *_ in stages]),
     )
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
 
-def _stages(atlas, name, ends, offsets):
+def _stages(atlas, name, ends, offsets, force):
     """What the paper says of each stage with its verdict, and from which to which offset it is."""
     length, uncorrelated = ends
     bounds = ((-np.inf, length), (length, uncorrelated), (uncorrelated, np.inf))
-    whys = _limits(bool(((offsets > length) & (offsets < uncorrelated)).any()))
+    whys = _limits(bool(((offsets > length) & (offsets < uncorrelated)).any()), force)
     found = []
     for (statement, words), (first, last) in zip(STAGES.items(), bounds, strict=True):
         row = row_of(atlas, "statements", name, statement)
         if row is not None:
             why = "" if str(row["verdict"].item()) == UNDETERMINED else whys.get(statement, "")
             verdict = verdict_words(atlas, name, statement, why=why)
-            # 1/e stands in the same figure: the exponent has another letter than in the table.
-            found.append((f"{words}: {verdict.replace('(e = ', '(x = ')}", first, last))
+            found.append((f"{words}: {verdict}", first, last))
     return found
 
 
-def _limits(between):
-    """What decides about the later stages; whether offsets were solved in the second."""
+def _limits(between, force):
+    """What decides about the stages: the load of the first, limits of the later ones.
+
+    Those are judged at every load. ``between`` is whether offsets were solved in the second.
+    """
     before = "2" if between else "end of 1"
     return {
+        "compliance_rises_at_first": f"at {force_label(force)}",
         "curves_overlap": f"limit {percent(NEARLY)}, in part {percent(LOOSELY)}",
         "compliance_rises_again": f"mean of stage 3 over {before}, limit {percent(NEARLY, '+')}",
     }
 
 
-def _judged(stages, force):
+def _judged(stages):
     """Column of a legend with the stages, in lines that fit; none without stages."""
     if not stages:
         return []
-    words = [f"(c): the paper's stages, judged at $F$ = {force_label(force)}"]
+    words = ["(c): the paper's stages, each with its verdict"]
     for n, (text, *_) in enumerate(stages, 1):
         lines = textwrap.wrap(
             f"{n}: {text}".replace(" %", "\u00a0%"), _LINE, subsequent_indent="    "
@@ -258,26 +263,21 @@ def _draw_closures(closed, compliance, table):
     some_few, heights, tops = False, [], []
     for n, (force, points) in enumerate(table.groupby("force_N")):
         style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}
-        v, few = points["offset_mm"], ~points["resolved"]
-        some_few |= few.any()
+        v, resolved = points["offset_mm"], points["resolved"]
+        some_few |= not resolved.all()
         compliances = points["interface_compliance_mm_per_MPa"]
-        compliance.plot(v, compliances, **style, label=f"$F$ = {force_label(force)}")
         low, high = (points[f"interface_compliance_{end}_mm_per_MPa"] for end in ("low", "high"))
         tops += [*high[np.isfinite(high)]]
         # What is unbounded leaves the frame.
         high = high.clip(upper=_UNBOUNDED * compliances)
         draw_bars(compliance, v, compliances, low, high, style["color"])
-        drawn = [(compliance, "interface_compliance_mm_per_MPa")]
+        label = f"$F$ = {force_label(force)}"
+        draw_points(compliance, v, compliances, resolved, ls="-", label=label, **style)
         if not seated or (points[column] > 0).any():
-            closed.plot(v, points[column], **style)
-            drawn.append((closed, column))
+            draw_points(closed, v, points[column], resolved, ls="-", **style)
             heights += [*points[column].dropna()]
-        hollow = {**style, "mfc": "white", "ls": "none"}
-        for axes, values in drawn:
-            axes.plot(points[few]["offset_mm"], points[few][values], **hollow)
     if some_few:
-        words = f"hollow: fewer than {RESOLVED_NODES} nodes touch"
-        compliance.plot([], [], "o", color="0.4", mfc="white", label=words)
+        hollow_entry(compliance, f"hollow: fewer than {RESOLVED_NODES} nodes touch")
     if not np.isfinite(table["interface_compliance_mm_per_MPa"]).any():
         say_empty(compliance, TOO_FULL)
     if any(heights):
@@ -326,11 +326,11 @@ def _caption(direction, joint, *, brief):
     return f"{start} ({fall}), closure and compliance."
 
 
-def _stage_words(stages, force):
+def _stage_words(stages):
     """What the paper says of the compliance as v grows, and the verdicts that were asked for."""
     if not stages:
         return ""
-    return f"The paper's compliance at {force_label(force)}, by stages: {'; '.join(stages)}."
+    return f"The paper's compliance, by stages: {'; '.join(stages)}."
 
 
 def _correlation_words(ends, decidable):

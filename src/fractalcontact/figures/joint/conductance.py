@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...core.ranges import within
 from ...core.resolved import RESOLVED_NODES
 from ..kit.drawing import (
@@ -21,6 +22,7 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.empty import TOO_FULL, say_empty
+from ..kit.points import draw_points
 from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, estimate, place, short
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"
@@ -98,20 +100,15 @@ def _state(direction, offset):
 
 def _draw_curve(axes, n, state, points):
     law, fitted = points.iloc[0], points["fitted"]
-    exponent = estimate(law["exponent"], law["exponent_low"], law["exponent_high"])
+    exponent = estimate(*bounds(law, "exponent"))
     words = (
         f"exponent {exponent}"
         if np.isfinite(points["conductance_per_mm"]).any()
         else "no interface (faces flush, or contact full)"
     )
-    style = {"color": colour_of(n), "marker": MARKERS[n], "ls": "none"}
-    for part, fill, label in (
-        (points[fitted], colour_of(n), f"{state}: {words}"),
-        (points[~fitted], "white", None),
-    ):
-        axes.plot(
-            part["nominal_pressure_MPa"], part["conductance_per_mm"], mfc=fill, label=label, **style
-        )
+    style = {"color": colour_of(n), "marker": MARKERS[n], "label": f"{state}: {words}"}
+    x, y = points["nominal_pressure_MPa"], points["conductance_per_mm"]
+    draw_points(axes, x, y, fitted, **style)
     if np.isfinite(law["exponent"]):
         # A least-squares line goes through the mean of its points.
         p, h = (

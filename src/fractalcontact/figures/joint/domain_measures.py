@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -201,8 +202,7 @@ def _caption(state, table):
 
 def _interval(state, key):
     """A dimension with its interval."""
-    ends = (state[f"{key}{end}"].item() for end in ("", "_low", "_high"))
-    return interval(*ends)
+    return interval(*bounds(state, key))
 
 
 def _law(state, table):

@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -17,7 +18,8 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
-from ..kit.sizes import nothing_in, plain_decades
+from ..kit.empty import say_empty
+from ..kit.sizes import plain_decades
 from ..kit.words import SUPPLEMENTARY, short
 from ._size_test import grey_beyond, load_columns, place_of, size_test_of
 
@@ -100,7 +102,7 @@ def _draw_errors(axes, test, quantity, which, load):
     letter(axes, which, f"{words} (1: as solved){at}")
     if not drawn:
         # Without data a logarithmic axis has no limits.
-        nothing_in(axes, "nothing to predict from")
+        say_empty(axes, "nothing to predict from", ticks=False)
         return
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -125,7 +127,7 @@ def _table(test):
             }
             columns |= {
                 f"predicted{end}": test[f"predicted_{quantity}{end}"].values[:, j]
-                for end in ("", "_low", "_high")
+                for end in INTERVAL
             }
             columns["solved"] = float(test[f"direct_{quantity}"][j])
             columns["unit"] = test[f"direct_{quantity}"].attrs["units"]

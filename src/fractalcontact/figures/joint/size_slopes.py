@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -16,7 +17,9 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.sizes import nothing_in, plain_decades, size_axis
+from ..kit.empty import say_empty
+from ..kit.points import hollow_entry
+from ..kit.sizes import plain_decades, size_axis
 from ..kit.verdicts import claim, sentences
 from ..kit.words import SUPPLEMENTARY, interval, number, pressure_label
 from ._size_test import (
@@ -81,14 +84,14 @@ def _draw_equal(axes, test, loads):
         pressure = test["equal_pressure"].values[i]
         axes.plot(b, pressure, ls="none", **style)
         draw_laws(axes, test, i, b, pressure[0])
-        found = interval(*(float(test[f"slope{end}"][i]) for end in ("", "_low", "_high")))
+        found = interval(*(ends[i] for ends in bounds(test, "slope")))
         label = f"at {pressure_words(test, i)}: {found}"
         handles.append(Line2D([], [], ls="none", **style, label=label))
     size_axis(axes, b, "parts")
     axes.set_ylabel(r"nominal pressure $\sigma_0$ (MPa)")
     letter(axes, "a", r"pressure at equal fractal mean pressure $\sigma^*$")
     if not len(loads):
-        nothing_in(axes, "no load at which three sizes\nhold enough nodes")
+        say_empty(axes, "no load at which three sizes\nhold enough nodes", ticks=False)
         return []
     axes.set_yscale("log")
     drawn = test["equal_pressure"].values[loads]
@@ -104,7 +107,7 @@ def _draw_slopes(axes, test, loads):
     draw_measured(axes, test, "slope", loads, poor)
     if (poor & np.isfinite(test["slope"].values)).any():
         words = r"hollow: $\sigma_0$ poorly known from $\sigma^*$"
-        axes.plot([], [], "o", color="k", mfc="white", ms=5, label=words)
+        hollow_entry(axes, words, color="k", ms=5)
     load_axis(axes, test)
     axes.set_ylabel(r"slope of $\log\sigma_0$ over $\log b$ (1)")
     none = "" if np.isfinite(test["slope"].values).any() else "; no measured slope"
@@ -127,7 +130,7 @@ def _table(test):
             name: test[name].values[i]
             for name in ("windows_below", "windows_above", "windows_unknown")
         }
-        ends = {f"slope{e}": [float(test[f"slope{e}"][i])] for e in ("", "_low", "_high", "_n")}
+        ends = {f"slope{e}": [float(test[f"slope{e}"][i])] for e in (*INTERVAL, "_n")}
         tables += [
             pd.DataFrame(equal),
             pd.DataFrame({"quantity": "slope", **common, **ends}),
@@ -151,7 +154,7 @@ def _found_words(test):
         for estimator, (_, words) in ESTIMATORS.items()
         if np.isfinite(best["predicted_slope"].sel(estimator=estimator))
     ]
-    measured = interval(*(float(best[f"slope{end}"]) for end in ("", "_low", "_high")))
+    measured = interval(*bounds(best, "slope"))
     beside = f", eq. 6 has {', '.join(wanted)}" if wanted else ""
     found = f"At {pressure_label(float(best['nominal_pressure']))} the slope is {measured}{beside}."
     hollow = int(known.sum() - sure.sum())

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -16,7 +17,8 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.sizes import draw_bars, nothing_in, plain_decades, size_axis
+from ..kit.empty import say_empty
+from ..kit.sizes import draw_bars, plain_decades, size_axis
 from ..kit.verdicts import claim, sentences
 from ..kit.words import SUPPLEMENTARY, interval
 from ._size_test import (
@@ -72,21 +74,21 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _draw_area(axes, test, loads):
     """A_r/A_0 over b at some sigma_0 with intervals, and what eq. 6 wants; legend entries."""
     b = test["side"].values
-    fraction, low, high = (test[f"area_fraction{end}"].values for end in ("", "_low", "_high"))
+    fraction, low, high = bounds(test, "area_fraction")
     handles = [heading("measured, exponent of $b$ [95 % interval]")]
     for n, i in enumerate(loads):
         style = {"color": "k", "marker": load_marker(n)}
         axes.plot(b, fraction[i], ls="none", **style)
         draw_bars(axes, b, fraction[i], low[i], high[i], "k")
         draw_laws(axes, test, i, b[np.isfinite(fraction[i])], fraction[i, 0])
-        found = interval(*(float(test[f"area_exponent{end}"][i]) for end in ("", "_low", "_high")))
+        found = interval(*(ends[i] for ends in bounds(test, "area_exponent")))
         label = f"at {pressure_words(test, i)}: {found}"
         handles.append(Line2D([], [], ls="none", **style, label=label))
     size_axis(axes, b, "parts")
     axes.set_ylabel(r"real contact area $A_r/A_0$ (1)")
     letter(axes, "a", "contact area at equal pressure")
     if not len(loads):
-        nothing_in(axes, "no load at which two sizes\nhold enough nodes")
+        say_empty(axes, "no load at which two sizes\nhold enough nodes", ticks=False)
         return []
     axes.set_yscale("log")
     axes.set_ylim(np.nanmin(fraction[loads]) / 2.5, np.nanmax(fraction[loads]) * 8)
@@ -133,7 +135,7 @@ def _equal_pressure_table(test, i, common):
         {
             "quantity": name,
             **common,
-            **{f"slope{e}": [float(test[f"{name}{e}"][i])] for e in ("", "_low", "_high", "_n")},
+            **{f"slope{e}": [float(test[f"{name}{e}"][i])] for e in (*INTERVAL, "_n")},
         }
         for name in _EXPONENTS
     ]

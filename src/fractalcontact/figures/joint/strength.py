@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
@@ -23,7 +24,9 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
-from ..kit.sizes import draw_bars, logarithmic, nothing_in, plain_decades, roughness_words
+from ..kit.empty import say_empty
+from ..kit.points import draw_points, hollow_entry
+from ..kit.sizes import draw_bars, logarithmic, plain_decades, roughness_words
 from ..kit.words import estimate, opening, place, short
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
@@ -68,8 +71,8 @@ def _draw_angles(axes, strength, shown):
     basic = float(strength["basic_friction_angle"])
     for n, j in enumerate(shown):
         angle, held = strength["dilatancy_angle"].values[:, j], _held_at(strength)[:, j]
-        axes.plot(v, angle, **_style(n), label=_label(strength, j))
-        axes.plot(v[held], angle[held], **_style(n), ls="none", mfc="white", zorder=3)
+        style = {"ls": "-", "label": _label(strength, j), **_style(n)}
+        draw_points(axes, v, angle, ~held, _ABOVE, **style)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     if np.isfinite(basic):
         axes.axhline(LARGEST_FRICTION_ANGLE - basic, color="0.4", lw=0.8, ls=":", label=_held())
@@ -92,14 +95,13 @@ def _draw_strength(axes, strength, shown):
     v = strength["midpoint"].values
     if not np.isfinite(strength["shear_strength"]).any():
         axes.set_xlabel(_OFFSET)
-        nothing_in(axes, _why_none(strength))
+        say_empty(axes, _why_none(strength), ticks=False)
         return
     for n, j in enumerate(shown):
         tau, held = strength["shear_strength"].values[:, j], _held_at(strength)[:, j]
-        axes.plot(v, tau, **_style(n))
-        axes.plot(v[held], tau[held], **_style(n), ls="none", mfc="white", zorder=3)
+        draw_points(axes, v, tau, ~held, _ABOVE, ls="-", **_style(n))
     if _held_at(strength)[:, shown].any():
-        axes.plot([], [], "o", color="0.4", mfc="white", label=_NO_RESULT)
+        hollow_entry(axes, _NO_RESULT)
     _offset_axis(axes, v)
     logarithmic(axes, strength["shear_strength"].values[:, shown])
 
@@ -111,7 +113,7 @@ def _draw_summary(axes, strength):
     sigma = strength["nominal_pressure"].values
     known = {key: strength[key].values for key in _SUMMARY if np.isfinite(strength[key]).any()}
     if not known:
-        nothing_in(axes, _why_none(strength))
+        say_empty(axes, _why_none(strength), ticks=False)
         return
     for n, (key, words) in enumerate(_SUMMARY.items()):
         if key not in known:
@@ -122,15 +124,13 @@ def _draw_summary(axes, strength):
             if law
             else {"ls": "none", "marker": _MARKERS[n], "ms": 6 - 2.5 * n}
         )
-        colour = "k" if n != 1 else _RESIDUAL
         held = _peak_held(strength) if key == "peak_strength" else np.zeros(sigma.shape, bool)
-        if not held.all():
-            axes.plot(sigma[~held], known[key][~held], color=colour, label=words, **style)
+        style |= {"color": "k" if n != 1 else _RESIDUAL}
+        label = None if held.all() else words
+        draw_points(axes, sigma, known[key], ~held, label=label, **style)
         if held.any():
-            label = f"{words}: held, no result"
-            axes.plot(sigma[held], known[key][held], color="k", mfc="white", label=label, **style)
-    residual = [strength[f"residual_strength{end}"].values for end in ("", "_low", "_high")]
-    draw_bars(axes, sigma, *residual, _RESIDUAL)
+            hollow_entry(axes, f"{words}: held, no result", **style)
+    draw_bars(axes, sigma, *bounds(strength, "residual_strength"), _RESIDUAL)
     axes.set(xscale="log")
     logarithmic(axes, np.array(list(known.values())))
 
@@ -148,6 +148,8 @@ def _peak_held(strength):
     return _held_at(strength)[at.argmin(axis=0), np.arange(peak.size)] & np.isfinite(peak)
 
 
+#: Of hollow points: they stand above the lines of the other pressures.
+_ABOVE = {"zorder": 3}
 #: Between the lines of the legends, in letters.
 _CLOSE = 0.25
 #: Of strengths whose angle was held at its bound.
@@ -278,7 +280,7 @@ def _strength_words(strength, shown):
 
 def _residual_words(strength):
     """The dilatancy angle beyond half of the largest offset, under one load."""
-    ends = [float(strength[f"residual_angle{end}"]) for end in ("", "_low", "_high")]
+    ends = bounds(strength, "residual_angle")
     count = int(strength["residual_n"])
     if count > 1:
         return f"{estimate(*ends, 'degrees')}, {count} intervals"

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...core.ranges import within
 from ...mechanics.states import chosen_offset
 from ..kit.drawing import (
@@ -23,7 +24,9 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
-from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, nothing_in, size_axis
+from ..kit.empty import say_empty
+from ..kit.points import draw_points
+from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
 from ..kit.verdicts import claim, sentences
 from ..kit.words import UNDETERMINED, estimate, opening, place, pressure_label
 
@@ -154,7 +157,7 @@ def _draw_contact(axes, laws, mapped, quantity):
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
         law = quantity.exponent
-        ends = [float(laws[f"{law}{end}"][mapped, j]) for end in ("", "_low", "_high")]
+        ends = [values[mapped, j] for values in bounds(laws, law)]
         weak = WEAK if estimate(*ends).startswith(UNDETERMINED) else {}
         values = laws[quantity.name].values[:, mapped, j]
         fitted = np.zeros(b.shape, bool)
@@ -172,7 +175,7 @@ def _draw_contact(axes, laws, mapped, quantity):
     if (values > 0).any():
         logarithmic(axes, values)
     else:
-        nothing_in(axes, "no size holds ten nodes in contact")
+        say_empty(axes, "no size holds ten nodes in contact", ticks=False)
     axes.set_ylabel(quantity.label)
     where = place(str(laws["direction"].values), float(laws["offset"][mapped]))
     letter(axes, quantity.letter, f"{quantity.words}, {where}")
@@ -190,8 +193,7 @@ def _with_intervals(axes, b, laws, name, index, fitted, **style):
     """
     mean, low, high = along_size(laws, name, index)
     draw_bars(axes, b, mean, low, high, style["color"])
-    for chosen, face in ((fitted, style["color"]), (~fitted, "white")):
-        axes.plot(b[chosen], mean[chosen], ls="none", mfc=face, **style)
+    draw_points(axes, b, mean, fitted, **style)
 
 
 def _roughness_table(laws, shown):
@@ -230,10 +232,7 @@ def _contact_table(laws, quantity):
                 f"mean_{unit}": laws[name].values[:, i, j],
                 f"low_{unit}": laws[f"{name}_low"].values[:, i, j],
                 f"high_{unit}": laws[f"{name}_high"].values[:, i, j],
-                **{
-                    f"exponent{end}": float(laws[f"{law}{end}"][i, j])
-                    for end in ("", "_low", "_high")
-                },
+                **{f"exponent{end}": float(laws[f"{law}{end}"][i, j]) for end in INTERVAL},
             }
         )
         for i in range(laws.sizes["offset"])
@@ -254,8 +253,7 @@ def _caption(laws):
 
 def _hurst_words(laws):
     """H of the face, beside that expected of its dimension."""
-    hurst = [float(laws[f"face_hurst{end}"]) for end in ("", "_low", "_high")]
-    expected = [float(laws[f"expected_hurst{end}"]) for end in ("", "_low", "_high")]
+    hurst, expected = (bounds(laws, f"{of}_hurst") for of in ("face", "expected"))
     if not np.isfinite(hurst[0]):
         return "No fit of eq. 2: fewer than three sizes lie in its range."
     words = f"H = {estimate(*hurst)}"

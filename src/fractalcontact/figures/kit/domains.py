@@ -225,7 +225,10 @@ def departures(counts: xr.Dataset, determined: np.ndarray) -> str:
     departing = int((decided == BEYOND_BOTH).sum())
     same = ((found != UNDETERMINED) == determined).all()
     which = "that determine Delta_sigma by boxes (full colour)" if same else "that decide it"
-    return f"Departs from both null models at {departing} of {decided.size} loads {which}."
+    return (
+        f"Departs from both null models, by boxes and by pairs, at {departing} of {decided.size} "
+        f"loads {which}."
+    )
 
 
 def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = True) -> str:

@@ -19,24 +19,31 @@ TOO_FULL = (
 )
 #: Of the words in an empty panel.
 MARK = "nothing-to-draw"
+#: Letters of a line of the words.
+_LINE = 48
 #: Ends of a logarithmic axis that nothing is drawn on.
 _ENDS = (0.1, 1.0)
 #: What a panel says whose figure gives no reason of its own.
 _NOTHING = "nothing above zero to draw on a logarithmic axis"
 
 
-def say_empty(axes: Axes, reason: str) -> None:
+def say_empty(axes: Axes, reason: str, *, ticks: bool = True) -> None:
     """Say in the middle of a panel why nothing is drawn in it.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
     reason : str
+        Its own lines are kept, and broken where they are too long.
+    ticks : bool, optional
+        Whether the ticks are kept, of axes that number something even so.
     """
+    if not ticks:
+        axes.set(xticks=[], yticks=[])
     axes.text(
         0.5,
         0.5,
-        textwrap.fill(reason, 48),
+        "\n".join(textwrap.fill(line, _LINE) for line in reason.splitlines()),
         transform=axes.transAxes,
         ha="center",
         va="center",

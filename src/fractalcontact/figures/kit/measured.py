@@ -9,8 +9,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL
 from ...domain.pressure_trend import Trend, pressure_trend
 from .drawing import COLOURS, MARKERS, group
+from .points import reach
 from .words import short
 
 #: Letters of a label that a legend takes.
@@ -104,24 +106,18 @@ def draw_series(
     known = np.isfinite(x)
     x = x[known]
     value, low, high, least, most = (
-        series.values(f"delta_sigma{end}")[known]
-        for end in ("", "_low", "_high", "_least", "_most")
+        series.values(f"delta_sigma{end}")[known] for end in (*INTERVAL, "_least", "_most")
     )
     colour = series.style["color"]
-    reach = np.maximum([value - low, high - value], 0)
-    line = "-" if len(x) > 1 else "none"
-    axes.errorbar(
-        x, value, yerr=reach, ls=line, capsize=2, elinewidth=0.8, label=label, **series.style
-    )
+    style = {"ls": "-" if len(x) > 1 else "none", "capsize": 2, "elinewidth": 0.8} | series.style
+    axes.errorbar(x, value, yerr=reach(value, low, high), label=label, **style)
     if np.isfinite(least).any():
         if len(x) > 1:
             axes.fill_between(x, least, most, color=colour, alpha=0.15, lw=0)
         else:
             axes.vlines(x, least, most, color=colour, alpha=0.25, lw=5)
     if nulls:
-        mean, low, high = (
-            series.values(f"delta_sigma_random{end}")[known] for end in ("", "_low", "_high")
-        )
+        mean, low, high = (series.values(f"delta_sigma_random{end}")[known] for end in INTERVAL)
         style = {"color": colour, "lw": 0.8, "ls": ":", "marker": "none"}
         if len(x) > 1:
             axes.plot(x, mean, **style)
@@ -129,7 +125,7 @@ def draw_series(
                 x, low, high, facecolor="none", edgecolor=colour, hatch="....", lw=0, alpha=0.4
             )
         else:
-            axes.errorbar(x, mean, yerr=np.maximum([mean - low, high - mean], 0), **style)
+            axes.errorbar(x, mean, yerr=reach(mean, low, high), **style)
 
 
 def threshold_words(series: Sequence[Series]) -> str:

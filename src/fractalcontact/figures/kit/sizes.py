@@ -8,9 +8,10 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from xarray import DataTree
 
 from ...core.fitting import FEWEST_POINTS
+from ...core.intervals import INTERVAL, bounds
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
-from .empty import MARK
+from .points import draw_points
 from .verdicts import claim
 from .words import estimate, length_unit, short
 
@@ -85,9 +86,7 @@ def draw_means(
     axes: Axes, b: np.ndarray, mean: np.ndarray, held: np.ndarray, colour: str, marker: str
 ) -> None:
     """Means over sub-windows against b; open where most of the sub-windows had their angle held."""
-    mostly = held > MOSTLY
-    for chosen, face in ((mostly, "white"), (~mostly, colour)):
-        axes.plot(b[chosen], mean[chosen], ls="none", marker=marker, mec=colour, mfc=face)
+    draw_points(axes, b, mean, ~(held > MOSTLY), color=colour, marker=marker)
 
 
 def strength_verdict(atlas: DataTree, name: str, laws: xr.Dataset, share: int, says: str) -> str:
@@ -134,13 +133,6 @@ def cases_words(laws: xr.Dataset, share: int) -> str:
     return f"cases: every pressure at $v/b$ = {places}; drawn: {share_words(laws, share)}"
 
 
-def nothing_in(axes: Axes, why: str) -> None:
-    """Say why axes are empty, without ticks that would number nothing."""
-    axes.set(xticks=[], yticks=[])
-    text = axes.text(0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", gid=MARK)
-    text.set_color("0.4")
-
-
 def apart(b: np.ndarray, j: int, n: int) -> np.ndarray:
     """The sides b, moved a little sideways for the j-th of n series."""
     return b * (1 + _APART * (j - (n - 1) / 2))
@@ -171,11 +163,10 @@ def logarithmic(axes: Axes, values: np.ndarray) -> None:
 def along_size(laws: xr.Dataset, name: str, index: tuple[int, ...]) -> list[np.ndarray]:
     """Mean, low and high of a quantity along b, at an index of its other dimensions."""
     size = "scale" if "scale" in laws[name].dims else "part"
-    ends = [laws[f"{name}{end}"].transpose(size, ...).values for end in ("", "_low", "_high")]
+    ends = [laws[f"{name}{end}"].transpose(size, ...).values for end in INTERVAL]
     return [values[(slice(None), *index)] for values in ends]  # type: ignore[arg-type]  # an index
 
 
 def interval_text(laws: xr.Dataset, name: str, index: int | tuple[int, ...] = ()) -> str:
     """A fitted number with its interval, at an index."""
-    value, low, high = (float(laws[f"{name}{end}"].values[index]) for end in ("", "_low", "_high"))
-    return estimate(value, low, high)
+    return estimate(*(ends[index] for ends in bounds(laws, name)))

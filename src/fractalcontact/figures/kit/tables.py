@@ -1,6 +1,6 @@
 """Tables of words within figures: wrapped columns, a thin line above each row."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from textwrap import fill
 
 from matplotlib.axes import Axes
@@ -60,7 +60,32 @@ def draw_rows(
     axes.set_xlim(0, 1)
     for key, (x, _) in columns.items():
         axes.text(x, top, heads[key], va="top", weight="bold", fontsize=7)
-    places, y = [], top + HEAD
+    return draw_texts(axes, texts, lines, columns, top + HEAD)
+
+
+def draw_texts(
+    axes: Axes,
+    texts: list[dict[str, str]],
+    lines: Sequence[float],
+    columns: Mapping[str, tuple[float, int]],
+    top: float,
+) -> list[float]:
+    """Draw rows, a thin line above each, as :func:`draw_rows` does below its heads.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    texts, lines, columns
+        As of :func:`wrap_rows`; rows may take less than whole lines.
+    top : float
+        Where the first row stands.
+
+    Returns
+    -------
+    list of float
+        Where each row stands.
+    """
+    places, y = [], top
     for row, rows in zip(texts, lines, strict=True):
         axes.axhline(y - SPACE, color="0.8", lw=0.5)
         for key, (x, _) in columns.items():

@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...domain.departure import is_fractal
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
@@ -71,7 +72,7 @@ def _title(name, one):
     name = name if len(name) <= _LONGEST else f"{name[: _LONGEST - 1]}…"
     pressure = float(one["nominal_pressure"])
     load = f"{short(pressure)} MPa" if np.isfinite(pressure) else "no load"
-    value, low, high = (float(one[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
+    value, low, high = bounds(one, "delta_sigma")
     dimension = "no dimension"
     if np.isfinite(value):
         dimension = rf"$\Delta_\sigma$ = {interval(value, low, high)}"

@@ -7,6 +7,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ..kit.drawing import WIDTH, Drawing, entries, headline, label_short_span, legends_below, letter
+from ..kit.empty import say_empty
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
 from ..kit.words import SUPPLEMENTARY, interval
 
@@ -39,9 +40,7 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
         label_short_span(panels[0].xaxis)
     else:
         panels[0].set_xticks([])
-        panels[0].text(
-            0.5, 0.5, "no map states its load", transform=panels[0].transAxes, ha="center"
-        )
+        say_empty(panels[0], "no map states its load")
     panels[1].set_xscale("log")
     label_short_span(panels[1].xaxis)
     panels[0].set_ylabel(r"dimension $\Delta_\sigma$ by box counting (1)")

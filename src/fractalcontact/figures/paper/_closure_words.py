@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
 
+from ...core.intervals import bounds
 from ...mechanics.closure_laws import (
     GOOD_FIT,
     HYPERBOLA,
@@ -51,7 +52,7 @@ def _some(known, count):
 
 def linear_words(laws: xr.Dataset) -> str:
     """How many exponents are near 1, and how many intervals lie beyond that: these decide."""
-    value, low, high = (laws[f"corrected_exponent{end}"].values for end in ("", "_low", "_high"))
+    value, low, high = bounds(laws, "corrected_exponent")
     known = np.isfinite(value)
     if not known.any():
         return ""

@@ -8,10 +8,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
+from ...core.intervals import INTERVAL
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import cell_side
 from ..kit.drawing import MARKERS, dilatancy_loads, label_short_span, nearest_load
 from ..kit.empty import TOO_FULL, say_empty
+from ..kit.points import draw_points, reach
 from ..kit.words import force_label, percent, short
 
 #: Greys and markers of the loads: colours and the other markers stand for offsets in this figure.
@@ -28,9 +30,10 @@ def stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) ->
     for k in np.sort(curves["resolution"].values):
         curve = curves.sel(resolution=k)
         row = {"spacing_mm": k * cell_side(specimen), "offset_mm": float(curve["offset"])}
-        ends = {end: float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")}
         quantity = {"quantity": "k_ni, extrapolated to zero load", "resolved": True}
-        columns = {f"stiffness{end}_MPa_per_mm": value for end, value in ends.items()}
+        columns = {
+            f"stiffness{end}_MPa_per_mm": float(curve[f"hyperbola_k_ni{end}"]) for end in INTERVAL
+        }
         rows.append(row | quantity | columns)
         rows += [
             row
@@ -64,24 +67,23 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
             "marker": _MARKERS[n % len(_MARKERS)],
             "ms": 5,
         }
-        axes.plot(
+        draw_points(
+            axes,
             points["spacing_mm"],
             points["stiffness_MPa_per_mm"],
+            points["resolved"],
             ls="-",
             lw=0.7,
             label=f"tangent, $F$ = {force_label(force)}: {_numbers(points)}",
             **style,
         )
-        few = points[~points["resolved"]]
-        axes.plot(few["spacing_mm"], few["stiffness_MPa_per_mm"], ls="none", mfc="white", **style)
     initial = known[known["quantity"] != "tangent"]
     if len(initial):
-        value = initial["stiffness_MPa_per_mm"].values
-        ends = [initial[f"stiffness_{end}_MPa_per_mm"].values for end in ("low", "high")]
+        value, low, high = (initial[f"stiffness{end}_MPa_per_mm"].values for end in INTERVAL)
         axes.errorbar(
             initial["spacing_mm"],
             value,
-            yerr=np.maximum([value - ends[0], ends[1] - value], 0),
+            yerr=reach(value, low, high),
             color="0",
             marker="_",
             ls=(0, (4, 2)),

@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -17,6 +18,8 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
+from ..kit.empty import say_empty
+from ..kit.points import hollow_entry
 from ..kit.sizes import (
     HELD,
     MOSTLY,
@@ -29,7 +32,6 @@ from ..kit.sizes import (
     draw_means,
     interval_text,
     logarithmic,
-    nothing_in,
     share_shown,
     share_words,
     size_axis,
@@ -88,11 +90,11 @@ def _draw_strength(axes, laws, share):
     if drawn:
         logarithmic(axes, laws["similar_strength"].values[share])
         if held.any():
-            axes.plot([], [], "o", color="0.4", mfc="white", label=HELD)
+            hollow_entry(axes, HELD)
         if cases := cases_words(laws, share):
             axes.plot([], [], " ", label=cases)
     else:
-        nothing_in(axes, NO_STRENGTH)
+        say_empty(axes, NO_STRENGTH, ticks=False)
     if np.isfinite(laws["barton_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis (50 to 400 mm)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
@@ -128,7 +130,7 @@ def _draw_slope(axes, laws, share):
     if drawn:
         logarithmic(axes, laws["similar_slope"].values[share])
     else:
-        nothing_in(axes, "no offset lies at one v/b of the sizes")
+        say_empty(axes, "no offset lies at one v/b of the sizes", ticks=False)
     axes.set_ylabel(r"slope $d\delta/dv$ of the dilatancy curve (mm/mm)")
     letter(axes, "b", f"dilatancy at $v$ = {share_words(laws, share)} of $b$")
 
@@ -149,14 +151,13 @@ def _table(laws):
                     ("strength_MPa", "similar_strength"),
                     ("slope", "similar_slope"),
                 )
-                for end in ("", "_low", "_high")
+                for end in INTERVAL
             }
             held = laws["similar_held"].values[i, :, j]
             row = {"at": "v/b", "v_over_b": share, **common, **values, "held_share": held}
             tables.append(pd.DataFrame(row))
         values = {
-            f"strength_MPa{end}": laws[f"peak_strength{end}"].values[:, j]
-            for end in ("", "_low", "_high")
+            f"strength_MPa{end}": laws[f"peak_strength{end}"].values[:, j] for end in INTERVAL
         }
         held = laws["held_share"].values[:, j]
         tables.append(pd.DataFrame({"at": "peak", **common, **values, "held_share": held}))

@@ -15,9 +15,12 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...roughness.recommended import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, heading, headline, letter, settings_of
+from ..kit.empty import say_empty
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
+from ..kit.points import reach
 from ..kit.words import interval, length_unit, opening, percent
 
 TITLE = "Fig. 2: shaded relief of the levelled faces, and the surface dimension"
@@ -119,7 +122,7 @@ def _shaded(heights, spacing, low, high):
 
 def _draw_dimensions(axes, dimension):
     """Estimates of Delta_g with their intervals, one below the other; the lines of a legend."""
-    values, low, high = (dimension[f"dimension{end}"].values for end in ("", "_low", "_high"))
+    values, low, high = bounds(dimension, "dimension")
     rows = np.arange(len(values))
     fitted = np.isfinite(values)
     words = [
@@ -134,17 +137,10 @@ def _draw_dimensions(axes, dimension):
     axes.set_xlabel(r"surface dimension $\Delta_g$ (1)")
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     if not fitted.any():
-        axes.text(
-            0.5,
-            0.5,
-            "no fit: the scan has\ntoo few scales",
-            ha="center",
-            va="center",
-            transform=axes.transAxes,
-        )
+        say_empty(axes, "no fit: the scan has\ntoo few scales")
         axes.set_xticks([])
         return []
-    errors = np.stack([values - low, high - values])
+    errors = reach(values, low, high)
     chosen = dimension["estimator"].values == dimension["recommended"].item()
     handles = []
     for marked, style in (
@@ -204,7 +200,7 @@ def _table(dimension):
             **{
                 f"hurst_{axis}{end}": dimension[f"hurst_{axis}{end}"].values
                 for axis in "xy"
-                for end in ("", "_low", "_high")
+                for end in INTERVAL
             },
             "fit_min_mm": dimension["fit_min"].values,
             "fit_max_mm": dimension["fit_max"].values,

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL, bounds
 from ...core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ...mechanics.closure_laws import (
     HYPERBOLA,
@@ -30,6 +31,7 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.empty import TOO_FULL, say_empty
+from ..kit.points import draw_points
 from ..kit.verdicts import claim, sentences
 from ..kit.words import (
     NOMINAL_PRESSURE,
@@ -131,8 +133,8 @@ def _draw_closure(axes, curves, drawn, direction, area):
         force, resolved = curve["normal_force"].values / size, curve["resolved"].values
         w = curve["interface_closure"].values
         label = f"{_offset(direction, float(curve['offset']))}: {_law_words(curve)}"
-        axes.plot(w[resolved], force[resolved], MARKERS[n], label=label, **style)
-        axes.plot(w[~resolved], force[~resolved], MARKERS[n], **style, **_OPEN)
+        mark = {"marker": MARKERS[n], "label": label, **style}
+        draw_points(axes, w, force, resolved, _OPEN, **mark)
         _draw_laws(axes, curve, area, size, style)
     if np.isfinite(closures).any():
         # Flush faces have closures of 0 alone.
@@ -153,8 +155,7 @@ def _draw_light_loads(axes, curves, drawn, area):
         curve = curves.isel(offset=i)
         style = {"color": colour_of(n)}
         w, resolved = curve["interface_closure"].values, curve["resolved"].values
-        axes.plot(w[resolved], pressure[resolved], MARKERS[n], **style)
-        axes.plot(w[~resolved], pressure[~resolved], MARKERS[n], **style, **_OPEN)
+        draw_points(axes, w, pressure, resolved, _OPEN, marker=MARKERS[n], **style)
         if np.isfinite(float(curve["hyperbola_k_ni"])):
             # Below the loads it is fitted to the hyperbola is all k_ni, and an extrapolation.
             first, last = (float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max"))
@@ -190,9 +191,8 @@ def _law_words(curve):
     misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
     if not np.isfinite(misfits).any():
         return f"no fit: {no_law(curve)}"
-    ends = [float(curve[f"hyperbola_k_ni{end}"]) for end in ("", "_low", "_high")]
     known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
-    return f"{', '.join(known)}; {estimate(*ends)}"
+    return f"{', '.join(known)}; {estimate(*bounds(curve, 'hyperbola_k_ni'))}"
 
 
 def _line(style, label):
@@ -255,15 +255,10 @@ def _draw_area(axes, curves, drawn, direction, laws, area):
         enough = curve["area_corrected_resolved"].values
         known = np.isfinite(float(law["corrected_exponent"]))
         words = _exponent(law) if known else f"no fit: {law['corrected_n']:.0f} loads"
-        style = {"color": colour_of(n), "ls": "none", "marker": MARKERS[n]}
-        axes.plot(
-            force[enough] / size,
-            100 * curve["area_corrected_share"].values[enough],
-            label=f"{_offset(direction, float(curve['offset']))}: {words}",
-            **style,
-        )
-        raw = 100 * curve["area_share"].values
-        axes.plot(force[~enough] / size, raw[~enough], **style, **_OPEN)
+        share = np.where(enough, curve["area_corrected_share"], curve["area_share"])
+        label = f"{_offset(direction, float(curve['offset']))}: {words}"
+        style = {"color": colour_of(n), "marker": MARKERS[n], "label": label}
+        draw_points(axes, force / size, 100 * share, enough, _OPEN, **style)
         if known:
             ends = np.array([float(law[f"corrected_force_{end}"]) for end in ("low", "high")])
             unit = float(law["corrected_unit_area"])
@@ -276,7 +271,7 @@ def _draw_area(axes, curves, drawn, direction, laws, area):
 
 
 def _exponent(law):
-    return estimate(*(float(law[f"corrected_exponent{end}"]) for end in ("", "_low", "_high")))
+    return estimate(*bounds(law, "corrected_exponent"))
 
 
 # -- table and caption -----------------------------------------------------------------------------
@@ -319,7 +314,7 @@ def _table(curves, drawn, laws):
         columns |= {column: curve[name].values for column, name in points.items()}
         columns |= {column: curve[name].item() for column, name in fitted.items()}
         columns["area_fitted"] = law["corrected_fitted"].values
-        for end in ("", "_low", "_high"):
+        for end in INTERVAL:
             columns[f"area_exponent{end}"] = float(law[f"corrected_exponent{end}"])
         rows.append(pd.DataFrame(columns))
     return pd.concat(rows, ignore_index=True)

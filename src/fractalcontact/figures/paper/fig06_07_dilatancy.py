@@ -29,6 +29,7 @@ from ..kit.drawing import (
     spread,
 )
 from ..kit.maps import HALO, draw_domain
+from ..kit.points import draw_points, hollow_entry
 from ..kit.verdicts import claim, row_of, sentences
 from ..kit.words import TOWARDS, area_label, force_label, opening, place, short
 
@@ -189,11 +190,11 @@ def _elastic_curves(axes, opened, shown):
         curve = opened[:, j]
         style = {"marker": MARKERS[n % len(MARKERS)], "color": colour_of(n + 4)}
         label = f"$F$ = {force_label(float(curve['normal_force']))}"
-        axes.plot(curve["offset"], curve, label=label, **style)
-        few = curve[~curve["resolved"].values]
-        hollow = f"hollow: under {RESOLVED_NODES} nodes" if len(few) and not labelled else None
-        labelled |= bool(len(few))
-        axes.plot(few["offset"], few, ls="none", mfc="white", label=hollow, **style)
+        resolved = curve["resolved"].values
+        draw_points(axes, curve["offset"], curve, resolved, ls="-", label=label, **style)
+        if not (labelled or resolved.all()):
+            hollow_entry(axes, f"hollow: under {RESOLVED_NODES} nodes", **style)
+            labelled = True
 
 
 def _mark_points(axes, curve, points):

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.intervals import bounds
 from ...core.ranges import within
 from ...domain.box_dimension import WIDEST, is_determined, local_slopes, spans
 from ...domain.count_law import LawTerms, law_count
@@ -233,10 +234,10 @@ def _law_form(counts):
 
 def _by_law(counts):
     """The dimension of the count law with its interval."""
-    return interval(*(counts[f"delta_sigma{end}"].item() for end in ("", "_low", "_high")))
+    return interval(*bounds(counts, "delta_sigma"))
 
 
 def _ordinary(counts):
     """The ordinary dimension with its interval, or that it is undetermined."""
-    ends = [counts[f"delta_sigma_ordinary{end}"].item() for end in ("", "_low", "_high")]
+    ends = bounds(counts, "delta_sigma_ordinary")
     return interval(*ends) if bool(counts["ordinary_determined"]) else undetermined(*ends)

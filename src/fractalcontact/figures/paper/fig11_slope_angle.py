@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -20,6 +21,8 @@ from ..kit.drawing import (
     letter,
     settings_of,
 )
+from ..kit.empty import say_empty
+from ..kit.points import hollow_entry
 from ..kit.sizes import (
     HELD,
     MOSTLY,
@@ -31,7 +34,6 @@ from ..kit.sizes import (
     draw_bars,
     draw_means,
     interval_text,
-    nothing_in,
     plain_decades,
     roughness_words,
     share_shown,
@@ -100,7 +102,7 @@ def _draw_angle(axes, laws, share, drawn, beyond):
         barton = slope_angle(laws["barton_strength"].values[:, j], pressure)
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
     if (laws["similar_held"].values[share] > MOSTLY).any():
-        axes.plot([], [], "o", color="0.4", mfc="white", label=HELD)
+        hollow_entry(axes, HELD)
     if np.isfinite(laws["barton_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
     axes.plot([], [], " ", label=SHIFTED)
@@ -111,7 +113,7 @@ def _draw_angle(axes, laws, share, drawn, beyond):
     axes.set_ylabel(r"limit slope angle $\arctan(\tau/\sigma_0)$ (degrees)")
     letter(axes, "a", f"angle at $v$ = {share_words(laws, share)} of $b$")
     if not drawn:
-        nothing_in(axes, NO_STRENGTH)
+        say_empty(axes, NO_STRENGTH, ticks=False)
 
 
 def _draw_ratio(axes, laws, share, drawn):
@@ -142,7 +144,7 @@ def _draw_ratio(axes, laws, share, drawn):
     # The whole window may have no strength where its parts have.
     if not (drawn and known.size):
         axes.set_yscale("linear")
-        nothing_in(axes, "no strength to compare")
+        say_empty(axes, "no strength to compare", ticks=False)
         return
     quoted = (b.min() / b[0]) ** slope
     axes.set_ylim(0.7 * min(known.min(), 1), 1.4 * max(known.max(), quoted))
@@ -164,7 +166,7 @@ def _table(laws):
                             f"angle_deg{end}": slope_angle(
                                 laws[f"similar_strength{end}"].values[i, :, j], pressure
                             )
-                            for end in ("", "_low", "_high")
+                            for end in INTERVAL
                         },
                         "held_share": laws["similar_held"].values[i, :, j],
                         "barton_angle_deg": slope_angle(
@@ -174,7 +176,7 @@ def _table(laws):
                             f"exponent{end}": float(
                                 laws[f"similar_strength_exponent{end}"].values[i, j]
                             )
-                            for end in ("", "_low", "_high")
+                            for end in INTERVAL
                         },
                     }
                 )

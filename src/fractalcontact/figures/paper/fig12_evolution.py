@@ -8,11 +8,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.intervals import INTERVAL
 from ...core.resolved import CORRECTED_NODES
 from ..kit.domains import RISES, Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
+from ..kit.empty import say_empty
 from ..kit.maps import ENLARGED, draw_domain, ring_entry
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
+from ..kit.points import reach
 from ..kit.verdicts import sentences, verdict_words
 from ..kit.words import force_label, opening, percent, wrapped
 
@@ -177,7 +180,7 @@ def _null_table(loading, area, nominal, null):
     """One row a load of a null model of box counting."""
     columns = {
         f"delta_sigma{end}": loading.counts[f"delta_sigma_{null}{end}"].values
-        for end in (("", "_low", "_high") if null == "random" else ("",))
+        for end in (INTERVAL if null == "random" else ("",))
     }
     return pd.DataFrame(
         {
@@ -205,12 +208,10 @@ def _draw_nulls(axes, loading):
 
 def _draw_dimensions(axes, loading, rises):
     for estimate in loading.estimates:
-        reach = np.array([estimate.value - estimate.low, estimate.high - estimate.value])
         axes.errorbar(
             loading.forces * _APART[estimate.key],
             estimate.value,
-            # Rounding may leave an exact fit's interval a hair's breadth below zero.
-            yerr=np.maximum(reach, 0),
+            yerr=reach(estimate.value, estimate.low, estimate.high),
             **estimate.style,
             capsize=2,
             elinewidth=0.8,
@@ -224,11 +225,11 @@ def _draw_dimensions(axes, loading, rises):
             label=f"$\\Delta_\\sigma$ by {estimate.symbol}\n{rises[estimate.key]}",
         )
     axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
-    faint = "faint: undetermined, yet in the rise"
+    faint = "faint: undetermined, not in the rise"
     axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
     if not any(np.isfinite(estimate.value).any() for estimate in loading.estimates):
         first = "\n".join(wrapped(estimate.reason[0]) for estimate in loading.estimates)
-        axes.text(0.5, 0.5, first, transform=axes.transAxes, ha="center")
+        say_empty(axes, first)
     axes.set_xscale("log")
     axes.set_xlim(loading.forces.min() / 1.5, loading.forces.max() * 1.5)
     axes.set_ylim(-0.05, 2.05)

@@ -21,7 +21,8 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
-from ..kit.sizes import nothing_in, plain_decades
+from ..kit.empty import say_empty
+from ..kit.sizes import plain_decades
 from ..kit.verdicts import row_of, verdict_words
 from ..kit.words import force_label, interval, opening
 from ._size_effect import draw_axes, size_effect
@@ -97,7 +98,7 @@ def _draw_lines(axes, loading, estimate, shown, table):
         label = f"$F$ = {force_label(force)}: {slope}"
         handles.append(Line2D([], [], marker=MARKERS[n], label=label, **style | faint))
     if len(handles) == 1:
-        nothing_in(axes, "no $\\Delta_\\sigma$ at the loads drawn")
+        say_empty(axes, "no $\\Delta_\\sigma$ at the loads drawn", ticks=False)
         return []
     return handles
 
