@@ -1,4 +1,4 @@
-"""The elastic half-space: normal displacement under a pressure, by fast Fourier transforms."""
+"""The elastic half-space: displacement under a pressure, on a window or on nodes of it."""
 
 from ..core.lazy import exports
 
