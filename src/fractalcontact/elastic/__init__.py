@@ -7,9 +7,9 @@ __getattr__, __dir__, __all__ = exports(
     {
         "DirectOperator": ".direct",
         "HalfSpace": ".halfspace",
-        "LEAST_SIDE": ".split_convolution",
+        "LEAST_SPLIT_SIDE": ".split_convolution",
         "MOST_PAIRS": ".direct",
-        "MultipoleLevels": ".multipole",
+        "MultipoleLevels": ".block_pairs",
         "MultipoleOperator": ".multipole",
         "RIGID_PLATE_SELF_TERMS": ".halfspace",
         "WIDTH": ".simd",
