@@ -33,6 +33,7 @@ from fractalcontact.contact import (
     active_set,
     coarse_correction,
     full_approximation,
+    operator,
     preconditioner,
     projected_cg,
     safeguards,
@@ -85,7 +86,7 @@ def _factor_alone(correction, residual, inverse):
 
 #: What is left out of a cold solve, and what is put in its place: (owner, name, value).
 COLD = {
-    "preconditioner": [(projected_cg, "preconditioner", Identity)],
+    "preconditioner": [(operator, "preconditioner", Identity)],
     "coarse correction": [
         (coarse_correction.CoarseCorrection, "update", lambda self, nodes, fresh: None),
         (coarse_correction.CoarseCorrection, "balance", _factor_alone),

@@ -9,13 +9,16 @@ for the best begins there, and ends at ``loosest``. Which methods and public cod
 what they offer, they declare themselves (`fractalcontact.methods.registry`).
 """
 
+from collections import Counter
 from contextlib import contextmanager
 from dataclasses import dataclass
+from unittest import mock
 
 import numpy as np
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.accuracy.speed import load_of
+from fractalcontact.contact import operator
 from fractalcontact.contact.preconditioner import forget_preconditioner
 from fractalcontact.contact.state import CandidateState
 from fractalcontact.methods.peers import Failed as PeerFailed
@@ -87,7 +90,8 @@ class Ours(Solver):
 
     def _solve(self, load, start, tolerance):
         try:
-            return self.press(self.height, self.space, start=start, rtol=tolerance, **load)
+            with counted_between_candidates(self.space.shape) as self.between:
+                return self.press(self.height, self.space, start=start, rtol=tolerance, **load)
         except NotConverged as error:
             raise Failed(str(error)) from error
 
@@ -100,11 +104,11 @@ class Ours(Solver):
         return self.calls["coarse"]
 
     def path(self):
-        """Whether on candidates for contact, and how many, or on the whole window."""
+        """Whether between candidates for contact, by which operator, or on the whole window."""
         kept = "grid kept between solves"
         if isinstance(self.state, CandidateState):
-            candidates = self.state.candidates
-            return f"multipole between {candidates} candidates, {self.work} applications; {kept}"
+            used = " and ".join(f"{n} {name}" for name, n in self.between.items())
+            return f"between {self.state.candidates} candidates, applications: {used}; {kept}"
         return f"convolution of the window, {self.work} applications; {kept}"
 
 
@@ -138,6 +142,30 @@ def counted_convolutions(shape):
         yield counts
     finally:
         HalfSpace.convolve = convolve
+
+
+@contextmanager
+def counted_between_candidates(shape):
+    """Count applications between candidates meanwhile, on a grid of a shape, by the operator."""
+    counts = Counter()
+
+    def counted(name, made):
+        class Counted(made):
+            def __init__(self, space, *rest):
+                super().__init__(space, *rest)
+                self.name = name if space.shape == shape else None
+
+            def __call__(self, positions, values):
+                if self.name is not None:
+                    counts[self.name] += 1
+                return super().__call__(positions, values)
+
+        return Counted
+
+    direct = counted("pair by pair", operator.DirectOperator)
+    multipole = counted("multipole", operator.MultipoleOperator)
+    with mock.patch.multiple(operator, DirectOperator=direct, MultipoleOperator=multipole):
+        yield counts
 
 
 class MethodOfThePackage(Ours):

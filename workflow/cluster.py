@@ -5,6 +5,8 @@ import re
 import subprocess
 from pathlib import Path
 
+from fractalcontact.core.errors import InputError
+
 #: Seconds that the cluster gets to say what is in its queue.
 PATIENCE = 60
 _MORE = "the next attempt, if one is left (retries in the profile), asks for twice as much"
@@ -35,6 +37,11 @@ def left_in_queue(profile):
     -------
     list of str
         Their numbers.
+
+    Raises
+    ------
+    InputError
+        If the cluster does not say what is in its queue, which may then hold such jobs.
     """
     text = (Path(profile) / "config.yaml").read_text(encoding="utf-8")
     if not re.search(r"^executor: *slurm *$", text, flags=re.MULTILINE):
@@ -45,10 +52,22 @@ def left_in_queue(profile):
         done = subprocess.run(
             [*command, f"--states={states}"], capture_output=True, text=True, timeout=PATIENCE
         )
-    except (OSError, subprocess.TimeoutExpired):
-        return []  # no cluster answers: to submit a job says so, and why
+    except OSError:
+        return []  # there is no cluster: to submit a job says so, and why
+    except subprocess.TimeoutExpired:
+        raise _unknown(f"no answer in {PATIENCE} s") from None
+    if done.returncode:
+        *_, why = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+        raise _unknown(why)
     jobs = (line.partition("|") for line in done.stdout.splitlines())
     return sorted({number for number, _, folder in jobs if folder == os.getcwd()}, key=int)
+
+
+def _unknown(why):
+    return InputError(
+        f"the cluster does not say what is in its queue (squeue: {why}), and jobs of a run that "
+        "was killed may still be there; wait until 'squeue' answers, then begin again"
+    )
 
 
 def ended_by_cluster(lines):

@@ -98,6 +98,7 @@ def main():
     gc.collect()
     gc.freeze()  # what is loaded stays, and forks share it: none is to go through it
     _serve(listener)
+    # Whoever started it removes the folder too, unless it was killed: then nobody else does.
     shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -127,7 +128,12 @@ def _serve(listener):
 
 
 def _work(connection):
-    """Be the job that was handed over; never return."""
+    """Be the job that was handed over; never return.
+
+    What goes wrong before the number of this process is sent is said nowhere: the other end reads
+    that the connection is closed, and runs the job alone (``scripts/_warm.py``), which says what is
+    wrong with it, if anything is. Errors of the job itself are printed by `_run`.
+    """
     code = 1
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
@@ -149,6 +155,7 @@ def _work(connection):
         fcntl.fcntl(life, fcntl.F_SETFL, 0)
         connection.sendall(f"{code}\n".encode())
     finally:
+        # A fork must not go on in the loop of `_serve`, whatever was raised.
         os._exit(code)
 
 

@@ -6,7 +6,7 @@ from ensembles import ensemble
 
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.accuracy.random_problems import random_problem, violation
-from fractalcontact.contact import candidates, projected_cg
+from fractalcontact.contact import candidates, operator
 from fractalcontact.contact.state import CandidateState
 from fractalcontact.surface.synthesis import self_affine
 
@@ -25,8 +25,8 @@ def restricted_always(monkeypatch, most_pairs):
     monkeypatch.setattr(candidates, "LEAST_SIDE", 8)
     monkeypatch.setattr(candidates, "MOST_CANDIDATES", 1.0)
     monkeypatch.setattr(candidates, "BATCH", 0.0)
-    everywhere = dict.fromkeys(projected_cg.MOST_PAIRS, most_pairs)
-    monkeypatch.setattr(projected_cg, "MOST_PAIRS", everywhere)
+    everywhere = dict.fromkeys(operator.MOST_PAIRS, most_pairs)
+    monkeypatch.setattr(operator, "MOST_PAIRS", everywhere)
 
 
 @pytest.fixture

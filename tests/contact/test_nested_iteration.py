@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.contact.kkt import Problem
 from fractalcontact.contact.nested_iteration import prolong, restrict_minimum, restrict_sum
 
 
@@ -21,6 +22,24 @@ def test_cells_of_two_by_two_nodes(shape, restrict, numpy_restrict):
     padded = np.pad(values, ((0, ny % 2), (0, nx % 2)), constant_values=np.nan)
     cells = padded.reshape((ny + 1) // 2, 2, (nx + 1) // 2, 2)
     np.testing.assert_allclose(restrict(values), numpy_restrict(cells, axis=(1, 3)), rtol=1e-14)
+
+
+@pytest.mark.parametrize("by_force", [False, True])
+def test_the_coarse_problem_is_that_of_the_same_pressures(by_force):
+    """Twice their number displaces as much there; load and cap are those of such pressures."""
+    space = half_space(64, 80)
+    y, x = np.indices(space.shape) / 80
+    pressure = 1 + np.sin(3 * x) * np.cos(4 * y)
+    load = pressure.sum() if by_force else 1.0
+    fine = Problem(space, np.zeros(pressure.size), load, by_force, cap=pressure.max())
+    coarse = fine.coarser(np.zeros(pressure.size // 4))
+    there = restrict_sum(pressure) / 2
+    assert coarse.space.shape == there.shape == (32, 40)
+    assert coarse.load == pytest.approx(there.sum() if by_force else 1.0)
+    assert coarse.cap == 2 * fine.cap
+    assert there.max() == pytest.approx(coarse.cap, rel=1e-2)
+    mean = restrict_sum(space.convolve(pressure)) / 4
+    np.testing.assert_allclose(coarse.space.convolve(there), mean, rtol=1e-2)
 
 
 @pytest.mark.parametrize("shape", [(24, 30), (25, 31)])

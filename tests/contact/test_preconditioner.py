@@ -12,8 +12,9 @@ from fractalcontact.contact.inverse_cholesky import (
     WIDE_NEIGHBOURHOOD,
     InverseCholesky,
 )
+from fractalcontact.contact.operator import Operator
 from fractalcontact.contact.preconditioner import DIRECT, Preconditioner
-from fractalcontact.contact.projected_cg import Operator, ProjectedCG
+from fractalcontact.contact.projected_cg import ProjectedCG
 from fractalcontact.surface.synthesis import self_affine
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace
-from fractalcontact.contact.projected_cg import Operator, ProjectedCG
+from fractalcontact.contact.operator import Operator
+from fractalcontact.contact.projected_cg import ProjectedCG
 
 GOAL = 1e-4
 

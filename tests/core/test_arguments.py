@@ -12,8 +12,9 @@ from fractalcontact.accuracy.cheap_models import bearing_area, coarse_grid, wink
 from fractalcontact.contact.dense import inverted, times
 from fractalcontact.contact.kkt import kkt_residual, mean_closure
 from fractalcontact.contact.nested_iteration import prolong, prolong_constant
+from fractalcontact.contact.operator import Operator
 from fractalcontact.contact.preconditioner import Preconditioner
-from fractalcontact.contact.projected_cg import Operator, ProjectedCG, add
+from fractalcontact.contact.projected_cg import ProjectedCG, add
 from fractalcontact.contact.state import ContactState
 from fractalcontact.core import arguments
 from fractalcontact.domain.box_counts import box_count, mean_count

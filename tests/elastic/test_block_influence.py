@@ -9,8 +9,8 @@ from fractalcontact.elastic.block_influence import (
     ORDER,
     SEPARATION,
     block_influence,
-    chebyshev,
     forget_matrices,
+    interpolation_nodes,
     reach,
     transfer,
 )
@@ -49,7 +49,7 @@ def test_every_matrix_is_the_influence_between_its_numbers(kernel, spacing, dtyp
     furthest, rng = reach(SEPARATION[dtype]), np.random.default_rng(0)
     sides = tuple(d / space.cell for d in spacing)
     for level, influence in enumerate(block_influence(space, 3, dtype)):
-        places = chebyshev(level, ORDER[dtype])
+        places = interpolation_nodes(level, ORDER[dtype])
         # In single precision a matrix for each position, in double for each that is distinct.
         distinct = {np.float32: 49, np.float64: 21 if spacing[0] == spacing[1] else 36}
         assert len(influence.matrices) == distinct[dtype.type]
@@ -98,7 +98,7 @@ def test_matrices_are_kept_until_they_are_forgotten():
 @pytest.mark.parametrize("level", [0, 1, 4])
 def test_transfer_interpolates_polynomials_exactly(level):
     weights = transfer(level, 12, np.dtype(np.float64))
-    own, parent = chebyshev(level, 12), chebyshev(level + 1, 12)
+    own, parent = interpolation_nodes(level, 12), interpolation_nodes(level + 1, 12)
     scale = parent.max()
     for half, shift in enumerate((-0.5, 0.5)):
         at = (own + shift * LEAF * 2**level) / scale

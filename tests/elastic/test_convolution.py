@@ -43,3 +43,11 @@ def test_plain_twin_is_the_sum_over_all_cells(shape):
         for j, i in np.ndindex(shape):
             sums[y, x] += kernel[abs(y - j), abs(x - i)] * field[j, i]
     np.testing.assert_allclose(reference.convolution(kernel, field), sums, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize(("wrapped", "least"), [(False, 37), (True, 19)])
+def test_the_least_length_is_named_where_one_is_too_short(wrapped, least):
+    """A transform of a field of 19 cells that may wrap around need be no longer than the field."""
+    spectrum = np.zeros((10, 21))
+    with pytest.raises(ValueError, match=rf"of 19 cells {least} or more"):
+        Convolution(spectrum, (19, 20), (18, 40), np.float64, wrapped=wrapped)

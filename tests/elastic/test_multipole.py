@@ -6,12 +6,8 @@ import pytest
 from fractalcontact import HalfSpace
 from fractalcontact.elastic import multipole
 from fractalcontact.elastic.block_influence import ERROR
-from fractalcontact.elastic.multipole import (
-    MOST_STRETCHED,
-    MultipoleLevels,
-    MultipoleOperator,
-    multipole_suits,
-)
+from fractalcontact.elastic.block_pairs import MultipoleLevels
+from fractalcontact.elastic.multipole import MOST_STRETCHED, MultipoleOperator, multipole_suits
 
 #: Rounding in single precision of sums of thousands of terms, as a fraction of the largest.
 ROUNDING = {np.float32: 1e-5, np.float64: 1e-13}

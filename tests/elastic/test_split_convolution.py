@@ -7,7 +7,7 @@ from fractalcontact import HalfSpace
 from fractalcontact.core import threads
 from fractalcontact.elastic import halfspace
 from fractalcontact.elastic.influence import influence_table
-from fractalcontact.elastic.split_convolution import LEAST_SIDE, SplitConvolution
+from fractalcontact.elastic.split_convolution import LEAST_SPLIT_SIDE, SplitConvolution
 
 #: Largest error over the largest displacement, of random pressures of either sign.
 ERROR = 4e-6
@@ -59,10 +59,12 @@ def test_symmetric():
 
 
 def test_used_in_single_precision_on_large_windows_of_nearly_square_cells():
-    large = (LEAST_SIDE, LEAST_SIDE + 10)
+    large = (LEAST_SPLIT_SIDE, LEAST_SPLIT_SIDE + 10)
     assert isinstance(HalfSpace(large, 1.0, 1.0)._single, SplitConvolution)
     assert not isinstance(HalfSpace(large, (1.0, 2.1), 1.0)._single, SplitConvolution)
-    assert not isinstance(HalfSpace((LEAST_SIDE - 1, 900), 1.0, 1.0)._single, SplitConvolution)
+    assert not isinstance(
+        HalfSpace((LEAST_SPLIT_SIDE - 1, 900), 1.0, 1.0)._single, SplitConvolution
+    )
     rng = np.random.default_rng(7)
     space = HalfSpace(large, 1.0, 1.0)
     values = rng.random(large) * (rng.random(large) < 0.1)

@@ -114,16 +114,17 @@ def test_what_is_asked_for_is_between_1_2_and_3_times_what_was_used(rule, side, 
 
 @pytest.mark.parametrize(("rule", "side", "states", "used"), TIMED)
 def test_time_of_grids_that_no_model_was_fitted_to_is_within_a_factor(rule, side, states, used):
-    assert 0.6 <= seconds(rule, side**2, states) / used <= 2.4
-    assert 60 * minutes(rule, side**2, states) >= 3 * used
+    assert 0.6 <= seconds(rule, side**2, states=states) / used <= 2.4
+    assert 60 * minutes(rule, side**2, states=states) >= 3 * used
 
 
 @pytest.mark.parametrize("rule", COSTS)
 def test_more_is_asked_for_larger_grids_and_twice_as_much_at_a_retry(rule):
     assert memory(rule, 4096**2) >= memory(rule, 128**2) >= LEAST_MEMORY
-    assert minutes(rule, 4096**2, 10) >= minutes(rule, 128**2, 10)
-    assert [memory(rule, 10**6, n) / memory(rule, 10**6) for n in (1, 2, 3)] == [1, 2, 4]
-    assert [minutes(rule, 10**6, 3, n) / minutes(rule, 10**6, 3) for n in (1, 2, 3)] == [1, 2, 4]
+    assert minutes(rule, 4096**2, states=10) >= minutes(rule, 128**2, states=10)
+    for asked in (memory, minutes):
+        first = asked(rule, 10**6, states=3)
+        assert [asked(rule, 10**6, states=3, attempt=n) / first for n in (1, 2, 3)] == [1, 2, 4]
 
 
 def test_more_is_asked_for_large_files_and_for_two_faces(tmp_path):

@@ -11,13 +11,21 @@ from places import ROOT
 from projects import project  # noqa: F401
 
 sys.path.append(str(ROOT / "workflow"))
+import cluster
 from cluster import ended_by_cluster, left_in_queue
+
+from fractalcontact.core.errors import InputError
 
 PROFILE = ROOT / "workflow/profiles/slurm"
 FAKE = """#!/bin/sh
 cat <<'END'
 {}
 END
+"""
+#: The words are those of SLURM 22.05 whose slurmctld is down.
+DOWN = """#!/bin/sh
+echo "slurm_load_jobs error: Unable to contact slurm controller (connect failure)" >&2
+exit 1
 """
 
 
@@ -68,6 +76,42 @@ def test_no_cluster_has_no_queue(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.chdir(tmp_path)
     assert left_in_queue(PROFILE) == []
+
+
+def script(path, text):
+    path.write_text(text)
+    path.chmod(0o755)
+
+
+@pytest.mark.usefixtures("answers")
+def test_a_queue_that_the_cluster_does_not_tell_is_not_an_empty_one(tmp_path, monkeypatch):
+    squeue = tmp_path / "tools/squeue"
+    for text, why in (
+        (DOWN, "squeue: slurm_load_jobs error: Unable to contact slurm controller"),
+        ("#!/bin/sh\nexit 3\n", "squeue: exit code 3"),
+        ("#!/bin/sh\nexec sleep 60\n", "squeue: no answer in 0.2 s"),
+    ):
+        script(squeue, text)
+        monkeypatch.setattr(cluster, "PATIENCE", 0.2 if "sleep" in text else 60)
+        with pytest.raises(InputError, match="wait until 'squeue' answers") as refused:
+            left_in_queue(PROFILE)
+        assert why in str(refused.value)
+        assert left_in_queue(ROOT / "workflow/profiles/default") == []
+
+
+@pytest.mark.usefixtures("answers")
+def test_run_is_refused_while_the_queue_is_unknown(tmp_path, project):  # noqa: F811
+    script(tmp_path / "tools/squeue", DOWN)
+    words = ("workflow/run.py", "config/smoke.yaml", "--profile", "slurm")
+    done = subprocess.run(
+        [sys.executable, *words], cwd=project, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 1
+    assert "Traceback" not in done.stderr
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
+    assert "Unable to contact slurm controller" in line
+    assert "begin again" in line
+    assert not (project / "results").exists()
 
 
 def test_run_beside_jobs_of_a_killed_one_is_refused(answers, project):  # noqa: F811

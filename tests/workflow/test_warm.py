@@ -4,8 +4,10 @@ import json
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import sys
+import tempfile
 import time
 
 import pytest
@@ -62,6 +64,25 @@ def test_a_fork_has_the_words_folder_and_environment_of_its_job(tmp_path, addres
     assert is_warm
     assert not again
     assert job.returncode == 0
+
+
+@pytest.mark.parametrize("reads", [False, True])
+def test_a_job_whose_fork_ends_before_it_begins_runs_alone(tmp_path, reads):
+    folder = tempfile.mkdtemp()  # short, as the address of a socket must be
+    try:
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(f"{folder}/warm")
+            listener.listen()
+            job = start(tmp_path, TOLD, f"{folder}/warm", ASKED="yes")
+            listener.settimeout(60)
+            connection, _ = listener.accept()
+            with connection, connection.makefile("rb") as told:
+                for _ in range(2 * reads):
+                    told.readline()
+            words, _, asked, number, *_ = json.loads(job.communicate(timeout=60)[0])
+    finally:
+        shutil.rmtree(folder)
+    assert (words, asked, number, job.returncode) == (["a word"], "yes", job.pid, 0)
 
 
 @pytest.mark.parametrize(

@@ -105,12 +105,15 @@ def nodes_of(name):
     return face, resources.nodes_of_window(SETTINGS[name], spacing, face)
 
 
+def most_offsets(name):
+    """Most shear offsets of a specimen: how many "auto" finds is known only later."""
+    stated = SETTINGS[name]["offsets"]
+    return len(stated) if stated else AUTOMATIC_OFFSETS + 1
+
+
 def states_of(name):
     """Most contact states that are kept of a specimen at its finest resolution."""
-    settings = SETTINGS[name]
-    # How many offsets "auto" finds is known only later.
-    n_offsets = len(settings["offsets"]) if settings["offsets"] else AUTOMATIC_OFFSETS + 1
-    return resources.states_of(settings, n_offsets)
+    return resources.states_of(SETTINGS[name], most_offsets(name))
 
 
 def memory_for(job):
@@ -118,15 +121,18 @@ def memory_for(job):
     return lambda wildcards, attempt: resources.memory(
         job,
         nodes_of(known(wildcards))[1],
-        attempt,
         states=states_of(wildcards.specimen),
+        attempt=attempt,
     )
 
 
 def minutes_for(job):
     """Minutes that the job of a rule asks for, likewise."""
     return lambda wildcards, attempt: resources.minutes(
-        job, nodes_of(known(wildcards))[1], states_of(wildcards.specimen), attempt
+        job,
+        nodes_of(known(wildcards))[1],
+        states=states_of(wildcards.specimen),
+        attempt=attempt,
     )
 
 

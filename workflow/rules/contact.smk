@@ -5,11 +5,10 @@
 def parts_of(specimen):
     """Slices of directions, of offsets and of resolutions that the jobs of a specimen take."""
     settings = SETTINGS[specimen]
-    # How many offsets "auto" finds is known only later; a job without any writes an empty part.
-    n_offsets = len(settings["offsets"]) if settings["offsets"] else AUTOMATIC_OFFSETS + 1
     return {
         "directions": grain("directions", len(settings["contact_directions"])),
-        "offsets": grain("offsets", n_offsets),
+        # Where there are fewer offsets, a job without any writes an empty part.
+        "offsets": grain("offsets", most_offsets(specimen)),
         "resolutions": grain("resolutions", len(settings["resolutions"])),
     }
 

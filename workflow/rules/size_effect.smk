@@ -54,7 +54,7 @@ rule size_effect_part:
         "../../environment.yml"
     resources:
         mem_mb=lambda wc, attempt: resources.memory(
-            "size_effect_part", largest_side(wc.job) ** 2, attempt
+            "size_effect_part", largest_side(wc.job) ** 2, attempt=attempt
         ),
         runtime=doubled(60),
     params:

@@ -18,9 +18,11 @@ rule embedded:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=lambda wc, attempt: resources.memory("embedded", nodes_of(known(wc))[0], attempt),
+        mem_mb=lambda wc, attempt: resources.memory(
+            "embedded", nodes_of(known(wc))[0], attempt=attempt
+        ),
         runtime=lambda wc, attempt: resources.minutes(
-            "embedded", nodes_of(wc.specimen)[0], 1, attempt
+            "embedded", nodes_of(wc.specimen)[0], attempt=attempt
         ),
     params:
         recipe=recipe_of,
@@ -57,7 +59,7 @@ def memory_of(wildcards, attempt):
     name = known(wildcards)
     if name in SCANS:
         return resources.reading_memory(SCANS[name].files, attempt)
-    return resources.memory("specimen", nodes_of(name)[0], attempt)
+    return resources.memory("specimen", nodes_of(name)[0], attempt=attempt)
 
 
 # The levelled specimen, and its joint before contact is solved: the dimension of its face, what the
@@ -77,7 +79,7 @@ rule specimen:
     resources:
         mem_mb=memory_of,
         runtime=lambda wc, attempt: resources.minutes(
-            "specimen", nodes_of(wc.specimen)[0], 1, attempt
+            "specimen", nodes_of(wc.specimen)[0], attempt=attempt
         ),
     params:
         settings=settings_read_by("specimens"),

@@ -45,11 +45,15 @@ def _handed_over(address):
             return None
         # For as long as this process lives, and no longer.
         life, alive = os.pipe()
-        socket.send_fds(connection, [b"\n"], [0, 1, 2, life])
-        os.close(life)
-        connection.sendall(json.dumps(_described()).encode() + b"\n")
         with connection.makefile("r") as told:
-            number = told.readline()
+            try:
+                socket.send_fds(connection, [b"\n"], [0, 1, 2, life])
+                connection.sendall(json.dumps(_described()).encode() + b"\n")
+                number = told.readline()
+            except OSError:  # it ended without having read all of it
+                number = ""
+            finally:
+                os.close(life)
             if not number.endswith("\n"):  # it ended before it began: nothing has been run
                 os.close(alive)
                 return None

@@ -11,7 +11,7 @@ from ..contact.state import ContactState
 from ..domain.correlation import pair_counts
 from ..domain.measures import measures_of_states
 from ..elastic.halfspace import HalfSpace
-from ..elastic.split_convolution import LEAST_SIDE
+from ..elastic.split_convolution import LEAST_SPLIT_SIDE
 from ..mechanics.rigid_slide import slide
 from ..roughness.dimension import surface_dimension
 from ..surface.synthesis import self_affine
@@ -71,7 +71,7 @@ def _light_states() -> list[ContactState]:
 
 def _large_states() -> list[ContactState]:
     """States of a window so large that convolutions are split, load steps begun on coarse grids."""
-    side = max(LEAST_FINE_SIDE, LEAST_SIDE)
+    side = max(LEAST_FINE_SIDE, LEAST_SPLIT_SIDE)
     surface = self_affine((side, side), 1.0, 0.8, seed=1, rms=1.0)
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
     state = solve_contact(surface, space, closure=2.0)

@@ -21,7 +21,8 @@ from ..core.kernel_cache import njit
 from .feasible import first_iterate, verified
 from .kkt import Iterate, KKTResidual, Problem, Solution, kkt_residual
 from .node_sets import symmetric_difference
-from .projected_cg import Operator, ProjectedCG, add
+from .operator import Operator
+from .projected_cg import ProjectedCG, add
 from .safeguards import (
     SAFETY,
     many_iterations,
@@ -163,8 +164,7 @@ class ActiveSetMethod:
         single_step_left = problem.nodes is None
         for iteration in range(MAX_ITERATIONS):
             # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
-            begun, closure = iteration > 0, iterate.closure
-            newton = begun and many_iterations_under_force(iteration, violation, closure)
+            newton = many_iterations_under_force(iteration, violation, iterate.closure)
             exact = many_iterations(iteration)
             if problem.by_force and newton:
                 start = verified(problem, operator, iterate)

@@ -5,8 +5,9 @@ clearance at first touch exceeds the closure has a gap, whatever the pressures: 
 looked at, neither in the search nor in the verification. The others are the candidates. Under a
 given force the closure is not known before: candidates are chosen by a bound on it, from the next
 coarser grid, and chosen anew if the solution turns out to be beyond the bound. Where they are few,
-the operator between them (`elastic.multipole`) takes the place of the convolution, and no array of
-the window's size is made. Nested iteration goes on as always, with candidates on each of its grids.
+an operator between them takes the place of the convolution, and no array of the window's size is
+made: pair by pair where pairs are few, else a fast multipole method (`operator`, `elastic.direct`,
+`elastic.multipole`). Nested iteration goes on as always, with candidates on each of its grids.
 """
 
 from dataclasses import dataclass, replace
@@ -14,10 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.kernel_cache import njit
+from ..elastic.block_pairs import MultipoleLevels
 from ..elastic.halfspace import HalfSpace
-from ..elastic.multipole import MultipoleLevels, multipole_suits
+from ..elastic.multipole import multipole_suits
 from .active_set import ActiveSetMethod
-from .kkt import Problem, Solution
+from .kkt import Problem, Solution, coarser_load
 from .nested_iteration import (
     COARSE_ITERATIONS,
     COARSE_RTOL,
@@ -28,8 +30,8 @@ from .nested_iteration import (
     prolong,
     redistributions,
 )
+from .operator import Operator
 from .preconditioner import forget_preconditioner
-from .projected_cg import Operator
 from .topography import Topography
 
 #: On windows of fewer nodes along the shorter side a convolution takes no longer; on coarser grids
@@ -51,7 +53,9 @@ GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.02, 1.1
 STEP_GAIN = 2.0
 #: Where more of the nodes than this are candidates it is not asked what the operator would take.
 MOST_CANDIDATES = 0.15
-#: Nor where they are no more than this: then it is one pair of nodes after the other.
+#: Nor where they are no more than this. Pairs of so few nodes are then summed one by one: in double
+#: precision always, in single precision up to the MOST_PAIRS of `elastic.direct`, which are reached
+#: by 387 nodes that are all loaded. Beyond these the multipole operator has few blocks.
 FEW = 500
 #: A batch of the operator takes as long as a convolution where nodes times their log2 is this many,
 #: and solves on candidates take some more applications: measured from 512 x 512 to 2048 x 2048, at
@@ -88,15 +92,14 @@ class LoadCase:
     level: int = 0
 
     def coarser(self) -> "LoadCase":
-        """The same on a grid twice as coarse: the same pressure displaces its cells twice as much.
+        """The same on a grid twice as coarse.
 
         Returns
         -------
         LoadCase
         """
-        load = self.load / 2 if self.by_force else self.load
-        space = self.space.coarser(2)
-        return replace(self, space=space, load=load, cap=2 * self.cap, level=self.level + 1)
+        load, cap = coarser_load(self.load, self.by_force, self.cap)
+        return replace(self, space=self.space.coarser(2), load=load, cap=cap, level=self.level + 1)
 
     def problem(self) -> Problem:
         """The problem on the whole window.
@@ -136,7 +139,7 @@ class LoadCase:
                 return None
         clearance = self.topography.clearance_at(nodes, self.level) / self.length
         problem = Problem(self.space, clearance, self.load, self.by_force, self.cap, nodes)
-        return Restricted(problem, nodes, bound, Operator(self.space, nodes, levels))
+        return Restricted(problem, bound, Operator(self.space, nodes, levels))
 
 
 @dataclass
@@ -146,17 +149,21 @@ class Restricted:
     Attributes
     ----------
     problem : Problem
-    nodes : (n,) int32 ndarray
-        The candidates, as numbers of cells, ascending.
+        On its nodes alone, the candidates.
     bound : float
         All nodes of smaller clearance are candidates.
     operator : Operator
     """
 
     problem: Problem
-    nodes: np.ndarray
     bound: float
     operator: Operator
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """The candidates, (n,) int32: numbers of cells, ascending."""
+        assert self.problem.nodes is not None  # it is on these alone
+        return self.problem.nodes
 
     def holds(self, solution: Solution) -> bool:
         """Whether no node that is not a candidate can touch, within the tolerance either."""
@@ -231,12 +238,12 @@ def solve_restricted(
             return problem, solution
         more = case.restricted(FURTHER * solution.closure, None)
         if more is None:
-            problem = case.problem()
-            start = np.zeros(problem.clearance.size)
+            whole = case.problem()
+            start = np.zeros(whole.clearance.size)
             start[restricted.nodes] = solution.pressure
-            solution = ActiveSetMethod(problem, rtol).solve(start)
+            solution = ActiveSetMethod(whole, rtol).solve(start)
             solution.applications += applications
-            return problem, solution
+            return whole, solution
         start = np.zeros(more.problem.clearance.size)
         start[np.searchsorted(more.nodes, restricted.nodes)] = solution.pressure
         restricted, displacement = more, None

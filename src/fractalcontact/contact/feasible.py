@@ -4,7 +4,8 @@ import numpy as np
 
 from ..core.kernel_cache import njit
 from .kkt import Iterate, Problem, Solution, kkt_residual
-from .projected_cg import CLIPPING_PASSES, Operator
+from .operator import Operator
+from .projected_cg import CLIPPING_PASSES
 
 # A total this close to F is F.
 FORCE_ROUNDING = 1e-12

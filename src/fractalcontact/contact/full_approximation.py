@@ -72,12 +72,11 @@ def _changed_pressure(problem, pressure, gap, closure):
     """The same for a state whose ``gap`` at a ``closure`` is known."""
     shape, space = problem.space.shape, problem.space.coarser(2)
     before, gap = np.clip(pressure, 0.0, problem.cap).reshape(shape), gap.reshape(shape)
-    # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
+    # Twice the mean of four is what a pressure is there: `coarser_load`.
     coarse_before, coarse_gap = restrict_sum(before) / 2, restrict_minimum(gap)
     displacement = _displacement(space, coarse_before)
     clearance = (coarse_gap + closure).ravel() - displacement
-    load = problem.load / 2 if problem.by_force else problem.load
-    coarse = Problem(space, clearance, load, problem.by_force, 2 * problem.cap)
+    coarse = problem.coarser(clearance)
     start = coarse_before.ravel().copy()
     if min(space.shape) >= 2 * LEAST_COARSE_SIDE:
         start = _changed_pressure(coarse, start, coarse_gap, closure)

@@ -42,6 +42,17 @@ class Problem:
     cap: float = np.inf
     nodes: np.ndarray | None = None
 
+    def coarser(self, clearance: np.ndarray) -> "Problem":
+        """A problem on the grid twice as coarse, on the whole window.
+
+        Parameters
+        ----------
+        clearance : (m,) ndarray
+            c at every node of that grid.
+        """
+        load, cap = coarser_load(self.load, self.by_force, self.cap)
+        return Problem(self.space.coarser(2), clearance, load, self.by_force, cap)
+
     def first_touch(self) -> np.ndarray:
         """The given force on the nodes that touch first, where nothing better is known.
 
@@ -65,6 +76,24 @@ class Problem:
         if least <= reached[~capped].min(initial=np.inf):
             return least
         return reached[capped].mean()
+
+
+def coarser_load(load: float, by_force: bool, cap: float) -> tuple[float, float]:
+    """Load and cap of a problem, on the grid twice as coarse.
+
+    In units of the fine grid the same pressure displaces cells twice as wide twice as much: its
+    number is doubled there. The sum of the pressures is over a fourth of the cells, and so halved.
+
+    Parameters
+    ----------
+    load, by_force, cap
+        As of `Problem`.
+
+    Returns
+    -------
+    load, cap : float
+    """
+    return load / 2 if by_force else load, 2 * cap
 
 
 @dataclass

@@ -43,16 +43,12 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
     ny, nx = space.shape
     if min(ny, nx) < COARSEST_SIDE:
         return np.full(ny * nx, min(1.0, problem.cap))
-    coarse_space = space.coarser(2)
-    clearance = restrict_minimum(problem.clearance.reshape(ny, nx)).ravel()
-    # In units of the fine grid the same pressure displaces cells twice as wide twice as much.
-    load = problem.load / 2 if problem.by_force else problem.load
-    coarse = Problem(coarse_space, clearance, load, problem.by_force, 2 * problem.cap)
+    coarse = problem.coarser(restrict_minimum(problem.clearance.reshape(ny, nx)).ravel())
     method = ActiveSetMethod(coarse, COARSE_RTOL, dtype=np.float32)
     solution = method.solve(nested_iteration_start(coarse), at_least=COARSE_ITERATIONS)
-    if clearance.size > KEPT_CELLS:
-        forget_preconditioner(coarse_space)
-    pressure = solution.pressure.reshape(coarse_space.shape) / 2
+    if coarse.clearance.size > KEPT_CELLS:
+        forget_preconditioner(coarse.space)
+    pressure = solution.pressure.reshape(coarse.space.shape) / 2
     pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.near_influence(4))
     return np.minimum(pressure, problem.cap).ravel()
 

@@ -11,10 +11,7 @@ single precision.
 import numpy as np
 
 from ..core.kernel_cache import njit
-from ..elastic.direct import MOST_PAIRS, DirectOperator
-from ..elastic.halfspace import HalfSpace
-from ..elastic.multipole import MultipoleLevels, MultipoleOperator
-from .preconditioner import preconditioner
+from .operator import Operator
 
 # Applications in one solve: on an exact set about ten reach 1e-6.
 MAX_INNER = 60
@@ -24,94 +21,6 @@ CLIPPING_PASSES = 20
 LEAST_RESPONSE = 1e-2
 # Stiffness: its error is of second order in this residual.
 TANGENT_RESIDUAL = 1e-4
-
-
-class Operator:
-    """K of one window with its preconditioner, and how often K was applied.
-
-    Like that, it belongs to one thread.
-
-    Parameters
-    ----------
-    space : HalfSpace
-    nodes : (n,) int32 ndarray, optional
-        Numbers of the cells between which it is wanted, ascending; by default all of the window.
-        Pressures, displacements and sets of nodes are then on these alone.
-    levels : MultipoleLevels, optional
-        Of these nodes, where they are known.
-
-    Attributes
-    ----------
-    size : int
-        Nodes.
-    applications : int
-    """
-
-    def __init__(
-        self,
-        space: HalfSpace,
-        nodes: np.ndarray | None = None,
-        levels: MultipoleLevels | None = None,
-    ):
-        self.space, self.nodes, self.inverse = space, nodes, preconditioner(space)
-        self.applications = 0
-        self.size = space.shape[0] * space.shape[1] if nodes is None else nodes.size
-        if nodes is None:
-            self._grid = np.zeros(space.shape, np.float32)
-        else:
-            self._levels = levels
-            self._direct: DirectOperator | None = None
-            self._between: dict[np.dtype, MultipoleOperator] = {}
-
-    def precondition(self, active: np.ndarray, *, fresh: bool) -> None:
-        """Make `inverse` that on a contact set, as `Preconditioner.update`."""
-        if self.nodes is None:
-            self.inverse.update(active, fresh=fresh)
-        else:
-            self.inverse.update(self.nodes[active], fresh=fresh, scattered=True)
-
-    def __call__(self, pressure: np.ndarray) -> np.ndarray:
-        """Displacement of all nodes, (n,), in the precision of the pressure, (n,)."""
-        self.applications += 1
-        if self.nodes is not None:
-            loaded = np.flatnonzero(pressure)
-            return self._on_nodes(loaded, pressure[loaded])
-        return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
-
-    def _on_nodes(self, loaded, values):
-        """Displacement of all nodes under some: by the faster operator for their number.
-
-        What it needs is made when it is first asked for.
-        """
-        if loaded.size * self.size <= MOST_PAIRS[values.dtype]:
-            self._direct = self._direct or DirectOperator(self.space, self.nodes)
-            return self._direct(loaded, values)
-        if values.dtype not in self._between:
-            self._levels = self._levels or MultipoleLevels(self.space.shape, self.nodes)
-            multipole = MultipoleOperator(self.space, self._levels, values.dtype)
-            self._between[values.dtype] = multipole
-        return self._between[values.dtype](loaded, values)
-
-    def on(self, *pairs: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """The same in single precision under (nodes, values) pairs alone.
-
-        Raises
-        ------
-        ValueError
-            If a pair does not go together, or lies outside the grid.
-        """
-        if self.nodes is not None:
-            self.applications += 1
-            loaded = np.concatenate([pair[0] for pair in pairs])
-            values = np.concatenate([pair[1] for pair in pairs]).astype(np.float32, copy=False)
-            return self._on_nodes(loaded, values)
-        grid = self._grid.ravel()
-        for nodes, values in pairs:
-            _put(grid, nodes, values)
-        image = self(grid)
-        for nodes, _ in pairs:
-            grid[nodes] = 0
-        return image
 
 
 class ProjectedCG:
@@ -197,7 +106,7 @@ class ProjectedCG:
                 return
         direction, previous = None, 1.0
         for _ in range(MAX_INNER):
-            if self._is_even(goal, by_force):
+            if self._end_at_goal(goal, by_force):
                 break
             search = self.inverse(self.residual)
             offset, slope, worst = _project(search, self.residual, self.unclipped, response, total)
@@ -227,10 +136,11 @@ class ProjectedCG:
             return self._response
         return self.inverse(self.unclipped) * self.unclipped
 
-    def _is_even(self, goal, by_force):
-        """Whether no residual exceeds the goal, by its mean of a multiplier if that is open.
+    def _end_at_goal(self, goal, by_force):
+        """Move the multiplier, if open, by the mean residual where none then exceeds the goal.
 
-        Known without the preconditioner, unlike the multiplier that its search asks for.
+        Returns whether it is so; else nothing changes. This is known without the preconditioner,
+        unlike the multiplier that its search asks for.
         """
         mean, worst = _mean_and_worst(self.residual, self.unclipped, by_force)
         if worst > goal:
@@ -275,17 +185,6 @@ def add(values: np.ndarray, scale: float, change: np.ndarray) -> None:
         raise ValueError("expected as many changes as values")
     for i in range(values.size):
         values[i] += scale * change[i]
-
-
-@njit(cache=True)
-def _put(grid, nodes, values):
-    """grid[nodes] = values."""
-    if nodes.size != values.size:
-        raise ValueError("expected as many values as nodes")
-    for i in range(nodes.size):
-        if nodes[i] < 0 or nodes[i] >= grid.size:
-            raise ValueError("expected nodes of the grid")
-        grid[nodes[i]] = values[i]
 
 
 # Sums are made in double precision, and without the threads of a library of linear algebra.

@@ -16,7 +16,8 @@ import numpy as np
 
 from .feasible import verified
 from .kkt import KKTResidual, Problem, Solution, nodes_between_bounds
-from .projected_cg import Operator, stiffness
+from .operator import Operator
+from .projected_cg import stiffness
 
 # After more iterations than this the set may be cycling: seen on combs and checkerboards under a
 # given force, once in 2,000 random problems under a given closure.

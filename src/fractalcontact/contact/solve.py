@@ -259,49 +259,55 @@ class _Units:
 
         As `extrapolated`; the bound on the closure goes with the force.
         """
-        space = self.space
-        known = start.space == space
-        at = start.force if self.by_force else start.closure
-        factor = min(load / at, FURTHEST) if at > 0 else 1.0
-        bound = FROM_LOAD * start.closure / self.length * max(factor, 1.0)
-        bound = bound if self.by_force else MARGIN * self.load
+        bound = MARGIN * self.load
+        if self.by_force:
+            factor = max(self._proportion(start, load), 1.0)
+            bound = FROM_LOAD * start.closure / self.length * factor
         restricted = case.restricted(bound, None, STEP_GAIN)
         if restricted is None:
             return None
         nodes = restricted.nodes
-        before = start._before if known else None
-        step = at - (before.force if self.by_force else before.closure) if before else 0.0
-        pressure = start.pressure.ravel()[nodes].astype(float)
-        if step:
-            along = np.clip((load - at) / step, -1.0, FURTHEST)
-            pressure = (1 + along) * pressure - along * before.pressure.ravel()[nodes]
-        else:
-            pressure *= factor
+        pressure = self._extrapolated(
+            lambda state: state.pressure.ravel()[nodes].astype(float), start, load
+        )
         pressure /= self.pressure
         if not pressure.any():
             return None
+        known = start.space == self.space
         return restricted, pressure, restricted.operator(pressure) if known else None
 
     def extrapolated(self, start, load):
-        """Pressure at a load, and its displacement, along the line through two earlier states.
+        """Pressure at a load, and its displacement where that is one of this half-space."""
+        pressure = self._extrapolated(lambda state: state.pressure, start, load)
+        pressure = np.asarray(pressure, float).ravel() / self.pressure
+        if start.space != self.space:
+            return pressure, None
+        displacement = self._extrapolated(lambda state: state.displacement, start, load)
+        return pressure, np.asarray(displacement, float).ravel() / self.length
 
-        With one state only, both in proportion to the load.
+    def _extrapolated(self, field_of, start, load):
+        """A field at a load, along the line through two earlier states.
+
+        With one state only, in proportion to the load. So too from another half-space: the line
+        through two states of that one belongs to its stiffness, and may lead far from any state of
+        this one, and to pressures below zero, which a proportion does not.
         """
-        known = start.space == self.space
-        before = start._before
-        at = start.force if self.by_force else start.closure
-        step = at - (before.force if self.by_force else before.closure) if before else 0.0
-        if step:
-            along = np.clip((load - at) / step, -1.0, FURTHEST)
-            fields = [
-                (1 + along) * getattr(start, name) - along * getattr(before, name)
-                for name in ("pressure", "displacement")
-            ]
-        else:
-            factor = min(load / at, FURTHEST) if at > 0 else 1.0
-            fields = [factor * start.pressure, factor * start.displacement]
-        pressure, displacement = (np.asarray(values, float).ravel() for values in fields)
-        return pressure / self.pressure, displacement / self.length if known else None
+        before = start._before if start.space == self.space else None
+        at = self._load_of(start)
+        step = at - self._load_of(before) if before else 0.0
+        if not step:
+            return self._proportion(start, load) * field_of(start)
+        along = np.clip((load - at) / step, -1.0, FURTHEST)
+        return (1 + along) * field_of(start) - along * field_of(before)
+
+    def _proportion(self, start, load):
+        """How many times that of a state a load is, to no more than FURTHEST."""
+        at = self._load_of(start)
+        return min(load / at, FURTHEST) if at > 0 else 1.0
+
+    def _load_of(self, state):
+        """What is given of the load: the force or the closure of a state."""
+        return state.force if self.by_force else state.closure
 
     def state(self, solution, topography, problem, start):
         """The solution in mm, N and MPa."""

@@ -11,7 +11,8 @@ from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from .effort import SOLVING
 from .kkt import frank_wolfe_gap, nodes_between_bounds
-from .projected_cg import Operator, stiffness
+from .operator import Operator
+from .projected_cg import stiffness
 from .topography import Topography
 
 # Largest relative error of the stiffness.
@@ -86,9 +87,10 @@ class ContactState:
         """
         tolerance = self.residual * self.closure
         weakest = tolerance * self.space.modulus / self.space.cell
-        weak = self.in_contact & (self.pressure <= weakest)
-        near = ~self.in_contact & (self.gap <= tolerance)
-        return int(np.count_nonzero(weak) + np.count_nonzero(near))
+        pressure, _, gap = self._on_nodes()
+        touching = pressure > 0
+        weak, near = touching & (pressure <= weakest), ~touching & (gap <= tolerance)
+        return int(np.count_nonzero(weak | near))
 
     @computed_once
     def energy_error(self) -> float:
@@ -106,7 +108,10 @@ class ContactState:
         return bound / energy if energy > 0 else 0.0
 
     def _on_nodes(self):
-        """Pressure, displacement and gap of all nodes that may carry pressure."""
+        """Pressure, displacement and gap of all nodes that may carry pressure.
+
+        Any others are further from contact than the tolerance.
+        """
         return self.pressure, self.displacement, self.gap
 
     @computed_once
@@ -234,16 +239,6 @@ class CandidateState(ContactState):
     def area(self) -> float:
         """A_r = N s^2, mm2."""
         return float(np.count_nonzero(self._candidates.pressure)) * self.space.cell_area
-
-    @property
-    def ambiguous(self) -> int:
-        """As of any state: all others than candidates are further away than the tolerance."""
-        known, tolerance = self._candidates, self.residual * self.closure
-        _, _, gap = self._on_nodes()
-        weakest = tolerance * self.space.modulus / self.space.cell
-        touching = known.pressure > 0
-        weak = touching & (known.pressure <= weakest)
-        return int(np.count_nonzero(weak | (~touching & (gap <= tolerance))))
 
     def _on_nodes(self):
         known = self._candidates

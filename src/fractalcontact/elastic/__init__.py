@@ -1,4 +1,4 @@
-"""The elastic half-space: normal displacement under a pressure, by fast Fourier transforms."""
+"""The elastic half-space: displacement under a pressure, on a window or on nodes of it."""
 
 from ..core.lazy import exports
 
@@ -7,9 +7,9 @@ __getattr__, __dir__, __all__ = exports(
     {
         "DirectOperator": ".direct",
         "HalfSpace": ".halfspace",
-        "LEAST_SIDE": ".split_convolution",
+        "LEAST_SPLIT_SIDE": ".split_convolution",
         "MOST_PAIRS": ".direct",
-        "MultipoleLevels": ".multipole",
+        "MultipoleLevels": ".block_pairs",
         "MultipoleOperator": ".multipole",
         "RIGID_PLATE_SELF_TERMS": ".halfspace",
         "WIDTH": ".simd",

@@ -55,12 +55,25 @@ class BlockInfluence:
 
 
 def reach(separation: int) -> int:
-    """How far apart blocks of one level can be whose parents are neighbours."""
+    """How far apart blocks of one level can be whose parents are neighbours.
+
+    Parameters
+    ----------
+    separation : int
+        How far apart neighbours can be; all in blocks of their level.
+    """
     return 2 * separation + 1
 
 
 def padded(numbers: int, dtype: np.dtype) -> int:
-    """Numbers of a block, filled up with zeros to whole vectors."""
+    """Numbers of a block, filled up with zeros to whole vectors.
+
+    Parameters
+    ----------
+    numbers : int
+    dtype : dtype
+        float32 or float64.
+    """
     return -(-numbers // FILLED[dtype]) * FILLED[dtype]
 
 
@@ -82,8 +95,14 @@ def block_influence(space: HalfSpace, levels: int, dtype: np.dtype) -> list[Bloc
     ----------
     space : HalfSpace
     levels : int
+        How many, from that of the smallest blocks.
     dtype : dtype
         float32 or float64.
+
+    Returns
+    -------
+    list of BlockInfluence
+        One a level, that of the smallest blocks first.
     """
     found = []
     for level in range(levels):
@@ -94,8 +113,21 @@ def block_influence(space: HalfSpace, levels: int, dtype: np.dtype) -> list[Bloc
     return found
 
 
-def chebyshev(level: int, order: int) -> np.ndarray:
-    """Places in a block of a level, in cells from its centre: of its cells or Chebyshev nodes."""
+def interpolation_nodes(level: int, order: int) -> np.ndarray:
+    """Where the numbers of a block stand along one side of it.
+
+    Parameters
+    ----------
+    level : int
+        0 of the smallest blocks, which hold their cells themselves.
+    order : int
+        Chebyshev nodes along a block of any other level.
+
+    Returns
+    -------
+    (LEAF,) or (order,) ndarray
+        In cells from its centre: centres of the cells on level 0, else Chebyshev nodes.
+    """
     half = (LEAF * 2**level - 1) / 2
     if level == 0:
         return np.arange(LEAF) - half
@@ -103,8 +135,24 @@ def chebyshev(level: int, order: int) -> np.ndarray:
 
 
 def transfer(level: int, order: int, dtype: np.dtype) -> np.ndarray:
-    """Weights of the parent's nodes in each of a child's, along one axis, (2, child, parent)."""
-    own, parent = chebyshev(level, order), chebyshev(level + 1, order)
+    """Weights that interpolate from the nodes of a block to those of its children, along one axis.
+
+    Parameters
+    ----------
+    level : int
+        Of the children.
+    order : int
+        Chebyshev nodes along a block.
+    dtype : dtype
+        float32 or float64.
+
+    Returns
+    -------
+    (2, m, order) ndarray
+        Of the child on either side: of each of its m nodes (LEAF on level 0, else ``order``), by
+        each node of the parent.
+    """
+    own, parent = interpolation_nodes(level, order), interpolation_nodes(level + 1, order)
     at = own + np.array([-0.5, 0.5])[:, None] * LEAF * 2**level
     others = ~np.eye(order, dtype=bool)
     away = np.where(others, at[:, :, None, None] - parent, 1.0)
@@ -113,7 +161,7 @@ def transfer(level: int, order: int, dtype: np.dtype) -> np.ndarray:
 
 
 def _level_influence(space, level, dtype):
-    places, furthest = chebyshev(level, ORDER[dtype]), reach(SEPARATION[dtype])
+    places, furthest = interpolation_nodes(level, ORDER[dtype]), reach(SEPARATION[dtype])
     number, first, orders, inverses = _pairs_of_places(places.size)
     square = space.spacing[0] == space.spacing[1]
     positions, matrix, order = _positions(furthest, square, dtype == _SINGLE)

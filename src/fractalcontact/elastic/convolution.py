@@ -112,7 +112,7 @@ class Convolution:
             least = n if wrapped else 2 * n - 1
             if n < 1 or length < least or length != fast_length(length):
                 raise ValueError(
-                    f"padded {padded}: expected fast lengths of 2 n - 1 or more, of shape {shape}"
+                    f"padded {padded}: expected fast lengths, of {n} cells {least} or more"
                 )
         half = padded[0] // 2 + 1, padded[1] // 2 + 1
         if np.shape(spectrum) != half:

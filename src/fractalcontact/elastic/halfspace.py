@@ -27,7 +27,7 @@ from ..core.arguments import (
 from ..core.threads import computed_once
 from .convolution import Convolution, cosine_transform, fast_length
 from .influence import influence_table, spread
-from .split_convolution import LEAST_SIDE, SplitConvolution
+from .split_convolution import LEAST_SPLIT_SIDE, SplitConvolution
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
@@ -203,7 +203,7 @@ class HalfSpace:
 
     @computed_once
     def _influence(self):
-        influence = self._table(self.shape)
+        influence = self.influence_within(self.shape)
         influence.flags.writeable = False
         return influence
 
@@ -221,7 +221,7 @@ class HalfSpace:
         (my, mx) ndarray
         """
         if side not in self._near:
-            near = self._table((min(side, self.shape[0]), min(side, self.shape[1])))
+            near = self.influence_within((min(side, self.shape[0]), min(side, self.shape[1])))
             near.flags.writeable = False
             self._near.setdefault(side, near)
         return self._near[side]
@@ -231,8 +231,18 @@ class HalfSpace:
         return {}
 
     def influence_within(self, shape: tuple[int, int]) -> np.ndarray:
-        """The same at that many cell distances each way, whether in the window or not."""
-        return self._table(shape)
+        """The same at some cell distances, whether in the window or not; made anew each time.
+
+        Parameters
+        ----------
+        shape : (int, int)
+            Distances wanted along y and x, from zero on.
+
+        Returns
+        -------
+        (my, mx) ndarray
+        """
+        return influence_table(shape, self._sides, self._self_term)
 
     @property
     def spread(self) -> tuple[float, float, float]:
@@ -248,9 +258,6 @@ class HalfSpace:
     def _sides(self):
         """Sides of a cell (y, x), in units of `cell`."""
         return tuple(d / self.cell for d in self.spacing)
-
-    def _table(self, shape):
-        return influence_table(shape, self._sides, self._self_term)
 
     def coarser(self, factor: int) -> "HalfSpace":
         """The same half-space on cells ``factor`` times as long and as wide, covering the window.
@@ -349,7 +356,8 @@ class HalfSpace:
     @computed_once
     def _split(self):
         """The convolution in single precision on large windows of nearly square cells, or None."""
-        if min(self.shape) < LEAST_SIDE or max(self._sides) > MOST_STRETCHED * min(self._sides):
+        stretched = max(self._sides) > MOST_STRETCHED * min(self._sides)
+        if min(self.shape) < LEAST_SPLIT_SIDE or stretched:
             return None
         return SplitConvolution(self.shape, self._sides, self._self_term)
 
@@ -358,7 +366,7 @@ class HalfSpace:
 
         Of even length it is a cosine transform (DCT-I) of half the circulant.
         """
-        spectrum = self._table(self.shape)
+        spectrum = self.influence_within(self.shape)
         for axis in (1, 0):
             n, padded = self.shape[axis], self._padded[axis]
             half = padded // 2 + 1

@@ -244,7 +244,8 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     known = cases & ~held & np.isfinite(value)
     exponents = _exponents(value, low, high, known)
     if 2 * known.sum() <= cases.sum():
-        bound = f"some strength at its bound in {(cases & held).sum()} of {cases.sum()} cases (v/b, F)"
+        bounded = int((cases & held).sum())
+        bound = f"some strength at its bound in {bounded} of {cases.sum()} cases (v/b, F)"
         return Finding(UNDETERMINED, bound, exponents)
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     if falls == known.sum() or rises == known.sum():

@@ -32,12 +32,12 @@ class Cost:
     ----------
     start : float
         Megabytes whatever its grid is.
-    node : float
-        Bytes for each node of the grid.
+    bytes_per_node : float
+        Of the grid.
     seconds : float
         Of the clock on a core of its own, whatever its grid is.
-    of_node : float
-        Microseconds for each node of the grid.
+    us_per_node : float
+        Microseconds.
     state : float
         Bytes kept of each node of each state.
     solve : float
@@ -45,9 +45,9 @@ class Cost:
     """
 
     start: float
-    node: float
+    bytes_per_node: float
     seconds: float
-    of_node: float
+    us_per_node: float
     state: float = 0.0
     solve: float = 0.0
 
@@ -81,7 +81,7 @@ _NODE = {".npy": 4, ".xyz": 20, ".ply": 12, ".stl": 25, ".obj": 25}
 _PLAIN_NODE, _PACKED_NODE = 6, 4
 
 
-def memory(rule: str, nodes: float, attempt: int = 1, *, states: int = 1) -> int:
+def memory(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int:
     """Megabytes that a job asks for.
 
     Parameters
@@ -90,18 +90,19 @@ def memory(rule: str, nodes: float, attempt: int = 1, *, states: int = 1) -> int
         Of :data:`COSTS`.
     nodes : float
         Of its grid.
-    attempt : int, optional
-        1 at first.
     states : int, optional
         Contact states that it keeps.
+    attempt : int, optional
+        1 at first.
     """
     cost = COSTS[rule]
     finer = OF_FINER * min(FINER * nodes, MOST_FINER) if rule == "analysis" else 0.0
-    needed = AROUND + cost.start + (finer + nodes * (cost.node + cost.state * states)) / 1e6
+    of_grid = finer + nodes * (cost.bytes_per_node + cost.state * states)
+    needed = AROUND + cost.start + of_grid / 1e6
     return max(LEAST_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
 
 
-def seconds(rule: str, nodes: float, states: int = 1) -> float:
+def seconds(rule: str, nodes: float, *, states: int = 1) -> float:
     """Seconds that the model says a job takes on a core of its own.
 
     Parameters
@@ -114,10 +115,10 @@ def seconds(rule: str, nodes: float, states: int = 1) -> float:
         Contact states that it keeps.
     """
     cost = COSTS[rule]
-    return cost.seconds + nodes * (cost.of_node + cost.solve * states) / 1e6
+    return cost.seconds + nodes * (cost.us_per_node + cost.solve * states) / 1e6
 
 
-def minutes(rule: str, nodes: float, states: int = 1, attempt: int = 1) -> int:
+def minutes(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int:
     """Minutes that a job asks for.
 
     Parameters
@@ -127,7 +128,7 @@ def minutes(rule: str, nodes: float, states: int = 1, attempt: int = 1) -> int:
     attempt : int, optional
         1 at first.
     """
-    needed = seconds(rule, nodes, states) / 60
+    needed = seconds(rule, nodes, states=states) / 60
     return max(LEAST_TIME, round(ROOM_OF_TIME * needed)) * 2 ** (attempt - 1)
 
 

@@ -149,9 +149,7 @@ def draw_measured(
         axes.vlines(pressure[i], low[i], high[i], color="k", lw=0.8, alpha=alpha)
         axes.plot(pressure[i], value[i], marker, color="k", mfc=face, ms=5, alpha=alpha)
     if np.isfinite(value).any():
-        axes.plot(
-            [], [], "|", color="k", ms=8, mew=0.8, label="measured in (b), bars: 95 % intervals"
-        )
+        axes.plot([], [], "|", color="k", ms=8, mew=0.8, label="bars in (a), (b): 95 % intervals")
     if np.isfinite(value).sum() > len(shown):
         axes.plot([], [], ".", color="k", ms=5, label="measured, at other loads")
     if faint:

@@ -39,7 +39,7 @@ from ._quality_panels import (
     spectrum_entries,
 )
 
-TITLE = "Quality of the scan: relief, missing cells, overlap, spectra, noise and fractal range"
+TITLE = "Quality of the scan: relief, missing cells, spectra, noise and fractal range"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "quality", "closure")
 ORDER = 30

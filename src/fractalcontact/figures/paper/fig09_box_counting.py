@@ -224,12 +224,13 @@ def _width_words(counts):
 def _law_form(counts):
     """The count law as a formula: its curve in (b), its level in (c)."""
     terms = LawTerms(*(counts[f"law_{name}"].item() for name in LawTerms._fields))
-    power, node = r"r^{-\Delta_\sigma}", ""
+    # An index within an exponent would be too small to read in print.
+    power, exponent, node = "r^{-x}", r"\Delta_\sigma", ""
     if terms.node_width:
-        node = f"; $c$ = {short(terms.node_width)} mm"
-        power = r"(r-c)^{2-\Delta_\sigma}/r^2"
+        node = f"; node width $c$ = {short(terms.node_width)} mm"
+        power, exponent = "(r-c)^x/r^2", r"2-\Delta_\sigma"
     outline = r"\,[1+\ldots]" if terms.outline or terms.outline_square else ""
-    return rf"(b) $N \sim {power}{outline}$, (c) level{node}"
+    return f"(b) $N \\sim {power}{outline}$, $x = {exponent}$\n(c) level{node}"
 
 
 def _by_law(counts):

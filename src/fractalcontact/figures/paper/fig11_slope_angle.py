@@ -207,4 +207,6 @@ def _beyond_barton(settings, laws, strength):
     """Whether Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20."""
     stated = np.isfinite(settings["material"]["joint_wall_strength"])
     beyond = stated & np.isnan(laws["barton_roughness"]).all()
-    return f"No law of Barton and Bandis: {roughness_words(strength)}." if beyond else ""
+    return (
+        f"The law of Barton and Bandis is not drawn: {roughness_words(strength)}." if beyond else ""
+    )

@@ -1,0 +1,94 @@
+"""Tables of `beside_peers.py`: rows read and written, growth with the nodes, and a summary."""
+
+import csv
+
+import numpy as np
+
+COLUMNS = (
+    *("size", "contact", "threads", "solver", "seconds", "ours", "times", "low", "high", "pairs"),
+    *("error", "note", "applications", "path", "peak GB"),
+)
+
+
+def growth(rows, column):
+    """Exponent of the power law of a column over the nodes, of each solver, fraction and threads.
+
+    Parameters
+    ----------
+    rows : list of dict
+        Of the table.
+    column : str
+        ``"seconds"`` or ``"peak GB"``.
+
+    Yields
+    ------
+    solver, contact, threads : str
+    exponent, error : float
+        The error is the standard error of a least-squares fit, NaN of two sizes.
+    """
+    groups: dict[tuple, list] = {}
+    for row in rows:
+        if row.get(column) not in (None, "") and not row.get("note"):
+            key = row["solver"], str(row["contact"]), str(row["threads"])
+            groups.setdefault(key, []).append((2 * np.log(int(row["size"])), float(row[column])))
+    for key, points in groups.items():
+        x, y = np.array(points).T
+        if len(set(x)) < 2:
+            continue
+        y = np.log(y)
+        slope, offset = np.polyfit(x, y, 1)
+        rest, spread = y - slope * x - offset, ((x - x.mean()) ** 2).sum()
+        error = np.sqrt((rest**2).sum() / (len(x) - 2) / spread) if len(x) > 2 else np.nan
+        yield *key, slope, error
+
+
+def read(folder):
+    """Rows of the table in a folder, every value as text; none where there is no table."""
+    path = folder / "beside_peers.csv"
+    if not path.exists():
+        return []
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write(folder, rows):
+    """Both tables; returns that for reading."""
+    with (folder / "beside_peers.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+    lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+    for row in rows:
+        lines.append("| " + " | ".join(_text(row.get(column)) for column in COLUMNS) + " |")
+    lines += ["", *(f"- {line}" for line in summary(rows)), ""]
+    for column in ("seconds", "peak GB"):
+        for solver, contact, threads, exponent, error in growth(rows, column):
+            law = f"{column} grow as nodes^{exponent:.2f}"
+            law += f" +- {error:.2f}" if np.isfinite(error) else ""
+            lines.append(f"- {solver}, {contact} %, {threads} threads: {law}")
+    text = "\n".join(lines) + "\n"
+    (folder / "beside_peers.md").write_text(text)
+    return text
+
+
+def summary(rows):
+    """How many times faster than the fastest mode of the peer, in the median of light and dense."""
+    best: dict[tuple, float] = {}
+    for row in rows:
+        if row.get("times") not in (None, "") and not row.get("note"):
+            key = int(row["size"]), float(row["contact"]), int(row["threads"])
+            best[key] = min(best.get(key, np.inf), float(row["times"]))
+    for threads in sorted({key[2] for key in best}):
+        here = {key: times for key, times in best.items() if key[2] == threads}
+        yield f"{threads} threads: least {min(here.values()):.2g} times, in {len(here)} cells"
+        for name, of in (("below 0.5 %", lambda f: f < 0.5), ("above 2 %", lambda f: f > 2)):
+            some = [times for key, times in here.items() if of(key[1])]
+            if some:
+                yield f"{threads} threads, {name}: {np.median(some):.2g} times in the median"
+
+
+def _text(value):
+    try:
+        return f"{float(value):.3g}" if "." in str(value) or "e" in str(value) else str(value or "")
+    except (TypeError, ValueError):
+        return str(value or "")
