@@ -18,6 +18,7 @@ __getattr__, __dir__, __all__ = exports(
         "all_figures": ".figure_list",
         "check_study": ".checks",
         "embedded_surface": ".embedded",
+        "group_names": ".atlas",
         "grouped_notes": ".scan_groups",
         "is_contact_map": ".sidecar",
         "list_grouped": ".scan_groups",

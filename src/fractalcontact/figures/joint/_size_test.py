@@ -1,5 +1,6 @@
 """What the figures of the size test share: loads, lines of eq. 6, axes."""
 
+import textwrap
 from collections import Counter
 from typing import Any
 
@@ -25,6 +26,8 @@ MOST_LOADS = 3
 _LOAD_MARKERS = ("o", "s", "^")
 #: Entry of a legend below that of a line.
 _BAND = "its 95 % interval"
+#: Letters of a line of the legend.
+_KEY_WIDTH = 44
 #: Verdicts that decide.
 DECIDED = (AGREES, FLATTER, STEEPER)
 #: Verdicts and their reasons: of the well-conditioned form, of eq. 6's own, and of both.
@@ -104,7 +107,7 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
             named = counted if decides.any() else None
             axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5, label=named)
     if decided and not any_decides:
-        axes.plot([], [], " ", label="no load decides about eq. 6")
+        axes.plot([], [], " ", label=textwrap.fill(verdict_reason(test), _KEY_WIDTH))
 
 
 def _agreement(test):
@@ -181,7 +184,7 @@ def verdict_reason(test: xr.Dataset) -> str:
         beyond = np.isfinite(test["area_exponent"].values).any()
         return "what is drawn lies beyond the study's loads" if beyond else ""
     why = Counter(tested).most_common(1)[0][0]
-    return f"no load decides, mostly as {why}"
+    return f"no load decides about eq. 6, mostly as {why}"
 
 
 def grey_beyond(axes: Axes, test: xr.Dataset) -> None:
