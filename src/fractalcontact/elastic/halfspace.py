@@ -38,7 +38,9 @@ RIGID_PLATE_SELF_TERMS = {
 }
 #: Compiled code counts cells in four bytes.
 MOST_CELLS = 2**31 - 1
-#: Cells more stretched than this are convolved as a whole in single precision, too.
+#: Cells more stretched than this are convolved as a whole in single precision, too: the coarse grid
+#: of the split convolution has too few nodes along their longer side. Under random pressures
+#: it errs by 1.5e-6 of the largest displacement on square cells, by 3e-6 at 1.5, by 1e-5 at 2.5.
 MOST_STRETCHED = 1.5
 
 
