@@ -34,6 +34,7 @@ __getattr__, __dir__, __all__ = exports(
         "atomic_write": ".atomic",
         "axis_and_sign": ".directions",
         "blocks": ".strips",
+        "bounds": ".intervals",
         "cf_attrs": ".labels",
         "check": ".checksums",
         "computed_once": ".threads",
