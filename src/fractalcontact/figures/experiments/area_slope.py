@@ -142,9 +142,8 @@ def _table(slopes):
 def _caption(slopes):
     with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
     return (
-        f"{SUPPLEMENTARY} Area slope kappa of {slopes.sizes['seed']} synthetic surfaces with waves "
-        f"down to two nodes, which the grid does not resolve. "
-        f"Corrected kappa is {with_one} with a roll-off and {without} without. "
+        f"{SUPPLEMENTARY} Corrected kappa of unresolved synthetic surfaces, rough down to two "
+        f"nodes: {with_one} with a roll-off, {without} without. "
         f"{_band_words(slopes)}"
     )
 

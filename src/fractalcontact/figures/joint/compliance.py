@@ -78,57 +78,51 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         upper.set_xlabel("")
     force = group(atlas, "statements", name).attrs["force"]
     ends = _ends_of_correlation(joint, direction)
-    stages = _stages(atlas, name, ends, curves["offset"].values, force)
+    stages = _stages(atlas, name, ends, curves["offset"].values)
     if np.isfinite(closures["interface_compliance_mm_per_MPa"]).any():
         _number_stages(compliance, stages)
-    columns = [entries(correlation), entries(compliance), *_judged(stages)]
+    columns = [entries(correlation), entries(compliance), *_judged(stages, force)]
     legends_below(figure, *columns, columnspacing=1.5)
     headline(figure, settings["label"], place(direction))
     caption = sentences(
         _caption(direction, joint, brief=bool(stages)),
-        _stage_words([text for text, *_ in stages]),
+        _stage_words([text for text, *_ in stages], force),
     )
     table = pd.concat([_correlation_table(joint), closures], ignore_index=True)
     return Drawing(figure, table, caption)
 
 
-def _stages(atlas, name, ends, offsets, force):
-    """What the paper says of each stage with its verdict, and from which to which offset it is."""
+def _stages(atlas, name, ends, offsets):
+    """What the paper says of each stage with its verdict, the limits, and between which offsets."""
     length, uncorrelated = ends
     bounds = ((-np.inf, length), (length, uncorrelated), (uncorrelated, np.inf))
-    whys = _limits(bool(((offsets > length) & (offsets < uncorrelated)).any()), force)
+    whys = _limits(bool(((offsets > length) & (offsets < uncorrelated)).any()))
     found = []
     for (statement, words), (first, last) in zip(STAGES.items(), bounds, strict=True):
         row = row_of(atlas, "statements", name, statement)
         if row is not None:
             why = "" if str(row["verdict"].item()) == UNDETERMINED else whys.get(statement, "")
-            verdict = verdict_words(atlas, name, statement, why=why)
-            found.append((f"{words}: {verdict}", first, last))
+            found.append((f"{words}: {verdict_words(atlas, name, statement)}", why, first, last))
     return found
 
 
-def _limits(between, force):
-    """What decides about the stages: the load of the first, limits of the later ones.
-
-    Those are judged at every load. ``between`` is whether offsets were solved in the second.
-    """
+def _limits(between):
+    """What decides about the later stages; whether offsets were solved in the second."""
     before = "2" if between else "end of 1"
     return {
-        "compliance_rises_at_first": f"at {force_label(force)}",
         "curves_overlap": f"limit {percent(NEARLY)}, in part {percent(LOOSELY)}",
         "compliance_rises_again": f"mean of stage 3 over {before}, limit {percent(NEARLY, '+')}",
     }
 
 
-def _judged(stages):
+def _judged(stages, force):
     """Column of a legend with the stages, in lines that fit; none without stages."""
     if not stages:
         return []
-    words = ["(c): the paper's stages, each with its verdict"]
-    for n, (text, *_) in enumerate(stages, 1):
-        lines = textwrap.wrap(
-            f"{n}: {text}".replace(" %", "\u00a0%"), _LINE, subsequent_indent="    "
-        )
+    words = [f"(c): the paper's stages, 1 judged at $F$ = {force_label(force)}"]
+    for n, (text, why, *_) in enumerate(stages, 1):
+        said = f"{n}: {text}; {why}" if why else f"{n}: {text}"
+        lines = textwrap.wrap(said.replace(" %", "\u00a0%"), _LINE, subsequent_indent="    ")
         words += [line.replace("v^x", "$v^x$") for line in lines]
     return [[heading(line) for line in words]]
 
@@ -139,7 +133,7 @@ def _number_stages(axes, stages):
     axes.set_ylim(top=high * (high / low) ** 0.12)
     log = axes.get_xscale() != "linear"
     left, right = axes.dataLim.intervalx if log else axes.get_xlim()
-    for n, (_, first, last) in enumerate(stages, 1):
+    for n, (*_, first, last) in enumerate(stages, 1):
         first, last = (left if np.isneginf(first) else first), min(last, right)
         if np.isnan(last):  # it ends nowhere in the window
             last = right
@@ -326,11 +320,12 @@ def _caption(direction, joint, *, brief):
     return f"{start} ({fall}), closure and compliance."
 
 
-def _stage_words(stages):
+def _stage_words(stages, force):
     """What the paper says of the compliance as v grows, and the verdicts that were asked for."""
     if not stages:
         return ""
-    return f"The paper's compliance, by stages: {'; '.join(stages)}."
+    first = f" (the first at {force_label(force)})"
+    return f"The paper's compliance, by stages{first}: {'; '.join(stages)}."
 
 
 def _correlation_words(ends, decidable):

@@ -224,11 +224,9 @@ def departures(counts: xr.Dataset, determined: np.ndarray) -> str:
         return "Nulls: undetermined."
     departing = int((decided == BEYOND_BOTH).sum())
     same = ((found != UNDETERMINED) == determined).all()
-    which = "that determine Delta_sigma by boxes (full colour)" if same else "that decide it"
-    return (
-        f"Departs from both null models, by boxes and by pairs, at {departing} of {decided.size} "
-        f"loads {which}."
-    )
+    which = "in full colour" if same else "that decide it"
+    at = f"{departing} of {decided.size} loads {which}"
+    return f"By boxes and pairs domains depart from both nulls at {at}."
 
 
 def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = True) -> str:
