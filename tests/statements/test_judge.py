@@ -403,10 +403,10 @@ def test_a_rule_with_a_limit_is_asked_at_every_load():
     found["closure"]["interface_stiffness"] = stiffness
     overlap = closure.curves_overlap(Joint(found, SETTINGS))
     assert overlap.verdict == PARTLY
-    assert overlap.numbers.endswith("at 1e+03 N; so at 3 of 4 loads")
+    assert overlap.numbers.endswith("at 10 MPa; so at 3 of 4 loads")
     again = closure.compliance_rises_again(Joint(found, SETTINGS))
     assert again.verdict == PARTLY
-    assert again.numbers == "compliance +23 % at 1e+03 N; so at 3 of 4 loads"
+    assert again.numbers == "compliance +23 % at 10 MPa; so at 3 of 4 loads"
 
 
 def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():
