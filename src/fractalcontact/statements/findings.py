@@ -218,11 +218,11 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
         return rule(joint.force)
     force = min(decided, key=lambda one: abs(np.log(one / joint.force)))
     verdicts = [one.verdict for one in decided.values()]
-    good = verdicts.count(HOLDS)
     pressure = force / nominal_area(joint.stages["specimens"])
+    share_of = f"so at {verdicts.count(HOLDS)} of {len(decided)} loads"
     return decided[force]._replace(
         verdict=verdicts[0] if len(set(verdicts)) == 1 else PARTLY,
-        numbers=f"{decided[force].numbers} at {pressure:.3g} MPa; so at {good} of {len(decided)} loads",
+        numbers=f"{decided[force].numbers} at {pressure:.3g} MPa; {share_of}",
     )
 
 
