@@ -336,3 +336,20 @@ def test_pressures_without_a_stated_strength_stand_beside_usual_ones(atlas):
     low, high = material["modulus"] / 1000, material["modulus"] / 200
     (band,) = axes.patches
     np.testing.assert_allclose([band.get_y(), band.get_y() + band.get_height()], [low, high])
+
+
+def test_an_interval_that_ends_far_below_the_axes_is_drawn(atlas, tmp_path):
+    """Dashes of the edge of an area would be laid out over all its decades."""
+    changed = atlas.copy(deep=True)
+    scaling = changed["scaling/sliding"].to_dataset()
+    domains = changed["domains/sliding"].to_dataset()
+    for states in (scaling, domains):
+        states["delta_sigma_low"] = states["delta_sigma_low"] * 0 - 80.0
+        states["delta_sigma_high"] = states["delta_sigma_high"] * 0 + 80.0
+    changed["scaling/sliding"] = xr.DataTree(scaling)
+    changed["domains/sliding"] = xr.DataTree(domains)
+    drawing = draw(changed, "fig10_scaling", "sliding")
+    areas = [one for axes in drawing.figure.axes for one in axes.collections]
+    with_data = [one for one in areas if any(len(path.vertices) > 3 for path in one.get_paths())]
+    assert with_data
+    assert all(one.get_linewidth() == 0 for one in with_data)

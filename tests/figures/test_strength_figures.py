@@ -228,3 +228,14 @@ def test_points_that_no_exponent_goes_through_are_hollow(atlas):
     drawn_sides = {line.get_markerfacecolor(): set(line.get_xdata()) for line in face[:2]}
     assert drawn_sides["k"] == set(laws["scale_side"].values[used])
     assert drawn_sides["white"] == set(laws["scale_side"].values[~used])
+
+
+def test_a_joint_that_was_not_slid_has_no_strength(atlas):
+    changed = atlas.copy(deep=True)
+    strength = changed["strength/sliding"].to_dataset().isel(interval=slice(0, 0))
+    for name, values in strength.data_vars.items():
+        if "interval" not in values.dims and values.dtype.kind == "f" and values.dims:
+            strength[name] = values * np.nan
+    changed["strength/sliding"] = xr.DataTree(strength)
+    drawing = drawn(changed, "sliding", "strength")
+    assert not drawing.data["peak_held"].fillna(False).any()

@@ -143,6 +143,8 @@ def _held_at(strength):
 def _peak_held(strength):
     """Whether the peak under each load is one of an angle that was held: that is no result."""
     peak = strength["peak_offset"].values
+    if not np.isfinite(peak).any():  # as of a joint that was not slid, which has no intervals
+        return np.zeros(peak.shape, bool)
     at = np.abs(np.subtract.outer(strength["midpoint"].values, peak))
     at[~np.isfinite(at)] = np.inf
     return _held_at(strength)[at.argmin(axis=0), np.arange(peak.size)] & np.isfinite(peak)

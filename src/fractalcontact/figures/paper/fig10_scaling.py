@@ -135,7 +135,12 @@ def _draw_pressures(axes, loading, i, table):
         style = {"fc": to_rgba(colour, faint), "ec": to_rgba(colour, 0.5), "lw": 0.5}
         style["ls"] = estimate.style["linestyle"]
         if np.isfinite(ends).any():
-            axes.fill_between(rows["b_mm"], *ends, label=f"95 %, {estimate.symbol}", **style)
+            axes.fill_between([], [], label=f"95 %, {estimate.symbol}", **style)
+            # Lines are cut to the axes before they are dashed, edges of areas after: the dashes of
+            # one that ends a thousand decades below would never be done.
+            axes.fill_between(rows["b_mm"], *ends, fc=style["fc"], lw=0)
+            for end in ends:
+                axes.plot(rows["b_mm"], end, color=style["ec"], lw=0.5, ls=style["ls"])
     letter(axes, "b", f"eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
 
 
