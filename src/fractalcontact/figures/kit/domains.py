@@ -7,7 +7,7 @@ import xarray as xr
 from xarray import DataTree
 
 from ...core.fitting import FEWEST_POINTS
-from ...domain.box_dimension import is_determined
+from ...domain.box_dimension import WIDEST, is_determined
 from ...domain.departure import BEYOND_BOTH, UNDETERMINED
 from ...domain.renormalisation import RESOLUTION
 from ...mechanics.states import chosen_offset
@@ -90,6 +90,8 @@ def fall_reason(by_area: Estimate, i: int) -> str:
     if low <= 2 <= high:
         return "the interval of Delta_sigma includes 2"
     side, way = ("below", "falls as s does") if high < 2 else ("above", "grows as s falls")
+    if high - low > WIDEST:
+        return f"the interval of Delta_sigma lies {side} 2, but is wider than {WIDEST:g}: no law"
     return f"the whole interval of Delta_sigma lies {side} 2: A_r {way}"
 
 

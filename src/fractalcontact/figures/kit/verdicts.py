@@ -3,7 +3,7 @@
 import xarray as xr
 from xarray import DataTree
 
-from ...statements.judge import all_statements
+from ...statements.judge import ILL_POSED, all_statements
 from ...statements.study import STATEMENTS as OF_STUDY
 
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
@@ -26,7 +26,8 @@ def verdict_words(
     numbers : bool, optional
         Whether the numbers follow.
     why : str, optional
-        What the eye cannot see: the reason, which follows the numbers.
+        What the eye cannot see: the reason, which follows the numbers. Why a question is ill-posed
+        its statement says alone.
 
     Returns
     -------
@@ -36,8 +37,9 @@ def verdict_words(
     row = row_of(atlas, "statements", name, statement)
     if row is None:
         return ""
-    said = [str(row["numbers"].item())] if numbers else []
-    if why:
+    ill_posed = str(row["verdict"].item()) == ILL_POSED
+    said = [str(row["numbers"].item())] if numbers or (why and ill_posed) else []
+    if why and not ill_posed:
         said.append(why)
     if bool(row["circular"]):
         said.append(CIRCULAR)
