@@ -60,17 +60,17 @@ def departure_of(comparisons: Sequence[Comparison], *, surface: bool) -> str:
     )
     if np.isnan(random).any():
         return UNDETERMINED
-    if not _leaves_zero_out(random):
+    if not leave_zero_out(random):
         return LIKE_RANDOM
     if not surface:
         return BEYOND_RANDOM
     if np.isnan(cut).any():
         return UNDETERMINED
-    return BEYOND_BOTH if _leaves_zero_out(cut) else LIKE_CUT
+    return BEYOND_BOTH if leave_zero_out(cut) else LIKE_CUT
 
 
-def _leaves_zero_out(intervals):
-    """Whether every one of the intervals does."""
+def leave_zero_out(intervals: np.ndarray) -> bool:
+    """Whether every one of the intervals, (n, 2), does."""
     return bool(((intervals[:, 0] > 0) | (intervals[:, 1] < 0)).all())
 
 

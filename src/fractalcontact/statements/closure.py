@@ -3,7 +3,6 @@
 import numpy as np
 
 from .findings import (
-    BY_CONSTRUCTION,
     FAILS,
     HOLDS,
     ILL_POSED,
@@ -16,6 +15,7 @@ from .findings import (
     by_sign,
     level,
     no_offsets,
+    of_the_area,
     trend,
     under_every_load,
 )
@@ -122,10 +122,9 @@ def larger_samples_close_more(joint: Joint) -> Finding:
     )
 
 
+@of_the_area
 def area_is_linear(joint: Joint) -> Finding:
     """Exponent m of A_r ~ F^m at every offset, A_r corrected for the perimeter."""
-    if joint.yields_everywhere:
-        return Finding(ILL_POSED, BY_CONSTRUCTION)
     law = joint.stages["area"].sel(direction=joint.direction)
     value, low, high = (law[f"corrected_exponent{end}"].values for end in ("", "_low", "_high"))
     known = np.isfinite(value)

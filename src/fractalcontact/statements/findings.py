@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, wraps
 from typing import NamedTuple
 
 import numpy as np
@@ -187,6 +187,18 @@ class Joint:
     def unrelated(self) -> np.ndarray:
         """Offsets at which the faces no longer correlate."""
         return self.offset >= self.of_direction("uncorrelated_offset")
+
+
+def of_the_area(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]:
+    """A check of a statement on the contact area, which is ill-posed where all of it yields."""
+
+    @wraps(check)
+    def asked(joint):
+        if joint.yields_everywhere:
+            return Finding(ILL_POSED, BY_CONSTRUCTION)
+        return check(joint)
+
+    return asked
 
 
 def trend(

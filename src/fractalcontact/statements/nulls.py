@@ -91,7 +91,7 @@ def domains_differ_from_cuts(joint: Joint) -> Finding:
     if not known.any():
         return Finding(UNDETERMINED, "no load at which domain and cut have their dimensions")
     value, low, high = (less[end][:, known] for end in ("", "_low", "_high"))
-    apart = int(((low > 0) | (high < 0)).all(axis=0).sum())
+    apart = sum(map(departure.leave_zero_out, np.stack([low, high], axis=-1).swapaxes(0, 1)))
     unrelated = bool(((low > LOOSELY) | (high < -LOOSELY)).any())
     ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in (value[0].min(), value[0].max())))
     total = value.shape[1]

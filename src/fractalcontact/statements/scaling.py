@@ -8,10 +8,8 @@ from ..core.fitting import FEWEST_POINTS
 from ..domain.box_dimension import WIDEST
 from ..domain.pressure_trend import pressure_trend
 from .findings import (
-    BY_CONSTRUCTION,
     FAILS,
     HOLDS,
-    ILL_POSED,
     LOOSELY,
     NEARLY,
     PARTLY,
@@ -20,6 +18,7 @@ from .findings import (
     Joint,
     Statement,
     by_sign,
+    of_the_area,
     share,
 )
 
@@ -38,10 +37,9 @@ NO_EFFECT = 0.02
 ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 
 
+@of_the_area
 def area_is_lacunar(joint: Joint) -> Finding:
     """Exponent of A_r over the resolutions, at the load of the maps."""
-    if joint.yields_everywhere:
-        return Finding(ILL_POSED, BY_CONSTRUCTION)
     state = joint.map_state("scaling")
     value, low, high = (float(state[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
     if not np.isfinite(value):
@@ -71,10 +69,9 @@ def boxes_follow_one_law(joint: Joint) -> Finding:
     return Finding(verdict, f"Delta_sigma = {value:.2f} [{low:.2f}, {high:.2f}], {lengths}")
 
 
+@of_the_area
 def estimates_agree(joint: Joint) -> Finding:
     """Whether A_r(s) and box counting have one Delta_sigma, over all loads."""
-    if joint.yields_everywhere:
-        return Finding(ILL_POSED, BY_CONSTRUCTION)
     states = joint.map_states("scaling")
     width = (states["difference_high"] - states["difference_low"]).values
     known = width <= WIDEST
@@ -93,10 +90,9 @@ def estimates_agree(joint: Joint) -> Finding:
     )
 
 
+@of_the_area
 def dimension_rises_by_area(joint: Joint) -> Finding:
     """Delta_sigma from A_r(s) against the logarithm of F, where it is determined."""
-    if joint.yields_everywhere:
-        return Finding(ILL_POSED, BY_CONSTRUCTION)
     line = _over_load(joint.map_states("scaling")).line
     if not np.isfinite(line.slope):
         return Finding(UNDETERMINED, _too_few(line))

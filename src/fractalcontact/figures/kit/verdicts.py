@@ -37,13 +37,14 @@ def verdict_words(
     row = row_of(atlas, "statements", name, statement)
     if row is None:
         return ""
-    ill_posed = str(row["verdict"].item()) == ILL_POSED
-    said = [str(row["numbers"].item())] if numbers or (why and ill_posed) else []
-    if why and not ill_posed:
+    words = str(row["verdict"].item())
+    if why and words == ILL_POSED:
+        numbers, why = True, ""
+    said = [str(row["numbers"].item())] if numbers else []
+    if why:
         said.append(why)
     if bool(row["circular"]):
         said.append(CIRCULAR)
-    words = str(row["verdict"].item())
     return f"{words} ({'; '.join(said)})" if said else words
 
 
