@@ -219,9 +219,9 @@ def in_single_precision(size, seed):
     """The surface of ``self_affine``, but for rounding: its noise is filtered row by row."""
     import scipy.fft
 
-    from fractalcontact.surface.synthesis import EMBEDDING, levelled
+    from fractalcontact.surface.synthesis import grid_side, levelled
 
-    side = EMBEDDING * size
+    side = grid_side((size, size))
     generator = np.random.Generator(np.random.PCG64(seed))
     noise = np.empty((side, side), np.float32)
     for row in noise:

@@ -52,7 +52,7 @@ class CountedDomain:
     def values(self) -> dict[str, float]:
         """Each of :data:`QUANTITIES`."""
         slope = np.nan
-        if self.nodes.any() and self.distances[-1] < min(self.nodes.shape):
+        if self.nodes.any() and self.counts_pairs:
             pairs, lags = self.pairs
             slope = pairs_slope(self.distances, pairs[:, 0].sum(axis=1), lags)
         ordinary = self.box.ordinary
@@ -90,6 +90,11 @@ class CountedDomain:
     def distances(self) -> np.ndarray:
         """Lags of the pairs that are counted, cells."""
         return pair_distances(self.nodes.shape)
+
+    @property
+    def counts_pairs(self) -> bool:
+        """Whether the window is wider than all lags."""
+        return bool(self.distances[-1] < min(self.nodes.shape))
 
     @cached_property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
@@ -180,7 +185,7 @@ def _stacked_error(parts, dimensions):
 def _pairs_error(domains):
     """Of correlation dimensions."""
     distances = domains[0].distances
-    if distances[-1] >= min(domains[0].nodes.shape):
+    if not domains[0].counts_pairs:
         return np.nan
     lags = domains[0].pairs[1]
     pairs = [one.pairs[0][:, 0] for one in domains]

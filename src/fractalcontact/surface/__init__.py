@@ -5,7 +5,6 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
-        "EMBEDDING": ".synthesis",
         "STEEP_TILT": ".specimen",
         "band_limited": ".synthesis",
         "band_slope": ".synthesis",
@@ -15,6 +14,7 @@ __getattr__, __dir__, __all__ = exports(
         "extruded": ".known_dimension",
         "faces": ".specimen",
         "find_outliers": ".cleaning",
+        "grid_side": ".synthesis",
         "hole_free_square": ".window",
         "largest_offset": ".specimen",
         "levelled": ".synthesis",

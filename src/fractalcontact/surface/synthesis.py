@@ -67,7 +67,7 @@ def self_affine(
     if roll_off is not None and roll_off <= 0:
         raise ValueError(f"roll_off must be positive, not {roll_off}")
 
-    density = _power_spectral_density(_grid_side(shape), spacing, hurst, roll_off)
+    density = _power_spectral_density(grid_side(shape), spacing, hurst, roll_off)
     return levelled(_filtered_noise(density, shape, seed), rms)
 
 
@@ -119,7 +119,7 @@ def band_limited(
             f"a cut-off of {cut_off} mm: expected two spacings ({2 * spacing} mm) or more, and no "
             f"more than the roll-off ({roll_off} mm)"
         )
-    q = _wave_numbers(_grid_side(shape), spacing)
+    q = _wave_numbers(grid_side(shape), spacing)
     density = _band(q, hurst, prefactor, cut_off, roll_off) / spacing**2
     return without_mean_plane(_filtered_noise(density, shape, seed))
 
@@ -137,7 +137,7 @@ def band_slope(
 
     Parameters as there; the sum of q^2 C(q) over the waves of the grid the patch is cut from.
     """
-    side = _grid_side(shape)
+    side = grid_side(shape)
     q = _wave_numbers(side, spacing)
     density = _band(q, hurst, prefactor, cut_off, roll_off)
     # The half plane of a real transform: all but its edges stand for two waves.
@@ -171,7 +171,7 @@ def levelled(heights: np.ndarray, rms: float) -> np.ndarray:
     return heights * (rms / np.sqrt(np.mean(heights**2)))
 
 
-def _grid_side(shape: tuple[int, int]) -> int:
+def grid_side(shape: tuple[int, int]) -> int:
     """Nodes along the periodic grid from which a patch is cut."""
     return int(scipy.fft.next_fast_len(EMBEDDING * max(shape), real=True))
 
