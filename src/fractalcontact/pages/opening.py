@@ -217,7 +217,8 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     text = f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s)"
     beside = list(verdicts.get(_FRACTAL, {}).values())
     if beside:
-        text += f"; that the domains are fractal sets {_counted(beside, _VERDICTS)}"
+        counted = _counted(beside, _VERDICTS)
+        text += f"; that the domains are fractal sets, under the load of their maps, {counted}"
     return symbols(f"{text}.")
 
 

@@ -68,7 +68,7 @@ def domains_are_fractal(joint: Joint) -> Finding:
         found = UNDETERMINED
     return Finding(
         found,
-        verdict,
+        f"{verdict}, Delta_sigma less that of random {less:+.2f} [{low:+.2f}, {high:+.2f}]",
         f"Delta_sigma = {value:.2f}, less that of as many random nodes {less:+.2f} [{low:+.2f}, "
         f"{high:+.2f}], of the cut {cut:.2f}; correlation dimension less that of random nodes "
         f"{pairs:+.2f}: contact is clustered, which alone is no fractal",
