@@ -32,24 +32,19 @@ def run(code):
 
 def test_every_name_is_there_documented_and_completed():
     names = fractalcontact.__all__
-    assert {*names, "__version__", "scan", "mechanics"} <= set(dir(fractalcontact))
+    assert {*names, "__version__"} <= set(dir(fractalcontact))
     for name in names:
         assert inspect.getdoc(getattr(fractalcontact, name)), name
-    rooms = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
-    assert rooms <= set(dir(fractalcontact))
     with pytest.raises(AttributeError, match="no attribute 'solve_contacts'") as error:
         fractalcontact.solve_contacts  # noqa: B018
     assert error.value.name == "solve_contacts"  # Python proposes the right one from these two
     assert error.value.obj is fractalcontact
 
 
-def test_rooms_are_attributes_and_nothing_is_imported_before_it_is_asked_for():
+def test_nothing_is_imported_before_it_is_asked_for():
     heavy = "{'numpy', 'xarray', 'numba', 'matplotlib'} & set(sys.modules)"
-    printed = run(
-        f"import sys, fractalcontact as f; dir(f); f.__version__; print({heavy}); "
-        "print(f.mechanics.__name__)"
-    )
-    assert printed.split("\n")[:2] == ["set()", "fractalcontact.mechanics"]
+    printed = run(f"import sys, fractalcontact as f; dir(f); f.__version__; print({heavy})")
+    assert printed == "set()\n"
 
 
 def test_the_solver_asks_for_nothing_that_only_a_study_needs():

@@ -1,53 +1,47 @@
 """Contact, closure, dilatancy and size effect of rough cracks, from profilometer scans.
 
 ``docs/library.md`` has an example of each name. What it takes to compute anything is imported when
-it is first asked for.
+it is first asked for: to read the workflow, or one scan file, neither xarray, numba nor matplotlib
+may be.
 """
 
-from .core.lazy import exports
+import sys
+from importlib import import_module
+from typing import Any
 
 __version__ = "0.1.0"
 
-__getattr__, __dir__, __all__ = exports(
-    __name__,
-    {
-        "BoxDimension": ".domain.box_dimension",
-        "ContactState": ".contact.state",
-        "HalfSpace": ".elastic.halfspace",
-        "Hyperbola": ".mechanics.closure_laws",
-        "InputError": ".core.errors",
-        "NotConverged": ".core.errors",
-        "bulk_settlement": ".mechanics.closure",
-        "best_dimension": ".roughness.recommended",
-        "box_dimension": ".domain.box_dimension",
-        "fit_hyperbola": ".mechanics.closure_laws",
-        "interface_closure": ".mechanics.closure",
-        "open_atlas": ".study.atlas_parts",
-        "read_atlas": ".study.atlas",
-        "read_faces": ".scan.read",
-        "read_scan": ".scan.read",
-        "self_affine": ".surface.synthesis",
-        "solve_contact": ".contact.solve",
-        "surface_dimension": ".roughness.dimension",
-    },
-    rooms=(
-        "accuracy",
-        "commands",
-        "contact",
-        "core",
-        "domain",
-        "elastic",
-        "experiments",
-        "figures",
-        "mechanics",
-        "methods",
-        "pages",
-        "roughness",
-        "scan",
-        "size_effect",
-        "stages",
-        "statements",
-        "study",
-        "surface",
-    ),
-)
+#: Module of each name.
+_HOMES = {
+    "BoxDimension": ".domain.box_dimension",
+    "ContactState": ".contact.state",
+    "HalfSpace": ".elastic.halfspace",
+    "Hyperbola": ".mechanics.closure_laws",
+    "InputError": ".core.errors",
+    "NotConverged": ".core.errors",
+    "bulk_settlement": ".mechanics.closure",
+    "best_dimension": ".roughness.recommended",
+    "box_dimension": ".domain.box_dimension",
+    "fit_hyperbola": ".mechanics.closure_laws",
+    "interface_closure": ".mechanics.closure",
+    "open_atlas": ".study.atlas_parts",
+    "read_atlas": ".study.atlas",
+    "read_faces": ".scan.read",
+    "read_scan": ".scan.read",
+    "self_affine": ".surface.synthesis",
+    "solve_contact": ".contact.solve",
+    "surface_dimension": ".roughness.dimension",
+}
+__all__ = sorted(_HOMES)
+
+
+def __getattr__(name: str) -> Any:
+    """Name of the package, imported when it is first asked for."""
+    if name not in _HOMES:
+        message = f"module {__name__!r} has no attribute {name!r}"
+        raise AttributeError(message, name=name, obj=sys.modules[__name__])
+    return getattr(import_module(_HOMES[name], __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

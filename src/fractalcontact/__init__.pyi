@@ -1,23 +1,5 @@
 """What type checkers and editors see of the package, whose names are imported when asked for."""
 
-from . import accuracy as accuracy
-from . import commands as commands
-from . import contact as contact
-from . import core as core
-from . import domain as domain
-from . import elastic as elastic
-from . import experiments as experiments
-from . import figures as figures
-from . import mechanics as mechanics
-from . import methods as methods
-from . import pages as pages
-from . import roughness as roughness
-from . import scan as scan
-from . import size_effect as size_effect
-from . import stages as stages
-from . import statements as statements
-from . import study as study
-from . import surface as surface
 from .contact.solve import solve_contact as solve_contact
 from .contact.state import ContactState as ContactState
 from .core.errors import InputError as InputError

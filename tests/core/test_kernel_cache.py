@@ -52,7 +52,7 @@ class Project:
         for name, text in SOURCES.items():
             self.write(name, text)
         (self.package / "core").mkdir()
-        for name in ("__init__", "kernel_cache", "lazy", "sources"):
+        for name in ("__init__", "kernel_cache", "sources"):
             shutil.copy(PACKAGE / f"core/{name}.py", self.package / "core")
         self.environment = {
             "PATH": os.environ["PATH"],
