@@ -35,8 +35,6 @@ rule speed:
         f"{RESULTS}/benchmarks/speed/{{case}}.tsv"
     wildcard_constraints:
         case=one_of(TIMED),
-    conda:
-        "../../environment.yml"
     threads: lambda wildcards: workflow.cores
     resources:
         mem_mb=doubled(4000),
@@ -60,8 +58,6 @@ rule speed_growth:
         f"{RESULTS}/logs/speed_growth.log",
     benchmark:
         f"{RESULTS}/benchmarks/speed_growth.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(1000),
         runtime=doubled(10),
@@ -83,8 +79,6 @@ rule convergence:
         f"{RESULTS}/benchmarks/convergence/{{problem}}.tsv"
     wildcard_constraints:
         problem=one_of(PROBLEMS),
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(1000),
         runtime=doubled(30),
@@ -104,8 +98,6 @@ rule stability_part:
         f"{RESULTS}/logs/stability/{{part}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/stability/{{part}}.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(1500),
         runtime=doubled(60),
@@ -129,8 +121,6 @@ rule stability:
         f"{RESULTS}/logs/stability.log",
     benchmark:
         f"{RESULTS}/benchmarks/stability.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(1000),
         runtime=doubled(10),
@@ -149,8 +139,6 @@ rule elimination:
         f"{RESULTS}/logs/elimination.log",
     benchmark:
         f"{RESULTS}/benchmarks/elimination.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(1000),
         runtime=doubled(30),
@@ -182,8 +170,6 @@ rule accuracy_atlas:
         f"{RESULTS}/logs/accuracy_atlas.log",
     benchmark:
         f"{RESULTS}/benchmarks/accuracy_atlas.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(1000),
         runtime=doubled(10),

@@ -33,8 +33,6 @@ rule atlas:
         f"{RESULTS}/logs/atlas.log",
     benchmark:
         f"{RESULTS}/benchmarks/atlas.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(10),

@@ -28,8 +28,6 @@ rule contact:
         f"{RESULTS}/logs/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=memory_for("contact"),
         runtime=minutes_for("contact"),
@@ -74,8 +72,6 @@ rule analysis:
         f"{RESULTS}/logs/analysis/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=memory_for("analysis"),
         runtime=minutes_for("analysis"),
@@ -101,8 +97,6 @@ rule strength:
         f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
     wildcard_constraints:
         specimen=kind_of(SLIDING, FLAT),
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=memory_for("strength"),
         runtime=minutes_for("strength"),
@@ -140,8 +134,6 @@ rule contact_map:
         f"{RESULTS}/logs/contact_map/{{map}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/contact_map/{{map}}.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(2000),
         runtime=doubled(10),

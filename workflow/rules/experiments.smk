@@ -10,8 +10,6 @@ rule roll_off:
     benchmark:
         f"{RESULTS}/benchmarks/roll_off.tsv"
     priority: 1
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(2000),
         runtime=doubled(30),
@@ -35,8 +33,6 @@ rule area_slope:
         f"{RESULTS}/benchmarks/area_slope.tsv"
     # Short, and nothing waits for it but the end: it fills the core that has nothing else to do.
     priority: -1
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(2000),
         runtime=doubled(60),
@@ -60,8 +56,6 @@ rule dimension_test:
         f"{RESULTS}/benchmarks/dimension_test.tsv"
     # Long, and nothing waits for it: begun last it would keep one core busy and the others idle.
     priority: 1
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(4000),
         # A partition may allow no more than an hour; who needs more gets it at the second attempt.
@@ -86,8 +80,6 @@ rule estimator_bias:
         f"{RESULTS}/benchmarks/estimator_bias.tsv"
     # As area_slope.
     priority: -1
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(2000),
         runtime=doubled(60),
@@ -110,8 +102,6 @@ rule size_strength:
         f"{RESULTS}/benchmarks/size_strength.tsv"
     # Long, and nothing waits for it: begun last it would keep one core busy and the others idle.
     priority: 1
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(120),

@@ -10,8 +10,6 @@ rule explorer:
         f"{RESULTS}/logs/explorer.log",
     benchmark:
         f"{RESULTS}/benchmarks/explorer.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(3000),
         runtime=doubled(10),

@@ -89,8 +89,6 @@ rule figures:
     # After what the atlas of the study waits for: else, at the end, one core joins it and draws from
     # it alone while the others have nothing to do. Of a campaign nobody wants to wait that long.
     priority: 0 if IN_PARTS else -2
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=memory_for("figures" if drawn_of("match") else "atlas_part"),
         runtime=minutes_for("figures" if drawn_of("match") else "atlas_part"),
@@ -142,8 +140,6 @@ rule study_figures:
         f"{RESULTS}/logs/study_figures.log",
     benchmark:
         f"{RESULTS}/benchmarks/study_figures.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(10),
@@ -173,8 +169,6 @@ rule all_drawn:
         f"{RESULTS}/logs/all_drawn.log",
     benchmark:
         f"{RESULTS}/benchmarks/all_drawn.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(500),
         runtime=doubled(5),

@@ -27,8 +27,6 @@ rule result_page:
         f"{RESULTS}/logs/result_page.log",
     benchmark:
         f"{RESULTS}/benchmarks/result_page.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(2000),
         runtime=doubled(10),

@@ -14,8 +14,6 @@ rule windows:
         f"{RESULTS}/benchmarks/windows/{{specimen}}.tsv"
     # The longest of a specimen, and the others wait for it.
     priority: 1
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=memory_for("windows"),
         runtime=minutes_for("windows"),
@@ -50,8 +48,6 @@ rule size_effect_part:
         job=one_of(SIZE_JOBS),
     # The longest first: begun last it would keep one core busy and the others idle.
     priority: 1
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=lambda wc, attempt: resources.memory(
             "size_effect_part", largest_side(wc.job) ** 2, attempt=attempt
@@ -77,8 +73,6 @@ rule size_effect:
         f"{RESULTS}/logs/size_effect.log",
     benchmark:
         f"{RESULTS}/benchmarks/size_effect.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=doubled(2000),
         runtime=doubled(20),

@@ -15,8 +15,6 @@ rule embedded:
         f"{RESULTS}/logs/embedded/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/embedded/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=lambda wc, attempt: resources.memory(
             "embedded", nodes_of(known(wc))[0], attempt=attempt
@@ -74,8 +72,6 @@ rule specimen:
         f"{RESULTS}/logs/specimen/{{specimen}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/specimen/{{specimen}}.tsv"
-    conda:
-        "../../environment.yml"
     resources:
         mem_mb=memory_of,
         runtime=lambda wc, attempt: resources.minutes(
@@ -98,8 +94,6 @@ rule refused:
         f"{RESULTS}/refused/{{refused}}.txt",
     log:
         f"{RESULTS}/logs/refused/{{refused}}.log",
-    conda:
-        "../../environment.yml"
     params:
         reason=lambda wildcards: REFUSED[int(wildcards.refused)],
     message:
