@@ -65,9 +65,22 @@ def percent(fraction: float) -> str:
     return f"{value:.{2 if near < 0.95 else 1 if near < 9.5 else 0}f} %"
 
 
-def plain(value: float, digits: int = 3) -> str:
-    """A number to this many digits without powers of ten where a person would write none."""
-    text = f"{float(value):.{digits}g}"
-    if "e" in text and 1e-6 <= abs(value) < 1e9:
-        text = f"{float(text):.{max(0, digits - 1 - math.floor(math.log10(abs(float(text)))))}f}"
-    return text
+def plain(
+    value: float,
+    digits: int = 3,
+    *,
+    limits: tuple[float, float] = (1e-6, 1e9),
+    zeros: bool = False,
+    sign: str = "",
+) -> str:
+    """A number to some digits, without a power of ten where its size is within ``limits``.
+
+    Zeros at its end stay with ``zeros``; "+" as ``sign`` shows that of positive numbers, too.
+    """
+    rounded = float(f"{float(value):.{digits}g}")
+    size = abs(rounded)
+    if not limits[0] <= size < limits[1]:
+        return f"{rounded:{sign}.{digits - 1}e}" if zeros and size else f"{rounded:{sign}g}"
+    decimals = max(digits - 1 - math.floor(math.log10(size)), 0)
+    text = f"{rounded:{sign}.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if decimals and not zeros else text

@@ -2,7 +2,7 @@
 
 import math
 
-from ..core.labels import printable
+from ..core.labels import plain, printable
 
 #: Below and above these a number has an exponent.
 _PLAIN = (1e-4, 1e6)
@@ -19,27 +19,18 @@ _EVEN = 0.02
 
 def short(value: float | None, digits: int = 3) -> str:
     """Some digits of a number, without zeros at its end; a dash where it is missing."""
-    return _number(value, digits, "-")
+    return _number(value, digits, False)
 
 
 def measured(value: float | None, digits: int = 3) -> str:
     """Some digits of a number, all of them: 2.20; a dash where it is missing."""
-    return _number(value, digits, "k")
+    return _number(value, digits, True)
 
 
-def _number(value, digits, trim):
+def _number(value, digits, zeros):
     if value is None or not math.isfinite(value):
         return MISSING
-    rounded = float(f"{value:.{digits}g}")
-    if rounded == 0:
-        return "0"
-    if _PLAIN[0] <= abs(rounded) < _PLAIN[1]:
-        places = max(digits - 1 - math.floor(math.log10(abs(rounded))), 0)
-        text = f"{rounded:.{places}f}"
-        text = text.rstrip("0").rstrip(".") if trim == "-" and "." in text else text
-    else:
-        text = f"{value:.{digits - 1}e}"
-    return text.replace("-", "−")
+    return plain(value + 0.0, digits, limits=_PLAIN, zeros=zeros).replace("-", "−")
 
 
 def with_unit(value: float | None, unit: str, digits: int = 3) -> str:

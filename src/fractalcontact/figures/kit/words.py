@@ -7,6 +7,7 @@ import xarray as xr
 
 from ...core.determined import NO_WIDTH, determined
 from ...core.fitting import LineFit
+from ...core.labels import plain
 from ...domain.box_dimension import WIDEST
 
 PAPER = "Borri-Brunetto et al. (1999)"
@@ -21,6 +22,9 @@ TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
 UNDETERMINED = "undetermined"
 #: Ends of an interval that differ from even ones by less than this part of it are called even.
 _EVEN = 0.02
+
+#: Below and above these a number has an exponent.
+_PLAIN = (1e-4, 1e6)
 
 #: Intervals up to this wide are narrow whatever the value: exponents and slopes, and angles.
 _SPANS = {"": 1.0, "mm/mm": 1.0, "degrees": 30.0}
@@ -70,7 +74,7 @@ def number(value: float, digits: int = 2) -> str:
 
 def short(value: float, digits: int = 3, sign: str = "") -> str:
     """Some digits of a number, without an exponent up to a million; "+" as ``sign`` shows that."""
-    return f"{float(f'{float(value):.{digits}g}'):{sign}g}"
+    return plain(value, digits, limits=_PLAIN, sign=sign)
 
 
 def percent(share: float, sign: str = "") -> str:
