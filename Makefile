@@ -14,6 +14,8 @@
 # make docs   the documentation in results/docs, every warning and broken link an error
 # make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
+# make keep, before a change, and make same, after it: what differs, bit for bit, in the smoke study
+#   and the default one (or STUDY); AGAINST=folder of other results; RENAMED=file of new names
 # make cost   where the time of the study went
 # make campaign SPECIMENS=1000   the scans and the study of that many small twins, in results/campaigns
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
@@ -38,7 +40,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
 all: study
 
 study: $(VENV)/installed
@@ -82,6 +84,18 @@ accuracy: $(if $(PEERS),$(VENV)/peers-installed)
 check-accuracy: study
 	@$(RUN) --full $(OPTIONS) -- atlas
 	@$(BIN)/python benchmarks/check_accuracy.py "$$STUDY"
+
+COMPARED = $(if $(filter file,$(origin STUDY)),config/smoke.yaml config/paper.yaml,"$$STUDY")
+MAKE_COMPARED = @for study in $(COMPARED); do $(MAKE) --no-print-directory study STUDY="$$study" || exit; done
+export AGAINST RENAMED
+keep:
+	$(MAKE_COMPARED)
+	@$(BIN)/python benchmarks/same.py keep $(COMPARED)
+
+same:
+	$(MAKE_COMPARED)
+	@$(BIN)/python benchmarks/same.py compare $(COMPARED) \
+	  $${AGAINST:+--against "$$AGAINST"} $${RENAMED:+--renamed "$$RENAMED"}
 
 cost: study
 	@$(BIN)/python benchmarks/study_cost.py "$$STUDY"
