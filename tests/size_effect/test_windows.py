@@ -13,6 +13,7 @@ from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.mechanics.theory import scaled_joint
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.roughness.dimension import roughness_length
 from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
@@ -25,7 +26,7 @@ from fractalcontact.surface.specimen import make_specimen, window_sides
 from fractalcontact.surface.synthesis import self_affine
 
 SOLVER = {"rtol": 1e-6, "kernel": "love"}
-DIMENSION = (2.2, 2.15, 2.25)
+DIMENSION = Estimate(2.2, 2.15, 2.25)
 ROCK = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0}
 
 

@@ -20,7 +20,7 @@ from ..mechanics.states import (
     map_states,
     with_pressure,
 )
-from ..roughness.dimension import best_dimension
+from ..roughness.recommended import best_dimension
 from ..surface.specimen import cell_side, nominal_area, window_sides
 from .errors import error_stages
 
@@ -72,7 +72,7 @@ def state_stages(
         curves,
         joint_statistics(specimens, joints),
         e_star,
-        best_dimension(surface_dimension)[0],
+        best_dimension(surface_dimension).value,
     )
     fields = domains_of(states)
     domains = analyse_domains(fields, spacing, fit_range=settings["box_range"])
