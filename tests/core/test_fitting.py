@@ -72,7 +72,8 @@ def test_no_plane_through_a_line_of_cells():
 def test_mean_interval_is_students():
     rng = np.random.default_rng(2)
     values = rng.normal(3, 1, (7, 2))
-    mean, low, high, n = mean_interval(values)
+    found = mean_interval(values)
+    mean, low, high, n = *found.ends, found.n
     known = stats.t.interval(0.95, 6, values.mean(axis=0), stats.sem(values, axis=0))
     np.testing.assert_allclose((low, high), known)
     np.testing.assert_allclose(mean, values.mean(axis=0))
@@ -80,7 +81,7 @@ def test_mean_interval_is_students():
 
 
 def test_mean_of_one_value_has_no_interval_and_of_none_no_value():
-    mean, low, high, n = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
-    np.testing.assert_array_equal(mean, [1, np.nan])
-    assert np.isnan([low, high]).all()
-    assert n.tolist() == [1, 0]
+    mean = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
+    np.testing.assert_array_equal(mean.value, [1, np.nan])
+    assert np.isnan([mean.low, mean.high]).all()
+    assert mean.n.tolist() == [1, 0]

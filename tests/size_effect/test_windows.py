@@ -6,6 +6,7 @@ import xarray as xr
 from ensembles import ensemble
 from places import SCANS
 
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.loading import JointLoading
@@ -13,7 +14,6 @@ from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.mechanics.theory import scaled_joint
-from fractalcontact.core.estimate import Estimate
 from fractalcontact.roughness.dimension import roughness_length
 from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
