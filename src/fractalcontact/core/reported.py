@@ -114,7 +114,8 @@ class Reported:
 
     def curves(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage in the reported direction, at the reported resolution."""
-        chosen: dict[str, Any] = {name: self.direction for name in _DIRECTIONS if name in stage.dims}
+        of_joint = [name for name in _DIRECTIONS if name in stage.dims]
+        chosen: dict[str, Any] = dict.fromkeys(of_joint, self.direction)
         if "resolution" in stage.dims:
             chosen["resolution"] = self.resolution
         return stage.sel(chosen)
