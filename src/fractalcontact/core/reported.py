@@ -4,13 +4,12 @@ They are chosen once, by the stage that solves them, and stored with its closure
 pages, statements and comparisons read them there.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from .datasets import labelled
 
@@ -60,7 +59,7 @@ class Reported:
         *,
         direction: str,
         offset: float,
-        quoted: ArrayLike,
+        quoted: Sequence[float] | np.ndarray,
         reference: float,
     ) -> "Reported":
         """States nearest to what a study asks for, at the finest resolution.
@@ -72,7 +71,7 @@ class Reported:
         direction : str
         offset : float
             mm, one of the offsets.
-        quoted : (k,) array_like
+        quoted : (k,) sequence of float
             Forces to quote, N.
         reference : float
             Reference load, N.
