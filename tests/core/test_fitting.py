@@ -10,10 +10,10 @@ from fractalcontact.core.mean_plane import without_mean_plane
 def test_points_on_a_line_give_it_back_without_error():
     x = np.array([0.0, 1.0, 2.0, 5.0])
     line = fit_line(x, 3 - 2 * x)
-    assert line.slope == pytest.approx(-2)
-    assert line.intercept == pytest.approx(3)
-    assert line.slope_high - line.slope_low == pytest.approx(0, abs=1e-12)
-    assert (line.x_min, line.x_max, line.n, line.r2) == (0, 5, 4, pytest.approx(1))
+    assert line.slope.value == pytest.approx(-2)
+    assert line.intercept.value == pytest.approx(3)
+    assert line.slope.high - line.slope.low == pytest.approx(0, abs=1e-12)
+    assert (*line.slope.over, line.n, line.r2) == (0, 5, 4, pytest.approx(1))
 
 
 def test_intervals_agree_with_scipy():
@@ -22,9 +22,11 @@ def test_intervals_agree_with_scipy():
     y = 2 * x + rng.standard_normal(9)
     line, other = fit_line(x, y), stats.linregress(x, y)
     quantile = stats.t.ppf(0.975, 7)
-    assert line.slope == pytest.approx(other.slope)
-    assert line.slope_high - line.slope == pytest.approx(quantile * other.stderr)
-    assert line.intercept - line.intercept_low == pytest.approx(quantile * other.intercept_stderr)
+    assert line.slope.value == pytest.approx(other.slope)
+    assert line.slope.high - line.slope.value == pytest.approx(quantile * other.stderr)
+    assert line.intercept.value - line.intercept.low == pytest.approx(
+        quantile * other.intercept_stderr
+    )
     assert line.r2 == pytest.approx(other.rvalue**2)
 
 
@@ -34,7 +36,7 @@ def test_interval_holds_the_true_slope_in_95_of_100_samples():
     held = 0
     for _ in range(2000):
         line = fit_line(x, 0.5 * x + rng.standard_normal(8))
-        held += line.slope_low <= 0.5 <= line.slope_high
+        held += line.slope.low <= 0.5 <= line.slope.high
     assert held / 2000 == pytest.approx(0.95, abs=0.015)
 
 
@@ -45,7 +47,7 @@ def test_interval_holds_the_true_slope_in_95_of_100_samples():
 def test_no_line_without_three_points_at_two_places(x, y, n):
     line = fit_line(x, y)
     assert line.n == n
-    assert np.isnan([*line[:8], line.r2]).all()
+    assert np.isnan([*line.slope.ends, *line.intercept.ends, *line.slope.over, line.r2]).all()
 
 
 def test_mean_plane_is_taken_off_whatever_is_missing():
@@ -70,7 +72,8 @@ def test_no_plane_through_a_line_of_cells():
 def test_mean_interval_is_students():
     rng = np.random.default_rng(2)
     values = rng.normal(3, 1, (7, 2))
-    mean, low, high, n = mean_interval(values)
+    found = mean_interval(values)
+    mean, low, high, n = *found.ends, found.n
     known = stats.t.interval(0.95, 6, values.mean(axis=0), stats.sem(values, axis=0))
     np.testing.assert_allclose((low, high), known)
     np.testing.assert_allclose(mean, values.mean(axis=0))
@@ -78,7 +81,7 @@ def test_mean_interval_is_students():
 
 
 def test_mean_of_one_value_has_no_interval_and_of_none_no_value():
-    mean, low, high, n = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
-    np.testing.assert_array_equal(mean, [1, np.nan])
-    assert np.isnan([low, high]).all()
-    assert n.tolist() == [1, 0]
+    mean = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
+    np.testing.assert_array_equal(mean.value, [1, np.nan])
+    assert np.isnan([mean.low, mean.high]).all()
+    assert mean.n.tolist() == [1, 0]

@@ -21,7 +21,7 @@ def test_row_holds_what_the_measures_say():
     row = domain_measures(domains[2], 0.1, pressures[2])
     box = dimension_of_domain(domains[2], 0.1)
     assert row["delta_sigma"] == box.dimension
-    assert (row["delta_sigma_low"], row["delta_sigma_r_max"]) == (box.low, box.r_max)
+    assert (row["delta_sigma_low"], row["delta_sigma_r_max"]) == (box.low, box.over[1])
     assert row["correlation_dimension"] == correlation_dimension(domains[2], 0.1).value
     assert row["lacunarity_slope"] == lacunarity(domains[2], 0.1).slope.value
     assert all(isinstance(value, float) for value in row.values())

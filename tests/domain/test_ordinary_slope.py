@@ -34,7 +34,7 @@ EXACT = {
 def test_squares_and_lines(name):
     domain, exact = EXACT[name]
     found = dimension_of_domain(domain, 0.1).ordinary
-    assert found.dimension == pytest.approx(exact, abs=1e-9)
+    assert found.value == pytest.approx(exact, abs=1e-9)
     assert found.low <= exact <= found.high
 
 
@@ -43,7 +43,7 @@ def test_slope_is_that_of_the_minimal_cover():
     found = dimension_of_domain(domain, 0.1).ordinary
     sizes = found.sizes[found.used]
     slope = np.polyfit(np.log(sizes), np.log(box_count(domain, sizes)), 1)[0]
-    assert found.dimension == pytest.approx(-slope)
+    assert found.value == pytest.approx(-slope)
     assert found.n == sizes.size
     assert dyadic_sizes((200, 128)).tolist() == [1, 2, 4, 8, 16, 32, 64]
 
@@ -83,7 +83,7 @@ def test_every_stage_states_one_dimension(level):
     nulls = null_models(domain[np.newaxis], 0.1, HEIGHTS, fit_range=fit_range)
     assert row["delta_sigma"].item() == alone.dimension == measures["delta_sigma"]
     assert row["delta_sigma_low"].item() == alone.low == measures["delta_sigma_low"]
-    assert row["delta_sigma_ordinary"].item() == alone.ordinary.dimension
+    assert row["delta_sigma_ordinary"].item() == alone.ordinary.value
     # The cut of a surface at one level is the domain itself.
     assert nulls["delta_sigma_cut"].item() == alone.dimension
 
@@ -94,7 +94,7 @@ def test_the_place_of_a_domain_in_its_window_changes_nothing():
     first = dimension_of_domain(domain, 0.1)
     moved = dimension_of_domain(np.roll(domain, (37, 91), (0, 1)), 0.1)
     assert (first.dimension, first.low) == (moved.dimension, moved.low)
-    assert first.ordinary.dimension == moved.ordinary.dimension
+    assert first.ordinary.value == moved.ordinary.value
 
 
 def test_sizes_are_those_of_the_window():

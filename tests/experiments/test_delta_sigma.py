@@ -69,7 +69,7 @@ def test_means_and_trends(found):
     box = found["delta_sigma_box"].sel(dimension=2.5, size=128, reduced_pressure=0.05)
     np.testing.assert_allclose(values, area - box)
     mean = found.sel(dimension=2.5, size=128, reduced_pressure=0.05)
-    expected = [float(end) for end in mean_interval(values)[:3]]
+    expected = [float(end) for end in mean_interval(values).ends]
     assert [float(mean[f"mean_difference{end}"]) for end in ("", "_low", "_high")] == pytest.approx(
         expected
     )

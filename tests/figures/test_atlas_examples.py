@@ -24,7 +24,7 @@ def names(atlas_file):
 
 
 def test_examples_find_what_they_name(names):
-    assert np.isfinite(float(names["roughness"]["recommended_value"]))
+    assert np.isfinite(float(names["roughness"]["recommended_dimension"]))
     assert names["touching"].sum() > 0
     assert len(names["table"].dropna()) > 1
     assert names["second_half"].size > 1

@@ -187,7 +187,7 @@ def test_area_exponent_is_that_of_the_points_marked_as_fitted(atlas):
         fitted = points[points["area_fitted"]]
         assert (fitted["nodes"] >= 30).all()
         line = fit_line(np.log(fitted["force_N"]), np.log(fitted["area_corrected_mm2"]))
-        np.testing.assert_array_equal(points["area_exponent"].unique(), line.slope)
+        np.testing.assert_array_equal(points["area_exponent"].unique(), line.slope.value)
 
 
 def test_both_laws_are_drawn_over_the_loads_fitted_each_with_its_own_line(atlas):
@@ -347,7 +347,11 @@ def test_axes_are_separated_only_where_their_intervals_are(atlas):
 
 def test_the_recommended_and_the_known_dimension_are_drawn(atlas):
     group = "surface_dimension/flat"
-    changes = {"recommended_value": 2.2, "recommended_low": 2.1, "recommended_high": 2.3}
+    changes = {
+        "recommended_dimension": 2.2,
+        "recommended_dimension_low": 2.1,
+        "recommended_dimension_high": 2.3,
+    }
     for known, words in ((2.25, "inside the interval"), (2.4, "OUTSIDE the interval")):
         changed = with_changes(atlas, group, known_dimension=known, **changes)
         drawing = drawn(changed, "flat", "fig02_relief")
@@ -365,7 +369,9 @@ def test_the_recommended_and_the_known_dimension_are_drawn(atlas):
 
 def test_a_dimension_out_of_bounds_is_not_recommended(atlas):
     group = "surface_dimension/flat"
-    ends = dict.fromkeys(("recommended_value", "recommended_low", "recommended_high"), np.nan)
+    ends = dict.fromkeys(
+        ("recommended_dimension", "recommended_dimension_low", "recommended_dimension_high"), np.nan
+    )
     changed = atlas.copy(deep=True)
     dataset = with_changes(atlas, group, **ends)[group].to_dataset()
     dataset["no_dimension"] = ((), "Delta_g 1.80 [1.70, 1.90] does not lie between 2 and 3")

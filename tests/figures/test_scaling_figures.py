@@ -164,9 +164,10 @@ def test_box_counts_give_the_dimension_of_the_atlas(atlas, specimen):
     stored = finest(atlas, "domains", specimen).isel(normal_force=-1)
     used = drawing.data[drawing.data["ordinary_used"]]
     line = fit_line(np.log(used["box_side_mm"]), np.log(used["box_count"]))
-    np.testing.assert_allclose(-line.slope, stored["delta_sigma_ordinary"].item(), atol=1e-9)
+    np.testing.assert_allclose(-line.slope.value, stored["delta_sigma_ordinary"].item(), atol=1e-9)
     np.testing.assert_allclose(
-        np.log(used["ordinary_count"]), line.intercept + line.slope * np.log(used["box_side_mm"])
+        np.log(used["ordinary_count"]),
+        line.intercept.value + line.slope.value * np.log(used["box_side_mm"]),
     )
     law = drawing.data[np.isfinite(drawing.data["law_count"])]
     if str(stored["estimator"].item()) == ESTIMATORS["mean"]:
@@ -185,7 +186,8 @@ def test_area_law_is_that_of_the_atlas(atlas, specimen):
     rows = table[(table["panel"] == "a") & (table["load_N"] == loading.forces[-1])]
     law = fit_line(np.log(rows["spacing_mm"]), np.log(rows["area_corrected_mm2"]))
     np.testing.assert_allclose(
-        np.log(rows["fitted_area_mm2"]), law.intercept + law.slope * np.log(rows["spacing_mm"])
+        np.log(rows["fitted_area_mm2"]),
+        law.intercept.value + law.slope.value * np.log(rows["spacing_mm"]),
     )
 
 

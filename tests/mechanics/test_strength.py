@@ -165,9 +165,9 @@ def test_peak_is_the_first_largest_and_passes_over_what_is_missing():
 
 
 def test_residual_is_the_mean_beyond_half_of_the_largest_offset():
-    mean, low, high, n = residual([1.0, 4.9, 5.0, 9.0], [[9.0], [9.0], [1.0], [3.0]], 10.0)
-    assert (mean, n) == (2, 2)
-    assert low < 1 < 3 < high
+    mean = residual([1.0, 4.9, 5.0, 9.0], [[9.0], [9.0], [1.0], [3.0]], 10.0)
+    assert (mean.value, mean.n) == (2, 2)
+    assert mean.low < 1 < 3 < mean.high
 
 
 # Against another way

@@ -176,7 +176,7 @@ def test_summary_has_the_numbers_of_the_atlas(results, atlas):
             "interface_closure_error_surface_mm": closures["total"],
             "interface_closure_error_population_mm": closures["total_of_population"],
             "k_ni_change_at_twice_the_spacing": here["hyperbola_k_ni_change"],
-            "delta_g": surface["recommended_value"],
+            "delta_g": surface["recommended_dimension"],
             "delta_sigma_boxes": domains["delta_sigma"],
             "delta_sigma_boxes_high": domains["delta_sigma_high"],
         }

@@ -11,7 +11,6 @@ from fractalcontact.roughness.recommended import (
     best_dimension,
     beyond_roll_off,
     dimension_words,
-    recommended,
 )
 from fractalcontact.surface.synthesis import self_affine
 
@@ -33,8 +32,8 @@ def estimates(value, low, high):
 def test_one_value_is_recommended_and_used(measured):
     chosen = measured.sel(estimator=RECOMMENDED)
     expected = [chosen[f"dimension{end}"].item() for end in ("", "_low", "_high")]
-    assert best_dimension(measured) == tuple(expected)
-    stored = [measured[f"recommended_{end}"].item() for end in ("value", "low", "high")]
+    assert list(best_dimension(measured).ends) == expected
+    stored = [measured[f"recommended_dimension{end}"].item() for end in ("", "_low", "_high")]
     assert stored == expected
     assert measured["recommended"].item() == RECOMMENDED
     assert "rms error" in measured["reason"].item()
@@ -55,21 +54,20 @@ def test_one_value_is_recommended_and_used(measured):
     ],
 )
 def test_what_no_surface_can_have_is_refused(ends, words):
-    found = recommended(estimates(*ends))
-    assert np.isnan(found[:3]).all()
-    assert words in found.no_dimension
-    assert np.isnan(best_dimension(estimates(*ends))).all()
+    found = best_dimension(estimates(*ends))
+    assert np.isnan(found.ends).all()
+    assert words in found.reason
 
 
 def test_a_possible_value_passes_whatever_its_interval():
-    assert best_dimension(estimates(2.1, 1.9, 2.3)) == (2.1, 1.9, 2.3)
+    assert best_dimension(estimates(2.1, 1.9, 2.3)).ends == (2.1, 1.9, 2.3)
 
 
 def test_a_smooth_hill_has_no_dimension():
     y, x = np.mgrid[-1:1:128j, -1:1:128j]
     found = surface_dimension(np.exp(-(x**2) - y**2), 0.1)
     assert found["dimension"].sel(estimator=RECOMMENDED) < 2
-    assert np.isnan(best_dimension(found)).all()
+    assert np.isnan(best_dimension(found).ends).all()
     assert "does not lie between 2 and 3" in found["no_dimension"].item()
     assert dimension_words(found).startswith("no surface dimension: Delta_g")
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.size_effect.load_ladder import OF_WINDOWS
 from fractalcontact.size_effect.size_law import size_law
 from fractalcontact.size_effect.size_verdict import (
@@ -20,7 +21,6 @@ from fractalcontact.size_effect.size_verdict import (
     TOO_WIDE,
     TOO_WIDE_MISSED,
     UNDECIDED,
-    Interval,
     both_forms,
     judge_exponent,
     judge_own_form,
@@ -34,7 +34,7 @@ DELTA = 1.5
 
 
 def around(value, half):
-    return Interval(value, value - half, value + half)
+    return Estimate(value, value - half, value + half)
 
 
 def world(fraction, scatter=0.01, seed=0):
@@ -151,8 +151,8 @@ def test_units_change_nothing():
         (around(-0.5, 0.1), around(-0.5, 0.21), UNDECIDED, TOO_WIDE),
         (around(0.0, 0.1), around(-0.5, 0.3), UNDECIDED, TOO_WIDE_MISSED),
         (around(0.0, 0.1), around(-0.01, 0.1), UNDECIDED, NOTHING_PREDICTED),
-        (Interval(np.nan, np.nan, np.nan), around(-0.5, 0.1), NOT_TESTED, None),
-        (around(-0.5, 0.1), Interval(-0.5, np.nan, np.nan), NOT_TESTED, None),
+        (Estimate(np.nan, np.nan, np.nan), around(-0.5, 0.1), NOT_TESTED, None),
+        (around(-0.5, 0.1), Estimate(-0.5, np.nan, np.nan), NOT_TESTED, None),
         (around(-0.5, 0.0), around(-0.5, 0.0), AGREES, ""),
     ],
 )

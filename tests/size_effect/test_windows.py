@@ -6,6 +6,7 @@ import xarray as xr
 from ensembles import ensemble
 from places import SCANS
 
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.loading import JointLoading
@@ -25,7 +26,7 @@ from fractalcontact.surface.specimen import make_specimen, window_sides
 from fractalcontact.surface.synthesis import self_affine
 
 SOLVER = {"rtol": 1e-6, "kernel": "love"}
-DIMENSION = (2.2, 2.15, 2.25)
+DIMENSION = Estimate(2.2, 2.15, 2.25)
 ROCK = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0}
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.statements import closure, nulls, scaling
 from fractalcontact.statements.judge import (
     FAILS,
@@ -506,9 +507,7 @@ def test_rock_and_concrete_are_compared_by_their_intervals():
 
 def mathematical(values, monkeypatch):
     """Surfaces against a plane of Delta_g 2.1, 2.3, 2.5 with these Delta_sigma."""
-    monkeypatch.setattr(
-        "fractalcontact.statements.study.best_dimension", lambda known: (known, known, known)
-    )
+    monkeypatch.setattr("fractalcontact.statements.study.best_dimension", Estimate)
     flat = {**SETTINGS, "opposite": "flat"}
     made = {}
     for dimension, value in zip((2.1, 2.3, 2.5), values, strict=False):

@@ -57,7 +57,7 @@ def test_boxes_find_the_dimension_of_the_profile(narrowing, lowering):
         for n in generations
     ]
     side = float(ratio) ** -generations
-    found = -fit_line(np.log(side), np.log(variation / side)).slope
+    found = -fit_line(np.log(side), np.log(variation / side)).slope.value
     expected, _ = punch_dimensions(2, narrowing, lowering)
     assert found == pytest.approx(expected, abs=0.02)
 
@@ -69,7 +69,7 @@ def test_estimators_find_the_dimension_again(make, target):
     found = np.mean(
         [
             [
-                estimate.hurst["both"][0]
+                estimate.hurst["both"].value
                 for estimate in hurst_exponents(
                     make((256, 256), 0.1, target, rms=0.3, seed=seed), 0.1, estimators=names
                 ).values()
@@ -89,8 +89,8 @@ def test_an_extruded_profile_has_one_dimension_more_than_the_profile():
         profile = weierstrass_mandelbrot((2, n), 0.1, target, rms=0.3, seed=seed)[0]
         surface = extruded(profile, n)
         estimate = hurst_exponents(surface, 0.1, estimators=["second_differences"])
-        found.append(estimate["second_differences"].hurst["x"][0])
-        assert np.isnan(estimate["second_differences"].hurst["y"][0])  # no roughness at all
+        found.append(estimate["second_differences"].hurst["x"].value)
+        assert np.isnan(estimate["second_differences"].hurst["y"].value)  # no roughness at all
     assert 3 - np.mean(found) == pytest.approx((2 - target) + 1, abs=0.05)
 
 

@@ -11,7 +11,6 @@ from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
 from ..elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
-from .orders import slope_variables
 from .richardson import richardson
 
 # The window is this many times the contact across: what lies outside never touches.
@@ -91,11 +90,11 @@ def _convergence(problem, cells_per_radius, placements, rtol):
     attributes = cf_attrs("1", "cells across the contact radius, a/s")
     result = xr.Dataset(coords={"cells_per_radius": ("cells_per_radius", cells, attributes)})
     for name, error in zip(QUANTITIES[problem], np.transpose(errors), strict=True):
-        fit = fit_line(np.log(1 / cells), np.log(error))
+        order = fit_line(np.log(1 / cells), np.log(error)).slope
         words = f"relative error of the {_WORDS[name]}, rms over positions"
         result[f"{name}_error"] = ("cells_per_radius", error, cf_attrs("1", words))
         words = f"order of the error of the {_WORDS[name]} in s"
-        result = result.assign(slope_variables(f"{name}_order", (), (), [fit], words))
+        result.update(order.variables(f"{name}_order", (), "1", words))
     return result
 
 

@@ -8,7 +8,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from ..core.intervals import INTERVAL, t_quantile
+from ..core.estimate import Estimate
+from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
@@ -257,7 +258,7 @@ def _estimator(curve: LoadCurve) -> np.ndarray:
     """
     domains = curve.domains
     spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
-    value, low, high = (domains[f"delta_sigma{end}"].values for end in INTERVAL)
+    value, low, high = Estimate.read(domains, "delta_sigma").ends
     other = np.abs(domains["delta_sigma_ordinary"].values - value)
     spread[-1] = np.fmax(np.fmax(high - value, value - low), other)
     return spread

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
-from .orders import slope_variables
 from .speed import MODEL, OURS
 
 #: Nodes of the grid, not nodes per side, are what time and memory are fitted against.
@@ -65,10 +65,10 @@ def growth(problems: Sequence[xr.Dataset], error: float) -> xr.Dataset:
     )
     nodes = np.log(np.square(sizes, dtype=float))
     for name, words in FITTED.items():
-        lines = [fit_line(nodes, np.log(each)) for each in values[name].reshape(-1, len(sizes))]
+        each = (fit_line(nodes, np.log(row)).slope for row in values[name].reshape(-1, len(sizes)))
         words = f"exponent of the {words} in the number of nodes"
-        slopes = slope_variables(f"{name}_exponent", _DIMS[:2], shape[:2], lines, words)
-        result = result.assign(slopes)
+        exponents = Estimate.stack(each, shape[:2])
+        result.update(exponents.variables(f"{name}_exponent", _DIMS[:2], "1", words))
     return result
 
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .estimate import Estimate
 from .intervals import t_quantile
 
 #: Two points always lie on a line: from three on its error is known.
@@ -12,21 +13,17 @@ FEWEST_POINTS = 3
 
 
 class LineFit(NamedTuple):
-    """A least-squares line y = intercept + slope x and its 95 % intervals."""
+    """A least-squares line y = intercept + slope x."""
 
-    slope: float
-    slope_low: float
-    slope_high: float
-    intercept: float
-    intercept_low: float
-    intercept_high: float
-    x_min: float
-    x_max: float
-    n: int
+    slope: Estimate
+    """With the number of points, and the range of x, that it was fitted over."""
+    intercept: Estimate
     r2: float
 
-
-NO_LINE = LineFit(**dict.fromkeys(LineFit._fields[:8], np.nan), n=0, r2=np.nan)
+    @property
+    def n(self) -> int:
+        """Number of points."""
+        return self.slope.n
 
 
 def fit_line(x: ArrayLike, y: ArrayLike) -> LineFit:
@@ -40,9 +37,9 @@ def fit_line(x: ArrayLike, y: ArrayLike) -> LineFit:
     Returns
     -------
     LineFit
-        Slope and intercept with their 95 % intervals, range of x, number of points and coefficient
-        of determination (NaN for a constant y). With fewer than three points, or all at one x,
-        everything but `n` is NaN: the error of such a line is not known.
+        Slope and intercept, and the coefficient of determination (NaN for a constant y). With fewer
+        than three points, or all at one x, everything but the number of points is NaN: the error of
+        such a line is not known.
     """
     x_all, y_all = np.asarray(x, float), np.asarray(y, float)
     finite = np.isfinite(x_all) & np.isfinite(y_all)
@@ -52,7 +49,7 @@ def fit_line(x: ArrayLike, y: ArrayLike) -> LineFit:
 def _line_through(x: np.ndarray, y: np.ndarray) -> LineFit:
     n = x.size
     if n < FEWEST_POINTS or np.ptp(x) == 0:
-        return NO_LINE._replace(n=n)
+        return LineFit(Estimate(n=n), Estimate(n=n), np.nan)
 
     dx, dy = x - x.mean(), y - y.mean()
     sxx, syy = np.sum(dx**2), np.sum(dy**2)
@@ -62,15 +59,13 @@ def _line_through(x: np.ndarray, y: np.ndarray) -> LineFit:
     quantile = t_quantile(n - 2)
     half_slope = quantile * np.sqrt(residual / (n - 2) / sxx)
     half_intercept = half_slope * np.sqrt(np.mean(x**2))
+    over = float(x.min()), float(x.max())
     return LineFit(
-        slope=float(slope),
-        slope_low=float(slope - half_slope),
-        slope_high=float(slope + half_slope),
-        intercept=float(intercept),
-        intercept_low=float(intercept - half_intercept),
-        intercept_high=float(intercept + half_intercept),
-        x_min=float(x.min()),
-        x_max=float(x.max()),
-        n=n,
+        slope=_around(slope, half_slope, n, over),
+        intercept=_around(intercept, half_intercept, n, over),
         r2=float(1 - residual / syy) if syy > 0 else np.nan,
     )
+
+
+def _around(value: float, half: float, n: int, over: tuple[float, float]) -> Estimate:
+    return Estimate(float(value), float(value - half), float(value + half), n, over)

@@ -1,10 +1,12 @@
 """Confidence intervals: the t quantile, means, the jackknife, and how an interval is named."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
+
+from .estimate import Estimate
 
 #: What follows the long name of an estimate at the ends of its interval, by ending of the name.
 INTERVAL = {
@@ -52,16 +54,7 @@ def bounds(dataset: Any, name: str) -> tuple[Any, Any, Any]:
     return value, low, high
 
 
-class Mean(NamedTuple):
-    """Mean of independent values, its 95 % interval and how many there were."""
-
-    value: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    n: np.ndarray
-
-
-def mean_interval(values: ArrayLike, axis: int = 0) -> Mean:
+def mean_interval(values: ArrayLike, axis: int = 0) -> Estimate:
     """Mean of independent values and its Student-t interval.
 
     Parameters
@@ -73,7 +66,7 @@ def mean_interval(values: ArrayLike, axis: int = 0) -> Mean:
 
     Returns
     -------
-    Mean
+    Estimate
         NaN without a value; the interval needs two.
     """
     values = np.asarray(values, float)
@@ -84,7 +77,7 @@ def mean_interval(values: ArrayLike, axis: int = 0) -> Mean:
     error = np.sqrt(squares / (at_least_two - 1) / at_least_two)
     half = t_quantile(at_least_two - 1) * error
     half = np.where(n > 1, half, np.nan)
-    return Mean(mean, mean - half, mean + half, n)
+    return Estimate(mean, mean - half, mean + half, n)
 
 
 def jackknife_error(*divisions: ArrayLike) -> float:

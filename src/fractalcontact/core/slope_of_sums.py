@@ -6,11 +6,11 @@ range and the waves about the line come on top.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .estimate import Estimate
 from .fitting import fit_line
 from .intervals import jackknife_error
 
@@ -19,20 +19,6 @@ BLOCKS = 4
 
 #: Points a slope needs, and each half of its range for the half's own slope.
 FEWEST_SCALES = 4
-
-
-class Slope(NamedTuple):
-    """A slope with its interval and the range of its points; NaN and 0 where there is none."""
-
-    value: float
-    low: float
-    high: float
-    x_min: float
-    x_max: float
-    n: int
-
-
-NO_SLOPE = Slope(**dict.fromkeys(Slope._fields[:5], np.nan), n=0)
 
 
 def wave_error(misfit: float, scales: np.ndarray) -> float:
@@ -70,7 +56,7 @@ def slope_of_sums(
     parts: ArrayLike,
     statistic: Callable[[np.ndarray], np.ndarray],
     other: Callable[[np.ndarray], np.ndarray] | None = None,
-) -> Slope:
+) -> Estimate:
     """Slope of log of a statistic of sums against log scale, with the interval of this module.
 
     Parameters
@@ -87,27 +73,31 @@ def slope_of_sums(
 
     Returns
     -------
-    Slope
-        `NO_SLOPE` with fewer than `FEWEST_SCALES` scales.
+    Estimate
+        Over the scales used; NaN with fewer than `FEWEST_SCALES` of them.
     """
     scales, parts = np.asarray(scales, float), np.asarray(parts, float)
     whole = parts.sum(axis=2)
     x, y = np.log(scales), _log(statistic(whole))
     positive = np.isfinite(y)
     if positive.sum() < FEWEST_SCALES:
-        return NO_SLOPE
+        return Estimate()
     x, y = x[positive], y[positive]
     line = fit_line(x, y)
-    others = [fit_line(x[part], y[part]).slope for part in halves(x.size)]
+    slope = line.slope.value
+    others = [_slope(x[part], y[part]) for part in halves(x.size)]
     if other is not None:
-        others.append(fit_line(x, _log(other(whole))[positive]).slope)
+        others.append(_slope(x, _log(other(whole))[positive]))
     filled = np.flatnonzero(parts[positive].any(axis=(0, 1)))
-    left = [fit_line(x, _log(statistic(whole - parts[:, :, i]))[positive]).slope for i in filled]
-    misfit = float(np.std(y - line.intercept - line.slope * x))
-    low, high = interval(line.slope, others, jackknife_error(left), wave_error(misfit, np.exp(x)))
-    return Slope(
-        line.slope, float(low), float(high), float(np.exp(x[0])), float(np.exp(x[-1])), x.size
-    )
+    left = [_slope(x, _log(statistic(whole - parts[:, :, i]))[positive]) for i in filled]
+    misfit = float(np.std(y - line.intercept.value - slope * x))
+    low, high = interval(slope, others, jackknife_error(left), wave_error(misfit, np.exp(x)))
+    over = float(np.exp(x[0])), float(np.exp(x[-1]))
+    return Estimate(slope, float(low), float(high), x.size, over)
+
+
+def _slope(x, y):
+    return fit_line(x, y).slope.value
 
 
 def _log(values):

@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..core.arrays import padded
 from ..core.datasets import labelled_dataset
+from ..core.estimate import names_of, rows_of
 from ..core.labels import cf_attrs
 from ..core.ranges import within
 from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
@@ -19,12 +20,7 @@ from .renormalisation import compare_dimensions, renormalisation
 
 #: Numbers kept of every contact domain: name, unit, long name.
 DOMAIN_FIELDS = {
-    "delta_sigma": (
-        "1",
-        "box-counting dimension Delta_sigma of the contact domain",
-    ),
-    "delta_sigma_low": ("1", "Delta_sigma, lower end of the 95 % interval"),
-    "delta_sigma_high": ("1", "Delta_sigma, upper end of the 95 % interval"),
+    **rows_of("delta_sigma", "1", "box-counting dimension Delta_sigma of the contact domain"),
     "delta_sigma_error": ("1", "Delta_sigma, solver error bound"),
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
@@ -35,12 +31,11 @@ DOMAIN_FIELDS = {
     "law_outline_square": ("1", "b_2 of the count law: outline of the domain"),
     "law_node_width": ("mm", "c of the count law: what a node stands for"),
     "law_extent": ("mm", "L of the count law: longer side of the domain's extent"),
-    "delta_sigma_ordinary": (
+    **rows_of(
+        "delta_sigma_ordinary",
         "1",
         "ordinary box-counting dimension: least-squares slope of log N over log r, minimal cover",
     ),
-    "delta_sigma_ordinary_low": ("1", "ordinary dimension, lower end of the 95 % interval"),
-    "delta_sigma_ordinary_high": ("1", "ordinary dimension, upper end of the 95 % interval"),
     "ordinary_fit_min": ("mm", "smallest box in the fit of the ordinary dimension"),
     "ordinary_fit_max": ("mm", "largest box in the fit of the ordinary dimension"),
     "ordinary_fit_n": ("1", "box sizes in the fit of the ordinary dimension"),
@@ -197,14 +192,11 @@ def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
 def _row(domain, spacing, ambiguous, direction, **how) -> dict:
     """What the table holds of one domain; ``how`` its dimension is to be found."""
     box = dimension_of_domain(domain, spacing, **how)
-    has_dimension = not np.isnan(box.dimension)
     return {
-        "delta_sigma": box.dimension,
-        "delta_sigma_low": box.low,
-        "delta_sigma_high": box.high,
-        "delta_sigma_error": ambiguous / domain.sum() if has_dimension else np.nan,
-        "fit_min": box.r_min,
-        "fit_max": box.r_max,
+        **box.columns("delta_sigma"),
+        "delta_sigma_error": ambiguous / domain.sum() if box.known else np.nan,
+        "fit_min": box.over[0],
+        "fit_max": box.over[1],
         "fit_n": box.n,
         "fit_misfit": box.misfit,
         **{f"law_{name}": value for name, value in box.terms._asdict().items()},
@@ -227,11 +219,9 @@ def _ordinary(box, spacing) -> dict:
         return {}
     used = np.isin(np.round(box.r / spacing), slope.sizes[slope.used])
     return {
-        "delta_sigma_ordinary": slope.dimension,
-        "delta_sigma_ordinary_low": slope.low,
-        "delta_sigma_ordinary_high": slope.high,
-        "ordinary_fit_min": slope.r_min * spacing,
-        "ordinary_fit_max": slope.r_max * spacing,
+        **slope.columns("delta_sigma_ordinary"),
+        "ordinary_fit_min": slope.over[0] * spacing,
+        "ordinary_fit_max": slope.over[1] * spacing,
         "ordinary_fit_n": slope.n,
         "ordinary_determined": is_determined(slope.low, slope.high),
         "ordinary_used": used,
@@ -279,21 +269,12 @@ def scaling_over_resolutions(
     nodes, force = curves["nodes"].where(inside), curves["normal_force"]
     result = renormalisation(s, curves["area_corrected"], force, nodes, CORRECTED_NODES)
     raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES)
-    for ending in ("", "_low", "_high"):
-        result[f"delta_sigma_raw{ending}"] = raw[f"delta_sigma{ending}"]
-        words = f"{raw[f'delta_sigma{ending}'].attrs['long_name']}, by the raw area"
-        result[f"delta_sigma_raw{ending}"].attrs["long_name"] = words
+    for name, raw_name in zip(names_of("delta_sigma"), names_of("delta_sigma_raw"), strict=True):
+        result[raw_name] = raw[name]
+        result[raw_name].attrs["long_name"] = f"{raw[name].attrs['long_name']}, by the raw area"
     result["delta_sigma_raw_n"] = raw["n"]
     finest = domains.sel(resolution=domains["resolution"].min())
-    both = compare_dimensions(
-        result["delta_sigma"],
-        result["delta_sigma_low"],
-        result["delta_sigma_high"],
-        finest["delta_sigma"],
-        finest["delta_sigma_low"],
-        finest["delta_sigma_high"],
-    )
-    result = result.merge(both, compat="override", join="exact")
+    result = result.merge(compare_dimensions(result, finest), compat="override", join="exact")
     result["spacing"] = s
     for name in ("area", "area_corrected", "nodes"):
         result[name] = curves[name]

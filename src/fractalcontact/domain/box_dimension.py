@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
 from ..core.ranges import within
 from ..core.slope_of_sums import FEWEST_SCALES
@@ -36,20 +37,28 @@ ESTIMATORS = {
 ONE_NODE = "one node is in contact, and what touches within its cell is not known"
 
 
-@dataclass(frozen=True)
-class BoxDimension:
-    """A box-counting dimension with its interval, its range and the counts behind it."""
+@dataclass(frozen=True, kw_only=True)
+class BoxDimension(Estimate):
+    """A box-counting dimension with its interval, its range in mm and the counts behind it.
 
-    dimension: float
-    low: float
-    high: float
-    r_min: float
-    r_max: float
-    n: int
+    Attributes
+    ----------
+    r, count : (k,) ndarray
+        Sides of the boxes, mm, and the minimal cover there.
+    used : (k,) bool ndarray
+        Sides that the dimension rests on.
+    estimator : str
+        One of :data:`ESTIMATORS`.
+    misfit : float
+        Relative, rms, of the law that was fitted.
+    terms : LawTerms
+    means : MeanCounts
+    ordinary : OrdinarySlope or None
+    """
+
     r: np.ndarray
     count: np.ndarray
     used: np.ndarray
-    reason: str
     estimator: str = ""
     misfit: float = float("nan")
     terms: LawTerms = NO_TERMS
@@ -60,9 +69,14 @@ class BoxDimension:
         if self.reason:
             return f"<BoxDimension: none ({self.reason})>"
         return (
-            f"<BoxDimension {self.dimension:.4g} [{self.low:.4g}, {self.high:.4g}] from {self.n} "
-            f"sizes, {self.r_min:.4g} to {self.r_max:.4g} mm, by {self.estimator}>"
+            f"<BoxDimension {self.value:.4g} [{self.low:.4g}, {self.high:.4g}] from {self.n} "
+            f"sizes, {self.over[0]:.4g} to {self.over[1]:.4g} mm, by {self.estimator}>"
         )
+
+    @property
+    def dimension(self) -> float:
+        """The dimension, NaN where there is none."""
+        return self.value
 
     @property
     def determined(self) -> bool:
@@ -181,7 +195,7 @@ def box_dimension(
     # Boxes of sizes that fit a filled window count it exactly, others overhang it.
     if nodes == 1 or (fitting and nodes == domain.size) or _is_exact(cover, ladder):
         return replace(_of_cover(cover, ladder, "exact", side), ordinary=ordinary)
-    of_cover = -_line(sizes, count, used).slope
+    of_cover = -_line(sizes, count, used).slope.value
     law, means = law_of_means(extent, limits, of_cover, whole_cells)
     found = _of_law(cover, law, spacing) if law else _of_cover(cover, ladder, "cover", side)
     return replace(found, ordinary=ordinary, means=means)
@@ -267,16 +281,14 @@ def _of_law(cover: _Cover, law: FittedLaw, spacing) -> BoxDimension:
     low, high = np.clip(law.ends, *DIMENSIONS)
     terms = law.terms
     return BoxDimension(
-        dimension=law.law.dimension,
+        value=law.law.dimension,
         low=float(low),
         high=float(high),
-        r_min=float(law.sizes[0] * spacing),
-        r_max=float(law.sizes[-1] * spacing),
         n=law.sizes.size,
+        over=(float(law.sizes[0] * spacing), float(law.sizes[-1] * spacing)),
         r=cover.r,
         count=cover.count,
         used=cover.used & within(cover.sizes, law.sizes[0], law.sizes[-1]),
-        reason="",
         estimator="mean",
         misfit=law.law.misfit,
         terms=terms._replace(node_width=terms.node_width * spacing, extent=terms.extent * spacing),
@@ -291,26 +303,23 @@ def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
     r, count, used = cover.r, cover.count, cover.used
     line = _line(r, count, used)
     parts = _slopes_of_parts(np.log(r[used]), np.log(count[used]))
-    slopes = [line.slope_low, line.slope_high, *parts]
+    slopes = [line.slope.low, line.slope.high, *parts]
     line = _line(r, count, ladder)
-    slopes += [line.slope_low, line.slope_high]
-    law = np.exp(line.intercept + line.slope * np.log(r[ladder]))
+    slopes += [line.slope.low, line.slope.high]
+    slope, intercept = line.slope.value, line.intercept.value
+    law = np.exp(intercept + slope * np.log(r[ladder]))
     return BoxDimension(
-        dimension=0.0 - line.slope,  # a constant count gives 0, not -0
+        value=0.0 - slope,  # a constant count gives 0, not -0
         low=float(np.clip(0.0 - max(slopes), *DIMENSIONS)),
         high=float(np.clip(0.0 - min(slopes), *DIMENSIONS)),
-        r_min=float(r[ladder].min()),
-        r_max=float(r[ladder].max()),
         n=line.n,
+        over=(float(r[ladder].min()), float(r[ladder].max())),
         r=r,
         count=count,
         used=ladder,
-        reason="",
         estimator=estimator,
         misfit=float(np.sqrt(np.mean((law / count[ladder] - 1) ** 2))),
-        terms=LawTerms(
-            float(np.exp(line.intercept + line.slope * np.log(extent))), 0.0, 0.0, 0.0, extent
-        ),
+        terms=LawTerms(float(np.exp(intercept + slope * np.log(extent))), 0.0, 0.0, 0.0, extent),
     )
 
 
@@ -385,5 +394,4 @@ def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:
         Box sides, mm, and N(r).
     reason : str
     """
-    nan = float("nan")
-    return BoxDimension(nan, nan, nan, nan, nan, 0, r, count, np.zeros(r.size, dtype=bool), reason)
+    return BoxDimension(r=r, count=count, used=np.zeros(r.size, dtype=bool), reason=reason)

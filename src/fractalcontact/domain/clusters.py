@@ -7,6 +7,7 @@ import scipy.ndimage
 from numpy.typing import ArrayLike
 from scipy import special
 
+from ..core.estimate import Estimate, rows_of
 from ..core.intervals import CONFIDENCE
 
 #: Numbers kept of the clusters of a domain: name, unit, long name.
@@ -15,9 +16,7 @@ CLUSTER_FIELDS = {
     "largest_share": ("1", "fraction of the contact area in the largest cluster"),
     "cluster_area_mean": ("mm2", "mean area of a contact cluster"),
     "cluster_area_median": ("mm2", "median area of a contact cluster"),
-    "cluster_exponent": ("1", "beta of N(clusters of area a or more) ~ a^-beta"),
-    "cluster_exponent_low": ("1", "beta, lower end of the 95 % interval"),
-    "cluster_exponent_high": ("1", "beta, upper end of the 95 % interval"),
+    **rows_of("cluster_exponent", "1", "beta of N(clusters of area a or more) ~ a^-beta"),
     "cluster_fit_min": ("mm2", "smallest cluster in the fit of beta"),
     "cluster_fit_max": ("mm2", "largest cluster in the fit of beta"),
     "cluster_fit_n": ("1", "clusters in the fit of beta"),
@@ -140,14 +139,14 @@ def size_exponent(octaves: np.ndarray, sizes: np.ndarray, cell: float) -> dict[s
         and octaves[first:].sum() >= FEWEST_CLUSTERS
         for distance, estimate in [_geometric(octaves[first:])]
     ]
-    names = [f"cluster_exponent{end}" for end in ("", "_low", "_high")]
     if not fits:
-        nothing = dict.fromkeys((*names, "cluster_fit_min", "cluster_fit_max"), np.nan)
-        return {**nothing, "cluster_fit_n": 0.0, "cluster_fit_distance": np.nan}
+        nothing = dict.fromkeys(("cluster_fit_min", "cluster_fit_max"), np.nan)
+        nothing |= {"cluster_fit_n": 0.0, "cluster_fit_distance": np.nan}
+        return Estimate().columns("cluster_exponent") | nothing
     distance, first, estimate = min(fits)
     fitted = sizes[sizes >= 2**first]
     return {
-        **dict(zip(names, estimate, strict=True)),
+        **Estimate(*estimate).columns("cluster_exponent"),
         "cluster_fit_min": float(fitted.min()) * cell,
         "cluster_fit_max": float(fitted.max()) * cell,
         "cluster_fit_n": float(len(fitted)),

@@ -3,9 +3,10 @@
 import numpy as np
 from scipy import fft
 
+from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.kernel_cache import njit
-from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, NO_SLOPE, Slope, slope_of_sums
+from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, slope_of_sums
 from .box_counts import geometric_sizes
 
 #: Smallest and largest distance of the fit: cells, and fraction of the window's shorter side.
@@ -118,7 +119,7 @@ def _parts(shape):
 
 def correlation_dimension(
     domain: np.ndarray, spacing: float, fit_range: tuple[float, float] | None = None
-) -> Slope:
+) -> Estimate:
     """Correlation dimension D_2: pairs no farther apart than r grow as r^D_2.
 
     Parameters
@@ -133,9 +134,9 @@ def correlation_dimension(
 
     Returns
     -------
-    Slope
+    Estimate
         D_2 with its interval, and smallest and largest distance (mm) of the fit. Distances without
-        a pair are left out; `NO_SLOPE` with too few others.
+        a pair are left out; NaN with too few others.
 
     Notes
     -----
@@ -154,7 +155,7 @@ def correlation_dimension(
     else:
         distances = geometric_sizes(fit_range[0] / spacing, fit_range[1] / spacing)
     if distances[-1] >= min(domain.shape) or not domain.any():
-        return NO_SLOPE
+        return Estimate()
     pairs, lags = pair_counts(domain, distances)
     slope = slope_of_sums(
         distances * float(spacing),
@@ -162,7 +163,7 @@ def correlation_dimension(
         lambda sums: sums[:, 0] / lags,
         lambda sums: sums[:, 1] / lags,
     )
-    return slope._replace(value=2 + slope.value, low=2 + slope.low, high=2 + slope.high)
+    return slope.mapped(lambda exponent: 2 + exponent)
 
 
 def pair_distances(shape: tuple[int, ...]) -> np.ndarray:
@@ -188,7 +189,7 @@ def pairs_slope(distances: np.ndarray, pairs: np.ndarray, lags: np.ndarray) -> f
     known = pairs > 0
     if np.count_nonzero(known) < FEWEST_SCALES:
         return np.nan
-    return 2 + fit_line(np.log(distances[known]), np.log(pairs[known] / lags[known])).slope
+    return 2 + fit_line(np.log(distances[known]), np.log(pairs[known] / lags[known])).slope.value
 
 
 def expected_pairs(

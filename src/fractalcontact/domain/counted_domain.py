@@ -58,7 +58,7 @@ class CountedDomain:
         ordinary = self.box.ordinary
         return {
             "delta_sigma": self.box.dimension,
-            "delta_sigma_ordinary": np.nan if ordinary is None else ordinary.dimension,
+            "delta_sigma_ordinary": np.nan if ordinary is None else ordinary.value,
             "correlation_dimension": slope,
             "clusters": float(self.clusters[1]),
             "morisita": morisita_index(*self.quadrats)[0],

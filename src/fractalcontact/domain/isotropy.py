@@ -5,7 +5,8 @@ A domain that shrinks alike along both axes (isotropic scaling) has the same pro
 
 import numpy as np
 
-from ..core.intervals import INTERVAL, jackknife_error
+from ..core.estimate import Estimate, rows_of
+from ..core.intervals import jackknife_error
 from ..core.slope_of_sums import BLOCKS
 
 #: Nodes between which contact is compared: neighbours touch for being of one hill.
@@ -13,13 +14,14 @@ LAG = 2
 
 #: What is kept of every domain: name, unit, long name.
 LAG_FIELDS = {
-    f"contact_at_lag_{way}{end}": (
+    name: words
+    for way in ("along", "across")
+    for name, words in rows_of(
+        f"contact_at_lag_{way}",
         "1",
-        f"P(contact {LAG} nodes {words} | contact), along x and across y where nothing "
-        f"slides{of_end}",
-    )
-    for way, words in (("along", "along sliding"), ("across", "across sliding"))
-    for end, of_end in INTERVAL.items()
+        f"P(contact {LAG} nodes {way} sliding | contact), along x and across y where nothing "
+        "slides",
+    ).items()
 }
 
 
@@ -45,11 +47,7 @@ def contact_at_lag(domain: np.ndarray, direction: str, lag: int = LAG) -> dict[s
     along = 0 if direction in ("N", "S") else 1
     found: dict[str, float] = {}
     for way, axis in (("along", along), ("across", 1 - along)):
-        estimate = _conditional(domain, axis, lag)
-        found |= {
-            f"contact_at_lag_{way}{end}": value
-            for end, value in zip(INTERVAL, estimate, strict=True)
-        }
+        found |= _conditional(domain, axis, lag).columns(f"contact_at_lag_{way}")
     return found
 
 
@@ -57,17 +55,17 @@ def _conditional(domain, axis, lag):
     """P(contact at the lag | contact) along one axis, both ways, with its interval."""
     domain = np.moveaxis(np.asarray(domain, bool), axis, 0)
     if domain.shape[0] <= lag:
-        return (np.nan,) * 3
+        return Estimate()
     first, second = domain[:-lag], domain[lag:]
     sums = np.array([_by_part(first & second), (_by_part(first) + _by_part(second)) / 2])
     total = sums.sum(axis=1)
     if total[1] == 0:
-        return (np.nan,) * 3
+        return Estimate()
     value = total[0] / total[1]
     left = total[:, np.newaxis] - sums[:, sums[1] > 0]
     with np.errstate(invalid="ignore"):
         error = jackknife_error(left[0] / left[1])
-    return value, max(value - error, 0.0), min(value + error, 1.0)
+    return Estimate(value, max(value - error, 0.0), min(value + error, 1.0))
 
 
 def _by_part(values):

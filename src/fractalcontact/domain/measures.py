@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 
 from ..core.arrays import padded
 from ..core.datasets import labelled
-from ..core.intervals import INTERVAL
+from ..core.estimate import Estimate, rows_of
 from ..core.labels import cf_attrs
-from ..core.slope_of_sums import NO_SLOPE
 from .box_counts import box_count, window_sizes
 from .box_dimension import dimension_of_domain, local_slopes
 from .correlation import correlation_dimension
@@ -23,10 +22,6 @@ SLOPES = {
     "correlation_dimension": "correlation dimension of the nodes in contact",
     "lacunarity_slope": "slope of log lacunarity against log box side",
 }
-
-
-#: Endings of the numbers that a slope is stored as, in the order of `core.slope_of_sums.Slope`.
-_ENDS = ("", "_low", "_high", "_r_min", "_r_max", "_n")
 
 
 def order_name(q: float) -> str:
@@ -67,19 +62,18 @@ def domain_measures(
 def _row(domain, spacing, gliding, pressure, fit_range):
     """:func:`domain_measures` of a domain whose lacunarity is known."""
     box = dimension_of_domain(domain, spacing, fit_range=fit_range)
-    slopes = {
-        "delta_sigma": (box.dimension, box.low, box.high, box.r_min, box.r_max, box.n),
-        "correlation_dimension": correlation_dimension(domain, spacing),
-        "lacunarity_slope": gliding.slope if domain.any() else NO_SLOPE,
-    }
     mass = domain if pressure is None else pressure
-    for q, slope in generalised_dimensions(mass, spacing).items():
-        slopes[order_name(q)] = slope
-    return {
-        f"{name}{end}": float(value)
-        for name, slope in slopes.items()
-        for end, value in zip(_ENDS, slope, strict=True)
+    slopes = {
+        "delta_sigma": box,
+        "correlation_dimension": correlation_dimension(domain, spacing),
+        "lacunarity_slope": gliding.slope if domain.any() else Estimate(),
+        **{order_name(q): slope for q, slope in generalised_dimensions(mass, spacing).items()},
     }
+    row: dict[str, float] = {}
+    for name, slope in slopes.items():
+        lengths = {f"{name}_r_min": slope.over[0], f"{name}_r_max": slope.over[1]}
+        row |= slope.columns(name) | lengths | {f"{name}_n": slope.n}
+    return {name: float(value) for name, value in row.items()}
 
 
 def measures_of_map_states(
@@ -172,9 +166,7 @@ def measures_of_states(
     )
     curve_values = {
         "local_slope": local,
-        "lacunarity": np.array([curve.value for curve in curves]),
-        "lacunarity_low": np.array([curve.low for curve in curves]),
-        "lacunarity_high": np.array([curve.high for curve in curves]),
+        **Estimate.stack(curves, (len(curves), -1)).columns("lacunarity"),
     }
     coords = {
         "normal_force": ("normal_force", forces, cf_attrs("N", "normal force F")),
@@ -193,12 +185,8 @@ _CURVES = {
         "local slope of log N(r) over a doubling of the box side",
     ),
     **{
-        f"lacunarity{end}": (
-            ("normal_force", "gliding_side"),
-            "1",
-            f"gliding-box lacunarity{words}",
-        )
-        for end, words in INTERVAL.items()
+        name: (("normal_force", "gliding_side"), *words)
+        for name, words in rows_of("lacunarity", "1", "gliding-box lacunarity").items()
     },
 }
 
@@ -209,18 +197,20 @@ def _slope_variables(dims, name, long_name, rows, keys):
     ``keys`` are those of the slopes in the rows, along the last dimension where there are many.
     """
     table = {
-        **{f"{name}{end}": (dims, "1", f"{long_name}{words}") for end, words in INTERVAL.items()},
-        f"{name}_r_min": (dims, "mm", f"{long_name}: smallest length fitted"),
-        f"{name}_r_max": (dims, "mm", f"{long_name}: largest length fitted"),
-        f"{name}_n": (dims, "1", f"{long_name}: lengths fitted"),
+        **rows_of(name, "1", long_name),
+        f"{name}_r_min": ("mm", f"{long_name}: smallest length fitted"),
+        f"{name}_r_max": ("mm", f"{long_name}: largest length fitted"),
+        f"{name}_n": ("1", f"{long_name}: lengths fitted"),
     }
     values = {
-        f"{name}{end}": np.array([[row[f"{key}{end}"] for key in keys] for row in rows], float)
-        for end in _ENDS
+        of: np.array(
+            [[row[f"{key}{of.removeprefix(name)}"] for key in keys] for row in rows], float
+        )
+        for of in table
     }
     if isinstance(dims, str):
         values = {key: value[:, 0] for key, value in values.items()}
-    return labelled(table, values)
+    return labelled({of: (dims, *words) for of, words in table.items()}, values)
 
 
 def _local_slopes(domains, spacing):

@@ -5,14 +5,15 @@ what goes on beyond the window too, and nothing depends on where a grid of boxes
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..core.arguments import real_array, refuse_masked, whole_numbers
+from ..core.estimate import Estimate
 from ..core.intervals import jackknife_error
 from ..core.kernel_cache import njit
-from ..core.slope_of_sums import BLOCKS, NO_SLOPE, Slope, slope_of_sums
+from ..core.slope_of_sums import BLOCKS, slope_of_sums
 from .box_counts import whole_sizes
 
 #: Smallest and largest box of the fits: cells, and fraction of the window's shorter side.
@@ -29,14 +30,12 @@ ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
 FEWEST = 10
 
 
-class SizeCurve(NamedTuple):
-    """A number at each box size, its interval, and the slope of its logarithm."""
+@dataclass(frozen=True, kw_only=True)
+class SizeCurve(Estimate):
+    """Numbers (k,) at box sizes ``r`` (k,), and the slope of their logarithm."""
 
     r: np.ndarray
-    value: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    slope: Slope
+    slope: Estimate
 
 
 def gliding_moments(
@@ -154,7 +153,7 @@ def lacunarity(mass: np.ndarray, spacing: float) -> SizeCurve:
     fitted = np.isin(sizes, fit_sizes(mass.shape))
     slope = slope_of_sums(sizes[fitted] * float(spacing), sums[fitted], _lacunarity)
     r = sizes * float(spacing)
-    return SizeCurve(r, value, value * np.exp(-error), value * np.exp(error), slope)
+    return SizeCurve(value, value * np.exp(-error), value * np.exp(error), r=r, slope=slope)
 
 
 def _lacunarity(sums):
@@ -165,7 +164,7 @@ def _lacunarity(sums):
 
 def generalised_dimensions(
     mass: np.ndarray, spacing: float, orders: tuple[float, ...] = ORDERS
-) -> dict[float, Slope]:
+) -> dict[float, Estimate]:
     """Generalised dimensions D_q of a mass, by the moments of gliding boxes.
 
     D_q (q - 1) is the slope of log Z_q against log r, Z_q = r^(2q - 2) <p^q> / <p>^q, the sum of
@@ -185,14 +184,14 @@ def generalised_dimensions(
 
     Returns
     -------
-    dict of float to Slope
+    dict of float to Estimate
         D_q, its interval, and the smallest and largest box (mm) of the fit; none of fewer
         than :data:`FEWEST` nodes.
     """
     mass = _checked(mass)
     sizes = fit_sizes(mass.shape)
     if sizes.size == 0 or np.count_nonzero(mass) < FEWEST:
-        return dict.fromkeys(orders, NO_SLOPE)
+        return dict.fromkeys(orders, Estimate())
     moments, places = gliding_moments(mass, sizes, [1.0, *orders])
     first, entropy = moments[:, 0], moments[:, -1]
     dimensions = {}
@@ -221,5 +220,4 @@ def _normalised(q):
 def _dimension(slope, q):
     """D_q from the slope of its statistic."""
     factor = 1.0 if q == 1 else 1 / (q - 1)
-    ends = sorted((2 + factor * slope.low, 2 + factor * slope.high))
-    return slope._replace(value=2 + factor * slope.value, low=ends[0], high=ends[1])
+    return slope.mapped(lambda exponent: 2 + factor * exponent, falling=factor < 0)

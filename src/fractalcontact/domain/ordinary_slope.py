@@ -4,10 +4,11 @@ Boxes of 1, 2, 4, ... cells, every grid origin tried, a straight line through lo
 between the cut-offs: what a textbook calls box counting, without a model of the counts.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.ranges import within
 from ..core.slope_of_sums import BLOCKS
@@ -16,22 +17,21 @@ from .cut_offs import between_cut_offs
 from .mean_law import block_error
 
 
-class OrdinarySlope(NamedTuple):
-    """Slope of the minimal cover with its interval and range; NaN and 0 where there is none."""
+@dataclass(frozen=True, kw_only=True)
+class OrdinarySlope(Estimate):
+    """Slope of the minimal cover over sizes in cells, and the counts behind it.
 
-    dimension: float
-    low: float
-    high: float
-    r_min: float
-    """Cells."""
-    r_max: float
-    n: int
+    Attributes
+    ----------
+    sizes : (k,) int64 ndarray
+        Cells: the powers of two to half of the window.
+    counts : (k,) ndarray
+    used : (k,) bool ndarray
+    """
+
     sizes: np.ndarray
-    """(k,) int64, cells: the powers of two to half of the window."""
     counts: np.ndarray
-    """(k,)"""
     used: np.ndarray
-    """(k,) bool"""
 
 
 def dyadic_sizes(shape: tuple[int, ...]) -> np.ndarray:
@@ -69,25 +69,23 @@ def ordinary_slope(
     """
     nodes = int(np.count_nonzero(extent))
     used = cover_used(count, sizes, nodes, shape, limits)
-    line = fit_line(np.log(sizes[used]), np.log(count[used]))
-    nothing = (np.nan,) * 5
-    if nodes < 2 or not np.isfinite(line.slope):
-        return OrdinarySlope(*nothing, 0, sizes, count, np.zeros(sizes.size, bool))
+    slope = fit_line(np.log(sizes[used]), np.log(count[used])).slope
+    if nodes < 2 or not np.isfinite(slope.value):
+        unused = np.zeros(sizes.size, bool)
+        return OrdinarySlope(sizes=sizes, counts=count, used=unused)
     parts = mean_count(extent, sizes[used], blocks=BLOCKS)
     error = block_error(parts, lambda left: cover_slope(left, sizes[used]))
-    half = np.hypot(error, line.slope_high - line.slope)
-    ends = np.clip((-line.slope - half, -line.slope + half), 0.0, 2.0)
-    r = sizes[used].astype(float)
+    half = np.hypot(error, slope.high - slope.value)
+    ends = np.clip((-slope.value - half, -slope.value + half), 0.0, 2.0)
     return OrdinarySlope(
-        0.0 - line.slope,  # a constant count gives 0, not -0
-        float(ends[0]),
-        float(ends[1]),
-        float(r[0]),
-        float(r[-1]),
-        line.n,
-        sizes,
-        count,
-        used,
+        value=0.0 - slope.value,  # a constant count gives 0, not -0
+        low=float(ends[0]),
+        high=float(ends[1]),
+        n=slope.n,
+        over=(float(sizes[used][0]), float(sizes[used][-1])),
+        sizes=sizes,
+        counts=count,
+        used=used,
     )
 
 

@@ -35,13 +35,10 @@ class Trend(NamedTuple):
     @property
     def beyond_random(self) -> str:
         """Whether it goes otherwise than that of as many random cells."""
-        if not np.isfinite(self.departure.slope_low):
+        slope = self.departure.slope
+        if not np.isfinite(slope.low):
             return UNDETERMINED
-        return (
-            BEYOND_RANDOM
-            if self.departure.slope_low * self.departure.slope_high > 0
-            else LIKE_RANDOM
-        )
+        return BEYOND_RANDOM if slope.low * slope.high > 0 else LIKE_RANDOM
 
 
 def pressure_trend(pressure: ArrayLike, value: ArrayLike, random: ArrayLike) -> Trend:
@@ -63,8 +60,8 @@ def pressure_trend(pressure: ArrayLike, value: ArrayLike, random: ArrayLike) -> 
     line = fit_line(decades, value)
     departure = fit_line(decades, value - np.asarray(random, float))
     verdict = UNDETERMINED
-    if line.slope_low > 0:
+    if line.slope.low > 0:
         verdict = RISES
-    elif line.slope_high < 0:
+    elif line.slope.high < 0:
         verdict = FALLS
     return Trend(verdict, line, departure)

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
+from ..core.estimate import Estimate, names_of, rows_of
 from ..core.fitting import fit_line
 from ..core.intervals import CONFIDENCE
 from ..core.labels import cf_attrs
@@ -73,7 +74,7 @@ def renormalisation(
         raise ValueError(f"a contact area cannot be negative: {float(area.min())} mm2")
     nodes = area / s**2 if nodes is None else nodes
     touching = area.where(nodes >= fewest - 1e-6)
-    slope, low, high, n, r2 = xr.apply_ufunc(
+    *slope, n, r2 = xr.apply_ufunc(
         _area_exponent,
         np.log(s),
         np.log(touching),
@@ -82,16 +83,14 @@ def renormalisation(
         output_core_dims=[[]] * 5,
         vectorize=True,
     )
-    delta = 2 - slope
-    measure = hausdorff_measure(s, touching, delta)
+    delta = Estimate(*slope).mapped(lambda exponent: 2 - exponent, falling=True)
+    measure = hausdorff_measure(s, touching, delta.value)
     mean_log, spread_log = (
         np.log(measure).mean(RESOLUTION),
         np.log(measure).std(RESOLUTION, ddof=1),
     )
     values = {
-        "delta_sigma": delta,
-        "delta_sigma_low": 2 - high,
-        "delta_sigma_high": 2 - low,
+        **delta.columns("delta_sigma"),
         "n": n.astype(int),
         "r2": r2,
         "hausdorff_measure": np.exp(mean_log),
@@ -104,9 +103,7 @@ def renormalisation(
 
 #: Unit and long name of what renormalisation gives.
 _RENORMALISED = {
-    "delta_sigma": ("1", "dimension of the contact domain from A_r ~ s^(2 - Delta_sigma)"),
-    "delta_sigma_low": ("1", "lower end of the 95 % interval of Delta_sigma"),
-    "delta_sigma_high": ("1", "upper end of the 95 % interval of Delta_sigma"),
+    **rows_of("delta_sigma", "1", "dimension of the contact domain from A_r ~ s^(2 - Delta_sigma)"),
     "n": ("1", "resolutions fitted"),
     "r2": ("1", "coefficient of determination of the fit"),
     "hausdorff_measure": ("mm^delta_sigma", "fractal measure H_D of the contact domain"),
@@ -127,10 +124,11 @@ def _described(values, words) -> xr.Dataset:
 def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> tuple[float, ...]:
     """Slope of log A over log s with its interval, resolutions fitted and r2."""
     line = fit_line(log_s, log_area)
-    if np.isnan(line.slope):
+    slope = line.slope.value
+    if np.isnan(slope):
         return np.nan, np.nan, np.nan, float(line.n), np.nan
-    half = max(line.slope_high - line.slope, _counting_error(log_s, log_area, nodes))
-    return line.slope, line.slope - half, line.slope + half, float(line.n), line.r2
+    half = max(line.slope.high - slope, _counting_error(log_s, log_area, nodes))
+    return slope, slope - half, slope + half, float(line.n), line.r2
 
 
 def _counting_error(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> float:
@@ -178,22 +176,13 @@ def nominal_pressure(sigma_star: Any, delta_sigma: Any, b: Any) -> Any:
     return sigma_star * b ** (delta_sigma - 2)
 
 
-def compare_dimensions(
-    area: xr.DataArray,
-    area_low: xr.DataArray,
-    area_high: xr.DataArray,
-    box: xr.DataArray,
-    box_low: xr.DataArray,
-    box_high: xr.DataArray,
-) -> xr.Dataset:
+def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
     """Set two estimates of Delta_sigma side by side: from A_r(s) and from box counting.
 
     Parameters
     ----------
-    area, area_low, area_high : DataArray
-        Delta_sigma from `renormalisation` with its 95 % interval.
-    box, box_low, box_high : DataArray
-        Delta_sigma from box counting with its interval.
+    by_area, by_boxes : xr.Dataset
+        `delta_sigma` with its interval, from `renormalisation` and from box counting.
 
     Returns
     -------
@@ -203,15 +192,15 @@ def compare_dimensions(
         the sum of squares); and whether they `disagree`: the interval of the difference leaves out
         zero.
     """
+    area, area_low, area_high = (by_area[name] for name in names_of("delta_sigma"))
+    box, box_low, box_high = (by_boxes[name] for name in names_of("delta_sigma"))
     difference = area - box
     low = difference - np.hypot(area - area_low, box_high - box)
     high = difference + np.hypot(area_high - area, box - box_low)
     values = {
         "delta_sigma_area": area,
         "delta_sigma_box": box,
-        "difference": difference,
-        "difference_low": low,
-        "difference_high": high,
+        **Estimate(difference, low, high).columns("difference"),
         "disagree": (low > 0) | (high < 0),
     }
     return _described(values, _COMPARED)
@@ -221,8 +210,6 @@ def compare_dimensions(
 _COMPARED = {
     "delta_sigma_area": ("1", "Delta_sigma from the contact area over resolutions"),
     "delta_sigma_box": ("1", "Delta_sigma from box counting"),
-    "difference": ("1", "Delta_sigma from area less that from box counting"),
-    "difference_low": ("1", "lower end of the 95 % interval of the difference"),
-    "difference_high": ("1", "upper end of the 95 % interval of the difference"),
+    **rows_of("difference", "1", "Delta_sigma from area less that from box counting"),
     "disagree": ("1", "the two estimates of Delta_sigma differ by more than their intervals"),
 }

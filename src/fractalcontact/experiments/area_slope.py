@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.intervals import INTERVAL, mean_interval
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..elastic.halfspace import HalfSpace
 from ..mechanics import theory
@@ -101,10 +101,9 @@ def _labelled(
         result[name] = (dims, fractions, cf_attrs("1", f"A_r/A_0 ({prefix.strip('_') or 'raw'})"))
         kappa = fractions / loads
         result[f"{prefix}kappa"] = (dims, kappa, cf_attrs("1", words))
-        means = mean_interval(kappa, axis=1)[:3]
-        for (ending, of_end), values in zip(INTERVAL.items(), means, strict=True):
-            attrs = cf_attrs("1", f"mean over seeds of {words}{of_end}")
-            result[f"{prefix}mean_kappa{ending}"] = (("surface", "reduced_pressure"), values, attrs)
+        mean = mean_interval(kappa, axis=1)
+        text = f"mean over seeds of {words}"
+        result.update(mean.variables(f"{prefix}mean_kappa", (dims[0], dims[2]), "1", text))
         result[f"{prefix}mean_kappa_deviation"] = result[f"{prefix}kappa"].std("seed", ddof=1)
         result[f"{prefix}mean_kappa_deviation"].attrs = cf_attrs(
             "1", f"standard deviation between seeds of {words}"

@@ -12,7 +12,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..core.intervals import INTERVAL, mean_interval
+from ..core.estimate import Estimate
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..roughness.curves import ratio
 from ..roughness.dimension import measured_exponents
@@ -67,9 +68,9 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
             (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off
         )
         found, fit_range = measured_exponents(surface, SPACING)
-        seen[:, i, j, m, k] = np.array(fit_range.roll_off[:3]) / (nodes * SPACING)
+        seen[:, i, j, m, k] = np.array(fit_range.roll_off.ends) / (nodes * SPACING)
         for n, estimate in enumerate(found.values()):
-            estimates[:, n, i, j, m, k] = *estimate.hurst["both"], estimate.slope_hurst
+            estimates[:, n, i, j, m, k] = *estimate.hurst["both"].ends, estimate.slope_hurst
     coords = {
         "estimator": names,
         "hurst": ("hurst", exponents, cf_attrs("1", "Hurst exponent of the surfaces")),
@@ -94,7 +95,8 @@ def _numbered(*values: np.ndarray) -> Iterator[list[tuple[int, Any]]]:
 def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) -> xr.Dataset:
     """The dataset from H, the ends of its interval and the slopes' H, and from roll-offs seen."""
     dims = tuple(coords)
-    value, low, high, slope = estimates
+    *ends, slope = estimates
+    value, low, high = ends
     truth = coords["hurst"][1][:, np.newaxis, np.newaxis, np.newaxis]
     bias = mean_interval(value - truth, axis=-1)
     covered = (low <= truth) & (truth <= high)
@@ -104,11 +106,6 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
     n = np.isfinite(value).sum(axis=-1)
     n = np.where(n > 1, n, np.nan)
     table = {
-        **{
-            f"found{end}": (dims, "1", f"Hurst exponent by the estimator{of}")
-            for end, of in INTERVAL.items()
-        },
-        **{f"bias{end}": (over, "1", f"mean bias of H{of}") for end, of in INTERVAL.items()},
         "slope_bias": (over, "1", "mean bias of H before known bias is taken off"),
         "scatter": (over, "1", "standard deviation of H between surfaces"),
         "rms_error": (over, "1", "root mean square error of H"),
@@ -119,8 +116,6 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
         "roll_off_coverage": (over[1:], "1", f"{words} the roll-off"),
     }
     values = {
-        **dict(zip((f"found{end}" for end in INTERVAL), (value, low, high), strict=True)),
-        **dict(zip((f"bias{end}" for end in INTERVAL), bias[:3], strict=True)),
         "slope_bias": mean_interval(slope - truth, axis=-1).value,
         "scatter": np.sqrt(_mean((value - _mean(value)[..., np.newaxis]) ** 2) * n / (n - 1)),
         "rms_error": np.sqrt(_mean((value - truth) ** 2)),
@@ -130,7 +125,11 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
         "roll_off_seen": np.isfinite(seen[0]).mean(axis=-1),
         "roll_off_coverage": holds.mean(axis=-1),
     }
-    return labelled_dataset(table, values, coords=coords)
+    result = labelled_dataset(table, values, coords=coords)
+    found = Estimate(value, low, high)
+    result.update(found.variables("found", dims, "1", "Hurst exponent by the estimator"))
+    result.update(bias.variables("bias", over, "1", "mean bias of H"))
+    return result
 
 
 def _mean(values: np.ndarray) -> np.ndarray:

@@ -14,13 +14,13 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset
+from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL, mean_interval
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..domain.box_counts import box_count
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
-from ..domain.ordinary_slope import OrdinarySlope
 from ..domain.renormalisation import renormalisation
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.joint import prefractal
@@ -32,20 +32,19 @@ from .units import E_STAR, RMS_FRACTION, SIDE
 #: What the paper reads off its Fig. 8, of a surface of this dimension.
 PAPER_DELTA_SIGMA, PAPER_DIMENSION = 1.39, 2.1
 
+
+def _words_of(name: str, words: str) -> dict[str, str]:
+    return {of: text for of, (_, text) in rows_of(name, "1", words).items()}
+
+
 #: What is kept of every surface under every load, without a unit.
 ESTIMATES = {
-    "delta_sigma_area": "Delta_sigma from A_r(s) over the resolutions at one force",
-    "delta_sigma_area_low": "Delta_sigma from A_r(s), lower end of its 95 % interval",
-    "delta_sigma_area_high": "Delta_sigma from A_r(s), upper end of its 95 % interval",
-    "delta_sigma_box": "Delta_sigma from box counts at the finest resolution",
-    "delta_sigma_box_low": "Delta_sigma from box counts, lower end of its 95 % interval",
-    "delta_sigma_box_high": "Delta_sigma from box counts, upper end of its 95 % interval",
-    "delta_ordinary": "ordinary slope of the box counts at the finest resolution",
-    "delta_ordinary_low": "ordinary slope of box counts, lower end of its 95 % interval",
-    "delta_ordinary_high": "ordinary slope of box counts, upper end of its 95 % interval",
-    "delta_pairs": "correlation dimension of the contact domain at the finest resolution",
-    "delta_pairs_low": "correlation dimension, lower end of its 95 % interval",
-    "delta_pairs_high": "correlation dimension, upper end of its 95 % interval",
+    **_words_of("delta_sigma_area", "Delta_sigma from A_r(s) over the resolutions at one force"),
+    **_words_of("delta_sigma_box", "Delta_sigma from box counts at the finest resolution"),
+    **_words_of("delta_ordinary", "ordinary slope of the box counts at the finest resolution"),
+    **_words_of(
+        "delta_pairs", "correlation dimension of the contact domain at the finest resolution"
+    ),
     "box_fit_min": "smallest box fitted over the finest spacing",
     "box_fit_max": "largest box fitted over the finest spacing",
 }
@@ -186,26 +185,14 @@ def _estimates(
     area = xr.DataArray(nodes, dims=("reduced_pressure", "resolution")) * s**2
     by_area = renormalisation(s, area, xr.DataArray(forces, dims="reduced_pressure"))
     return {
-        **{f"delta_sigma_area{end}": by_area[f"delta_sigma{end}"].values for end in INTERVAL},
-        "delta_sigma_box": [box.dimension for box in boxes],
-        "delta_sigma_box_low": [box.low for box in boxes],
-        "delta_sigma_box_high": [box.high for box in boxes],
-        **_ordinary([box.ordinary for box in boxes]),
-        "delta_pairs": [line.value for line in pairs],
-        "delta_pairs_low": [line.low for line in pairs],
-        "delta_pairs_high": [line.high for line in pairs],
-        "box_fit_min": [box.r_min / spacing for box in boxes],
-        "box_fit_max": [box.r_max / spacing for box in boxes],
+        **Estimate.read(by_area, "delta_sigma").columns("delta_sigma_area"),
+        **Estimate.stack(boxes).columns("delta_sigma_box"),
+        **Estimate.stack(box.ordinary or NO_ESTIMATE for box in boxes).columns("delta_ordinary"),
+        **Estimate.stack(pairs).columns("delta_pairs"),
+        "box_fit_min": [box.over[0] / spacing for box in boxes],
+        "box_fit_max": [box.over[1] / spacing for box in boxes],
         "nodes": nodes,
         "occupied": occupied,
-    }
-
-
-def _ordinary(slopes: Sequence[OrdinarySlope | None]) -> dict[str, list[float]]:
-    """Ordinary slopes (load) with their intervals; NaN without contact."""
-    return {
-        f"delta_ordinary{end}": [np.nan if s is None else getattr(s, field) for s in slopes]
-        for end, field in zip(INTERVAL, ("dimension", "low", "high"), strict=True)
     }
 
 
@@ -274,11 +261,10 @@ def _add_means(result: xr.Dataset) -> None:
     ):
         values = result[name]
         dims = tuple(dim for dim in values.dims if dim != "seed")
-        means = mean_interval(values.values, axis=values.dims.index("seed"))
-        for ending, mean in zip(INTERVAL, means[:3], strict=True):
-            words = f"mean over seeds of {values.attrs['long_name']}{INTERVAL[ending]}"
-            result[f"mean_{name}{ending}"] = (dims, mean, cf_attrs("1", words))
-        result[f"mean_{name}_n"] = (dims, means.n, cf_attrs("1", "seeds that have it"))
+        mean = mean_interval(values.values, axis=values.dims.index("seed"))
+        words = f"mean over seeds of {values.attrs['long_name']}"
+        result.update(mean.variables(f"mean_{name}", dims, "1", words))
+        result[f"mean_{name}_n"] = (dims, mean.n, cf_attrs("1", "seeds that have it"))
 
 
 def _add_trends(result: xr.Dataset) -> None:
@@ -298,11 +284,9 @@ def _add_trends(result: xr.Dataset) -> None:
         ("decade", by_load, decade, ("dimension", "size"), "with each decade of the load"),
     ):
         x = np.repeat(x, rows.shape[3])
-        lines = [fit_line(x, rows[index].ravel()) for index in np.ndindex(rows.shape[:2])]
-        for ending, of_end in INTERVAL.items():
-            fitted = np.reshape([getattr(line, f"slope{ending}") for line in lines], rows.shape[:2])
-            text = f"change of the difference {words}{of_end}"
-            result[f"{name}{ending}"] = (dims, fitted, cf_attrs("1", text))
+        each = (fit_line(x, rows[index].ravel()).slope for index in np.ndindex(rows.shape[:2]))
+        change = Estimate.stack(each, rows.shape[:2])
+        result.update(change.variables(name, dims, "1", f"change of the difference {words}"))
 
 
 def summary(result: xr.Dataset) -> str:

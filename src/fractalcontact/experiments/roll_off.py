@@ -13,7 +13,7 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.directions import DIRECTIONS
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL, mean_interval
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from ..mechanics.joint import (
@@ -75,11 +75,9 @@ def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[in
     v = result["rigid_offset"].values
     second = v >= v[-1] / 2
     opened = result["rigid_dilatancy"].mean("direction").transpose("surface", "seed", ...).values
-    slopes = [[fit_line(v[second], row[second]).slope for row in rows] for rows in opened]
-    means = mean_interval(slopes, axis=1)[:3]
-    for (ending, end), values in zip(INTERVAL.items(), means, strict=True):
-        words = f"slope of the rigid dilatancy over the second half of v, mean over seeds{end}"
-        result[f"slope{ending}"] = ("surface", values, cf_attrs("1", words))
+    slopes = [[fit_line(v[second], row[second]).slope.value for row in rows] for rows in opened]
+    words = "slope of the rigid dilatancy over the second half of v, mean over seeds"
+    result.update(mean_interval(slopes, axis=1).variables("slope", "surface", "1", words))
     result.attrs = {"roll_off": recipe["roll_off"], "window": window}
     return result
 

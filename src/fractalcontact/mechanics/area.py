@@ -4,8 +4,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from ..core.estimate import Estimate, rows_of
 from ..core.fitting import FEWEST_POINTS, fit_line
-from ..core.intervals import INTERVAL, mean_interval
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..roughness.dimension import slope_statistics
@@ -215,30 +216,13 @@ def area_laws(
 
 
 #: What is kept of a law A_r ~ F^m: name, field of the fit in logarithms, unit, long name.
-LAW = (
-    ("exponent", "slope", "1", "exponent m of real contact area against force"),
-    ("exponent_low", "slope_low", "1", "exponent m, lower end of the 95 % interval"),
-    ("exponent_high", "slope_high", "1", "exponent m, upper end of the 95 % interval"),
-    ("unit_area", "intercept", "mm2", "real contact area at 1 N by the fitted law"),
-    (
-        "unit_area_low",
-        "intercept_low",
-        "mm2",
-        "real contact area at 1 N, lower end of the 95 % interval",
-    ),
-    (
-        "unit_area_high",
-        "intercept_high",
-        "mm2",
-        "real contact area at 1 N, upper end of the 95 % interval",
-    ),
-    ("force_low", "x_min", "N", "smallest force fitted"),
-    ("force_high", "x_max", "N", "largest force fitted"),
-    ("n", "n", "1", "loads fitted"),
-)
-
-#: Fields of a fit in logarithms that are logarithms themselves.
-_LOGARITHMS = ("intercept", "intercept_low", "intercept_high", "x_min", "x_max")
+LAW = {
+    **rows_of("exponent", "1", "exponent m of real contact area against force"),
+    **rows_of("unit_area", "mm2", "real contact area at 1 N by the fitted law"),
+    "force_low": ("N", "smallest force fitted"),
+    "force_high": ("N", "largest force fitted"),
+    "n": ("1", "loads fitted"),
+}
 
 
 def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
@@ -251,11 +235,14 @@ def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
         lines = np.empty(area.shape[:2], object)
         for index in np.ndindex(lines.shape):
             lines[index] = fit_line(force[fitted[index]], area[index][fitted[index]])
-        for key, field, units, words in LAW:
-            values = np.array([getattr(line, field) for line in lines.flat]).reshape(lines.shape)
-            values = np.exp(values) if field in _LOGARITHMS else values
+        exponent = Estimate.stack((line.slope for line in lines.flat), lines.shape)
+        at_one = Estimate.stack((line.intercept for line in lines.flat), lines.shape)
+        first, last = np.exp(exponent.over)
+        values = exponent.columns("exponent") | at_one.mapped(np.exp).columns("unit_area")
+        values |= {"force_low": first, "force_high": last, "n": exponent.n}
+        for key, (units, words) in LAW.items():
             kind = ", corrected area" if prefix else ""
-            result[prefix + key] = (dims, values, cf_attrs(units, words + kind))
+            result[prefix + key] = (dims, values[key], cf_attrs(units, words + kind))
     _add_departure(result, curves)
     for prefix, name, fewest, _ in _AREAS:
         words = f"why there is no law of the {name.replace('_', ', ')}"
@@ -315,15 +302,10 @@ def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.D
         light = (curves["area_share"] > (fewest - 0.5) * node) & (reduced <= LIGHT_LOAD)
         condition = f"{fewest} nodes in contact at sigma_0 / (E* h'_rms) <= {LIGHT_LOAD:g}"
         result[f"{prefix}light"] = light.assign_attrs(cf_attrs("1", condition))
-        means = xr.apply_ufunc(
-            lambda values: mean_interval(values, axis=-1)[:3],
-            kappa.where(light),
-            input_core_dims=[["normal_force"]],
-            output_core_dims=[[], [], []],
-        )
-        for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
-            text = f"mean of {words}, at light load{of_end}"
-            result[f"{prefix}mean_kappa{ending}"] = mean.assign_attrs(cf_attrs("1", text))
+        at_light = kappa.where(light).transpose(..., "normal_force")
+        mean = mean_interval(at_light.values, axis=-1)
+        text = f"mean of {words}, at light load"
+        result.update(mean.variables(f"{prefix}mean_kappa", at_light.dims[:-1], "1", text))
         n = light.sum("normal_force")
         result[f"{prefix}mean_kappa_n"] = n.assign_attrs(cf_attrs("1", "loads in the mean"))
         reason = xr.where(

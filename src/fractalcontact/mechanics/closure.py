@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from ..core.estimate import Estimate
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL
 from ..core.labels import cf_attrs
 from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..elastic.halfspace import rectangle_mean_displacement
@@ -263,14 +263,12 @@ def _add_conductance(curves: xr.Dataset, e_star: float) -> None:
         log_conductance = np.log(resolved.transpose(*dims, "normal_force").values)
     shape = log_conductance.shape[:-1]
     fits = [fit_line(log_pressure, row) for row in log_conductance.reshape(-1, len(log_pressure))]
-    for ending, of_end in INTERVAL.items():
-        values = np.array([getattr(fit, f"slope{ending}") for fit in fits]).reshape(shape)
-        words = f"exponent of conductance against pressure{of_end}"
-        curves[f"conductance_exponent{ending}"] = (dims, values, cf_attrs("1", words))
-    for name, field in (("low", "x_min"), ("high", "x_max")):
-        values = np.exp([getattr(fit, field) for fit in fits]).reshape(shape)
+    exponent = Estimate.stack((fit.slope for fit in fits), shape)
+    words = "exponent of conductance against pressure"
+    curves.update(exponent.variables("conductance_exponent", dims, "1", words))
+    for name, pressure in zip(("low", "high"), np.exp(exponent.over), strict=True):
         words = f"{name}est pressure of that fit"
-        curves[f"conductance_pressure_{name}"] = (dims, values, cf_attrs("MPa", words))
+        curves[f"conductance_pressure_{name}"] = (dims, pressure, cf_attrs("MPa", words))
 
 
 def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:

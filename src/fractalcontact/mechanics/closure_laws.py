@@ -4,13 +4,14 @@ Both have two parameters and are fitted by least squares in the closure to the s
 their misfits can be compared.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
@@ -35,40 +36,32 @@ HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED, NEITHER = LAWS = (
 
 
 class Hyperbola(NamedTuple):
-    """sigma_0 = k_ni w / (1 - w/w_m) (Bandis et al. 1983), with 95 % intervals.
+    """sigma_0 = k_ni w / (1 - w/w_m) (Bandis et al. 1983), k_ni in MPa/mm and w_m in mm.
 
     ``misfit`` is the rms of the residual closure as a fraction of the largest closure fitted;
     ``reason`` says why there is no fit, else it is empty.
     """
 
-    k_ni: float
-    k_ni_low: float
-    k_ni_high: float
-    w_m: float
-    w_m_low: float
-    w_m_high: float
-    misfit: float
-    n: int
-    reason: str
+    k_ni: Estimate = NO_ESTIMATE
+    w_m: Estimate = NO_ESTIMATE
+    misfit: float = np.nan
+    n: int = 0
+    reason: str = ""
 
 
 class SemiLogarithmic(NamedTuple):
-    """w = a + b ln(sigma_0 / 1 MPa), with 95 % intervals; ``misfit``, ``reason`` as a hyperbola's.
+    """w = a + b ln(sigma_0 / 1 MPa), a and b in mm; ``misfit``, ``reason`` as a hyperbola's.
 
     Bandis et al. (1983) found it for mismatched joints; where the separation u of two rough faces
     follows sigma_0 ~ exp(-u/u_0) (Persson, Phys. Rev. Lett. 99 (2007) 125502), b is u_0. Its
     tangent stiffness is sigma_0 / b.
     """
 
-    a: float
-    a_low: float
-    a_high: float
-    b: float
-    b_low: float
-    b_high: float
-    misfit: float
-    n: int
-    reason: str
+    a: Estimate = NO_ESTIMATE
+    b: Estimate = NO_ESTIMATE
+    misfit: float = np.nan
+    n: int = 0
+    reason: str = ""
 
 
 def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
@@ -96,7 +89,7 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
 
     sigma, w = _usable(pressure, closure)
     if sigma.size < FEWEST_CLOSURE_POINTS:
-        return _none(Hyperbola, sigma.size, _too_few(sigma.size))
+        return Hyperbola(n=sigma.size, reason=_too_few(sigma.size))
 
     def law(sigma, log_k, log_wm):
         k, w_m = np.exp([log_k, log_wm])
@@ -106,25 +99,15 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
     try:
         best, covariance = optimize.curve_fit(law, sigma, w, p0=guess, maxfev=5000)
     except RuntimeError:
-        return _none(Hyperbola, sigma.size, "the least-squares fit did not converge")
+        return Hyperbola(n=sigma.size, reason="the least-squares fit did not converge")
     misfit = float(np.sqrt(np.mean((law(sigma, *best) - w) ** 2)) / w.max())
     half = t_quantile(sigma.size - 2) * np.sqrt(np.diag(covariance))
     if not np.isfinite(half).all() or half.max() > np.log(100):
         reason = "the points do not bend enough to show an asymptote"
-        return _none(Hyperbola, sigma.size, reason)
-    low, high = np.exp(best - half), np.exp(best + half)
-    k_ni, w_m = np.exp(best)
-    return Hyperbola(
-        k_ni=float(k_ni),
-        k_ni_low=float(low[0]),
-        k_ni_high=float(high[0]),
-        w_m=float(w_m),
-        w_m_low=float(low[1]),
-        w_m_high=float(high[1]),
-        misfit=misfit,
-        n=sigma.size,
-        reason="",
-    )
+        return Hyperbola(n=sigma.size, reason=reason)
+    ends = np.exp([best, best - half, best + half])
+    k_ni, w_m = (Estimate(float(v), float(low), float(high)) for v, low, high in ends.T)
+    return Hyperbola(k_ni, w_m, misfit, sigma.size)
 
 
 def fit_semi_logarithmic(pressure: ArrayLike, closure: ArrayLike) -> SemiLogarithmic:
@@ -142,20 +125,11 @@ def fit_semi_logarithmic(pressure: ArrayLike, closure: ArrayLike) -> SemiLogarit
     """
     sigma, w = _usable(pressure, closure)
     if sigma.size < FEWEST_CLOSURE_POINTS:
-        return _none(SemiLogarithmic, sigma.size, _too_few(sigma.size))
+        return SemiLogarithmic(n=sigma.size, reason=_too_few(sigma.size))
     line = fit_line(np.log(sigma), w)
-    residual = w - (line.intercept + line.slope * np.log(sigma))
-    return SemiLogarithmic(
-        a=line.intercept,
-        a_low=line.intercept_low,
-        a_high=line.intercept_high,
-        b=line.slope,
-        b_low=line.slope_low,
-        b_high=line.slope_high,
-        misfit=float(np.sqrt(np.mean(residual**2)) / w.max()),
-        n=line.n,
-        reason="",
-    )
+    residual = w - (line.intercept.value + line.slope.value * np.log(sigma))
+    misfit = float(np.sqrt(np.mean(residual**2)) / w.max())
+    return SemiLogarithmic(line.intercept, line.slope, misfit, line.n)
 
 
 class Law(NamedTuple):
@@ -203,39 +177,23 @@ def _too_few(n: int) -> str:
     return f"{n} points with w_int > 0, {FEWEST_CLOSURE_POINTS} needed"
 
 
-def _none(kind: Any, n: int, reason: str) -> Any:
-    """A fit that is none."""
-    return kind(*[np.nan] * (len(kind._fields) - 2), n, reason)
-
-
-#: What is kept of each hyperbola: field, unit, long name.
-HYPERBOLA_FIELDS = (
-    ("k_ni", "MPa/mm", "initial normal stiffness k_ni, extrapolated to zero load"),
-    ("k_ni_low", "MPa/mm", "initial normal stiffness, lower end of the 95 % interval"),
-    ("k_ni_high", "MPa/mm", "initial normal stiffness, upper end of the 95 % interval"),
-    ("w_m", "mm", "largest closure w_m, the asymptote"),
-    ("w_m_low", "mm", "largest closure, lower end of the 95 % interval"),
-    ("w_m_high", "mm", "largest closure, upper end of the 95 % interval"),
-    ("misfit", "1", "rms misfit as a fraction of the largest closure fitted"),
-    ("n", "1", "points fitted"),
-    ("reason", "1", "why there is no fit"),
-)
-
-#: What is kept of each semi-logarithmic law.
-SEMI_LOGARITHMIC_FIELDS = (
-    ("a", "mm", "semi-logarithmic law w_int = a + b ln(sigma_0 / 1 MPa), a"),
-    ("a_low", "mm", "a of the semi-logarithmic law, lower end of the 95 % interval"),
-    ("a_high", "mm", "a of the semi-logarithmic law, upper end of the 95 % interval"),
-    ("b", "mm", "semi-logarithmic law w_int = a + b ln(sigma_0 / 1 MPa), b"),
-    ("b_low", "mm", "b of the semi-logarithmic law, lower end of the 95 % interval"),
-    ("b_high", "mm", "b of the semi-logarithmic law, upper end of the 95 % interval"),
-    ("misfit", "1", "rms misfit as a fraction of the largest closure fitted"),
-    ("n", "1", "points fitted"),
-    ("reason", "1", "why there is no fit"),
-)
-
-#: Prefix of their names in the atlas, and fields, of both laws.
-_KEPT = (("hyperbola", HYPERBOLA_FIELDS), ("semi_logarithmic", SEMI_LOGARITHMIC_FIELDS))
+#: Parameters of both laws by their prefix in the atlas: unit, long name.
+_PARAMETERS = {
+    "hyperbola": {
+        "k_ni": ("MPa/mm", "initial normal stiffness k_ni, extrapolated to zero load"),
+        "w_m": ("mm", "largest closure w_m, the asymptote"),
+    },
+    "semi_logarithmic": {
+        "a": ("mm", "semi-logarithmic law w_int = a + b ln(sigma_0 / 1 MPa), a"),
+        "b": ("mm", "semi-logarithmic law w_int = a + b ln(sigma_0 / 1 MPa), b"),
+    },
+}
+#: What is kept of either law besides: type, long name.
+_OF_FITS = {
+    "misfit": (float, "rms misfit as a fraction of the largest closure fitted"),
+    "n": (float, "points fitted"),
+    "reason": (str, "why there is no fit"),
+}
 
 _DIMS = ("direction", "offset", "resolution")
 
@@ -273,11 +231,13 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
         points = pressure[fitted[place]], closure[place][fitted[place]]
         hyperbola, semi_logarithmic = fit_hyperbola(*points), fit_semi_logarithmic(*points)
         fits[place] = hyperbola, semi_logarithmic, better_law(hyperbola, semi_logarithmic)
-    for n, (prefix, fields) in enumerate(_KEPT):
-        for name, units, words in fields:
-            kind = str if name == "reason" else float
-            values = np.array([getattr(fit[n], name) for fit in fits.flat], kind)
-            curves[f"{prefix}_{name}"] = (_DIMS, values.reshape(fits.shape), cf_attrs(units, words))
+    for law, (prefix, parameters) in enumerate(_PARAMETERS.items()):
+        for name, words in parameters.items():
+            each = Estimate.stack((getattr(fit[law], name) for fit in fits.flat), fits.shape)
+            curves.update(each.variables(f"{prefix}_{name}", _DIMS, *words))
+        for name, (kind, text) in _OF_FITS.items():
+            each_fit: np.ndarray = np.array([getattr(fit[law], name) for fit in fits.flat], kind)
+            curves[f"{prefix}_{name}"] = (_DIMS, each_fit.reshape(fits.shape), cf_attrs("1", text))
     forces = np.where(fitted, force, np.nan)
     of_curves = {
         "hyperbola_k_ni_change": _changes(curves["hyperbola_k_ni"]),

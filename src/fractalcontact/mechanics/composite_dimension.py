@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from ..core.estimate import names_of
 from ..core.labels import cf_attrs
 from ..roughness.dimension import measured_exponents, surface_dimension
 from ..roughness.fit_range import FitRange, below_offset
@@ -55,7 +56,7 @@ def composite_dimensions(
         _composite_dimension(composite, spacing, *fit)
         for composite, fit in zip(composites, fits, strict=True)
     ]
-    names = ["dimension", "dimension_low", "dimension_high", "fit_min", "fit_max", "no_dimension"]
+    names = [*names_of("dimension"), "fit_min", "fit_max", "no_dimension"]
     dimensions = xr.concat([one[names] for one in each], "offset")
     return {
         f"composite_{name}": ("offset", dimensions[name].values, dimensions[name].attrs)

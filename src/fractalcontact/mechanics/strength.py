@@ -14,7 +14,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
-from ..core.intervals import Mean, mean_interval
+from ..core.estimate import Estimate, rows_of
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..surface.specimen import nominal_area, window_sides
 from .joint import rigid_dilatancy, sliding_axis
@@ -164,14 +165,13 @@ def peak(midpoint: ArrayLike, values: ArrayLike) -> tuple[np.ndarray, np.ndarray
     return highest, np.where(any_known, np.asarray(midpoint)[known.argmax(axis=0)], np.nan)
 
 
-def residual(midpoint: ArrayLike, values: ArrayLike, largest: float) -> Mean:
+def residual(midpoint: ArrayLike, values: ArrayLike, largest: float) -> Estimate:
     """Mean over the intervals beyond `RESIDUAL_FROM` of the largest offset, with its interval.
 
     Returns
     -------
-    mean, low, high, n
-        As :func:`core.intervals.mean_interval` has them; with one interval of offsets there
-        is no interval of the mean.
+    Estimate
+        With one interval of offsets there is no interval of the mean.
     """
     beyond = np.asarray(midpoint) >= RESIDUAL_FROM * largest
     return mean_interval(np.asarray(values, float)[beyond])
@@ -250,12 +250,8 @@ _QUANTITIES = {
     "peak_strength": ("MPa", "largest shear strength over the offsets"),
     "peak_offset": ("mm", "offset where it is first reached"),
     "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets"),
-    "residual_strength": ("MPa", "mean shear strength beyond half of the largest offset"),
-    "residual_strength_low": ("MPa", "residual strength, lower end of the 95 % interval"),
-    "residual_strength_high": ("MPa", "residual strength, upper end of the 95 % interval"),
-    "residual_angle": ("degree", "mean dilatancy angle beyond half of the largest offset"),
-    "residual_angle_low": ("degree", "residual angle, lower end of the 95 % interval"),
-    "residual_angle_high": ("degree", "residual angle, upper end of the 95 % interval"),
+    **rows_of("residual_strength", "MPa", "mean shear strength beyond half of the largest offset"),
+    **rows_of("residual_angle", "degree", "mean dilatancy angle beyond half of the largest offset"),
     "residual_n": ("1", "intervals beyond half of the largest offset"),
     "barton_strength": ("MPa", "peak strength by Barton's law"),
     "scaled_roughness": ("1", "JRC_n for the window's length; none above 20"),
@@ -313,12 +309,7 @@ def _one_direction(
     values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
     for name, of_intervals in (("strength", tau), ("angle", angle)):
         mean = residual(midpoint, of_intervals, largest)
-        values |= {
-            f"residual_{name}": mean.value,
-            f"residual_{name}_low": mean.low,
-            f"residual_{name}_high": mean.high,
-            "residual_n": mean.n,
-        }
+        values |= mean.columns(f"residual_{name}") | {"residual_n": mean.n}
 
     roughness = profile_roughness(specimen, direction)
     side = window_sides(specimen)[sliding_axis(direction)]

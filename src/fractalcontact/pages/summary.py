@@ -206,7 +206,7 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
     side_y, side_x = window_sides(specimen)
     surface = chosen.stage("surface_dimension")
     curve = chosen.values("closure")
-    dimension = [float(surface[f"recommended_{end}"]) for end in ("value", "low", "high")]
+    dimension = bounds(surface, "recommended_dimension")
     return Specimen(
         name=chosen.name,
         label=chosen.label,

@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
-from ..core.datasets import labelled, labelled_dataset
+from ..core.datasets import labelled_dataset
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL, t_quantile
+from ..core.intervals import t_quantile
 from ..core.mean_plane import without_mean_plane
 from ..core.ranges import within
 from .curves import Curve, jackknife_standard_error
@@ -21,7 +22,6 @@ from .estimator import Estimator
 from .estimators.roughness_length import roughness_length_curves
 from .fit_range import FitRange, choose_fit_range
 from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
-from .recommended import best_dimension as best_dimension
 from .recommended import recommended_variables
 from .registry import ESTIMATORS
 from .roll_off import RollOff
@@ -44,7 +44,7 @@ BIAS_LEFT = 0.015
 FARTHEST = (-0.5, 1.5)
 
 #: Axes a measure is taken along, and the ending of the variables that go with them.
-AXES = {"both": "", "x": "_x", "y": "_y"}
+AXES = {"both": ("", ""), "x": ("_x", " along x"), "y": ("_y", " along y")}
 
 
 def surface_dimension(
@@ -84,7 +84,7 @@ def surface_dimension(
         was `used`. NaN with `n` where a line cannot be fitted. Of the surface: `roll_off` with its
         interval (mm; infinite where none is seen, `roll_off_low` then the shortest not excluded),
         the lags `range_min` and `range_max` and `range_reason`; the `recommended` estimator with
-        its `reason`, `recommended_value` with `_low` and `_high`, or `no_dimension`, why there is
+        its `reason`, `recommended_dimension` with its interval, or `no_dimension`, why there is
         none (:func:`roughness.recommended.recommended`); `known_dimension`.
 
     Raises
@@ -117,28 +117,19 @@ def surface_dimension(
     used = np.zeros(length.shape, bool)
     for row, estimate in zip(used, every, strict=True):
         row[: estimate.used.size] = estimate.used
-    hurst = {
-        f"hurst{ending}{end}": np.array([estimate.hurst[axis][i] for estimate in every])
-        for axis, ending in AXES.items()
-        for i, end in enumerate(INTERVAL)
-    }
-    fitted = used & np.isfinite(hurst["hurst"])[:, np.newaxis]
+    hurst = {axis: Estimate.stack(curve.hurst[axis] for curve in every) for axis in AXES}
+    fitted = used & np.isfinite(hurst["both"].value)[:, np.newaxis]
     values = {
         "length": length,
         "measure": measure,
         "used": used,
-        **hurst,
         "slope_hurst": [estimate.slope_hurst for estimate in every],
-        "dimension": 3 - hurst["hurst"],
-        "dimension_low": 3 - hurst["hurst_high"],
-        "dimension_high": 3 - hurst["hurst_low"],
         "fit_min": _finite(np.min(length, axis=1, where=fitted, initial=np.inf)),
         "fit_max": _finite(np.max(length, axis=1, where=fitted, initial=-np.inf)),
         "n": used.sum(axis=1),
         "length_kind": [estimator.length for estimator in chosen],
         "measure_kind": [estimator.measure for estimator in chosen],
         "measure_units": [estimator.units for estimator in chosen],
-        **{f"roll_off{end}": v for end, v in zip(INTERVAL, chosen_range.roll_off[:3], strict=True)},
         "roll_off_shape": chosen_range.roll_off.shape,
         "range_min": chosen_range.shortest,
         "range_max": chosen_range.longest,
@@ -147,48 +138,33 @@ def surface_dimension(
     }
     coords = {"estimator": list(estimates), "scale": np.arange(length.shape[1])}
     result = labelled_dataset(_DIMENSIONS, values, coords=coords)
-    return result.assign(labelled(_RECOMMENDED, recommended_variables(result)))
+    for axis, (ending, along) in AXES.items():
+        words = f"Hurst exponent H{along}"
+        result.update(hurst[axis].variables(f"hurst{ending}", "estimator", "1", words))
+    delta_g = hurst["both"].mapped(lambda exponent: 3 - exponent, falling=True)
+    words = "surface dimension Delta_g = 3 - H"
+    result.update(delta_g.variables("dimension", "estimator", "1", words))
+    words = "wavelength above which the spectrum is flat"
+    result.update(chosen_range.roll_off.variables("roll_off", (), "mm", words))
+    return result.assign(recommended_variables(result))
 
 
 _DIMENSIONS = {
     "length": (("estimator", "scale"), "mm", "length at which the measure was taken"),
     "measure": (("estimator", "scale"), "see measure_units", "measured quantity"),
     "used": (("estimator", "scale"), "1", "taken into the fit"),
-    **{
-        f"hurst{axis}{end}": ("estimator", "1", f"Hurst exponent H{where}{words}")
-        for axis, where in {"": "", "_x": " along x", "_y": " along y"}.items()
-        for end, words in INTERVAL.items()
-    },
     "slope_hurst": ("estimator", "1", "Hurst exponent before the correction of known bias"),
-    **{
-        f"dimension{end}": ("estimator", "1", f"surface dimension Delta_g = 3 - H{words}")
-        for end, words in INTERVAL.items()
-    },
     "fit_min": ("estimator", "mm", "shortest length fitted"),
     "fit_max": ("estimator", "mm", "longest length fitted"),
     "n": ("estimator", "1", "points fitted"),
     "length_kind": ("estimator", "1", "what the length is"),
     "measure_kind": ("estimator", "1", "what was measured"),
     "measure_units": ("estimator", "1", "unit of what was measured"),
-    **{
-        f"roll_off{end}": ((), "mm", f"wavelength above which the spectrum is flat{words}")
-        for end, words in INTERVAL.items()
-    },
     "roll_off_shape": ((), "1", "form of the spectrum about it: sharp, or smooth as von Karman's"),
     "range_min": ((), "mm", "shortest lag of the fits"),
     "range_max": ((), "mm", "longest lag of the fits"),
     "range_reason": ((), "1", "why this range"),
     "known_dimension": ((), "1", "Delta_g a synthetic surface was made with"),
-}
-
-_RECOMMENDED = {
-    "recommended": ((), "1", "recommended estimator"),
-    "reason": ((), "1", "why this estimator"),
-    "no_dimension": ((), "1", "why there is no recommended value"),
-    **{
-        f"recommended_{end[1:] or 'value'}": ((), "1", f"recommended Delta_g{words}")
-        for end, words in INTERVAL.items()
-    },
 }
 
 
@@ -197,7 +173,7 @@ def _finite(values: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(values), values, np.nan)
 
 
-class Estimate(NamedTuple):
+class MeasuredCurve(NamedTuple):
     """Curve and Hurst exponent by one estimator."""
 
     length: np.ndarray
@@ -206,8 +182,8 @@ class Estimate(NamedTuple):
     """(k,), NaN where it has no logarithm."""
     used: np.ndarray
     """(k,) bool: taken into the fit."""
-    hurst: dict[str, tuple[float, float, float]]
-    """H and the ends of its 95 % interval by axis: "both", "x" and "y"."""
+    hurst: dict[str, Estimate]
+    """H by axis: "both", "x" and "y"."""
     slope_hurst: float
     """H along both axes before the correction of known bias."""
 
@@ -218,7 +194,7 @@ def hurst_exponents(
     *,
     fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
-) -> dict[str, Estimate]:
+) -> dict[str, MeasuredCurve]:
     """Hurst exponent by estimator, as plain numbers.
 
     Parameters and errors as :func:`surface_dimension`.
@@ -233,7 +209,7 @@ def measured_exponents(
     *,
     fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
-) -> tuple[dict[str, Estimate], FitRange]:
+) -> tuple[dict[str, MeasuredCurve], FitRange]:
     """Hurst exponents as :func:`hurst_exponents`, and the range they were fitted over."""
     heights = np.asarray(heights, float)
     if heights.ndim != 2:
@@ -268,7 +244,7 @@ def _on_square_cells(heights: np.ndarray, spacing) -> tuple[np.ndarray, float]:
 
 def _estimate(
     estimator: Estimator, heights: np.ndarray, spacing: float, fit_range: FitRange
-) -> Estimate:
+) -> MeasuredCurve:
     """Curve and fits of one estimator."""
     curves = estimator.curves(heights, spacing)
     length, measure = curves["both"].length, curves["both"].measure()
@@ -278,7 +254,7 @@ def _estimate(
     used &= np.isfinite(measure)
 
     side = np.sqrt(np.count_nonzero(np.isfinite(heights)))
-    hurst = dict.fromkeys(AXES, (np.nan,) * 3)
+    hurst = dict.fromkeys(AXES, NO_ESTIMATE)
     slope_hurst = np.nan
     for axis, curve in curves.items():
         slope, half = _hurst_of_slope(estimator, curve, used)
@@ -288,12 +264,12 @@ def _estimate(
             fit = Fit(length[used] / spacing, side, axis)
             roll_off = fit_range.roll_off.scaled(1 / spacing)
             hurst[axis] = _corrected(estimator, fit, slope, half, roll_off)
-    return Estimate(length, measure, used, hurst, slope_hurst)
+    return MeasuredCurve(length, measure, used, hurst, slope_hurst)
 
 
 def _corrected(
     estimator: Estimator, fit: Fit, slope: float, half: float, roll_off: RollOff
-) -> tuple[float, float, float]:
+) -> Estimate:
     """H without known bias; an interval for whatever the nodes stand for, and every roll-off."""
     ends = np.array([slope, slope - half, slope + half])
     of_each = {
@@ -307,15 +283,15 @@ def _corrected(
     }
     every = np.clip(np.concatenate(list(of_each.values())), *FARTHEST)
     value = float(of_each[estimator.nodes, roll_off.cases()[0]][0])
-    return value, float(min(every.min(), value)), float(max(every.max(), value))
+    return Estimate(value, float(min(every.min(), value)), float(max(every.max(), value)))
 
 
 def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tuple[float, float]:
     """H as the slope has it, and half of its 95 % interval."""
     measures = np.vstack([curve.measure(), curve.without_each_part()])[:, used]
     x, y = np.log(curve.length[used]), np.log(np.where(measures > 0, measures, np.nan))
-    line = fit_line(x, y[0])
-    of_regression = (line.slope_high - line.slope) / abs(estimator.slope_per_hurst)
+    slope = fit_line(x, y[0]).slope
+    of_regression = (slope.high - slope.value) / abs(estimator.slope_per_hurst)
     every = (slopes(x, y) - estimator.slope_at_zero) / estimator.slope_per_hurst
     without = every[1:][np.isfinite(every[1:])]
     parts = len(without)

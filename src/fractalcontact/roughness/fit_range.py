@@ -105,5 +105,5 @@ def below_offset(face: FitRange, offset: float, spacing: float) -> tuple[FitRang
 
 
 def _words(roll_off: RollOff) -> str:
-    value, low, high = roll_off[:3]
+    value, low, high = roll_off.ends
     return f"{value:.3g} mm [{low:.3g}, {high:.3g}] ({roll_off.shape})"

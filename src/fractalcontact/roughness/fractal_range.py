@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.intervals import t_quantile
 from .curves import Curve, jackknife_standard_error, ratio
 from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, named
@@ -51,24 +52,24 @@ FEWEST_BINS = 7
 
 
 class FractalRange(NamedTuple):
-    """Fractal range of one spectrum: (value, low, high) of a 95 % interval, NaN if not seen."""
+    """Fractal range of one spectrum: lengths and noise are NaN if not seen."""
 
     form: Form | None
     """Parts of the model; None where the spectrum has too few bins."""
-    hurst: tuple[float, float, float]
+    hurst: Estimate
     line: tuple[float, float]
     """Level (mm3) at a wavelength of 1 mm and exponent of the self-affine line."""
-    noise_rms: tuple[float, float, float]
+    noise_rms: Estimate
     """Standard deviation of independent errors of the nodes, mm."""
     noise_limit: float
     """What it can be at most: the lowest level of the spectrum, mm."""
-    noise_wavelength: tuple[float, float, float]
+    noise_wavelength: Estimate
     """Where the self-affine line meets the noise floor, mm."""
-    filter_wavelength: tuple[float, float, float]
+    filter_wavelength: Estimate
     """Where a filter halves the spectrum, mm."""
-    roll_off_wavelength: tuple[float, float, float]
+    roll_off_wavelength: Estimate
     """Above which the spectrum is flat, mm."""
-    end: tuple[float, float, float]
+    end: Estimate
     """Shortest wavelength of the fractal range: the longer of noise and filter, mm."""
     misfit: float
     """Root mean square of the logarithm of measured over fitted spectrum."""
@@ -78,9 +79,6 @@ class FractalRange(NamedTuple):
     """The spectrum (k,) without them, mm3."""
     fitted: np.ndarray
     """The model (k,), mm3."""
-
-
-_UNSEEN = (np.nan, np.nan, np.nan)
 
 
 def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
@@ -126,24 +124,27 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     misfit = float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2)))
     if misfit > np.log(NO_POWER_LAW):
         values = {"hurst": values["hurst"]}
-    lengths = {  # logarithms of x become wavelengths
-        name: tuple(2 * spacing * np.exp(-np.array([value, high, low])))  # infinite if a bound
+    lengths = {  # logarithms of x become wavelengths, infinite if a bound
+        name: Estimate(*(2 * spacing * np.exp(-np.array([value, high, low]))))
         for name, (value, low, high) in values.items()
         if name in LENGTHS
     }
-    rms = np.exp(np.array(values.get("level", _UNSEEN)) / 2) / np.sqrt(spacing)
+    level_of_noise = np.array(values.get("level", NO_ESTIMATE.ends))
+    rms = Estimate(*(np.exp(level_of_noise / 2) / np.sqrt(spacing)))
     slope = fit.x[1]
     return FractalRange(
         form=form,
-        hurst=tuple(values["hurst"]),
+        hurst=Estimate(*values["hurst"]),
         line=(float(np.exp(fit.x[0]) * (2 * spacing) ** -slope), float(slope)),
-        noise_rms=tuple(rms),
+        noise_rms=rms,
         noise_limit=limit,
-        noise_wavelength=lengths.get("noise", _UNSEEN),
-        filter_wavelength=lengths.get("filter", _UNSEEN),
-        roll_off_wavelength=lengths.get("roll_off", _UNSEEN),
+        noise_wavelength=lengths.get("noise", NO_ESTIMATE),
+        filter_wavelength=lengths.get("filter", NO_ESTIMATE),
+        roll_off_wavelength=lengths.get("roll_off", NO_ESTIMATE),
         end=max(
-            [lengths[name] for name in ("noise", "filter") if name in lengths], default=_UNSEEN
+            (lengths[name] for name in ("noise", "filter") if name in lengths),
+            key=lambda length: length.ends,
+            default=NO_ESTIMATE,
         ),
         misfit=misfit,
         left_out=left_out,
@@ -156,14 +157,14 @@ def _too_short(level, limit, left_out) -> FractalRange:
     """What is known of a spectrum with too few bins for a model."""
     return FractalRange(
         form=None,
-        hurst=_UNSEEN,
+        hurst=NO_ESTIMATE,
         line=(np.nan, np.nan),
-        noise_rms=_UNSEEN,
+        noise_rms=NO_ESTIMATE,
         noise_limit=limit,
-        noise_wavelength=_UNSEEN,
-        filter_wavelength=_UNSEEN,
-        roll_off_wavelength=_UNSEEN,
-        end=_UNSEEN,
+        noise_wavelength=NO_ESTIMATE,
+        filter_wavelength=NO_ESTIMATE,
+        roll_off_wavelength=NO_ESTIMATE,
+        end=NO_ESTIMATE,
         misfit=np.nan,
         left_out=left_out,
         level=level,

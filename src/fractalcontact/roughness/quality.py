@@ -3,15 +3,17 @@
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import chain
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
 from ..core.datasets import labelled
-from ..core.intervals import INTERVAL
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..surface.grid import spacing_of
 from ..surface.specimen import cell_side, window_slices
 from ..surface.suspect import overlap_statistics
@@ -82,7 +84,7 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     side = cell_side(specimen)
     end = _range_end(result, side)
     result = result.assign(_compared_with_range(end, np.array(resolutions), side))
-    result.attrs = {"ended_by": end.cause}
+    result.attrs = {"ended_by": end.reason}
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
     result.attrs["warning"] = "; ".join(filter(None, warnings))
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
@@ -220,12 +222,6 @@ _ESTIMATES = {
     "end": ("mm", "shortest wavelength of the fractal range along one axis"),
 }
 
-_INTERVALS = {
-    name + ending: (_AXIS, units, words + end)
-    for name, (units, words) in _ESTIMATES.items()
-    for ending, end in INTERVAL.items()
-}
-
 _NUMBERS = {
     "noise_limit": (_AXIS, "mm", "what the noise floor can be at most"),
     "strips_left_out": (
@@ -256,12 +252,10 @@ def _profile_spectra(heights, spacing):
         "spectrum": _padded_rows(of_range(lambda found: found.level)),
         "spectrum_model": _padded_rows(of_range(lambda found: found.fitted)),
     }
-    estimates = {name: np.array(of_range(attrgetter(name))) for name in _ESTIMATES}
-    intervals = {
-        name + ending: values[..., i]
-        for name, values in estimates.items()
-        for i, ending in enumerate(INTERVAL)
-    }
+    estimates: dict[str, Any] = {}
+    for name, words in _ESTIMATES.items():
+        each = chain.from_iterable(of_range(attrgetter(name)))
+        estimates |= Estimate.stack(each, (len(ranges), len(AXES))).variables(name, _AXIS, *words)
     numbers = {
         "noise_limit": of_range(lambda found: found.noise_limit),
         "strips_left_out": of_range(lambda found: found.left_out),
@@ -272,7 +266,7 @@ def _profile_spectra(heights, spacing):
     }
     return {
         **labelled(_PROFILES, profiles),
-        **labelled(_INTERVALS, intervals),
+        **estimates,
         **labelled(_NUMBERS, numbers),
     }
 
@@ -322,56 +316,42 @@ def _point_pitch(specimen, face):
     return cell_side(specimen) * math.sqrt(float(specimen[face].notnull().sum()) / points)
 
 
-class _RangeEnd(NamedTuple):
-    """Shortest wavelength of the fractal range, mm, its 95 % interval, and what ends it there."""
-
-    value: float
-    low: float
-    high: float
-    cause: str
-
-
 _RANGE = {
-    **{
-        f"range_end{ending}": ((), "mm", f"shortest wavelength of the fractal range{end}")
-        for ending, end in INTERVAL.items()
-    },
     "resolution": ("resolution", "mm", "spacing s of the nodes"),
     "multiple": ("resolution", "1", "multiple k of the scan's spacing"),
     "below_range": ("resolution", "1", "shortest wave 2 s lies below the fractal range"),
 }
 
 
-def _range_end(result, side) -> _RangeEnd:
-    """The end of the range over faces and axes; points farther apart than the nodes end it too."""
+def _range_end(result, side) -> Estimate:
+    """Shortest wavelength of the fractal range, mm, over faces and axes, and what ends it there.
+
+    Points farther apart than the nodes end it too.
+    """
+    seen = Estimate.read(result, "end")
     ends = [
-        _RangeEnd(
-            float(result["end"][i, j]),
-            float(result["end_low"][i, j]),
-            float(result["end_high"][i, j]),
-            f"{_cause(result, i, j)} along {axis}, {face} face",
-        )
+        replace(seen[i, j], reason=f"{_cause(result, i, j)} along {axis}, {face} face")
         for i, face in enumerate(result["face"].values)
         for j, axis in enumerate(AXES)
     ]
     ends += [
-        _RangeEnd(2 * float(pitch), math.nan, math.nan, f"distance of the points, {face} face")
+        Estimate(2 * float(pitch), reason=f"distance of the points, {face} face")
         for face, pitch in zip(result["face"].values, result["point_pitch"], strict=True)
         if pitch > side
     ]
-    known = [end for end in ends if math.isfinite(end.value)]
-    return max(known, default=_RangeEnd(math.nan, math.nan, math.nan, ""))
+    known = [end for end in ends if end.known]
+    return max(known, key=lambda end: (*end.ends, end.reason), default=NO_ESTIMATE)
 
 
-def _compared_with_range(end: _RangeEnd, resolutions, side):
+def _compared_with_range(end: Estimate, resolutions, side):
     """The end of the range, and the resolutions that go below it."""
     values = {
-        **{f"range_end{ending}": value for ending, value in zip(INTERVAL, end, strict=False)},
         "resolution": resolutions * side,
         "multiple": resolutions,
         "below_range": 2 * (resolutions * side) < end.value,
     }
-    return labelled(_RANGE, values)
+    words = "shortest wavelength of the fractal range"
+    return labelled(_RANGE, values) | end.variables("range_end", (), "mm", words)
 
 
 def _cause(result, i, j):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from ..core.intervals import INTERVAL
+from ..core.estimate import Estimate
 from ..core.labels import percent, plain
 from .fractal_range import NO_POWER_LAW
 from .spectra import STRIPS
@@ -22,7 +22,7 @@ _METRES = 1e4
 
 def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> str:
     """A scalar length with its 95 % interval, if it has one: three digits, in mm or what suits."""
-    value, low, high = (values[name + ending].item() for ending in INTERVAL)
+    value, low, high = Estimate.read(values, name).ends
     unit, size = (unit, 1.0) if unit == "mm" else height_unit(value)
     interval = f" [{plain(low / size)}, {plain(high / size)}]" if math.isfinite(low) else ""
     return f"{plain(value / size)}{interval} {unit}"

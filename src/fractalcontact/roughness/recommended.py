@@ -4,11 +4,13 @@ Estimators that look at the same heights do not err independently, so that their
 than the best of them, and worse where a roll-off or the edges of the scan bend some of the curves.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from ..core.estimate import Estimate
+from ..core.labels import cf_attrs
 from .fit_range import LAST_OF_ROLL_OFF
 
 #: The estimator whose value is the answer.
@@ -26,18 +28,7 @@ REASON = (
 POSSIBLE = (2.0, 3.0)
 
 
-class Recommended(NamedTuple):
-    """The estimate to use."""
-
-    value: float
-    low: float
-    high: float
-    """95 % interval; all three NaN where there is none to use."""
-    no_dimension: str
-    """Why there is none; "" where there is."""
-
-
-def recommended(dimensions: xr.Dataset) -> Recommended:
+def best_dimension(dimensions: xr.Dataset) -> Estimate:
     """Delta_g by the recommended estimator, if it can be a dimension.
 
     Parameters
@@ -47,43 +38,28 @@ def recommended(dimensions: xr.Dataset) -> Recommended:
 
     Returns
     -------
-    Recommended
-        Nothing where the estimator found no dimension, or one that is not between 2 and 3: what is
-        smoother than a plane allows, or rougher than independent heights, is not self-affine over
-        these lags, and no theory of self-affine surfaces applies.
+    Estimate
+        None, with the reason, where the estimator found no dimension, or one that is not between 2
+        and 3: what is smoother than a plane allows, or rougher than independent heights, is not
+        self-affine over these lags, and no theory of self-affine surfaces applies.
     """
     if RECOMMENDED not in dimensions["estimator"].values:
-        return Recommended(*(np.nan,) * 3, f"{RECOMMENDED.replace('_', ' ')} was not measured")
+        return Estimate(reason=f"{RECOMMENDED.replace('_', ' ')} was not measured")
     chosen = dimensions.sel(estimator=RECOMMENDED)
-    value, low, high = (float(chosen[f"dimension{end}"]) for end in ("", "_low", "_high"))
-    if not np.isfinite(value):
-        return Recommended(*(np.nan,) * 3, "no fit: too few lags or no relief")
+    found = Estimate.read(chosen, "dimension")
+    value, low, high = found.ends
+    if not found.known:
+        return Estimate(reason="no fit: too few lags or no relief")
     least, most = POSSIBLE
     if least < value < most:
-        return Recommended(value, low, high, "")
+        return found
     inside = low < most and high > least
     reason = f"Delta_g {value:.2f} [{low:.2f}, {high:.2f}] does not lie between 2 and 3" + (
         f" (its interval reaches {'above 2' if value <= least else 'below 3'})"
         if inside
         else ": not self-affine over the lags fitted"
     )
-    return Recommended(*(np.nan,) * 3, reason)
-
-
-def best_dimension(dimensions: xr.Dataset) -> tuple[float, float, float]:
-    """Delta_g that calculations are to use.
-
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        From :func:`roughness.dimension.surface_dimension`.
-
-    Returns
-    -------
-    value, low, high : float
-        Estimate and 95 % interval, as :func:`recommended`; NaN where there is none to use.
-    """
-    return recommended(dimensions)[:3]
+    return Estimate(reason=reason)
 
 
 def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
@@ -98,7 +74,7 @@ def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
     -------
     dict
         ``lowest``, ``highest``, ``mean`` (NaN without a fit) and ``n``, how many gave a dimension.
-        The mean is no estimate: see :func:`recommended`.
+        The mean is no estimate: see :func:`best_dimension`.
     """
     known = dimensions["dimension"].values
     known = known[np.isfinite(known)]
@@ -135,7 +111,7 @@ def dimension_words(dimensions: xr.Dataset) -> str:
     reason = str(dimensions["no_dimension"].item())
     if reason:
         return f"no surface dimension: {reason}"
-    value, low, high = (float(dimensions[f"recommended_{end}"]) for end in ("value", "low", "high"))
+    value, low, high = Estimate.read(dimensions, "recommended_dimension").ends
     first, last = (float(dimensions[f"range_{end}"]) for end in ("min", "max"))
     return (
         f"Delta_g {value:.2f} [{low:.2f}, {high:.2f}] by {RECOMMENDED.replace('_', ' ')}, lags "
@@ -145,12 +121,11 @@ def dimension_words(dimensions: xr.Dataset) -> str:
 
 def recommended_variables(dimensions: xr.Dataset) -> dict[str, Any]:
     """Variables of the recommended estimate, by the names of the atlas."""
-    found = recommended(dimensions)
-    return {
-        "recommended": RECOMMENDED,
-        "reason": REASON,
-        "no_dimension": found.no_dimension,
-        "recommended_value": found.value,
-        "recommended_low": found.low,
-        "recommended_high": found.high,
+    found = best_dimension(dimensions)
+    words = {
+        "recommended": (RECOMMENDED, "recommended estimator"),
+        "reason": (REASON, "why this estimator"),
+        "no_dimension": (found.reason, "why there is no recommended dimension"),
     }
+    texts = {name: ((), text, cf_attrs("1", of)) for name, (text, of) in words.items()}
+    return texts | found.variables("recommended_dimension", (), "1", "recommended Delta_g")

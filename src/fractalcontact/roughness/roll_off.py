@@ -8,12 +8,13 @@ R1), or von Karman's (q^2 + q_r^2)^(-1 - H), which bends over an octave or two. 
 from it. Fractions are of the power law that the same surface has without a roll-off.
 """
 
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 from scipy import special
 
+from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from .curves import Curve, jackknife_standard_error
 from .spectrum_model import ALIASED, BAND_LIMITED
@@ -43,28 +44,32 @@ EXCLUDED = 4.0
 SHARP, SMOOTH = SHAPES = ("sharp", "smooth")
 
 
-class RollOff(NamedTuple):
-    """Wavelength above which a spectrum is flat, in the unit of the curve."""
+@dataclass(frozen=True)
+class RollOff(Estimate):
+    """Wavelength above which a spectrum is flat, in the unit of the curve.
 
-    value: float
-    """Infinite where none is seen."""
-    low: float
-    high: float
-    """95 % interval. Where none is seen, `low` is the shortest that is not excluded."""
+    Infinite where none is seen; its lower end then is the shortest that is not excluded.
+
+    Attributes
+    ----------
+    shape : str
+        Of `SHAPES`, the one that describes the curve best.
+    others : tuple of (str, float)
+        Shapes and wavelengths that describe it nearly as well.
+    """
+
     shape: str = SHARP
-    """Of `SHAPES`, the one that describes the curve best."""
     others: tuple[tuple[str, float], ...] = ()
-    """Shapes and wavelengths that describe it nearly as well."""
 
     def scaled(self, factor: float) -> "RollOff":
         """The same in another unit of length."""
-        value, low, high = (factor * end for end in self[:3])
         others = tuple((shape, factor * length) for shape, length in self.others)
-        return RollOff(value, low, high, self.shape, others)
+        value, low, high = (factor * end for end in self.ends)
+        return replace(self, value=value, low=low, high=high, others=others)
 
     def cases(self) -> tuple[tuple[str, float], ...]:
         """All shapes and wavelengths that an estimate must allow for, the best first."""
-        own = tuple((self.shape, length) for length in self[:3])
+        own = tuple((self.shape, length) for length in self.ends)
         return tuple(dict.fromkeys((*own, *self.others)))
 
 
@@ -265,10 +270,9 @@ def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
         if of != SHAPES[shape]
         for length in tried[row[0] < limit]
     )
-    found = RollOff(
-        float(value), float(low), float(high), SHAPES[shape], others[:: len(others) - 1 or 1]
-    )
-    return found.scaled(spacing)
+    others = others[:: len(others) - 1 or 1]
+    ends = float(value), float(low), float(high)
+    return RollOff(*ends, shape=SHAPES[shape], others=others).scaled(spacing)
 
 
 def _unseen(allowed: np.ndarray, tried: np.ndarray) -> RollOff:
@@ -277,7 +281,7 @@ def _unseen(allowed: np.ndarray, tried: np.ndarray) -> RollOff:
         (of, float(min(tried[np.argmax(row)], tried[-2])))
         for of, row in zip(SHAPES, allowed, strict=True)
     )
-    return RollOff(np.inf, min(length for _, length in shortest), np.inf, SHARP, shortest)
+    return RollOff(np.inf, min(length for _, length in shortest), np.inf, others=shortest)
 
 
 def _lowest_between(chi2: np.ndarray) -> float:

@@ -21,15 +21,16 @@ of one contact set, and 1/m is the condition number of the own form.
 """
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from scipy import special
 
 from ..core.datasets import labelled_dataset
-from ..core.fitting import LineFit, fit_line
-from ..core.intervals import CONFIDENCE, INTERVAL
+from ..core.estimate import Estimate
+from ..core.fitting import fit_line
+from ..core.intervals import CONFIDENCE
 from ..core.ranges import within
 from ..core.resolved import CORRECTED_NODES
 from ..domain.box_dimension import dimension_of_domain
@@ -126,14 +127,6 @@ _PREDICTED: dict[str, tuple] = {
         "N mm^-delta_sigma",
         "fractal mean pressure sigma* of the whole window",
     ),
-    **{
-        f"{name}{ending}": (_BY_LOAD, "1", f"{words}{of_end}")
-        for ending, of_end in INTERVAL.items()
-        for name, words in (
-            ("delta_sigma", "dimension of the contact domain of the whole window"),
-            ("predicted_slope", "slope -(2 - Delta_sigma) of eq. 6"),
-        )
-    },
     "box_fit_min": ("normal_force", "mm", "smallest box fitted"),
     "box_fit_max": ("normal_force", "mm", "largest box fitted"),
 }
@@ -145,30 +138,35 @@ def _dimensions(
     """Delta_sigma of the whole window by every estimator, with sigma* and the slope predicted."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
     boxes = [dimension_of_domain(d, spacing, fit_range=settings["box_range"]) for d in domains]
-    lines = [_line_through_occupied(domain, parts) for domain in domains]
-    by_estimator: dict[str, Any] = {
+    occupied = Estimate.stack(_slope_of_occupied(domain, parts) for domain in domains)
+    by_estimator = {
         "area": _by_area(loading, whole, spacing),
-        "box": np.transpose([(box.dimension, box.low, box.high) for box in boxes]),
-        "box_sizes": np.transpose([(-x.slope, -x.slope_high, -x.slope_low) for x in lines]),
+        "box": Estimate.stack(boxes),
+        "box_sizes": occupied.mapped(np.negative, falling=True),
     }
-    delta = np.array([by_estimator[name] for name in DELTA_SIGMA_ESTIMATORS])
-    star = delta[:, 0] - 2  # sigma* = sigma_n s_n^(2 - Delta), geometric mean over the resolutions
+    shape = len(by_estimator), len(domains)
+    delta = Estimate.stack((by_estimator[name] for name in DELTA_SIGMA_ESTIMATORS), shape)
+    slope = delta.mapped(lambda dimension: dimension - 2)
+    star = slope.value  # sigma* = sigma_n s_n^(2 - Delta), geometric mean over the resolutions
     star = real_pressures(whole)[0][0, : len(domains)] * np.exp(
         -star * np.log(whole["spacing"].values).mean()
     )
     values = {
         "sigma_star": star,
-        "box_fit_min": [box.r_min for box in boxes],
-        "box_fit_max": [box.r_max for box in boxes],
+        "box_fit_min": [box.over[0] for box in boxes],
+        "box_fit_max": [box.over[1] for box in boxes],
     }
-    for n, ending in enumerate(INTERVAL):
-        values[f"delta_sigma{ending}"] = delta[:, n]
-        values[f"predicted_slope{ending}"] = delta[:, n] - 2
-    return labelled_dataset(_PREDICTED, values, coords={"estimator": list(DELTA_SIGMA_ESTIMATORS)})
+    coords = {"estimator": list(DELTA_SIGMA_ESTIMATORS)}
+    result = labelled_dataset(_PREDICTED, values, coords=coords)
+    words = "dimension of the contact domain of the whole window"
+    result.update(delta.variables("delta_sigma", _BY_LOAD, "1", words))
+    words = "slope -(2 - Delta_sigma) of eq. 6"
+    result.update(slope.variables("predicted_slope", _BY_LOAD, "1", words))
+    return result
 
 
-def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> list[np.ndarray]:
-    """Delta_sigma (load) and its interval from the corrected area of the whole over resolutions."""
+def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> Estimate:
+    """Delta_sigma (load) from the corrected area of the whole over resolutions."""
     areas = whole_areas(loading, whole)
     s = spacing * areas["resolution"]
     if loading.settings["scaling_range"] is not None:
@@ -176,11 +174,11 @@ def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> list[n
     by_area = renormalisation(
         s, areas["area_corrected"], whole["normal_force"], areas["nodes"], CORRECTED_NODES
     )
-    return [by_area[f"delta_sigma{ending}"].values for ending in INTERVAL]
+    return Estimate.read(by_area, "delta_sigma")
 
 
-def _line_through_occupied(domain: np.ndarray, parts: Sequence[int]) -> LineFit:
-    """Line through log N over log b, N sub-windows that the domain of the whole window occupies.
+def _slope_of_occupied(domain: np.ndarray, parts: Sequence[int]) -> Estimate:
+    """Slope of log N over log b, N sub-windows that the domain of the whole window occupies.
 
     Few whole counts may lie on a line by chance: its interval is never narrower than what counting
     leaves open, N of n x n occupied with the error of a fraction, (1 - N / n^2) / N of log N.
@@ -188,14 +186,14 @@ def _line_through_occupied(domain: np.ndarray, parts: Sequence[int]) -> LineFit:
     occupied = [split(domain, n).any(axis=(1, 2)).sum() for n in parts]
     count = np.where(np.array(occupied) > 0, np.array(occupied, float), np.nan)
     x = -np.log(parts)
-    line = fit_line(x, np.log(count))
+    slope = fit_line(x, np.log(count)).slope
     dx = x - x.mean()
     spread = np.sum(dx**2)
     if not spread > 0:  # one size: no line
-        return line
+        return slope
     variance = np.sum(dx**2 * (1 - count / np.square(parts)) / count) / spread**2
-    half = max(line.slope_high - line.slope, special.ndtri((1 + CONFIDENCE) / 2) * variance**0.5)
-    return line._replace(slope_low=line.slope - half, slope_high=line.slope + half)
+    half = max(slope.high - slope.value, special.ndtri((1 + CONFIDENCE) / 2) * variance**0.5)
+    return replace(slope, low=slope.value - half, high=slope.value + half)
 
 
 # -- in words --------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from ..core.intervals import INTERVAL
+from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
 from ..core.ranges import within
 from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
@@ -41,7 +41,7 @@ _OF_INTERFACE = ("interface_closure", "interface_compliance")
 def joint_by_size(
     states: xr.Dataset,
     specimen: xr.Dataset,
-    dimension: Sequence[float],
+    dimension: Estimate,
     lags: Sequence[float] | None,
     material: Mapping[str, float],
 ) -> xr.Dataset:
@@ -76,7 +76,7 @@ def size_laws(
     states: xr.Dataset,
     material: Mapping[str, float],
     roughness: float,
-    dimension: Sequence[float],
+    dimension: Estimate,
     fit_range: Sequence[float] | None = None,
 ) -> xr.Dataset:
     """Means over the sub-windows of each size, and the powers of b they follow.
@@ -90,8 +90,8 @@ def size_laws(
     roughness : float
         JRC of the window as used in Barton's law (``jrc_used`` of
         :func:`mechanics.jrc.profile_roughness`); NaN for a joint that does not slide.
-    dimension : (float, float, float)
-        Delta_g of the face and its 95 % interval: eq. 2 expects H = 3 - Delta_g.
+    dimension : Estimate
+        Delta_g of the face: eq. 2 expects H = 3 - Delta_g.
     fit_range : (float, float), optional
         Smallest and largest b of the fits of sigma_z, mm. By default from `FIRST_FITTED_CELLS`
         cells to `LAST_FITTED_FRACTION` of the window.
@@ -141,8 +141,8 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
         if name in _OF_INTERFACE:
             # Where contact is too full to separate the interface from the bulk.
             below = result[name] < 0
-            for ending in (*INTERVAL, "_error"):
-                result[f"{name}{ending}"] = result[f"{name}{ending}"].where(~below)
+            for kept in (*names_of(name), f"{name}_error"):
+                result[kept] = result[kept].where(~below)
         values = states[name].transpose(*dims)
         positive = ((values > 0) | values.isnull()).all("window")
         usable = usable_sizes(nodes.values, fewest) & positive.values
@@ -153,7 +153,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
 def _add_hurst(
     result: xr.Dataset,
     states: xr.Dataset,
-    dimension: Sequence[float],
+    dimension: Estimate,
     fit_range: Sequence[float] | None,
 ) -> None:
     """Eq. 2 of the composite topography and of the face, and what it expects, into ``result``."""
@@ -167,10 +167,8 @@ def _add_hurst(
         ("sigma_z_all", "hurst", "composite topography"),
         ("face_sigma_z", "face_hurst", "lower face"),
     ):
-        for ending in INTERVAL:
-            result[f"{curve}{ending}"] = states[f"{curve}{ending}"]
+        result.update(states[names_of(curve)])
         add_law(result, name, side, states[curve].where(used), f"H of eq. 2, {of}")
-    value, low, high = dimension
-    for ending, number in (("", value), ("_low", high), ("_high", low)):
-        words = f"H = 3 - Delta_g that eq. 2 expects{INTERVAL[ending]}"
-        result[f"expected_hurst{ending}"] = ((), 3.0 - float(number), cf_attrs("1", words))
+    expected = dimension.mapped(lambda delta: 3.0 - float(delta), falling=True)
+    words = "H = 3 - Delta_g that eq. 2 expects"
+    result.update(expected.variables("expected_hurst", (), "1", words))

@@ -7,8 +7,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from ..core.intervals import INTERVAL, mean_interval
-from ..core.labels import cf_attrs
+from ..core.estimate import Estimate
+from ..core.intervals import mean_interval
 from ..core.mean_plane import without_mean_planes
 from ..mechanics.loading import JointLoading
 from ..surface.specimen import cell_side, faces, window_slices
@@ -71,13 +71,11 @@ def roughness_by_size(loading: JointLoading) -> xr.Dataset:
     result = labelled_dataset(
         _SCALES, {"scale_side": side, "scale_n": parts**2, "scale_cells": nodes}
     )
-    means = _mean_roughness([lower], parts), _mean_roughness(composites, parts)
-    for (ending, of_end), face, composite in zip(INTERVAL.items(), *means, strict=True):
-        words = f"about the plane of a sub-window, mean{of_end}"
-        attrs = cf_attrs("mm", f"rms of the lower face {words}")
-        result[f"face_sigma_z{ending}"] = ("scale", face[0], attrs)
-        attrs = cf_attrs("mm", f"rms of the composite topography {words}")
-        result[f"sigma_z_all{ending}"] = (("offset", "scale"), composite, attrs)
+    face, composite = _mean_roughness([lower], parts)[0], _mean_roughness(composites, parts)
+    words = "about the plane of a sub-window, mean"
+    result.update(face.variables("face_sigma_z", "scale", "mm", f"rms of the lower face {words}"))
+    words = f"rms of the composite topography {words}"
+    result.update(composite.variables("sigma_z_all", ("offset", "scale"), "mm", words))
     return result
 
 
@@ -88,7 +86,7 @@ def _octaves_and_halves(most: int) -> np.ndarray:
     return parts[parts <= max(most, 1)]
 
 
-def _mean_roughness(topographies: Sequence[np.ndarray], parts: np.ndarray) -> np.ndarray:
-    """Mean, low and high, each (topographies, parts)."""
-    table = [[mean_interval(local_roughness(split(z, n)))[:3] for n in parts] for z in topographies]
-    return np.moveaxis(np.reshape(table, (len(topographies), len(parts), 3)), 2, 0)
+def _mean_roughness(topographies: Sequence[np.ndarray], parts: np.ndarray) -> Estimate:
+    """Mean over the sub-windows of each size, (topographies, parts)."""
+    means = (mean_interval(local_roughness(split(z, n))) for z in topographies for n in parts)
+    return Estimate.stack(means, (len(topographies), len(parts)))

@@ -5,15 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from ..core.fitting import LineFit
-from ..core.intervals import INTERVAL
+from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
 
 
 def add_exponents(
     result: xr.Dataset,
     name: str,
-    lines: Sequence[LineFit],
+    exponents: Sequence[Estimate],
     dims: str | tuple[str, ...],
     words: str,
     points: str = "points fitted",
@@ -23,10 +22,10 @@ def add_exponents(
     Parameters
     ----------
     result : xr.Dataset
-        Gets ``name`` with the ends ``_low``, ``_high`` of its interval, ``_n`` and the smallest and
-        largest b fitted, ``_b_min`` and ``_b_max``.
-    lines : sequence of LineFit
-        Over log b, b in mm; in the order of a C array over ``dims``.
+        Gets ``name`` with the ends of its interval, ``_n`` and the smallest and largest b fitted,
+        ``_b_min`` and ``_b_max``.
+    exponents : sequence of Estimate
+        Fitted over log b, b in mm; in the order of a C array over ``dims``.
     dims : str or tuple of str
         Of ``result``.
     words : str
@@ -35,14 +34,9 @@ def add_exponents(
         What was fitted.
     """
     over = (dims,) if isinstance(dims, str) else dims
-    shape = tuple(result.sizes[dim] for dim in over)
-
-    def put(ending: str, values: np.ndarray, units: str, long_name: str) -> None:
-        result[f"{name}{ending}"] = (over, values.reshape(shape), cf_attrs(units, long_name))
-
-    for ending, of_end in INTERVAL.items():
-        slopes = np.array([getattr(line, f"slope{ending}") for line in lines], float)
-        put(ending, slopes, "1", f"{words}{of_end}")
-    put("_n", np.array([line.n for line in lines], int), "1", f"{words}, {points}")
-    put("_b_min", np.exp([line.x_min for line in lines]), "mm", "smallest b of that fit")
-    put("_b_max", np.exp([line.x_max for line in lines]), "mm", "largest b of that fit")
+    found = Estimate.stack(exponents, tuple(result.sizes[dim] for dim in over))
+    first, last = np.exp(found.over)
+    result.update(found.variables(name, over, "1", words))
+    result[f"{name}_n"] = (over, found.n, cf_attrs("1", f"{words}, {points}"))
+    result[f"{name}_b_min"] = (over, first, cf_attrs("mm", "smallest b of that fit"))
+    result[f"{name}_b_max"] = (over, last, cf_attrs("mm", "largest b of that fit"))

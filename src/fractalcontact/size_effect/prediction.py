@@ -1,11 +1,14 @@
 """The reverse of the test of eq. 6: what small windows predict for the largest."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.estimate import Estimate
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL, mean_interval
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.ranges import within
 
@@ -69,7 +72,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
         ("area", fraction, "1", "real contact area A_r/A_0"),
     ):
         by_law = _power_law(b, curves[:, : len(loads)])
-        predictions = np.array([by_law, *(_mean(each) for each in by_eq6[name])])
+        predictions = [by_law, *(_mean(each) for each in by_eq6[name])]
         _add(result, name, predictions, curves[0, : len(loads)], "normal_force", units, words)
     return result
 
@@ -144,21 +147,20 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
         },
     )
     words = "shear strength at v/b"
-    _add(result, "strength", np.array(predictions), strength[0], dim, "MPa", words)
+    _add(result, "strength", predictions, strength[0], dim, "MPa", words)
     return result
 
 
-def _power_law(b: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(3, n) prediction for the first size, with its interval, by the line through the others."""
+def _power_law(b: np.ndarray, values: np.ndarray) -> Estimate:
+    """Predictions (n,) for the first size by the line through the others."""
     logs = np.log(values[1:])
     lines = [fit_line(np.log(b[1:] / b[0]), column) for column in logs.T]
-    fields = ("intercept", "intercept_low", "intercept_high")
-    return np.exp([[getattr(line, field) for line in lines] for field in fields])
+    return Estimate.stack(line.intercept for line in lines).mapped(np.exp)
 
 
-def _mean(predictions: np.ndarray) -> np.ndarray:
-    """(3, n) geometric mean over sizes of (n, size) predictions, with its interval."""
-    return np.exp(mean_interval(np.log(predictions), axis=1)[:3])
+def _mean(predictions: np.ndarray) -> Estimate:
+    """Geometric mean (n,) over sizes of (n, size) predictions."""
+    return mean_interval(np.log(predictions), axis=1).mapped(np.exp)
 
 
 def _on_curve(at: np.ndarray, pressures: np.ndarray, curves: np.ndarray) -> np.ndarray:
@@ -175,19 +177,18 @@ def _on_curve(at: np.ndarray, pressures: np.ndarray, curves: np.ndarray) -> np.n
 def _add(
     result: xr.Dataset,
     name: str,
-    predictions: np.ndarray,
+    predictions: Sequence[Estimate],
     direct: np.ndarray,
     dim: str,
     units: str,
     words: str,
 ) -> None:
-    """Predictions (predictor, 3, n), the value solved and the errors, into ``result``."""
-    for i, (ending, of_end) in enumerate(INTERVAL.items()):
-        text = f"{words} of the whole window, predicted from smaller ones{of_end}"
-        attrs = cf_attrs(units, text)
-        result[f"predicted_{name}{ending}"] = (("predictor", dim), predictions[:, i], attrs)
+    """Predictions (n,) of each predictor, the value solved and the errors, into ``result``."""
+    predicted = Estimate.stack(predictions, (len(PREDICTORS), len(direct)))
+    text = f"{words} of the whole window, predicted from smaller ones"
+    result.update(predicted.variables(f"predicted_{name}", ("predictor", dim), units, text))
     text = f"{words} of the whole window, solved"
     result[f"direct_{name}"] = (dim, direct, cf_attrs(units, text))
-    error = predictions[:, 0] / direct - 1
+    error = predicted.value / direct - 1
     text = f"predicted over solved {words}, less one"
     result[f"{name}_error"] = (("predictor", dim), error, cf_attrs("1", text))

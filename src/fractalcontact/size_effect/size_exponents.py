@@ -7,31 +7,17 @@ all that is cut from it (jackknife).
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ..core.intervals import INTERVAL, t_quantile
+from ..core.estimate import Estimate
+from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
 from ..core.ranges import within
 
 #: Disjoint top-level pieces that are left out in turn.
 QUARTERS = 4
-
-
-class SizeExponent(NamedTuple):
-    """Exponent of a quantity against b, its 95 % interval, sizes used and their ends, mm."""
-
-    slope: float
-    slope_low: float
-    slope_high: float
-    n: int
-    x_min: float
-    x_max: float
-
-
-UNKNOWN = SizeExponent(np.nan, np.nan, np.nan, 0, np.nan, np.nan)
 
 
 def kept_fractions(parts: int, places: np.ndarray) -> np.ndarray:
@@ -74,7 +60,7 @@ def usable_sizes(nodes: np.ndarray, fewest: int) -> np.ndarray:
 
 def size_exponent(
     parts: Sequence[int], sides: np.ndarray, values: np.ndarray, places: Sequence[np.ndarray]
-) -> SizeExponent:
+) -> Estimate:
     """Exponent d ln(quantity) / d ln b of one quantity, of means over disjoint sub-windows.
 
     Parameters
@@ -90,8 +76,9 @@ def size_exponent(
 
     Returns
     -------
-    SizeExponent
-        Unknown with fewer than two sizes, or where no size has several windows.
+    Estimate
+        Over the sides used, mm; NaN with fewer than two sizes, or where no size has several
+        windows.
 
     Notes
     -----
@@ -108,7 +95,7 @@ def size_exponent(
     used = [k for k in range(len(parts)) if values[k, 0] > 0]
     several = [k for k in used if parts[k] > 1]
     if len(used) < 2 or not several:
-        return UNKNOWN
+        return Estimate()
     x = np.log(sides[used])
     lever = (x - x.mean()) / np.sum((x - x.mean()) ** 2)
     means = np.empty((len(used), 1 + QUARTERS))
@@ -124,8 +111,8 @@ def size_exponent(
     slope, *replicates = lever @ means
     variance += (QUARTERS - 1) * float(np.var(replicates))
     half = float(t_quantile(QUARTERS - 1)) * variance**0.5
-    ends = np.exp([x.min(), x.max()])
-    return SizeExponent(slope, slope - half, slope + half, len(used), *ends)
+    first, last = np.exp([x.min(), x.max()])
+    return Estimate(slope, slope - half, slope + half, len(used), (first, last))
 
 
 def add_size_exponents(
@@ -152,17 +139,12 @@ def add_size_exponents(
     values = values.transpose("part", "window", ...)
     dims, rows = values.dims[2:], values.values
     parts, sides = result["part"].values.tolist(), result["side"].values
-    found = [
+    each = (
         size_exponent(parts, sides, rows[(slice(None), slice(None), *index)], places)
         for index in np.ndindex(rows.shape[2:])
-    ]
-
-    def put(ending: str, field: str, units: str, long_name: str) -> None:
-        column = np.array([getattr(one, field) for one in found]).reshape(rows.shape[2:])
-        result[f"{name}{ending}"] = (dims, column, cf_attrs(units, long_name))
-
-    for ending, of_end in INTERVAL.items():
-        put(ending, f"slope{ending}", "1", f"{words}{of_end}")
-    put("_n", "n", "1", f"{words}, sizes used")
-    put("_b_min", "x_min", "mm", "smallest b used")
-    put("_b_max", "x_max", "mm", "largest b used")
+    )
+    found = Estimate.stack(each, rows.shape[2:])
+    result.update(found.variables(name, dims, "1", words))
+    result[f"{name}_n"] = (dims, found.n, cf_attrs("1", f"{words}, sizes used"))
+    result[f"{name}_b_min"] = (dims, found.over[0], cf_attrs("mm", "smallest b used"))
+    result[f"{name}_b_max"] = (dims, found.over[1], cf_attrs("mm", "largest b used"))

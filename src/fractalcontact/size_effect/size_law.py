@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..core.intervals import INTERVAL, mean_interval
-from ..core.labels import cf_attrs
+from ..core.intervals import mean_interval
 from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from .size_exponents import add_size_exponents, usable_sizes
 
@@ -81,10 +80,9 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
         positive = (values > 0) | values.isnull()
         usable = usable_sizes(nodes.values, fewest) & positive.all("window").values
         values = values.where(xr.DataArray(usable, dims=("part", "normal_force")))
-        means = mean_interval(values.values, axis=1)[:3]
-        for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
-            attrs = cf_attrs(tested[name].attrs["units"], f"mean {words} of sub-windows{of_end}")
-            result[f"{name}{ending}"] = (_OF_SIZE, mean.T, attrs)
+        mean = mean_interval(values.values, axis=1).mapped(np.transpose)
+        units = tested[name].attrs["units"]
+        result.update(mean.variables(name, _OF_SIZE, units, f"mean {words} of sub-windows"))
         text = f"exponent of {words} against b at equal sigma_0"
         add_size_exponents(result, exponent, values, places, text)
     return result.drop_vars("side")

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..core.intervals import INTERVAL
+from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
 
 #: Exponents that differ by no more than this differ by rounding alone.
@@ -44,28 +44,20 @@ NO_SIZES = "too few sizes of window hold enough nodes"
 NO_PREDICTION = "Delta_sigma is unknown"
 
 
-class Interval(NamedTuple):
-    """An exponent and its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
-
-
 class Judgement(NamedTuple):
     """A verdict, its reason, and measured less predicted with its interval."""
 
     verdict: str
     reason: str
-    difference: Interval
+    difference: Estimate
 
 
-def judge_exponent(measured: Interval, predicted: Interval) -> Judgement:
+def judge_exponent(measured: Estimate, predicted: Estimate) -> Judgement:
     """Whether a measured exponent is the one predicted: the rule of both forms.
 
     Parameters
     ----------
-    measured, predicted : Interval
+    measured, predicted : Estimate
         NaN where unknown.
 
     Returns
@@ -77,17 +69,17 @@ def judge_exponent(measured: Interval, predicted: Interval) -> Judgement:
     value = measured.value - predicted.value
     low = value - np.hypot(measured.value - measured.low, predicted.high - predicted.value)
     high = value + np.hypot(measured.high - measured.value, predicted.value - predicted.low)
-    difference = Interval(value, low, high)
+    difference = Estimate(value, low, high)
 
     def judged(verdict: str, reason: str = "") -> Judgement:
         return Judgement(verdict, reason, difference)
 
-    if not np.isfinite(measured).all():
+    if not np.isfinite(measured.ends).all():
         return judged(NOT_TESTED, NO_SIZES)
-    if not np.isfinite(predicted).all():
+    if not np.isfinite(predicted.ends).all():
         return judged(NOT_TESTED, NO_PREDICTION)
     missed = low > ROUNDING or high < -ROUNDING
-    if predicted.high - predicted.low > WIDEST_PREDICTION:
+    if predicted.width > WIDEST_PREDICTION:
         return judged(UNDECIDED, TOO_WIDE_MISSED if missed else TOO_WIDE)
     if abs(predicted.value) < NO_EFFECT:
         return judged(UNDECIDED, NOTHING_PREDICTED)
@@ -99,13 +91,13 @@ def judge_exponent(measured: Interval, predicted: Interval) -> Judgement:
 
 
 def judge_own_form(
-    measured: Interval, predicted: Interval, condition: float, crossings: int
+    measured: Estimate, predicted: Estimate, condition: float, crossings: int
 ) -> Judgement:
     """As :func:`judge_exponent`, of the slope at equal sigma*: only where that determines sigma_0.
 
     Parameters
     ----------
-    measured, predicted : Interval
+    measured, predicted : Estimate
     condition : float
         d ln sigma_0 / d ln sigma* of the whole window, of any sign.
     crossings : int
@@ -118,7 +110,7 @@ def judge_own_form(
         return found._replace(verdict=AMBIGUOUS, reason=SEVERAL)
     if not abs(condition) <= WORST_CONDITION:
         return found._replace(verdict=UNDECIDED, reason=ILL_CONDITIONED)
-    if found.verdict == AGREES and measured.high - measured.low > WIDEST_SLOPE:
+    if found.verdict == AGREES and measured.width > WIDEST_SLOPE:
         return found._replace(verdict=UNDECIDED, reason=SLOPE_TOO_WIDE)
     return found
 
@@ -167,34 +159,34 @@ def size_verdicts(result: xr.Dataset) -> xr.Dataset:
         ``well_conditioned`` and ``size_effect``.
     """
     dims = ("estimator", "normal_force")
-    predicted = [result[f"predicted_slope{end}"].transpose(*dims).values for end in INTERVAL]
+    predicted = Estimate.read(result.transpose(*dims, ...), "predicted_slope")
     measured = {
-        form: [result[f"{name}{end}"].values for end in INTERVAL]
+        form: Estimate.read(result, name)
         for form, name in (("area", "area_exponent"), ("slope", "slope"))
     }
     crossings = result["crossings"].isel(part=0).values
     with np.errstate(divide="ignore"):
         condition = 1 / result["sensitivity"].values
-    shape = predicted[0].shape
-    differences = {form: np.full((3, *shape), np.nan) for form in _FORMS}
+    shape = predicted.value.shape
+    differences: dict[str, list[Estimate]] = {form: [] for form in _FORMS}
     names = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
     words: dict[str, np.ndarray] = {name: np.empty(shape, object) for name in names}
     for index in np.ndindex(shape):
         load = index[1]
-        said = Interval(*(float(values[index]) for values in predicted))
-        area, slope = (Interval(*(float(v[load]) for v in measured[form])) for form in _FORMS)
-        of_area = judge_exponent(area, said)
-        own = judge_own_form(slope, said, float(condition[load]), int(crossings[load]))
-        differences["area"][:, *index] = of_area.difference
-        differences["slope"][:, *index] = own.difference
+        of_area = judge_exponent(measured["area"][load], predicted[index])
+        own = judge_own_form(
+            measured["slope"][load], predicted[index], float(condition[load]), int(crossings[load])
+        )
+        differences["area"].append(of_area.difference)
+        differences["slope"].append(own.difference)
         found = (*of_area[:2], *own[:2], *both_forms(of_area, own))
         for name, word in zip(names, found, strict=True):
             words[name][index] = word
     verdicts = xr.Dataset()
     for form, (of, quantity) in _FORMS.items():
-        for (ending, of_end), values in zip(INTERVAL.items(), differences[form], strict=True):
-            attrs = cf_attrs("1", f"{quantity} less -(2 - Delta_sigma){of_end}")
-            verdicts[f"{form}_difference{ending}"] = (dims, values, attrs)
+        difference = Estimate.stack(differences[form], shape)
+        text = f"{quantity} less -(2 - Delta_sigma)"
+        verdicts.update(difference.variables(f"{form}_difference", dims, "1", text))
         for name, text in (("verdict", "whether eq. 6 agrees"), ("reason", "why undecided")):
             attrs = cf_attrs("1", f"{text}, {of}")
             verdicts[f"{form}_{name}"] = (dims, words[f"{form}_{name}"].astype(str), attrs)
@@ -208,8 +200,7 @@ def size_verdicts(result: xr.Dataset) -> xr.Dataset:
         "1", f"sigma* determines sigma_0, with a condition number up to {WORST_CONDITION:g}"
     )
     verdicts["well_conditioned"] = ("normal_force", single, attrs)
-    _, low, high = measured["area"]
-    effect = (low > ROUNDING) | (high < -ROUNDING)
+    effect = (measured["area"].low > ROUNDING) | (measured["area"].high < -ROUNDING)
     attrs = cf_attrs("1", "whether the exponent of A_r/A_0 differs from zero")
     verdicts["size_effect"] = ("normal_force", effect, attrs)
     return verdicts

@@ -222,8 +222,8 @@ def slopes_at_equal_star(states: xr.Dataset, n_loads: int) -> xr.Dataset:
         "share_exponent": 1 / together[:, :n_loads].T,
     }
     for name, words in _SLOPES.items():
-        lines = [fit_line(log_b, row) for row in np.log(over_sizes[name])]
-        add_exponents(result, name, lines, "normal_force", words)
+        slopes = [fit_line(log_b, row).slope for row in np.log(over_sizes[name])]
+        add_exponents(result, name, slopes, "normal_force", words)
     return result
 
 

@@ -78,7 +78,9 @@ def strength_by_size(
     of_curves = {
         "peak_strength": [peak(midpoint, values)[0] for values in (strength, off)],
         "peak_dilatancy_angle": [peak(midpoint, values)[0] for values in (angle, angle_off)],
-        "residual_strength": [residual(midpoint, values, largest)[0] for values in (strength, off)],
+        "residual_strength": [
+            residual(midpoint, values, largest).value for values in (strength, off)
+        ],
         "shear_strength": [strength, off],
     }
     for name, (values, errors) in of_curves.items():

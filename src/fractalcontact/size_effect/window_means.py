@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.fitting import fit_line
-from ..core.intervals import INTERVAL, mean_interval
+from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..mechanics.states import error_attrs
 from .power_laws import add_exponents
@@ -26,15 +26,12 @@ def add_mean(
     """
     dims = tuple(dim for dim in values.dims if dim != "window")
     units, long_name = values.attrs["units"], values.attrs["long_name"]
-    means = mean_interval(values.values, axis=values.dims.index("window"))[:3]
-    for (ending, of_end), mean in zip(INTERVAL.items(), means, strict=True):
-        words = f"{long_name}, mean over sub-windows{of_end}"
-        result[f"{name}{ending}"] = (dims, mean, cf_attrs(units, words))
+    words = f"{long_name}, mean over sub-windows"
+    mean = mean_interval(values.values, axis=values.dims.index("window"))
+    result.update(mean.variables(name, dims, units, words))
     if errors is not None:
         result[f"{name}_error"] = errors.mean("window").transpose(*dims)
-        result[f"{name}_error"].attrs = error_attrs(
-            cf_attrs(units, f"{long_name}, mean over sub-windows")
-        )
+        result[f"{name}_error"].attrs = error_attrs(cf_attrs(units, words))
 
 
 def add_law(
@@ -61,4 +58,4 @@ def add_law(
         fit_line(np.log(side.values), np.log(positive[index]))
         for index in np.ndindex(rows.shape[:-1])
     ]
-    add_exponents(result, name, lines, dims, words, "sizes fitted")
+    add_exponents(result, name, [line.slope for line in lines], dims, words, "sizes fitted")

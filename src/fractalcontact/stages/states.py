@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import xarray as xr
 
+from ..core.reported import Reported
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
@@ -13,6 +14,7 @@ from ..mechanics.contact_fields import contact_fields
 from ..mechanics.overlap import load_warning
 from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
+    chosen_offset,
     combine,
     domains_of,
     force_range,
@@ -20,7 +22,7 @@ from ..mechanics.states import (
     map_states,
     with_pressure,
 )
-from ..roughness.dimension import best_dimension
+from ..roughness.recommended import best_dimension
 from ..surface.specimen import cell_side, nominal_area, window_sides
 from .errors import error_stages
 
@@ -67,12 +69,13 @@ def state_stages(
     )
     warnings = (load_warning(curves, specimens, settings), full_contact_warning(curves))
     curves.attrs["warning"] = "; ".join(filter(None, warnings))
+    curves.update(_reported(curves, settings, area).variables())
     dilatancy = elastic_dilatancy(curves, joints)
     laws = area_laws(
         curves,
         joint_statistics(specimens, joints),
         e_star,
-        best_dimension(surface_dimension)[0],
+        best_dimension(surface_dimension).value,
     )
     fields = domains_of(states)
     domains = analyse_domains(fields, spacing, fit_range=settings["box_range"])
@@ -98,6 +101,17 @@ def state_stages(
         stages["domains"],
         settings=settings,
         solver=solver,
+    )
+
+
+def _reported(curves: xr.Dataset, settings: Mapping, area: float) -> Reported:
+    """States that the study wants published."""
+    return Reported.choose(
+        curves,
+        direction=str(settings["contact_directions"][0]),
+        offset=chosen_offset(settings["map_offset"], curves["offset"].values),
+        quoted=forces_of(settings["dilatancy_loads"], area),
+        reference=float(forces_of([settings["map_load"]], area)[0]),
     )
 
 

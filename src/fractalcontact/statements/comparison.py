@@ -5,12 +5,14 @@ reads a thousand rows and none of their fields.
 """
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..core.intervals import INTERVAL, t_quantile
+from ..core.estimate import Estimate, names_of, rows_of
+from ..core.intervals import t_quantile
 from ..mechanics.states import chosen_offset
 from ..surface.specimen import nominal_area
 
@@ -35,9 +37,9 @@ ALIKE = 0.05
 def _table(prefix=(), names=QUANTITIES):
     """Variables of the quantities with the ends of their intervals, over ``prefix`` and loads."""
     return {
-        f"{name}{end}": ((*prefix, *(() if name in ONCE else ("load",))), unit, f"{words}{of_end}")
-        for name, (unit, words) in names.items()
-        for end, of_end in INTERVAL.items()
+        of: ((*prefix, *(() if name in ONCE else ("load",))), *words)
+        for name, of_name in names.items()
+        for of, words in rows_of(name, *of_name).items()
     }
 
 
@@ -64,7 +66,7 @@ def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Data
     offset = chosen_offset(settings["map_offset"], closure["offset"].values)
     pressures = closure["normal_force"].values / nominal_area(stages["specimens"])
     found = {
-        **_ends("delta_g", *(float(surface[f"recommended_{end}"]) for end in _ENDS)),
+        **Estimate.read(surface, "recommended_dimension").columns("delta_g"),
         **_stiffness(stages["error_budget"], pressures.size),
         **_of_domains(stages["domains"], direction, offset),
         **_dilatancy(stages["dilatancy"], direction, pressures.size),
@@ -79,15 +81,8 @@ def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Data
     )
 
 
-_ENDS = ("value", "low", "high")
-
-
-def _ends(name, value, low, high):
-    return {name: value, f"{name}_low": low, f"{name}_high": high}
-
-
 def _around(name, value, half_width):
-    return _ends(name, value, value - half_width, value + half_width)
+    return Estimate(value, value - half_width, value + half_width).columns(name)
 
 
 def _stiffness(budget, n_loads):
@@ -98,7 +93,7 @@ def _stiffness(budget, n_loads):
 
 
 def _of_domains(domains, direction, offset):
-    names = [f"delta_sigma{end}" for end in INTERVAL]
+    names = names_of("delta_sigma")
     found = domains[names].sel(direction=direction).sel(offset=offset, method="nearest")
     found = found.sel(resolution=found["resolution"].min())
     return {name: found[name].values for name in names}
@@ -117,13 +112,14 @@ def _size_exponent(size_test, pressures):
     """Exponents of the size test under the loads of the study, which it goes beyond."""
     tested = size_test["nominal_pressure"].values
     same = np.isclose(tested[:, None], pressures[None, :], rtol=10.0**-_DIGITS)
-    found = {}
-    for end in INTERVAL:
+    rows, columns = np.nonzero(same)
+
+    def on_loads(tested: np.ndarray) -> np.ndarray:
         values = np.full(pressures.size, np.nan)
-        rows, columns = np.nonzero(same)
-        values[columns] = size_test[f"area_exponent{end}"].values[rows]
-        found[f"size_exponent{end}"] = values
-    return found
+        values[columns] = tested[rows]
+        return values
+
+    return Estimate.read(size_test, "area_exponent").mapped(on_loads).columns("size_exponent")
 
 
 def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
@@ -235,10 +231,10 @@ def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
     table, values = {}, {}
     for name, (unit, words) in QUANTITIES.items():
         dims = ("group_name",) if name in ONCE else ("group_name", "pressure")
-        estimates = [rows[f"{name}{end}"].values for end in INTERVAL]
+        estimate = Estimate.read(rows, name)
         if name in UNDER_LOAD:
-            estimates = [_at(pressures, rounded, of_end) for of_end in estimates]
-        statistics = [_statistics(*(part[chosen] for part in estimates)) for chosen in member.T]
+            estimate = estimate.mapped(partial(_at, pressures, rounded))
+        statistics = [_statistics(*estimate[chosen].ends) for chosen in member.T]
         for i, (ending, before) in enumerate(_STATISTICS.items()):
             table[f"{name}{ending}"] = (dims, "1" if ending == "_n" else unit, before + words)
             values[f"{name}{ending}"] = np.array([found[i] for found in statistics])

@@ -207,12 +207,12 @@ def trend(
     """Whether values go with v as a power whose interval has the sign wanted."""
     chosen = chosen & (values > 0)
     line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
-    if not np.isfinite(line.slope):
+    if not line.slope.known:
         return Finding(UNDETERMINED, no_offsets("three"))
     v = v[chosen]
     return Finding(
-        by_sign(line.slope_low, line.slope_high, rising=rising),
-        f"x = {line.slope:z.2f} [{line.slope_low:z.2f}, {line.slope_high:z.2f}]",
+        by_sign(line.slope.low, line.slope.high, rising=rising),
+        f"x = {line.slope:z.2f}",
         f"{symbol} ~ v^x, v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 

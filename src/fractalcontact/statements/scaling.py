@@ -94,10 +94,10 @@ def estimates_agree(joint: Joint) -> Finding:
 def dimension_rises_by_area(joint: Joint) -> Finding:
     """Delta_sigma from A_r(s) against the logarithm of F, where it is determined."""
     line = _over_load(joint.map_states("scaling")).line
-    if not np.isfinite(line.slope):
+    if not line.slope.known:
         return Finding(UNDETERMINED, _too_few(line))
     return Finding(
-        by_sign(line.slope_low, line.slope_high, rising=True), _by_decade(line), f"{line.n} loads"
+        by_sign(line.slope.low, line.slope.high, rising=True), _by_decade(line), f"{line.n} loads"
     )
 
 
@@ -109,16 +109,15 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
     """
     states = joint.map_states("domains")
     trend = _over_load(states, states["delta_sigma_random"].values)
-    if not np.isfinite(trend.line.slope):
+    if not trend.line.slope.known:
         return Finding(UNDETERMINED, _too_few(trend.line))
-    verdict = by_sign(trend.line.slope_low, trend.line.slope_high, rising=True)
-    if verdict == HOLDS and not trend.departure.slope_low > 0:
+    verdict = by_sign(trend.line.slope.low, trend.line.slope.high, rising=True)
+    if verdict == HOLDS and not trend.departure.slope.low > 0:
         verdict = PARTLY
     return Finding(
         verdict,
         f"{_by_decade(trend.line)}, less that of as many random nodes "
-        f"{trend.departure.slope:+z.2f} [{trend.departure.slope_low:+z.2f}, "
-        f"{trend.departure.slope_high:+z.2f}]",
+        f"{trend.departure.slope:+z.2f}",
         f"{trend.line.n} loads; more nodes fill more boxes wherever they lie: in part where it "
         "rises, but no faster than that of random nodes",
     )
@@ -330,7 +329,7 @@ def _over_load(states, random=np.nan):
 
 def _by_decade(line):
     """The slope of a line over the decades of F, with its interval."""
-    return f"{line.slope:+z.2f} [{line.slope_low:+z.2f}, {line.slope_high:+z.2f}] a decade of F"
+    return f"{line.slope:+z.2f} a decade of F"
 
 
 def _too_few(line):

@@ -50,10 +50,10 @@ class Plateaus(NamedTuple):
         for name, opened in zip(
             joints["direction"].values, joints["rigid_dilatancy"].values, strict=True
         ):
-            line = fit_line(v[second], opened[second])
-            if np.isfinite(line.slope):
-                mean = opened[second].mean()
-                found.append((str(name), mean, line.slope * (line.x_max - line.x_min) / mean))
+            slope = fit_line(v[second], opened[second]).slope
+            if slope.known:
+                mean, (first, last) = opened[second].mean(), slope.over
+                found.append((str(name), mean, slope.value * (last - first) / mean))
         names, means, changes = zip(*found, strict=True) if found else ((), (), ())
         return cls(list(names), np.array(means), np.array(changes))
 

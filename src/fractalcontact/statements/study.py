@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.fitting import LineFit, fit_line
-from ..roughness.dimension import best_dimension
+from ..roughness.recommended import best_dimension
 from .findings import FAILS, HOLDS, UNDETERMINED, Finding, Joint, Statement, by_sign
 from .judge import material_of, table_of
 
@@ -46,15 +46,15 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     flat = [joint for joint in joints.values() if joint.settings["opposite"] == "flat"]
     if len(flat) < 3:
         return Finding(UNDETERMINED, f"{len(flat)} surfaces against a plane, three needed")
-    dimension = np.array([best_dimension(j.stages["surface_dimension"])[0] for j in flat])
+    dimension = np.array([best_dimension(j.stages["surface_dimension"]).value for j in flat])
     effect = np.array([2 - float(j.map_state("scaling")["delta_sigma"]) for j in flat])
     order = np.argsort(dimension)
     line = fit_line(dimension, effect)
-    if not np.isfinite(line.slope):
+    if not line.slope.known:
         return Finding(UNDETERMINED, "fewer than three surfaces with Delta_g and Delta_sigma")
     pairs = ", ".join(f"{effect[i]:.2f} at {dimension[i]:.2f}" for i in order)
     return Finding(
-        by_sign(line.slope_low, line.slope_high, rising=True),
+        by_sign(line.slope.low, line.slope.high, rising=True),
         f"2 - Delta_sigma by A_r(s) {pairs}",
         "at light load it is the growth of the slopes h'_rms of the surface with resolution; "
         "whether strength follows that exponent as the size grows is what eq. 6 is judged for",
@@ -83,7 +83,7 @@ def _by_material(joints, values_of):
         values = values_of(joint)
         chosen = (joint.offset > 0) & (values > 0)
         line = fit_line(np.log(joint.offset[chosen]), np.log(values[chosen]))
-        if np.isfinite(line.slope):
+        if line.slope.known:
             lines[material] = line
     return lines
 
@@ -94,11 +94,10 @@ def _compared(lines, law, steeper):
         return Finding(UNDETERMINED, "a joint of each material needed")
     rock, concrete = lines["rock"], lines["concrete"]
     words = ", ".join(
-        f"{name} {line.slope:.2f} [{line.slope_low:.2f}, {line.slope_high:.2f}]"
-        for name, line in (("concrete", concrete), ("rock", rock))
+        f"{name} {line.slope:.2f}" for name, line in (("concrete", concrete), ("rock", rock))
     )
-    low = concrete.slope_low - rock.slope_high
-    high = concrete.slope_high - rock.slope_low
+    low = concrete.slope.low - rock.slope.high
+    high = concrete.slope.high - rock.slope.low
     sure, opposite = (low > 0, high < 0) if steeper > 0 else (high < 0, low > 0)
     verdict = HOLDS if sure else FAILS if opposite else UNDETERMINED
     return Finding(verdict, f"{law}, x = {words}")

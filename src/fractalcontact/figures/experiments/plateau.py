@@ -334,9 +334,9 @@ class Trend(NamedTuple):
         v = slide.v[half]
         lines = [fit_line(v, row[half]) for row in values]
         slope, low, high = (
-            map(float, mean_interval([line.slope for line in lines])[:3])
+            map(float, mean_interval([line.slope.value for line in lines]).ends)
             if len(lines) > 1
-            else (lines[0].slope, lines[0].slope_low, lines[0].slope_high)
+            else lines[0].slope.ends
         )
         return cls(slope, low, high, slope * np.ptp(v) / np.mean(values[:, half]))
 

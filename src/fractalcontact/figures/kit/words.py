@@ -129,7 +129,7 @@ def estimate(value: float, low: float, high: float, unit: str = "") -> str:
 
 def slope_text(line: LineFit, unit: str = "") -> str:
     """Slope of a :class:`core.fitting.LineFit` with its interval."""
-    return estimate(line.slope, line.slope_low, line.slope_high, unit)
+    return estimate(*line.slope.ends, unit)
 
 
 def length_unit(span: float) -> tuple[str, float]:

@@ -72,12 +72,12 @@ def _caption(series):
 
 def _trend_words(series):
     trend, label = series.trend, series.legend
-    if not np.isfinite(trend.line.slope):
+    if not trend.line.slope.known:
         return f"{label}: too few maps with loads for a trend."
     line, departure = trend.line, trend.departure
-    slope = interval(line.slope, line.slope_low, line.slope_high)
+    slope = interval(*line.slope.ends)
     words = f"{label}: {slope} a decade of pressure ({trend.verdict})"
     if np.isfinite(departure.slope):
-        less = interval(departure.slope, departure.slope_low, departure.slope_high)
+        less = interval(*departure.slope.ends)
         words += f"; less that of random cells {less} ({trend.beyond_random})"
     return f"{words}."

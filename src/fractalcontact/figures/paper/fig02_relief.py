@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 from xarray import DataTree
 
+from ...core.estimate import Estimate
 from ...core.intervals import INTERVAL, bounds
 from ...roughness.recommended import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, heading, headline, letter, settings_of
@@ -185,7 +186,7 @@ def _impossible(axes):
 
 def _recommended_words(dimension):
     """The recommended value with its interval."""
-    return interval(*(float(dimension[f"recommended_{end}"]) for end in ("value", "low", "high")))
+    return interval(*Estimate.read(dimension, "recommended_dimension").ends)
 
 
 def _table(dimension):
@@ -260,7 +261,8 @@ def _fit_words(dimension):
 def _known_words(dimension):
     """The known value of a synthetic surface, and whether the interval holds it."""
     known, low, high = (
-        float(dimension[key]) for key in ("known_dimension", "recommended_low", "recommended_high")
+        float(dimension[f"{key}_dimension{end}"])
+        for key, end in (("known", ""), ("recommended", "_low"), ("recommended", "_high"))
     )
     if not np.isfinite(known):
         return ""

@@ -103,7 +103,8 @@ def _plateau(dilatancy, direction):
     second = v >= v[-1] / 2
     opened = dilatancy["rigid_dilatancy"].sel(direction=direction).values[second]
     line = fit_line(v[second], opened)
-    return line, line.slope * (line.x_max - line.x_min) / opened.mean()
+    first, last = line.slope.over
+    return line, line.slope.value * (last - first) / opened.mean()
 
 
 def _draw_rigid(axes, dilatancy, plateaus):
@@ -113,9 +114,9 @@ def _draw_rigid(axes, dilatancy, plateaus):
         label = f"{TOWARDS.get(direction, 'plane')}: {_change_words(*plateau)}"
         axes.plot(v, opened, label=label, **_direction_style(n))
         line, _ = plateau
-        if np.isfinite(line.slope):
-            ends = np.array([line.x_min, line.x_max])
-            level = line.intercept + line.slope * ends
+        if line.slope.known:
+            ends = np.array(line.slope.over)
+            level = line.intercept.value + line.slope.value * ends
             axes.plot(ends, level, color=colour_of(n), lw=_FIT_WIDTH, alpha=0.7)
     axes.set_xlabel("offset $v$ (mm)")
     axes.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
@@ -131,10 +132,11 @@ def _direction_style(n):
 
 def _change_words(line, change):
     """Change of the fitted line in per cent of the mean, and what it is called."""
-    if not np.isfinite(line.slope):
+    slope = line.slope
+    if not slope.known:
         return "no fit"
-    ends = (100 * change / line.slope * end for end in (line.slope_low, line.slope_high))
-    low, high = (f"{end + 0.0:+.0f}" for end in ends) if line.slope else ("0", "0")
+    ends = (100 * change / slope.value * end for end in (slope.low, slope.high))
+    low, high = (f"{end + 0.0:+.0f}" for end in ends) if slope.value else ("0", "0")
     known = "level" if abs(change) <= NEARLY_FLAT else "rising" if change > 0 else "falling"
     return f"{100 * change:+.0f} % [{low}, {high}], {known}"
 
@@ -270,7 +272,7 @@ def _caption(force):
 
 def _plateau_words(plateaus):
     """Which directions have a plateau over the second half of the offsets."""
-    changes = {d: change for d, (line, change) in plateaus.items() if np.isfinite(line.slope)}
+    changes = {d: change for d, (line, change) in plateaus.items() if line.slope.known}
     if not changes:
         return "Too few offsets to decide whether there is a plateau."
     flat = sum(abs(change) <= NEARLY_FLAT for change in changes.values())

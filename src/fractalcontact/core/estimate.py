@@ -1,0 +1,180 @@
+"""A number with its 95 % interval: the one type of every estimate, in memory, on disk, in words.
+
+In memory it is an :class:`Estimate`. On disk it is the variables, or columns, ``NAME``,
+``NAME_low`` and ``NAME_high``: no other module puts these names together.
+"""
+
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .determined import determined
+from .labels import cf_attrs
+
+#: Ends of an interval by the ending of their names, and what follows the long name there.
+_ENDS = {
+    "": "",
+    "_low": ", lower end of the 95 % interval",
+    "_high": ", upper end of the 95 % interval",
+}
+
+
+class Scale(NamedTuple):
+    """Width up to which an interval determines a quantity of this kind (:mod:`core.determined`)."""
+
+    span: float = 0.0
+    widest: float = np.inf
+    exact: tuple[float, ...] = ()
+
+
+#: Quantities of any size, which are determined to a factor.
+SIZE = Scale()
+#: Exponents and slopes.
+EXPONENT = Scale(span=1.0)
+#: Angles in degrees.
+ANGLE = Scale(span=30.0)
+#: Fractal dimensions of a contact domain: 0 and 2 need no interval.
+DIMENSION = Scale(span=1.0, widest=1.0, exact=(0.0, 2.0))
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number, or an array of numbers, with the ends of the 95 % interval.
+
+    Attributes
+    ----------
+    value, low, high : float or ndarray
+        NaN where there is none.
+    n : int or ndarray of int
+        Points, or samples, that it rests on; 0 where that is not counted.
+    over : (float, float) or (ndarray, ndarray)
+        Range that it was fitted over; NaN where it is no fit.
+    reason : str or ndarray of str
+        Why there is no value, or what to know of it.
+    scale : Scale
+        What kind of quantity it is of.
+    """
+
+    value: Any = np.nan
+    low: Any = np.nan
+    high: Any = np.nan
+    n: Any = 0
+    over: tuple[Any, Any] = (np.nan, np.nan)
+    reason: Any = ""
+    scale: Scale = SIZE
+
+    @classmethod
+    def read(cls, table: Any, name: str, *, reason: Any = "", scale: Scale = SIZE) -> "Estimate":
+        """Estimate of this name in a dataset, a table or one row of a table.
+
+        Parameters
+        ----------
+        table : xr.Dataset, pd.DataFrame, pd.Series or mapping of str to array_like
+        name : str
+        reason : str or array_like of str, optional
+        scale : Scale, optional
+
+        Raises
+        ------
+        KeyError
+            Where the value or an end is missing.
+        """
+        value, low, high = (np.asarray(table[f"{name}{end}"])[()] for end in _ENDS)
+        return cls(value, low, high, reason=reason, scale=scale)
+
+    @classmethod
+    def stack(cls, estimates: Iterable["Estimate"], shape: Sequence[int] = (-1,)) -> "Estimate":
+        """Estimates as one of arrays, in C order over ``shape``."""
+        each = list(estimates)
+
+        def joined(field: Callable[["Estimate"], Any]) -> np.ndarray:
+            # What a member has once belongs to all of its numbers.
+            columns = [np.broadcast_to(field(one), np.shape(one.value)) for one in each]
+            return np.reshape(columns, shape)
+
+        value, low, high, n, reason = (
+            joined(attrgetter(name)) for name in ("value", "low", "high", "n", "reason")
+        )
+        over = joined(lambda one: one.over[0]), joined(lambda one: one.over[1])
+        return cls(value, low, high, n, over, reason, each[0].scale if each else SIZE)
+
+    def __getitem__(self, index: Any) -> "Estimate":
+        """The estimates at an index of the arrays; what all have in common stays."""
+        value, low, high, n, first, last, reason = (
+            part[index] if np.ndim(part) else part
+            for part in (*self.ends, self.n, *self.over, self.reason)
+        )
+        return Estimate(value, low, high, n, (first, last), reason, self.scale)
+
+    def __format__(self, spec: str) -> str:
+        """Value and interval, each number in this format: "0.96 [0.91, 1.02]"."""
+        value, low, high = (format(end, spec) for end in self.ends)
+        return f"{value} [{low}, {high}]"
+
+    @property
+    def ends(self) -> tuple[Any, Any, Any]:
+        """Value, lower and upper end."""
+        return self.value, self.low, self.high
+
+    @property
+    def width(self) -> Any:
+        """Distance of the ends."""
+        return self.high - self.low
+
+    @property
+    def known(self) -> Any:
+        """Whether there is a value."""
+        return np.isfinite(self.value)
+
+    @property
+    def determined(self) -> bool:
+        """Whether the interval determines a quantity of this kind; of a single number."""
+        return determined(*self.ends, **self.scale._asdict())
+
+    def mapped(self, function: Callable[[Any], Any], *, falling: bool = False) -> "Estimate":
+        """Estimate of a monotone function of the quantity; a falling one exchanges the ends."""
+        value, low, high = (function(end) for end in self.ends)
+        return (
+            replace(self, value=value, low=high, high=low)
+            if falling
+            else replace(self, value=value, low=low, high=high)
+        )
+
+    def columns(self, name: str, unit: str = "") -> dict[str, Any]:
+        """Columns of a table: ``NAME``, ``NAME_low``, ``NAME_high``, each ending in the unit."""
+        suffix = f"_{unit.replace('/', '_per_')}" if unit else ""
+        return {f"{name}{end}{suffix}": value for end, value in zip(_ENDS, self.ends, strict=True)}
+
+    def variables(
+        self, name: str, dims: Hashable | Sequence[Hashable], units: str, long_name: str
+    ) -> dict[str, tuple[Any, Any, dict[str, str]]]:
+        """Variables ``NAME``, ``NAME_low`` and ``NAME_high``, as ``xr.Dataset`` takes them.
+
+        Parameters
+        ----------
+        name : str
+        dims : str or sequence of str
+            Of the arrays; () for a number.
+        units, long_name : str
+        """
+        return {
+            f"{name}{end}": (dims, value, cf_attrs(units, f"{long_name}{words}"))
+            for (end, words), value in zip(_ENDS.items(), self.ends, strict=True)
+        }
+
+
+#: What is not known at all.
+NO_ESTIMATE = Estimate()
+
+
+def names_of(name: str) -> list[str]:
+    """Names of an estimate's variables: the value's and both ends'."""
+    return [f"{name}{end}" for end in _ENDS]
+
+
+def rows_of(name: str, units: str, long_name: str) -> dict[str, tuple[str, str]]:
+    """Unit and long name of an estimate's variables, by their names, for a table of variables."""
+    return {f"{name}{end}": (units, f"{long_name}{words}") for end, words in _ENDS.items()}

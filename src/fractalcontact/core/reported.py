@@ -1,0 +1,131 @@
+"""The contact states of a specimen that are published: which direction, offset, grid and loads.
+
+They are chosen once, by the stage that solves them, and stored with its closure curves. Figures,
+pages, statements and comparisons read them there.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .datasets import labelled
+
+#: Variables they are stored as: dimensions, unit, long name.
+_VARIABLES = {
+    "reported_direction": ((), "1", "direction of sliding whose states are reported"),
+    "reported_offset": ((), "mm", "shear offset v whose states are reported"),
+    "reported_resolution": ((), "1", "multiple k of the scan's spacing that is reported"),
+    "reported_load": ("normal_force", "1", "loads that are quoted"),
+    "reference_load": ("normal_force", "1", "load of which most is quoted and mapped"),
+}
+#: Dimensions that name a direction.
+_DIRECTIONS = ("direction", "contact_direction")
+
+
+@dataclass(frozen=True, eq=False)
+class Reported:
+    """States of a specimen that are published.
+
+    Attributes
+    ----------
+    direction : str
+        "E", "N", "W", "S", or "none" of what does not slide.
+    offset : float
+        mm.
+    resolution : int
+        Multiple of the scan's spacing.
+    forces : (n,) ndarray
+        Loads of the study, N, ascending.
+    loads : tuple of int
+        Numbers of those that are quoted, ascending.
+    reference : int
+        Number of the reference load, one of them.
+    """
+
+    direction: str
+    offset: float
+    resolution: int
+    forces: np.ndarray
+    loads: tuple[int, ...]
+    reference: int
+
+    @classmethod
+    def choose(
+        cls,
+        curves: xr.Dataset,
+        *,
+        direction: str,
+        offset: float,
+        quoted: Sequence[float] | np.ndarray,
+        reference: float,
+    ) -> "Reported":
+        """States nearest to what a study asks for, at the finest resolution.
+
+        Parameters
+        ----------
+        curves : xr.Dataset
+            Over ``offset`` (mm), ``resolution`` and ``normal_force`` (N).
+        direction : str
+        offset : float
+            mm, one of the offsets.
+        quoted : (k,) sequence of float
+            Forces to quote, N.
+        reference : float
+            Reference load, N.
+        """
+        forces = curves["normal_force"].values
+        nearest = [int(np.argmin(np.abs(forces - force))) for force in (*quoted, reference)]
+        resolution = int(curves["resolution"].min())
+        return cls(direction, offset, resolution, forces, tuple(sorted({*nearest})), nearest[-1])
+
+    @classmethod
+    def read(cls, curves: xr.Dataset) -> "Reported":
+        """States as the closure curves of a specimen name them."""
+        loads = np.flatnonzero(curves["reported_load"].values)
+        return cls(
+            str(curves["reported_direction"].values),
+            float(curves["reported_offset"]),
+            int(curves["reported_resolution"]),
+            curves["normal_force"].values,
+            tuple(int(load) for load in loads),
+            int(np.flatnonzero(curves["reference_load"].values)[0]),
+        )
+
+    def variables(self) -> Mapping[str, tuple]:
+        """Variables of the closure curves, as ``xr.Dataset`` takes them."""
+        numbers = np.arange(self.forces.size)
+        values = {
+            "reported_direction": self.direction,
+            "reported_offset": self.offset,
+            "reported_resolution": self.resolution,
+            "reported_load": np.isin(numbers, self.loads),
+            "reference_load": numbers == self.reference,
+        }
+        return labelled(_VARIABLES, values)
+
+    @property
+    def force(self) -> float:
+        """Reference load, N."""
+        return float(self.forces[self.reference])
+
+    def curves(self, stage: xr.Dataset) -> xr.Dataset:
+        """A stage in the reported direction, at the reported resolution."""
+        of_joint = [name for name in _DIRECTIONS if name in stage.dims]
+        chosen: dict[str, Any] = dict.fromkeys(of_joint, self.direction)
+        if "resolution" in stage.dims:
+            chosen["resolution"] = self.resolution
+        return stage.sel(chosen)
+
+    def states(self, stage: xr.Dataset) -> xr.Dataset:
+        """A stage in the reported direction, at the reported offset and resolution."""
+        curves = self.curves(stage)
+        if "offset" not in curves.dims:
+            return curves
+        return curves.sel(offset=self.offset, method="nearest")
+
+    def state(self, stage: xr.Dataset) -> xr.Dataset:
+        """A stage at the reported state under the reference load."""
+        return self.states(stage).sel(normal_force=self.force, method="nearest")

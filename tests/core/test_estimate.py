@@ -1,0 +1,86 @@
+"""Estimates: in memory, as variables and columns, and in words."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from fractalcontact.core.estimate import DIMENSION, EXPONENT, SIZE, Estimate, names_of, rows_of
+
+SEVERAL = Estimate(
+    np.array([[1.0, 2.0], [3.0, np.nan]]), np.array([[0.5, 1.0], [2.0, np.nan]]), np.full((2, 2), 9)
+)
+
+
+def test_what_is_written_is_read_again():
+    written = xr.Dataset(SEVERAL.variables("k", ("offset", "load"), "MPa/mm", "stiffness"))
+    assert list(written) == names_of("k") == list(rows_of("k", "MPa/mm", "stiffness"))
+    for found in (Estimate.read(written, "k"), Estimate.read(SEVERAL.columns("k"), "k")):
+        np.testing.assert_array_equal(found.ends, SEVERAL.ends)
+    row = pd.DataFrame(SEVERAL[0].columns("k")).iloc[1]
+    assert Estimate.read(row, "k").ends == (2.0, 1.0, 9.0)
+
+
+def test_variables_and_tables_of_variables_say_the_same_of_themselves():
+    written = xr.Dataset(SEVERAL.variables("k", ("offset", "load"), "MPa/mm", "stiffness"))
+    for name, (units, long_name) in rows_of("k", "MPa/mm", "stiffness").items():
+        assert written[name].attrs == {"units": units, "long_name": long_name}
+    assert "lower end of the 95 % interval" in written["k_low"].attrs["long_name"]
+
+
+def test_a_column_ends_in_its_unit():
+    assert list(Estimate(1, 0, 2).columns("k_ni", "MPa/mm")) == [
+        "k_ni_MPa_per_mm",
+        "k_ni_low_MPa_per_mm",
+        "k_ni_high_MPa_per_mm",
+    ]
+
+
+def test_a_missing_end_is_an_error():
+    with pytest.raises(KeyError, match="k_high"):
+        Estimate.read({"k": 1.0, "k_low": 0.5}, "k")
+
+
+def test_a_falling_function_exchanges_the_ends():
+    rising, falling = (
+        SEVERAL.mapped(np.log),
+        SEVERAL.mapped(lambda x: 3 - x, falling=True),
+    )
+    for found in (rising, falling):
+        known = found.known
+        assert (found.low[known] <= found.value[known]).all()
+        assert (found.value[known] <= found.high[known]).all()
+    np.testing.assert_array_equal(falling.low, 3 - SEVERAL.high)
+
+
+def test_estimates_are_stacked_in_the_order_of_an_array_and_taken_apart_again():
+    each = [Estimate(i, i - 1, i + 1, n=i, over=(i, 2 * i), reason=str(i)) for i in range(6)]
+    together = Estimate.stack(each, (2, 3))
+    assert together[1, 2] == each[5]
+    np.testing.assert_array_equal(together.over[1], [[0, 2, 4], [6, 8, 10]])
+    rows = Estimate.stack([SEVERAL[0], SEVERAL[1]], (2, 2))
+    np.testing.assert_array_equal(rows.ends, SEVERAL.ends)
+    assert rows.n.shape == rows.reason.shape == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("ends", "scale", "says"),
+    [
+        ((1.0, 0.5, 2.0), SIZE, True),
+        ((1.0, 0.1, 20.0), SIZE, False),  # more than a decade
+        ((0.1, -0.3, 0.5), SIZE, True),
+        ((0.1, -0.3, 0.5), EXPONENT, True),
+        ((0.1, -0.6, 0.8), EXPONENT, False),  # wider than 1, and of either sign
+        ((1.2, 0.6, 1.8), DIMENSION, False),  # wider than half of what a set in the plane can have
+        ((2.0, 2.0, 2.0), DIMENSION, True),  # a full window
+        ((1.2, 1.2, 1.2), DIMENSION, False),  # an error left out
+        ((1.0, np.nan, np.nan), SIZE, False),
+    ],
+)
+def test_whether_an_interval_determines_depends_on_the_kind_of_quantity(ends, scale, says):
+    assert Estimate(*ends, scale=scale).determined is says
+
+
+def test_a_format_is_that_of_each_number():
+    assert f"{Estimate(0.954, 0.9, 1.011):.2f}" == "0.95 [0.90, 1.01]"
+    assert f"{Estimate(-0.001, -0.2, 0.2):+z.2f}" == "+0.00 [-0.20, +0.20]"
