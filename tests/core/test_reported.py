@@ -24,17 +24,18 @@ def curves():
 
 @pytest.fixture
 def reported(curves):
-    return Reported.choose(curves, direction="E", offset=0.2, quoted=[2.9, 9.0], reference=31.0)
+    return Reported.choose(curves, direction="E", offset=0.2, loads=[2.9, 9.0], reference=31.0)
 
 
 def test_loads_are_the_nearest_to_those_asked_for(reported):
-    assert reported.loads == (1, 2, 3)
+    assert reported.loads == (1, 2)
+    assert reported.quoted == [1, 2, 3]
     assert (reported.reference, reported.force, reported.resolution) == (3, 30.0, 1)
 
 
 def test_the_reference_load_is_quoted_once(curves):
-    found = Reported.choose(curves, direction="E", offset=0.2, quoted=[10.0, 30.0], reference=30.0)
-    assert found.loads == (2, 3)
+    found = Reported.choose(curves, direction="E", offset=0.2, loads=[10.0, 30.0], reference=30.0)
+    assert found.quoted == [2, 3]
 
 
 def test_what_is_stored_is_read_again(curves, reported):

@@ -18,8 +18,8 @@ _VARIABLES = {
     "reported_direction": ((), "1", "direction of sliding whose states are reported"),
     "reported_offset": ((), "mm", "shear offset v whose states are reported"),
     "reported_resolution": ((), "1", "multiple k of the scan's spacing that is reported"),
-    "reported_load": ("normal_force", "1", "loads that are quoted"),
-    "reference_load": ("normal_force", "1", "load of which most is quoted and mapped"),
+    "reported_load": ("normal_force", "1", "loads whose dilatancy and strength are reported"),
+    "reference_load": ("normal_force", "1", "load whose contact domains are looked at closely"),
 }
 #: Dimensions that name a direction.
 _DIRECTIONS = ("direction", "contact_direction")
@@ -40,9 +40,9 @@ class Reported:
     forces : (n,) ndarray
         Loads of the study, N, ascending.
     loads : tuple of int
-        Numbers of those that are quoted, ascending.
+        Numbers of those whose dilatancy and strength are reported, ascending.
     reference : int
-        Number of the reference load, one of them.
+        Number of the load whose contact domains are looked at closely.
     """
 
     direction: str
@@ -59,7 +59,7 @@ class Reported:
         *,
         direction: str,
         offset: float,
-        quoted: Sequence[float] | np.ndarray,
+        loads: Sequence[float] | np.ndarray,
         reference: float,
     ) -> "Reported":
         """States nearest to what a study asks for, at the finest resolution.
@@ -71,15 +71,15 @@ class Reported:
         direction : str
         offset : float
             mm, one of the offsets.
-        quoted : (k,) sequence of float
-            Forces to quote, N.
+        loads : (k,) sequence of float
+            Forces whose dilatancy is reported, N.
         reference : float
             Reference load, N.
         """
         forces = curves["normal_force"].values
-        nearest = [int(np.argmin(np.abs(forces - force))) for force in (*quoted, reference)]
+        *dilating, at = (int(np.argmin(np.abs(forces - force))) for force in (*loads, reference))
         resolution = int(curves["resolution"].min())
-        return cls(direction, offset, resolution, forces, tuple(sorted({*nearest})), nearest[-1])
+        return cls(direction, offset, resolution, forces, tuple(sorted({*dilating})), at)
 
     @classmethod
     def read(cls, curves: xr.Dataset) -> "Reported":
@@ -105,6 +105,11 @@ class Reported:
             "reference_load": numbers == self.reference,
         }
         return labelled(_VARIABLES, values)
+
+    @property
+    def quoted(self) -> list[int]:
+        """Numbers of all loads of which numbers are published, ascending."""
+        return sorted({*self.loads, self.reference})
 
     @property
     def force(self) -> float:

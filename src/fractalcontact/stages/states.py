@@ -110,7 +110,7 @@ def _reported(curves: xr.Dataset, settings: Mapping, area: float) -> Reported:
         curves,
         direction=str(settings["contact_directions"][0]),
         offset=chosen_offset(settings["map_offset"], curves["offset"].values),
-        quoted=forces_of(settings["dilatancy_loads"], area),
+        loads=forces_of(settings["dilatancy_loads"], area),
         reference=float(forces_of([settings["map_load"]], area)[0]),
     )
 
