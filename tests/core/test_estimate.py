@@ -84,3 +84,45 @@ def test_whether_an_interval_determines_depends_on_the_kind_of_quantity(ends, sc
 def test_a_format_is_that_of_each_number():
     assert f"{Estimate(0.954, 0.9, 1.011):.2f}" == "0.95 [0.90, 1.01]"
     assert f"{Estimate(-0.001, -0.2, 0.2):+z.2f}" == "+0.00 [-0.20, +0.20]"
+
+
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        ((0.96, 0.02, 1.9), "undetermined (0.96 ± 0.94)"),
+        ((1.45, -0.34, 3.24), "undetermined (1.45 ± 1.79)"),
+        ((0.9, 0.3, 1.9), "undetermined (0.90 [0.30, 1.90])"),
+        ((400, -1e4, 9e3), "undetermined (400 [-10000, 9000])"),
+        ((-1e-9, -1, 1), "undetermined (0.00 ± 1.00)"),
+        ((1.0, 1.0 - 1e-14, 1.0 + 1e-14), "undetermined (1, error not known)"),
+        ((0.5, np.nan, np.nan), "undetermined (0.5, error not known)"),
+        ((0.5, -np.inf, np.inf), "undetermined (0.5, error not known)"),
+        ((np.nan, np.nan, np.nan), "undetermined"),
+    ],
+)
+def test_what_is_undetermined_has_its_value_and_error(ends, words):
+    assert Estimate(*ends).undetermined() == words
+
+
+def test_error_has_two_digits_however_small_or_large():
+    for size in 10.0 ** np.arange(-6, 7):
+        words = Estimate(3 * size, -1.1 * size, 7.1 * size).undetermined()
+        value, error = (float(part) for part in words.split("(")[1].rstrip(")").split(" ± "))
+        assert value == pytest.approx(3 * size, rel=0.02)
+        assert error == pytest.approx(4.1 * size, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("ends", "scale", "unit", "words"),
+    [
+        ((0.96, 0.02, 1.9), DIMENSION, "", "undetermined (0.96 ± 0.94)"),
+        ((3.0, -40, 46), SIZE, "mm", "undetermined (3 ± 43 mm)"),
+        ((0.96, 0.9, 1.02), DIMENSION, "", "0.96 [0.90, 1.02]"),
+        ((-1e-12, -0.004, 0.3), DIMENSION, "", "0.00 [0.00, 0.30]"),
+        ((12.34, 10, 20), SIZE, "MPa/mm", "12.3 [10, 20] MPa/mm"),
+        ((np.nan, 0, 1), SIZE, "mm", "no fit"),
+        ((np.nan, 0, 1), DIMENSION, "", "undetermined"),
+    ],
+)
+def test_an_estimate_in_words(ends, scale, unit, words):
+    assert Estimate(*ends, scale=scale).text(unit) == words

@@ -1,12 +1,10 @@
 """Means and their t-intervals; the jackknife is tested with the slopes it serves."""
 
 import numpy as np
-import pandas as pd
 import pytest
-import xarray as xr
 from scipy import stats
 
-from fractalcontact.core.intervals import CONFIDENCE, INTERVAL, bounds, mean_interval, t_quantile
+from fractalcontact.core.intervals import CONFIDENCE, INTERVAL, mean_interval, t_quantile
 
 
 def test_the_quantile_is_student_s():
@@ -47,23 +45,3 @@ def test_the_interval_holds_the_mean_as_often_as_it_says():
 def test_the_endings_of_an_interval_name_both_ends():
     assert list(INTERVAL) == ["", "_low", "_high"]
     assert all(f"{100 * CONFIDENCE:g} %" in words for ending, words in INTERVAL.items() if ending)
-
-
-def test_an_estimate_is_found_with_both_ends_in_a_dataset_a_table_and_a_row():
-    columns = {"x": [2.0, 5.0], "x_low": [1.0, 4.0], "x_high": [3.0, np.nan]}
-    table = pd.DataFrame(columns)
-    dataset = xr.Dataset({name: ("load", values) for name, values in columns.items()})
-    for source in (columns, table, dataset):
-        found = bounds(source, "x")
-        np.testing.assert_array_equal(found, [[2, 5], [1, 4], [3, np.nan]])
-    for source in (table.iloc[0], dataset.isel(load=0)):
-        assert bounds(source, "x") == (2, 1, 3)
-        assert all(np.isscalar(one) for one in bounds(source, "x"))
-
-
-@pytest.mark.parametrize("missing", ["x", "x_low", "x_high"])
-def test_an_estimate_without_an_end_is_an_error(missing):
-    values = {"x": 2.0, "x_low": 1.0, "x_high": 3.0}
-    del values[missing]
-    with pytest.raises(KeyError, match=missing):
-        bounds(values, "x")

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .determined import determined
-from .labels import cf_attrs
+from .determined import NO_WIDTH, determined
+from .labels import cf_attrs, plain
 
 #: Ends of an interval by the ending of their names, and what follows the long name there.
 _ENDS = {
@@ -22,12 +22,23 @@ _ENDS = {
 }
 
 
+#: Stands before a number whose interval leaves nearly everything open.
+UNDETERMINED = "undetermined"
+#: Ends of an interval that differ from even ones by less than this part of it are called even.
+_EVEN = 0.02
+
+
 class Scale(NamedTuple):
-    """Width up to which an interval determines a quantity of this kind (:mod:`core.determined`)."""
+    """Kind of a quantity: which intervals determine it, and how its numbers are written.
+
+    ``span``, ``widest`` and ``exact`` are those of :func:`core.determined.determined`; without
+    ``decimals`` numbers have three digits.
+    """
 
     span: float = 0.0
     widest: float = np.inf
     exact: tuple[float, ...] = ()
+    decimals: int | None = None
 
 
 #: Quantities of any size, which are determined to a factor.
@@ -36,8 +47,8 @@ SIZE = Scale()
 EXPONENT = Scale(span=1.0)
 #: Angles in degrees.
 ANGLE = Scale(span=30.0)
-#: Fractal dimensions of a contact domain: 0 and 2 need no interval.
-DIMENSION = Scale(span=1.0, widest=1.0, exact=(0.0, 2.0))
+#: Fractal dimensions and their slopes: those of a contact domain, 0 and 2, need no interval.
+DIMENSION = Scale(span=1.0, widest=1.0, exact=(0.0, 2.0), decimals=2)
 
 
 @dataclass(frozen=True)
@@ -130,9 +141,44 @@ class Estimate:
         return np.isfinite(self.value)
 
     @property
-    def determined(self) -> bool:
+    def determined(self) -> Any:
         """Whether the interval determines a quantity of this kind; of a single number."""
-        return determined(*self.ends, **self.scale._asdict())
+        span, widest, exact, _ = self.scale
+        return determined(*self.ends, span=span, widest=widest, exact=exact)
+
+    def text(self, unit: str = "") -> str:
+        """Value with its interval: "0.954 [0.912, 1.02] MPa"; of a single number.
+
+        "no fit" where there is none, :attr:`undetermined` where the interval leaves nearly
+        everything open.
+        """
+        if not self.known:
+            return "no fit" if self.scale.decimals is None else UNDETERMINED
+        if not self.determined:
+            return self.undetermined(unit)
+        if self.scale.decimals is None:
+            return f"{self:.3g} {unit}".rstrip()
+        value, low, high = (_decimals(end, self.scale.decimals) for end in self.ends)
+        return f"{value} [{low}, {high}] {unit}".rstrip()
+
+    def undetermined(self, unit: str = "") -> str:
+        """The word, then the value and its error in brackets.
+
+        The error is half of an even interval; of an uneven one both ends are given.
+        """
+        if not self.known:
+            return UNDETERMINED
+        value, low, high = self.ends
+        half = self.width / 2
+        if not half > NO_WIDTH * max(abs(value), 1e-300) or not np.isfinite(half):
+            words = f"{plain(value, limits=(1e-4, 1e6))}, error not known"
+        else:
+            # Two digits of the error, and two decimals where it is of the order of one.
+            digits = max(1 - int(np.floor(np.log10(half))), 2 if half < 10 else 0)
+            shown, least, most, error = (_decimals(x, digits) for x in (value, low, high, half))
+            even = abs(high - value - (value - low)) <= _EVEN * self.width
+            words = f"{shown} ± {error}" if even else f"{shown} [{least}, {most}]"
+        return f"{UNDETERMINED} ({words}{f' {unit}' if unit else ''})"
 
     def mapped(self, function: Callable[[Any], Any], *, falling: bool = False) -> "Estimate":
         """Estimate of a monotone function of the quantity; a falling one exchanges the ends."""
@@ -164,6 +210,11 @@ class Estimate:
             f"{name}{end}": (dims, value, cf_attrs(units, f"{long_name}{words}"))
             for (end, words), value in zip(_ENDS.items(), self.ends, strict=True)
         }
+
+
+def _decimals(value: float, digits: int) -> str:
+    """A number to some decimals, never a negative zero."""
+    return f"{round(float(value), digits) + 0.0:.{digits}f}"
 
 
 #: What is not known at all.

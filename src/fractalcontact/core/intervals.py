@@ -31,29 +31,6 @@ def t_quantile(freedom: ArrayLike) -> Any:
     return special.stdtrit(freedom, (1 + CONFIDENCE) / 2)
 
 
-def bounds(dataset: Any, name: str) -> tuple[Any, Any, Any]:
-    """An estimate and both ends of its interval, as a dataset or a table names them.
-
-    Parameters
-    ----------
-    dataset : xr.Dataset, pd.DataFrame or mapping of str to array_like
-    name : str
-        Of the estimate; its ends are `name_low` and `name_high`.
-
-    Returns
-    -------
-    value, low, high : float or ndarray
-        Of the shape of the variables, a number where they have no dimension.
-
-    Raises
-    ------
-    KeyError
-        Where one of the three is missing.
-    """
-    value, low, high = (np.asarray(dataset[f"{name}{end}"])[()] for end in INTERVAL)
-    return value, low, high
-
-
 def mean_interval(values: ArrayLike, axis: int = 0) -> Estimate:
     """Mean of independent values and its Student-t interval.
 

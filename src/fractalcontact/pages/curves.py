@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 
 from ..core.determined import determined
-from ..core.intervals import INTERVAL, bounds
+from ..core.estimate import Estimate
+from ..core.intervals import INTERVAL
 from .chosen import Chosen, finite
 from .summary import DIMENSION
 from .words import in_table
@@ -93,4 +94,4 @@ def _quantities(one):
         yield words, unit, values, values - error, values + error
     for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
         found = one.values(stage, *(f"delta_sigma{end}" for end in INTERVAL))
-        yield f"Delta_sigma {words}", DIMENSION_UNIT, *bounds(found, "delta_sigma")
+        yield f"Delta_sigma {words}", DIMENSION_UNIT, *Estimate.read(found, "delta_sigma").ends

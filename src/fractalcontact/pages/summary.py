@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ..core import estimate
 from ..core.determined import determined
-from ..core.intervals import bounds
 from ..domain.box_dimension import WIDEST
 from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
 from ..mechanics.model_validity import Validity
@@ -58,7 +58,7 @@ class Estimate:
     @classmethod
     def of(cls, found: xr.Dataset, name: str, note: str = "", **kind: Any) -> "Estimate":
         """Variable ``name`` of a dataset with its ends; ``kind`` is handed to `determined`."""
-        return cls.between(bounds(found, name), note, kind)
+        return cls.between(estimate.Estimate.read(found, name).ends, note, kind)
 
     @classmethod
     def between(cls, ends: Sequence[float], note: str, kind: dict[str, Any]) -> "Estimate":
@@ -206,7 +206,7 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
     side_y, side_x = window_sides(specimen)
     surface = chosen.stage("surface_dimension")
     curve = chosen.values("closure")
-    dimension = bounds(surface, "recommended_dimension")
+    dimension = estimate.Estimate.read(surface, "recommended_dimension").ends
     return Specimen(
         name=chosen.name,
         label=chosen.label,

@@ -8,9 +8,10 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...accuracy.convergence import QUANTITIES
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import EXPONENT, Estimate
+from ...core.intervals import INTERVAL
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import SUPPLEMENTARY, estimate
+from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
 SUBJECT = "accuracy"
@@ -43,8 +44,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 def _draw_errors(axes, result, quantities):
     spacing = 1 / result["cells_per_radius"].values
     for i, name in enumerate(quantities):
-        order = bounds(result, f"{name}_order")
-        label = f"{name.replace('_', ' ')}: order {estimate(*order)}"
+        order = Estimate.read(result, f"{name}_order").ends
+        label = f"{name.replace('_', ' ')}: order {Estimate(*order, scale=EXPONENT).text()}"
         style = {"color": colour_of(i), "marker": MARKERS[i]}
         axes.plot(spacing, result[f"{name}_error"], ls="none", label=label, **style)
         if np.isfinite(order[0]):
@@ -102,7 +103,7 @@ def _table(found, trials):
 
 def _caption(found, trials):
     orders = [
-        f"{problem} {estimate(*bounds(result, 'force_order'))}"
+        f"{problem} {Estimate.read(result, 'force_order', scale=EXPONENT).text()}"
         for problem, result in found.items()
         if "force" in QUANTITIES[problem]
     ]

@@ -8,9 +8,9 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...accuracy.speed import OURS
-from ...core.intervals import bounds
+from ...core.estimate import EXPONENT, Estimate
 from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import SUPPLEMENTARY, estimate, short
+from ..kit.words import SUPPLEMENTARY, short
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles
 
 TITLE = "Wall time and memory against the size of the grid"
@@ -99,4 +99,4 @@ def _caption(growth, columns):
 
 
 def _exponent(one, name):
-    return estimate(*bounds(one, f"{name}_exponent"))
+    return Estimate.read(one, f"{name}_exponent", scale=EXPONENT).text()

@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ...core.intervals import bounds
+from ...core.estimate import DIMENSION, SIZE, Estimate
 from ...core.labels import printable
 from ..kit.drawing import label_short_span
 from ..kit.empty import say_empty
-from ..kit.words import estimate, interval, short
+from ..kit.words import short
 
 #: What each quantity is on an axis.
 AXES = {
@@ -97,9 +97,9 @@ def means_in_words(comparison: xr.Dataset, name: str, state: xr.Dataset, unit: s
     found = []
     for group, label in zip(state["group_name"].values, _plain(comparison), strict=True):
         one = state.sel(group_name=group)
-        value, low, high = bounds(one, f"{name}_mean")
+        value, low, high = Estimate.read(one, f"{name}_mean").ends
         n = int(one[f"{name}_n"])
-        words = estimate(value, low, high, unit) if unit else interval(value, low, high)
+        words = Estimate(value, low, high, scale=SIZE if unit else DIMENSION).text(unit)
         if n == 1:
             words = short(value)
         found.append(f"{label} {words} of {n}")

@@ -8,7 +8,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import Estimate
+from ...core.intervals import INTERVAL
 from ...statements.comparison import ONCE, QUANTITIES, compared_pressures
 from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, group, letter
 from ..kit.points import reach
@@ -111,7 +112,7 @@ def _draw_strip(axes, name, values, at_load):
             axes.plot(
                 place, found, "o", ms=1.5, color=colour, alpha=0.4, mec="none", rasterized=True
             )
-        mean, low, high = (ends[i] for ends in bounds(at_load, f"{name}_mean"))
+        mean, low, high = (ends[i] for ends in Estimate.read(at_load, f"{name}_mean").ends)
         if np.isfinite(low):
             axes.errorbar(i + MEAN_AT, mean, reach(mean, low, high), fmt="D", color="k", capsize=3)
     axes.set_xticks(range(len(labels)), labels, rotation=20 if len(labels) > 2 else 0)

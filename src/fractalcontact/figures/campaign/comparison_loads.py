@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import Estimate
 from ...statements.comparison import UNDER_LOAD, compared_pressures
 from ..kit.drawing import (
     LINES,
@@ -75,7 +75,7 @@ def _draw_alone(axes, comparison, name):
     axes.set_xscale("log")
     for i, label in enumerate(specimen_labels(comparison, _LETTERS)):
         one = comparison.isel(specimen=i)
-        found, low, high = bounds(one, name)
+        found, low, high = Estimate.read(one, name).ends
         bars = reach(found, low, high)
         # Present in every panel, so that one legend serves all.
         style = {"color": colour_of(i), "marker": MARKERS[i], "ls": LINES[i % len(LINES)]}

@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import Estimate
+from ...core.intervals import INTERVAL
 from ...domain.box_dimension import WIDEST
 from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
@@ -98,7 +99,7 @@ def _draw_curves(axes, one, curves, *, colours, of="") -> None:
     load = one["reduced_pressure"].values
     pairs = zip(curves, colours, strict=True)
     for beside, ((name, label, marker, line), colour) in zip(_BESIDE, pairs, strict=True):
-        value, low, high = bounds(one, name)
+        value, low, high = Estimate.read(one, name).ends
         narrow = (high - low) <= WIDEST
         error = np.where(narrow, reach(value, low, high), np.nan)
         style = {"marker": marker, "ls": line, "color": colour_of(colour)}

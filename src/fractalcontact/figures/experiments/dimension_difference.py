@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import Estimate
+from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -60,7 +61,7 @@ def _draw_difference(axes, test, which):
     for i in range(test.sizes["dimension"]):
         for n, j in enumerate(_shown(test)):
             one = test.isel(dimension=i, reduced_pressure=j)
-            mean, low, high = bounds(one, "mean_difference")
+            mean, low, high = Estimate.read(one, "mean_difference").ends
             beside = size * 1.03 ** (n + 2 * i - 2)
             colour = colour_of(i)
             axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])

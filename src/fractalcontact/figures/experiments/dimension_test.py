@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import Estimate
+from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     COLOURS,
     MARKERS,
@@ -64,7 +65,7 @@ def _draw_loads(axes, test, dimension, which):
     one = test.sel(dimension=dimension)
     load = one["reduced_pressure"].values
     for n, (name, (colour, line, _)) in enumerate(_ESTIMATORS.items()):
-        mean, low, high = bounds(one, f"mean_{name}")
+        mean, low, high = Estimate.read(one, f"mean_{name}").ends
         beside = load * 1.04 ** (n - 1)
         axes.plot(beside, mean, color=colour, ls=line, marker=MARKERS[n])
         axes.vlines(beside, low, high, color=colour, lw=0.8)

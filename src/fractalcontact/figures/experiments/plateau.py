@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.estimate import EXPONENT, Estimate
 from ...core.fitting import fit_line
 from ...core.intervals import mean_interval
 from ...core.labels import printable
@@ -33,7 +34,7 @@ from ..kit.drawing import (
 )
 from ..kit.sizes import plain_decades
 from ..kit.verdicts import CIRCULAR_SHORT, row_of
-from ..kit.words import PAPER, estimate, short
+from ..kit.words import PAPER, short
 
 TITLE = "Rigid dilatancy of all joints: does a plateau need a roll-off of the spectrum?"
 SUBJECT = "study"
@@ -390,7 +391,7 @@ def _change(slide):
     trend = Trend.of(slide, slide.opened)
     if not np.isfinite(trend.slope):
         return "too few offsets"
-    return f"{estimate(trend.slope, trend.low, trend.high)} mm/mm"
+    return f"{Estimate(trend.slope, trend.low, trend.high, scale=EXPONENT).text()} mm/mm"
 
 
 def _level(slide):

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import Estimate
 from ...experiments.size_decision import PROBABILITY
 from ...mechanics.theory import fudged_persson_area, persson_area
 from ..kit.drawing import (
@@ -150,7 +150,7 @@ def _draw_exponents(axes: Axes, test: xr.Dataset) -> None:
     hursts = test["hurst"].values
     for i, hurst in enumerate(hursts):
         one = test.sel(hurst=hurst)
-        error = reach(*bounds(one, "area_delta"))
+        error = reach(*Estimate.read(one, "area_delta").ends)
         beside = load * _BESIDE ** (2 * i - len(hursts) + 1)
         colour = colour_of(_colour(i))
         axes.errorbar(beside, one["area_delta"], yerr=error, fmt="o", color=colour)

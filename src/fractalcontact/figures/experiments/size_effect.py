@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import Estimate
+from ...core.intervals import INTERVAL
 from ...experiments.size_decision import NO_EFFECT, PROBABILITY, REFUTED, UPHELD
 from ..kit.drawing import (
     MARKERS,
@@ -105,8 +106,8 @@ def _draw_arm(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         axes.errorbar(
             row["eq6"],
             row["alpha"],
-            xerr=reach(*bounds(row, "eq6")),
-            yerr=reach(*bounds(row, "alpha")),
+            xerr=reach(*Estimate.read(row, "eq6").ends),
+            yerr=reach(*Estimate.read(row, "alpha").ends),
             fmt=MARKERS[loads.index(row["p_over_E_slope"])],
             color=colour,
             mfc=colour if filled else "white",

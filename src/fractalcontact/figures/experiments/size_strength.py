@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import Estimate
+from ...core.intervals import INTERVAL
 from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
     MARKERS,
@@ -153,7 +154,7 @@ def _draw_strength(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         axes.errorbar(
             middles[one.index] * shift,
             one["value"],
-            yerr=reach(*bounds(one, "value")),
+            yerr=reach(*Estimate.read(one, "value").ends),
             fmt=MARKERS[i],
             color=colour,
             mfc=colour if law == "elastic" else "white",
@@ -199,7 +200,7 @@ def _draw_exponents(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
         axes.errorbar(
             x,
             one["value"],
-            yerr=reach(*bounds(one, "value")),
+            yerr=reach(*Estimate.read(one, "value").ends),
             fmt=marker,
             color=colour,
             mfc=colour if law == "elastic" else "white",

@@ -11,7 +11,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import Estimate
+from ...core.intervals import INTERVAL
 from ...domain.box_dimension import is_determined
 from ...size_effect.size_verdict import AGREES, FLATTER, NOT_TESTED, STEEPER
 from ..kit.drawing import COLOURS, entries, group, label_short_span
@@ -86,7 +87,7 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
     for estimator, (line, words) in ESTIMATORS.items():
         one = test.sel(estimator=estimator)
         known = np.isfinite(one["predicted_slope"].values)
-        value, low, high = (ends[known] for ends in bounds(one, "predicted_slope"))
+        value, low, high = (ends[known] for ends in Estimate.read(one, "predicted_slope").ends)
         colour = _COLOURS[estimator]
         absent = "" if known.any() else " (not known here)"
         label = f"eq. 6, $\\Delta_\\sigma$ by {words}{absent}"
@@ -140,7 +141,7 @@ def draw_measured(
         Which markers are hollow.
     """
     pressure = test["nominal_pressure"].values
-    value, low, high = bounds(test, name)
+    value, low, high = Estimate.read(test, name).ends
     faint = False
     for i in np.flatnonzero(np.isfinite(value)):
         sure = is_determined(low[i], high[i])

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import EXPONENT, UNDETERMINED, Estimate
 from ...mechanics.area import LIGHT_LOAD
 from ...mechanics.states import chosen_offset
 from ..experiments.area_slope import kappa_lines
@@ -27,7 +27,7 @@ from ..kit.drawing import (
 from ..kit.empty import say_empty
 from ..kit.points import reach
 from ..kit.verdicts import claim, sentences
-from ..kit.words import NOMINAL_PRESSURE, UNDETERMINED, estimate, number, opening, place, short
+from ..kit.words import NOMINAL_PRESSURE, number, opening, place, short
 
 TITLE = "Real contact area compared with the classical theories of section 2"
 SUBJECT = "specimen"
@@ -89,7 +89,7 @@ def _draw_area(axes, curve, law):
     axes.plot(pressure[enough], corrected[enough], label=words, **points)
     axes.plot(pressure, 100 * curve["area_share"], mfc="none", label="computed, raw", **points)
     if not str(law["no_corrected_law"].values):
-        exponent = estimate(*bounds(law, "corrected_exponent"))
+        exponent = Estimate.read(law, "corrected_exponent", scale=EXPONENT).text()
         axes.plot([], [], " ", label=f"corrected: $A_r \\sim F^m$, $m$ = {exponent}")
     for variable, words, colour, line in THEORIES:
         share = law[variable].values
@@ -178,7 +178,7 @@ def _draw_means(axes, law):
     for prefix, face, at in (("corrected_", COLOURS[0], 0.05), ("", "white", 0.02)):
         if str(law[f"no_{prefix}mean_kappa"].values):
             continue
-        value, low, high = bounds(law, f"{prefix}mean_kappa")
+        value, low, high = Estimate.read(law, f"{prefix}mean_kappa").ends
         axes.errorbar(
             [at],
             [value],
@@ -221,8 +221,12 @@ def _kappa_words(law):
 
 
 def _mean(law, prefix):
-    value, low, high = bounds(law, f"{prefix}mean_kappa")
-    return estimate(value, low, high) if np.isfinite(low) else f"{short(value)} (one load)"
+    value, low, high = Estimate.read(law, f"{prefix}mean_kappa").ends
+    return (
+        Estimate(value, low, high, scale=EXPONENT).text()
+        if np.isfinite(low)
+        else f"{short(value)} (one load)"
+    )
 
 
 def _table(curve, law):
@@ -255,8 +259,8 @@ def _law_words(law):
     reason = str(law["no_corrected_law"].values)
     if reason:
         return f"No power law here ({reason})."
-    value, low, high = bounds(law, "corrected_exponent")
-    fit = estimate(value, low, high)
+    value, low, high = Estimate.read(law, "corrected_exponent").ends
+    fit = Estimate(value, low, high, scale=EXPONENT).text()
     levels = [
         f"{level}"
         for level, exponent in zip(

@@ -1,5 +1,7 @@
 """Clusters of the contact domain against the offset: number, size and localisation."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -7,8 +9,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.estimate import EXPONENT, Estimate
 from ...core.fitting import fit_line
-from ...core.intervals import bounds
 from ...core.resolved import RESOLVED_NODES
 from ...domain.clusters import LARGEST_DISTANCE, follows_law
 from ...surface.specimen import cell_side
@@ -34,7 +36,7 @@ from ..kit.drawing import (
 )
 from ..kit.points import draw_points
 from ..kit.verdicts import claim, sentences
-from ..kit.words import estimate, force_label, opening, place, short, slope_text
+from ..kit.words import force_label, opening, place, short
 
 TITLE = "Figs. 6 and 7: clusters of the contact domains, and their localisation with the offset"
 SUBJECT = "joint"
@@ -214,7 +216,7 @@ def _draw_domains(panels, table):
             y = points[column].where(points[column] > 0)
             axes.plot(v, y, lw=0.8, color=colour_of(n))
             draw_points(axes, v, y, many, **style)
-        exponent = slope_text(_trend(points, "morisita"))
+        exponent = replace(_trend(points, "morisita").slope, scale=EXPONENT).text()
         name = rf"$F$ = {force_label(force)}: $x$ = {exponent}"
         number.plot([], [], lw=0.8, label=name, **style)
         above = 1 + 1.96 * points["morisita_scatter"]
@@ -244,7 +246,7 @@ def _draw_sizes(axes, sizes):
     """Clusters of some area or more, with the laws fitted to them."""
     for n, (offset, points) in enumerate(sizes.groupby("offset_mm")):
         law = points.iloc[0]
-        exponent = estimate(*bounds(law, "exponent"))
+        exponent = Estimate.read(law, "exponent", scale=EXPONENT).text()
         area, at_least = points["cluster_area_mm2"], points["clusters_at_least"]
         colour = _OFFSET_COLOURS[n]
         style = {"color": colour, "marker": _OFFSET_MARKERS[n], "ls": "none"}
@@ -295,7 +297,7 @@ def _size_words(sizes):
         return "Too few clusters for a law of sizes."
     if len(fitted) == 1:
         law = fitted.iloc[0]
-        values = estimate(*bounds(law, "exponent"))
+        values = Estimate.read(law, "exponent", scale=EXPONENT).text()
     else:
         values = f"{short(fitted['exponent'].min())} to {short(fitted['exponent'].max())}"
     broken = [

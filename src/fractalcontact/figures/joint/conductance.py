@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import EXPONENT, Estimate
 from ...core.ranges import within
 from ...core.resolved import RESOLVED_NODES
 from ..kit.drawing import (
@@ -23,7 +23,7 @@ from ..kit.drawing import (
 )
 from ..kit.empty import TOO_FULL, say_empty
 from ..kit.points import draw_points
-from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, estimate, place, short
+from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, place, short
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"
 SUBJECT = "specimen"
@@ -100,7 +100,7 @@ def _state(direction, offset):
 
 def _draw_curve(axes, n, state, points):
     law, fitted = points.iloc[0], points["fitted"]
-    exponent = estimate(*bounds(law, "exponent"))
+    exponent = Estimate.read(law, "exponent", scale=EXPONENT).text()
     words = (
         f"exponent {exponent}"
         if np.isfinite(points["conductance_per_mm"]).any()
@@ -157,7 +157,7 @@ def _exponent_words(table):
     above = len(fitted) - reached - below
     law = fitted.iloc[0]
     values = (
-        f"a power {estimate(law['exponent'], law['exponent_low'], law['exponent_high'])}"
+        f"a power {Estimate.read(law, 'exponent', scale=EXPONENT).text()}"
         if len(fitted) == 1
         else f"powers from {fitted['exponent'].min():.3g} to {fitted['exponent'].max():.3g}"
     )

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import DIMENSION, Estimate
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -26,7 +26,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.words import force_label, interval, opening, place
+from ..kit.words import force_label, opening, place
 
 TITLE = "Is the contact domain fractal: local slopes, lacunarity, dimensions of the pressure"
 SUBJECT = "specimen"
@@ -202,7 +202,7 @@ def _caption(state, table):
 
 def _interval(state, key):
     """A dimension with its interval."""
-    return interval(*bounds(state, key))
+    return Estimate.read(state, key, scale=DIMENSION).text()
 
 
 def _law(state, table):

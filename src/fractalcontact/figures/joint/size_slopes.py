@@ -6,7 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import DIMENSION, Estimate
+from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -21,7 +22,7 @@ from ..kit.empty import say_empty
 from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades, size_axis
 from ..kit.verdicts import claim, sentences
-from ..kit.words import SUPPLEMENTARY, interval, number, pressure_label
+from ..kit.words import SUPPLEMENTARY, number, pressure_label
 from ._size_test import (
     ESTIMATORS,
     MOST_LOADS,
@@ -84,7 +85,7 @@ def _draw_equal(axes, test, loads):
         pressure = test["equal_pressure"].values[i]
         axes.plot(b, pressure, ls="none", **style)
         draw_laws(axes, test, i, b, pressure[0])
-        found = interval(*(ends[i] for ends in bounds(test, "slope")))
+        found = Estimate.read(test, "slope", scale=DIMENSION)[i].text()
         label = f"at {pressure_words(test, i)}: {found}"
         handles.append(Line2D([], [], ls="none", **style, label=label))
     size_axis(axes, b, "parts")
@@ -154,7 +155,7 @@ def _found_words(test):
         for estimator, (_, words) in ESTIMATORS.items()
         if np.isfinite(best["predicted_slope"].sel(estimator=estimator))
     ]
-    measured = interval(*bounds(best, "slope"))
+    measured = Estimate.read(best, "slope", scale=DIMENSION).text()
     beside = f", eq. 6 has {', '.join(wanted)}" if wanted else ""
     found = f"At {pressure_label(float(best['nominal_pressure']))} the slope is {measured}{beside}."
     hollow = int(known.sum() - sure.sum())

@@ -6,7 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import DIMENSION, Estimate
+from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -20,7 +21,7 @@ from ..kit.drawing import (
 from ..kit.empty import say_empty
 from ..kit.sizes import draw_bars, plain_decades, size_axis
 from ..kit.verdicts import claim, sentences
-from ..kit.words import SUPPLEMENTARY, interval
+from ..kit.words import SUPPLEMENTARY
 from ._size_test import (
     MOST_LOADS,
     draw_laws,
@@ -74,14 +75,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _draw_area(axes, test, loads):
     """A_r/A_0 over b at some sigma_0 with intervals, and what eq. 6 wants; legend entries."""
     b = test["side"].values
-    fraction, low, high = bounds(test, "area_fraction")
+    fraction, low, high = Estimate.read(test, "area_fraction").ends
     handles = [heading("measured, exponent of $b$ [95 % interval]")]
     for n, i in enumerate(loads):
         style = {"color": "k", "marker": load_marker(n)}
         axes.plot(b, fraction[i], ls="none", **style)
         draw_bars(axes, b, fraction[i], low[i], high[i], "k")
         draw_laws(axes, test, i, b[np.isfinite(fraction[i])], fraction[i, 0])
-        found = interval(*(ends[i] for ends in bounds(test, "area_exponent")))
+        found = Estimate.read(test, "area_exponent", scale=DIMENSION)[i].text()
         label = f"at {pressure_words(test, i)}: {found}"
         handles.append(Line2D([], [], ls="none", **style, label=label))
     size_axis(axes, b, "parts")

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import ANGLE, Estimate
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
@@ -27,7 +27,7 @@ from ..kit.drawing import (
 from ..kit.empty import say_empty
 from ..kit.points import draw_points, hollow_entry
 from ..kit.sizes import draw_bars, logarithmic, plain_decades, roughness_words
-from ..kit.words import estimate, opening, place, short
+from ..kit.words import opening, place, short
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
 SUBJECT = "joint"
@@ -130,7 +130,7 @@ def _draw_summary(axes, strength):
         draw_points(axes, sigma, known[key], ~held, label=label, **style)
         if held.any():
             hollow_entry(axes, f"{words}: held, no result", **style)
-    draw_bars(axes, sigma, *bounds(strength, "residual_strength"), _RESIDUAL)
+    draw_bars(axes, sigma, *Estimate.read(strength, "residual_strength").ends, _RESIDUAL)
     axes.set(xscale="log")
     logarithmic(axes, np.array(list(known.values())))
 
@@ -282,11 +282,11 @@ def _strength_words(strength, shown):
 
 def _residual_words(strength):
     """The dilatancy angle beyond half of the largest offset, under one load."""
-    ends = bounds(strength, "residual_angle")
+    angle = Estimate.read(strength, "residual_angle", scale=ANGLE)
     count = int(strength["residual_n"])
     if count > 1:
-        return f"{estimate(*ends, 'degrees')}, {count} intervals"
-    return f"{short(ends[0])} degrees (one interval)" if count else "none"
+        return f"{angle.text('degrees')}, {count} intervals"
+    return f"{short(angle.value)} degrees (one interval)" if count else "none"
 
 
 def _counts(held):

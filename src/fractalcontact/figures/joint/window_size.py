@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import EXPONENT, Estimate
+from ...core.intervals import INTERVAL
 from ...core.ranges import within
 from ...mechanics.states import chosen_offset
 from ..kit.drawing import (
@@ -28,7 +29,7 @@ from ..kit.empty import say_empty
 from ..kit.points import draw_points
 from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
 from ..kit.verdicts import claim, sentences
-from ..kit.words import UNDETERMINED, estimate, opening, place, pressure_label
+from ..kit.words import opening, place, pressure_label
 
 TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
 SUBJECT = "specimen"
@@ -157,18 +158,18 @@ def _draw_contact(axes, laws, mapped, quantity):
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
         law = quantity.exponent
-        ends = [values[mapped, j] for values in bounds(laws, law)]
-        weak = WEAK if estimate(*ends).startswith(UNDETERMINED) else {}
+        exponent = Estimate.read(laws, law, scale=EXPONENT)[mapped, j]
+        weak = WEAK if exponent.known and not exponent.determined else {}
         values = laws[quantity.name].values[:, mapped, j]
         fitted = np.zeros(b.shape, bool)
-        if np.isfinite(ends[0]):
+        if exponent.known:
             b_min, b_max = (float(laws[f"{law}_b_{end}"][mapped, j]) for end in ("min", "max"))
             fitted = (values > 0) & within(b, b_min, b_max)
-            level = np.exp(np.mean(np.log(values[fitted]) - ends[0] * np.log(b[fitted])))
+            level = np.exp(np.mean(np.log(values[fitted]) - exponent.value * np.log(b[fitted])))
             line = {"color": style["color"], "linewidth": 0.8} | weak
-            axes.plot(b[fitted], level * b[fitted] ** ends[0], **line)
+            axes.plot(b[fitted], level * b[fitted] ** exponent.value, **line)
         _with_intervals(axes, b, laws, quantity.name, (mapped, j), fitted, **style)
-        label = f"{pressure_label(pressure)}: $x$ = {estimate(*ends)}"
+        label = f"{pressure_label(pressure)}: $x$ = {exponent.text()}"
         axes.plot([], [], **style | _hollow(fitted), ls="none", label=label)
     size_axis(axes, b, "sub-windows")
     values = laws[quantity.name].values[:, mapped]
@@ -253,15 +254,17 @@ def _caption(laws):
 
 def _hurst_words(laws):
     """H of the face, beside that expected of its dimension."""
-    hurst, expected = (bounds(laws, f"{of}_hurst") for of in ("face", "expected"))
-    if not np.isfinite(hurst[0]):
+    hurst, expected = (
+        Estimate.read(laws, f"{of}_hurst", scale=EXPONENT) for of in ("face", "expected")
+    )
+    if not hurst.known:
         return "No fit of eq. 2: fewer than three sizes lie in its range."
-    words = f"H = {estimate(*hurst)}"
-    if not np.isfinite(expected[0]):
+    words = f"H = {hurst.text()}"
+    if not expected.known:
         return f"{words}."
-    agree = hurst[1] <= expected[2] and expected[1] <= hurst[2]
+    agree = hurst.low <= expected.high and expected.low <= hurst.high
     verb = "agrees" if agree else "disagrees"
-    return f"{words} {verb} with 3 - Delta_g = {estimate(*expected)}."
+    return f"{words} {verb} with 3 - Delta_g = {expected.text()}."
 
 
 def _closure_words(laws):

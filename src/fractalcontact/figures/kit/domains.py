@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from xarray import DataTree
 
+from ...core.estimate import DIMENSION, Estimate
 from ...core.fitting import FEWEST_POINTS
 from ...domain.box_dimension import WIDEST, is_determined
 from ...domain.departure import BEYOND_BOTH, UNDETERMINED
@@ -14,15 +15,15 @@ from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
 from .verdicts import verdict_words
-from .words import interval, place
+from .words import place
 
 #: Statements that judge the rise of Delta_sigma with the load, by estimate.
 RISES = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """One estimator's Delta_sigma under every load, with its 95 % interval.
+@dataclass(frozen=True, kw_only=True)
+class DeltaSigma(Estimate):
+    """One estimator's Delta_sigma under every load, (n_load,).
 
     Attributes
     ----------
@@ -30,25 +31,15 @@ class Estimate:
         "area" or "box".
     label, symbol : str
         What it is estimated from, for captions and for legends.
-    value, low, high : (n_load,) ndarray
-        NaN where there is none.
-    reason : list of str
-        Why there is none, else "".
     """
 
     key: str
     label: str
     symbol: str
-    value: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    reason: list
 
-    def text(self, i: int) -> str:
-        """Delta_sigma under the i-th load in words."""
-        if self.reason[i]:
-            return self.reason[i]
-        return interval(self.value[i], self.low[i], self.high[i])
+    def at(self, i: int) -> str:
+        """Delta_sigma under the i-th load in words, or why there is none."""
+        return self.reason[i] or self[i].text()
 
     @property
     def determined(self) -> np.ndarray:
@@ -59,7 +50,7 @@ class Estimate:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
         if self.reason[i]:
             return self.reason[i].split(":")[0]
-        text = self.text(i)
+        text = self.at(i)
         return rf"$\Delta_\sigma$ {'' if text.startswith(UNDETERMINED) else '= '}{text}"
 
     @property
@@ -74,12 +65,12 @@ class Estimate:
         }
 
 
-def fall_reason(by_area: Estimate, i: int) -> str:
+def fall_reason(by_area: DeltaSigma, i: int) -> str:
     """What decides whether A_r falls: where the interval of the exponent lies, however wide.
 
     Parameters
     ----------
-    by_area : Estimate
+    by_area : DeltaSigma
         Delta_sigma by A_r(s).
     i : int
         Index of the load.
@@ -172,7 +163,7 @@ class Loading:
         return self.domains.sel(resolution=self.finest)
 
     @property
-    def estimates(self) -> tuple[Estimate, ...]:
+    def estimates(self) -> tuple[DeltaSigma, ...]:
         """Both estimates of Delta_sigma; that of the box counts at the finest resolution."""
         area, box = self.scaling, self.counts
         too_few = [
@@ -183,14 +174,13 @@ class Loading:
         ]
         no_dimension = [f"no dimension: {text}" if text else "" for text in box["reason"].values]
         return tuple(
-            Estimate(
-                key,
-                label,
-                symbol,
-                data["delta_sigma"].values,
-                data["delta_sigma_low"].values,
-                data["delta_sigma_high"].values,
-                reason,
+            DeltaSigma(
+                *Estimate.read(data, "delta_sigma").ends,
+                reason=reason,
+                scale=DIMENSION,
+                key=key,
+                label=label,
+                symbol=symbol,
             )
             for key, label, symbol, data, reason in (
                 ("area", "A_r(s)", "$A_r(s)$", area, too_few),

@@ -7,13 +7,14 @@ from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from xarray import DataTree
 
+from ...core.estimate import EXPONENT, Estimate
 from ...core.fitting import FEWEST_POINTS
-from ...core.intervals import INTERVAL, bounds
+from ...core.intervals import INTERVAL
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from .points import draw_points
 from .verdicts import claim
-from .words import estimate, length_unit, short
+from .words import length_unit, short
 
 #: Where more than this fraction of the sub-windows had their angle held, a marker is left open.
 MOSTLY = 0.5
@@ -169,4 +170,4 @@ def along_size(laws: xr.Dataset, name: str, index: tuple[int, ...]) -> list[np.n
 
 def interval_text(laws: xr.Dataset, name: str, index: int | tuple[int, ...] = ()) -> str:
     """A fitted number with its interval, at an index."""
-    return estimate(*(ends[index] for ends in bounds(laws, name)))
+    return Estimate.read(laws, name, scale=EXPONENT)[index].text()

@@ -2,13 +2,9 @@
 
 import textwrap
 
-import numpy as np
 import xarray as xr
 
-from ...core.determined import NO_WIDTH, determined
-from ...core.fitting import LineFit
 from ...core.labels import plain
-from ...domain.box_dimension import WIDEST
 
 PAPER = "Borri-Brunetto et al. (1999)"
 
@@ -87,49 +83,6 @@ def area_label(state: xr.Dataset) -> str:
     if bool(state["area_corrected_resolved"]):
         return percent(float(state["area_corrected_share"]))
     return f"{percent(float(state['area_share']))} (raw)"
-
-
-def interval(value: float, low: float, high: float) -> str:
-    """A dimension, or its like, with its 95 % interval: two decimals; or :func:`undetermined`."""
-    if not determined(value, low, high, span=1.0, widest=WIDEST, exact=(0.0, 2.0)):
-        return undetermined(value, low, high)
-    return f"{number(value)} [{number(low)}, {number(high)}]"
-
-
-def undetermined(value: float, low: float, high: float, unit: str = "") -> str:
-    """What the data do not determine: the word, then the value and its error in brackets.
-
-    The error is half of an even 95 % interval; of an uneven one both ends are given.
-    """
-    if not np.isfinite(value):
-        return UNDETERMINED
-    up, down, half = high - value, value - low, (high - low) / 2
-    if not half > NO_WIDTH * max(abs(value), 1e-300) or not np.isfinite(half):
-        words = f"{short(value)}, error not known"
-    else:
-        # Two digits of the error, and two decimals where it is of the order of one.
-        digits = max(1 - int(np.floor(np.log10(half))), 2 if half < 10 else 0)
-        shown, least, most, error = (number(x, digits) for x in (value, low, high, half))
-        even = abs(up - down) <= _EVEN * (high - low)
-        words = f"{shown} ± {error}" if even else f"{shown} [{least}, {most}]"
-    return f"{UNDETERMINED} ({words}{f' {unit}' if unit else ''})"
-
-
-def estimate(value: float, low: float, high: float, unit: str = "") -> str:
-    """A quantity of any size with its 95 % interval: three digits.
-
-    "no fit" if it is NaN, :func:`undetermined` where the interval leaves nearly everything open.
-    """
-    if not np.isfinite(value):
-        return "no fit"
-    if not determined(value, low, high, span=_SPANS.get(unit, 0.0)):
-        return undetermined(value, low, high, unit)
-    return f"{value:.3g} [{low:.3g}, {high:.3g}] {unit}".rstrip()
-
-
-def slope_text(line: LineFit, unit: str = "") -> str:
-    """Slope of a :class:`core.fitting.LineFit` with its interval."""
-    return estimate(*line.slope.ends, unit)
 
 
 def length_unit(span: float) -> tuple[str, float]:

@@ -5,12 +5,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import DIMENSION, Estimate
 from ...domain.departure import is_fractal
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import map_table, measured_series, threshold_words
-from ..kit.words import SUPPLEMENTARY, interval, percent, short
+from ..kit.words import SUPPLEMENTARY, percent, short
 
 TITLE = "Measured contact maps"
 SUBJECT = "study"
@@ -72,10 +72,10 @@ def _title(name, one):
     name = name if len(name) <= _LONGEST else f"{name[: _LONGEST - 1]}…"
     pressure = float(one["nominal_pressure"])
     load = f"{short(pressure)} MPa" if np.isfinite(pressure) else "no load"
-    value, low, high = bounds(one, "delta_sigma")
+    value, low, high = Estimate.read(one, "delta_sigma").ends
     dimension = "no dimension"
     if np.isfinite(value):
-        dimension = rf"$\Delta_\sigma$ = {interval(value, low, high)}"
+        dimension = rf"$\Delta_\sigma$ = {Estimate(value, low, high, scale=DIMENSION).text()}"
     share = percent(float(one["area_share"]))
     return f"{name.replace('$', '')}\n{load}, $A_r/A_0$ = {share}\n{dimension}"
 

@@ -1,15 +1,18 @@
 """Dimension of measured contact maps against nominal pressure and against contact fraction."""
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.estimate import DIMENSION
 from ..kit.drawing import WIDTH, Drawing, entries, headline, label_short_span, legends_below, letter
 from ..kit.empty import say_empty
 from ..kit.measured import draw_series, map_table, measured_series, threshold_words
-from ..kit.words import SUPPLEMENTARY, interval
+from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Dimension of measured contact maps against pressure"
 SUBJECT = "study"
@@ -75,9 +78,9 @@ def _trend_words(series):
     if not trend.line.slope.known:
         return f"{label}: too few maps with loads for a trend."
     line, departure = trend.line, trend.departure
-    slope = interval(*line.slope.ends)
+    slope = replace(line.slope, scale=DIMENSION).text()
     words = f"{label}: {slope} a decade of pressure ({trend.verdict})"
     if np.isfinite(departure.slope):
-        less = interval(*departure.slope.ends)
+        less = replace(departure.slope, scale=DIMENSION).text()
         words += f"; less that of random cells {less} ({trend.beyond_random})"
     return f"{words}."

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
 
-from ...core.intervals import bounds
+from ...core.estimate import Estimate
 from ...mechanics.closure_laws import (
     GOOD_FIT,
     HYPERBOLA,
@@ -52,7 +52,7 @@ def _some(known, count):
 
 def linear_words(laws: xr.Dataset) -> str:
     """How many exponents are near 1, and how many intervals lie beyond that: these decide."""
-    value, low, high = bounds(laws, "corrected_exponent")
+    value, low, high = Estimate.read(laws, "corrected_exponent").ends
     known = np.isfinite(value)
     if not known.any():
         return ""

@@ -15,14 +15,14 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 from xarray import DataTree
 
-from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import DIMENSION, Estimate
+from ...core.intervals import INTERVAL
 from ...roughness.recommended import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, heading, headline, letter, settings_of
 from ..kit.empty import say_empty
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.points import reach
-from ..kit.words import interval, length_unit, opening, percent
+from ..kit.words import length_unit, opening, percent
 
 TITLE = "Fig. 2: shaded relief of the levelled faces, and the surface dimension"
 SUBJECT = "specimen"
@@ -123,12 +123,12 @@ def _shaded(heights, spacing, low, high):
 
 def _draw_dimensions(axes, dimension):
     """Estimates of Delta_g with their intervals, one below the other; the lines of a legend."""
-    values, low, high = bounds(dimension, "dimension")
+    values, low, high = Estimate.read(dimension, "dimension").ends
     rows = np.arange(len(values))
     fitted = np.isfinite(values)
     words = [
         f"{estimator.replace('_', ' ')}\n"
-        + (interval(*numbers) if np.isfinite(numbers[0]) else "no fit")
+        + (Estimate(*numbers, scale=DIMENSION).text() if np.isfinite(numbers[0]) else "no fit")
         for estimator, *numbers in zip(
             dimension["estimator"].values, values, low, high, strict=True
         )
@@ -186,7 +186,7 @@ def _impossible(axes):
 
 def _recommended_words(dimension):
     """The recommended value with its interval."""
-    return interval(*Estimate.read(dimension, "recommended_dimension").ends)
+    return Estimate.read(dimension, "recommended_dimension", scale=DIMENSION).text()
 
 
 def _table(dimension):

@@ -6,7 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL, bounds
+from ...core.estimate import EXPONENT, Estimate
+from ...core.intervals import INTERVAL
 from ...core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ...mechanics.closure_laws import (
     HYPERBOLA,
@@ -33,14 +34,7 @@ from ..kit.drawing import (
 from ..kit.empty import TOO_FULL, say_empty
 from ..kit.points import draw_points
 from ..kit.verdicts import claim, sentences
-from ..kit.words import (
-    NOMINAL_PRESSURE,
-    estimate,
-    opening,
-    percent,
-    place,
-    short,
-)
+from ..kit.words import NOMINAL_PRESSURE, opening, percent, place, short
 from ._closure_words import all_offsets, laws_words, linear_words, no_law
 from ._stiffness import draw_stiffness, stiffness_table, stiffness_words
 
@@ -192,7 +186,7 @@ def _law_words(curve):
     if not np.isfinite(misfits).any():
         return f"no fit: {no_law(curve)}"
     known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
-    return f"{', '.join(known)}; {estimate(*bounds(curve, 'hyperbola_k_ni'))}"
+    return f"{', '.join(known)}; {Estimate.read(curve, 'hyperbola_k_ni', scale=EXPONENT).text()}"
 
 
 def _line(style, label):
@@ -271,7 +265,7 @@ def _draw_area(axes, curves, drawn, direction, laws, area):
 
 
 def _exponent(law):
-    return estimate(*bounds(law, "corrected_exponent"))
+    return Estimate.read(law, "corrected_exponent", scale=EXPONENT).text()
 
 
 # -- table and caption -----------------------------------------------------------------------------

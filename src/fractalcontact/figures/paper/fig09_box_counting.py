@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.intervals import bounds
+from ...core.estimate import DIMENSION, Estimate
 from ...core.ranges import within
 from ...domain.box_dimension import WIDEST, is_determined, local_slopes, spans
 from ...domain.count_law import LawTerms, law_count
@@ -18,7 +18,7 @@ from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, heading, headline, label_short_span, letter
 from ..kit.maps import draw_domain
 from ..kit.verdicts import claim, sentences
-from ..kit.words import force_label, interval, opening, short, undetermined
+from ..kit.words import force_label, opening, short
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
@@ -207,7 +207,7 @@ def _caption(loading, i, counts):
     reason = str(counts["reason"].item())
     if reason:
         return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
-    return f"{start}Delta_sigma is {loading.estimates[1].text(i)}, the ordinary slope {ordinary}."
+    return f"{start}Delta_sigma is {loading.estimates[1].at(i)}, the ordinary slope {ordinary}."
 
 
 def _width_words(counts):
@@ -235,10 +235,10 @@ def _law_form(counts):
 
 def _by_law(counts):
     """The dimension of the count law with its interval."""
-    return interval(*bounds(counts, "delta_sigma"))
+    return Estimate.read(counts, "delta_sigma", scale=DIMENSION).text()
 
 
 def _ordinary(counts):
     """The ordinary dimension with its interval, or that it is undetermined."""
-    ends = bounds(counts, "delta_sigma_ordinary")
-    return interval(*ends) if bool(counts["ordinary_determined"]) else undetermined(*ends)
+    slope = Estimate.read(counts, "delta_sigma_ordinary", scale=DIMENSION)
+    return slope.text() if bool(counts["ordinary_determined"]) else slope.undetermined()

@@ -148,8 +148,8 @@ def _caption(loading, i, falls):
     by_area, by_box = loading.estimates
     return (
         f"{opening('Fig. 10')} A_r(s), and eq. 6 extrapolated from the specimen at F = "
-        f"{force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.text(i)} by A_r(s)"
-        f"{_determined_words(loading, i)}, {by_box.text(i)} by box counting. "
+        f"{force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.at(i)} by A_r(s)"
+        f"{_determined_words(loading, i)}, {by_box.at(i)} by box counting. "
         f"{disagreement(loading.scaling.isel(normal_force=i))}"
     )
 
@@ -162,4 +162,4 @@ def _determined_words(loading, i):
     if by_area.determined[i] or by_area.reason[i] or not known:
         return ""
     nearest = min(known, key=lambda j: abs(j - i))
-    return f" but {by_area.text(nearest)} at {force_label(loading.forces[nearest])}"
+    return f" but {by_area.at(nearest)} at {force_label(loading.forces[nearest])}"

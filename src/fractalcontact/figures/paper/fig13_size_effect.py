@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
+from ...core.estimate import DIMENSION, Estimate
 from ..kit.domains import RISES, Loading, rise_words
 from ..kit.drawing import (
     COLOURS,
@@ -24,7 +25,7 @@ from ..kit.drawing import (
 from ..kit.empty import say_empty
 from ..kit.sizes import plain_decades
 from ..kit.verdicts import row_of, verdict_words
-from ..kit.words import force_label, interval, opening
+from ..kit.words import force_label, opening
 from ._size_effect import draw_axes, size_effect
 
 TITLE = "Fig. 13: eq. 6 extrapolated to other sizes, load by load"
@@ -94,7 +95,7 @@ def _draw_lines(axes, loading, estimate, shown, table):
         own = rows.iloc[0]
         point = style | {"marker": MARKERS[n], "ms": 6, "mec": "white", "mew": 0.5}
         axes.plot(own["specimen_b_mm"], own["specimen_sigma_0_MPa"], zorder=3, **point)
-        slope = interval(*(d[i] for d in _slope(estimate)))
+        slope = Estimate(*(d[i] for d in _slope(estimate)), scale=DIMENSION).text()
         label = f"$F$ = {force_label(force)}: {slope}"
         handles.append(Line2D([], [], marker=MARKERS[n], label=label, **style | faint))
     if len(handles) == 1:
