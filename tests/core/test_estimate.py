@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.estimate import DIMENSION, EXPONENT, SIZE, Estimate, names_of, rows_of
+from fractalcontact.core.intervals import CONFIDENCE
 
 SEVERAL = Estimate(
     np.array([[1.0, 2.0], [3.0, np.nan]]), np.array([[0.5, 1.0], [2.0, np.nan]]), np.full((2, 2), 9)
@@ -25,7 +26,8 @@ def test_variables_and_tables_of_variables_say_the_same_of_themselves():
     written = xr.Dataset(SEVERAL.variables("k", ("offset", "load"), "MPa/mm", "stiffness"))
     for name, (units, long_name) in rows_of("k", "MPa/mm", "stiffness").items():
         assert written[name].attrs == {"units": units, "long_name": long_name}
-    assert "lower end of the 95 % interval" in written["k_low"].attrs["long_name"]
+    for end in ("k_low", "k_high"):
+        assert f"{100 * CONFIDENCE:g} %" in written[end].attrs["long_name"]
 
 
 def test_a_column_ends_in_its_unit():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from fractalcontact.core.intervals import CONFIDENCE, INTERVAL, mean_interval, t_quantile
+from fractalcontact.core.intervals import CONFIDENCE, mean_interval, t_quantile
 
 
 def test_the_quantile_is_student_s():
@@ -40,8 +40,3 @@ def test_the_interval_holds_the_mean_as_often_as_it_says():
     values = np.random.default_rng(2).normal(size=(5, 4000))
     mean = mean_interval(values)
     assert np.mean((mean.low <= 0) & (mean.high >= 0)) == pytest.approx(CONFIDENCE, abs=0.015)
-
-
-def test_the_endings_of_an_interval_name_both_ends():
-    assert list(INTERVAL) == ["", "_low", "_high"]
-    assert all(f"{100 * CONFIDENCE:g} %" in words for ending, words in INTERVAL.items() if ending)

@@ -78,13 +78,17 @@ class Estimate:
     scale: Scale = SIZE
 
     @classmethod
-    def read(cls, table: Any, name: str, *, reason: Any = "", scale: Scale = SIZE) -> "Estimate":
+    def read(
+        cls, table: Any, name: str, *, unit: str = "", reason: Any = "", scale: Scale = SIZE
+    ) -> "Estimate":
         """Estimate of this name in a dataset, a table or one row of a table.
 
         Parameters
         ----------
         table : xr.Dataset, pd.DataFrame, pd.Series or mapping of str to array_like
         name : str
+        unit : str, optional
+            That its columns end in.
         reason : str or array_like of str, optional
         scale : Scale, optional
 
@@ -93,7 +97,7 @@ class Estimate:
         KeyError
             Where the value or an end is missing.
         """
-        value, low, high = (np.asarray(table[f"{name}{end}"])[()] for end in _ENDS)
+        value, low, high = (np.asarray(table[of])[()] for of in names_of(name, unit))
         return cls(value, low, high, reason=reason, scale=scale)
 
     @classmethod
@@ -191,8 +195,7 @@ class Estimate:
 
     def columns(self, name: str, unit: str = "") -> dict[str, Any]:
         """Columns of a table: ``NAME``, ``NAME_low``, ``NAME_high``, each ending in the unit."""
-        suffix = f"_{unit.replace('/', '_per_')}" if unit else ""
-        return {f"{name}{end}{suffix}": value for end, value in zip(_ENDS, self.ends, strict=True)}
+        return dict(zip(names_of(name, unit), self.ends, strict=True))
 
     def variables(
         self, name: str, dims: Hashable | Sequence[Hashable], units: str, long_name: str
@@ -221,9 +224,10 @@ def _decimals(value: float, digits: int) -> str:
 NO_ESTIMATE = Estimate()
 
 
-def names_of(name: str) -> list[str]:
-    """Names of an estimate's variables: the value's and both ends'."""
-    return [f"{name}{end}" for end in _ENDS]
+def names_of(name: str, unit: str = "") -> list[str]:
+    """Names of an estimate's variables, or columns: the value's and both ends'."""
+    suffix = f"_{unit.replace('/', '_per_')}" if unit else ""
+    return [f"{name}{end}{suffix}" for end in _ENDS]
 
 
 def rows_of(name: str, units: str, long_name: str) -> dict[str, tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Confidence intervals: the t quantile, means, the jackknife, and how an interval is named."""
+"""Confidence intervals: the t quantile, means, and the jackknife."""
 
 from typing import Any
 
@@ -7,13 +7,6 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from .estimate import Estimate
-
-#: What follows the long name of an estimate at the ends of its interval, by ending of the name.
-INTERVAL = {
-    "": "",
-    "_low": ", lower end of the 95 % interval",
-    "_high": ", upper end of the 95 % interval",
-}
 
 #: Probability covered by every interval the package states.
 CONFIDENCE = 0.95

@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 
 from ..core.determined import determined
-from ..core.estimate import Estimate
-from ..core.intervals import INTERVAL
+from ..core.estimate import Estimate, names_of
 from .chosen import Chosen, finite
 from .summary import DIMENSION
 from .words import in_table
@@ -93,5 +92,5 @@ def _quantities(one):
         error = abs(values) * budget["relative_total"].sel(quantity=name).values
         yield words, unit, values, values - error, values + error
     for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
-        found = one.values(stage, *(f"delta_sigma{end}" for end in INTERVAL))
+        found = one.values(stage, *names_of("delta_sigma"))
         yield f"Delta_sigma {words}", DIMENSION_UNIT, *Estimate.read(found, "delta_sigma").ends

@@ -9,7 +9,6 @@ from xarray import DataTree
 
 from ...accuracy.convergence import QUANTITIES
 from ...core.estimate import EXPONENT, Estimate
-from ...core.intervals import INTERVAL
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
 from ..kit.words import SUPPLEMENTARY
 
@@ -89,7 +88,7 @@ def _table(found, trials):
             "quantity": name,
             "cells_per_radius": float(cells),
             "error": float(result[f"{name}_error"].sel(cells_per_radius=cells)),
-            **{f"order{end}": float(result[f"{name}_order{end}"]) for end in INTERVAL},
+            **Estimate.read(result, f"{name}_order").columns("order"),
         }
         for problem, result in found.items()
         for name in QUANTITIES[problem]

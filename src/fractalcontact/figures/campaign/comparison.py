@@ -8,8 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate, names_of
 from ...statements.comparison import ONCE, QUANTITIES, compared_pressures
 from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, group, letter
 from ..kit.points import reach
@@ -59,7 +58,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         else:
             _draw_strip(axes, name, values, at_load)
         quoted = by_specimen and name in _QUOTED
-        ends = values_range(values[_column(name).format("")].values) if quoted else ""
+        ends = values_range(values[_column(name)].values) if quoted else ""
         letter(axes, which, "\n".join(filter(None, (TITLES[name], ends))))
     _draw_key(panels[-1], values, by_specimen=by_specimen)
     figure.suptitle(rf"under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE)
@@ -70,24 +69,25 @@ def _values_at(comparison: xr.Dataset, pressure: float) -> pd.DataFrame:
     """Every specimen with its quantities under one pressure, NaN where it was not loaded so."""
     rounded = compared_pressures(comparison["nominal_pressure"].values)
     same = np.isclose(rounded, pressure, rtol=1e-9)
+
+    def at_pressure(found):
+        known = np.where(same, found, np.nan)
+        return np.where(np.isfinite(known).any(axis=1), np.nansum(known, axis=1), np.nan)
+
     columns = {"specimen": comparison["specimen"].values, "group": comparison["group"].values}
     for name, (unit, _) in QUANTITIES.items():
-        for end in INTERVAL:
-            found = comparison[f"{name}{end}"].values
-            if name not in ONCE:
-                known = np.where(same, found, np.nan)
-                found = np.where(np.isfinite(known).any(axis=1), np.nansum(known, axis=1), np.nan)
-            columns[f"{name}{end}_{unit.replace('/', '_per_')}"] = found
+        found = Estimate.read(comparison, name)
+        columns |= (found if name in ONCE else found.mapped(at_pressure)).columns(name, unit)
     return pd.DataFrame(columns).assign(nominal_pressure_MPa=pressure)
 
 
 def _column(name):
-    return f"{name}{{}}_{QUANTITIES[name][0].replace('/', '_per_')}"
+    return names_of(name, QUANTITIES[name][0])[0]
 
 
 def _draw_specimens(axes, name, values, labels):
     """A bar for each specimen, at its label."""
-    found, low, high = (values[_column(name).format(end)].values for end in INTERVAL)
+    found, low, high = Estimate.read(values, name, unit=QUANTITIES[name][0]).ends
     axes.errorbar(
         range(len(labels)), found, reach(found, low, high), fmt="o", lw=1, color=colour_of(1)
     )
@@ -101,8 +101,8 @@ def _draw_strip(axes, name, values, at_load):
     column = _column(name)
     labels = group_labels(at_load)
     for i, of_group in enumerate(at_load["group_name"].values):
-        members = values[values["group"] == of_group].dropna(subset=column.format(""))
-        found, low, high = (members[column.format(end)].values for end in INTERVAL)
+        members = values[values["group"] == of_group].dropna(subset=column)
+        found, low, high = Estimate.read(members, name, unit=QUANTITIES[name][0]).ends
         place = i + HALF_WIDTH * _spread(len(members))
         colour = colour_of(i + 1)
         if len(members) <= MOST_BARS:
@@ -117,7 +117,7 @@ def _draw_strip(axes, name, values, at_load):
             axes.errorbar(i + MEAN_AT, mean, reach(mean, low, high), fmt="D", color="k", capsize=3)
     axes.set_xticks(range(len(labels)), labels, rotation=20 if len(labels) > 2 else 0)
     axes.set_xlim(-0.6, len(labels) - 0.4)
-    settle_axis(axes, name, drawn=bool(np.isfinite(values[column.format("")]).any()))
+    settle_axis(axes, name, drawn=bool(np.isfinite(values[column]).any()))
 
 
 def _draw_key(axes, values, *, by_specimen):
@@ -142,7 +142,7 @@ def _caption(comparison, at_load, pressure, values):
     if alone(comparison):
         labels = comparison["label"].values
         ends = {
-            name: range_in_words(values[_column(name).format("")].values, labels, unit)
+            name: range_in_words(values[_column(name)].values, labels, unit)
             for name, unit in _QUOTED.items()
         }
         return (

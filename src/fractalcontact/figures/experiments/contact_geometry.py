@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate, names_of
 from ...domain.box_dimension import WIDEST
 from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
@@ -116,7 +115,7 @@ def _table(test) -> pd.DataFrame:
     """One row a Hurst exponent, load and (of arm G) construction."""
     tables = []
     for curves in (_CURVES, _OTHERS):
-        columns = [f"{name}{end}" for name, *_ in curves for end in INTERVAL]
+        columns = [of for name, *_ in curves for of in names_of(name)]
         tables.append(test[columns].to_dataframe().reset_index())
     return pd.concat(tables, ignore_index=True)
 

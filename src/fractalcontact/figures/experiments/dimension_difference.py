@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate, names_of
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -140,7 +139,7 @@ def _legends(test):
 
 
 def _table(test):
-    ends = (*INTERVAL, "_n")
+    ends = (*names_of(""), "_n")
     free = test[[f"mean_difference{end}" for end in ends]].to_dataframe().reset_index()
     ratio = test["boxes_per_node"].mean("seed").to_dataframe().reset_index()
     tables = [

@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate, names_of
 from ..kit.drawing import (
     COLOURS,
     MARKERS,
@@ -99,7 +98,7 @@ def _legends(test):
 
 
 def _table(test):
-    names = [f"mean_{name}{end}" for name in _ESTIMATORS for end in (*INTERVAL, "_n")]
+    names = [of for name in _ESTIMATORS for of in (*names_of(f"mean_{name}"), f"mean_{name}_n")]
     return (
         test[names]
         .to_dataframe()

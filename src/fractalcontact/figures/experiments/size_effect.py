@@ -12,7 +12,6 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL
 from ...experiments.size_decision import NO_EFFECT, PROBABILITY, REFUTED, UPHELD
 from ..kit.drawing import (
     MARKERS,
@@ -78,14 +77,15 @@ def _table(test: xr.Dataset) -> pd.DataFrame:
             for load in test["reduced_pressure"].values:
                 one = test.sel(arm=arm, hurst=hurst, reduced_pressure=load)
                 for name, words, _ in _ESTIMATORS:
+                    predicted = Estimate.read(one, name).mapped(lambda delta: delta - 2)
                     rows.append(
                         {
                             "arm": arm,
                             "hurst": hurst,
                             "p_over_E_slope": load,
                             "estimator": words.strip("$"),
-                            **{f"alpha{end}": float(one[f"alpha{end}"]) for end in INTERVAL},
-                            **{f"eq6{end}": float(one[f"{name}{end}"]) - 2 for end in INTERVAL},
+                            **Estimate.read(one, "alpha").columns("alpha"),
+                            **predicted.columns("eq6"),
                             "central_alpha": float(one["central_alpha"]),
                             "theory_alpha": float(one["theory_alpha"]),
                             "verdict": str(one["verdict"].values),

@@ -12,7 +12,6 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL
 from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
     MARKERS,
@@ -78,7 +77,7 @@ def _strengths(test: xr.Dataset) -> pd.DataFrame:
                         "side": side,
                         "low": float(one["interval_low"]),
                         "high": float(one["interval_high"]),
-                        **{f"value{end}": float(of_side[f"strength{end}"]) for end in INTERVAL},
+                        **Estimate.read(of_side, "strength").columns("value"),
                         "by_theory": float(one["theory_strength"]),
                         "truncated_share": float(of_side["truncated_share"]),
                     }
@@ -107,7 +106,7 @@ def _exponents(test: xr.Dataset) -> pd.DataFrame:
                         "p_over_E_slope": load,
                         "low": float(one[f"{dim}_low"]),
                         "high": float(one[f"{dim}_high"]),
-                        **{f"value{end}": float(one[f"{name}{end}"]) for end in INTERVAL},
+                        **Estimate.read(one, name).columns("value"),
                         "by_v_alone": float(one["predicted_exponent"]) if scaled else 0.0,
                         "by_theory": float(one["theory_exponent"]) if scaled else 0.0,
                         "verdict": one[f"{name}_verdict"].item(),
@@ -126,7 +125,7 @@ def _pooled(test: xr.Dataset, hurst: float, law: str, load: float) -> dict:
         "p_over_E_slope": load,
         "low": float(test["interval_low"].min()),
         "high": float(test["interval_high"].max()),
-        **{f"value{end}": float(one[f"pooled_exponent{end}"]) for end in INTERVAL},
+        **Estimate.read(one, "pooled_exponent").columns("value"),
         "by_v_alone": 0.0,
         "by_theory": 0.0,
         "verdict": one["pooled_exponent_verdict"].item(),

@@ -12,7 +12,6 @@ from matplotlib.axes import Axes
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...core.intervals import INTERVAL
 from ...domain.box_dimension import is_determined
 from ...size_effect.size_verdict import AGREES, FLATTER, NOT_TESTED, STEEPER
 from ..kit.drawing import COLOURS, entries, group, label_short_span
@@ -245,7 +244,7 @@ def predicted_table(test: xr.Dataset, i: int, common: dict) -> pd.DataFrame:
             "quantity": "predicted_slope",
             **common,
             "estimator": test["estimator"].values,
-            **{f"slope{end}": test[f"predicted_slope{end}"].values[:, i] for end in INTERVAL},
+            **Estimate.read(test.isel(normal_force=i), "predicted_slope").columns("slope"),
             **{name: test[name].values[:, i] for name in JUDGED},
         }
     )

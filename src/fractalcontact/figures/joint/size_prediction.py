@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -125,10 +125,8 @@ def _table(test):
                 **load_columns(test, force),
                 "predictor": test["predictor"].values,
             }
-            columns |= {
-                f"predicted{end}": test[f"predicted_{quantity}{end}"].values[:, j]
-                for end in INTERVAL
-            }
+            predicted = Estimate.read(test, f"predicted_{quantity}")
+            columns |= predicted[:, j].columns("predicted")
             columns["solved"] = float(test[f"direct_{quantity}"][j])
             columns["unit"] = test[f"direct_{quantity}"].attrs["units"]
             tables.append(pd.DataFrame(columns))

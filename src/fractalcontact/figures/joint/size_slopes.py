@@ -6,8 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import DIMENSION, Estimate
-from ...core.intervals import INTERVAL
+from ...core.estimate import DIMENSION, Estimate, names_of
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -131,7 +130,7 @@ def _table(test):
             name: test[name].values[i]
             for name in ("windows_below", "windows_above", "windows_unknown")
         }
-        ends = {f"slope{e}": [float(test[f"slope{e}"][i])] for e in (*INTERVAL, "_n")}
+        ends = {name: [float(test[name][i])] for name in (*names_of("slope"), "slope_n")}
         tables += [
             pd.DataFrame(equal),
             pd.DataFrame({"quantity": "slope", **common, **ends}),

@@ -7,7 +7,6 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
-from ...core.intervals import INTERVAL
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -136,7 +135,8 @@ def _equal_pressure_table(test, i, common):
         {
             "quantity": name,
             **common,
-            **{f"slope{e}": [float(test[f"{name}{e}"][i])] for e in (*INTERVAL, "_n")},
+            **Estimate.read(test, name)[i].columns("slope"),
+            "slope_n": [float(test[f"{name}_n"][i])],
         }
         for name in _EXPONENTS
     ]

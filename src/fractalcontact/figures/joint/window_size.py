@@ -9,7 +9,6 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
-from ...core.intervals import INTERVAL
 from ...core.ranges import within
 from ...mechanics.states import chosen_offset
 from ..kit.drawing import (
@@ -233,7 +232,7 @@ def _contact_table(laws, quantity):
                 f"mean_{unit}": laws[name].values[:, i, j],
                 f"low_{unit}": laws[f"{name}_low"].values[:, i, j],
                 f"high_{unit}": laws[f"{name}_high"].values[:, i, j],
-                **{f"exponent{end}": float(laws[f"{law}{end}"][i, j]) for end in INTERVAL},
+                **Estimate.read(laws, law)[i, j].columns("exponent"),
             }
         )
         for i in range(laws.sizes["offset"])

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL
+from ...core.estimate import names_of
 from ...domain.pressure_trend import Trend, pressure_trend
 from .drawing import COLOURS, MARKERS, group
 from .points import reach
@@ -106,7 +106,8 @@ def draw_series(
     known = np.isfinite(x)
     x = x[known]
     value, low, high, least, most = (
-        series.values(f"delta_sigma{end}")[known] for end in (*INTERVAL, "_least", "_most")
+        series.values(name)[known]
+        for name in (*names_of("delta_sigma"), "delta_sigma_least", "delta_sigma_most")
     )
     colour = series.style["color"]
     style = {"ls": "-" if len(x) > 1 else "none", "capsize": 2, "elinewidth": 0.8} | series.style
@@ -117,7 +118,7 @@ def draw_series(
         else:
             axes.vlines(x, least, most, color=colour, alpha=0.25, lw=5)
     if nulls:
-        mean, low, high = (series.values(f"delta_sigma_random{end}")[known] for end in INTERVAL)
+        mean, low, high = (series.values(of)[known] for of in names_of("delta_sigma_random"))
         style = {"color": colour, "lw": 0.8, "ls": ":", "marker": "none"}
         if len(x) > 1:
             axes.plot(x, mean, **style)

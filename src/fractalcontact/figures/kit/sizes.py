@@ -9,7 +9,6 @@ from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.fitting import FEWEST_POINTS
-from ...core.intervals import INTERVAL
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from .points import draw_points
@@ -164,8 +163,7 @@ def logarithmic(axes: Axes, values: np.ndarray) -> None:
 def along_size(laws: xr.Dataset, name: str, index: tuple[int, ...]) -> list[np.ndarray]:
     """Mean, low and high of a quantity along b, at an index of its other dimensions."""
     size = "scale" if "scale" in laws[name].dims else "part"
-    ends = [laws[f"{name}{end}"].transpose(size, ...).values for end in INTERVAL]
-    return [values[(slice(None), *index)] for values in ends]  # type: ignore[arg-type]  # an index
+    return list(Estimate.read(laws.transpose(size, ...), name)[(slice(None), *index)].ends)
 
 
 def interval_text(laws: xr.Dataset, name: str, index: int | tuple[int, ...] = ()) -> str:

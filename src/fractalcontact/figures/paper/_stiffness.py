@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import cell_side
 from ..kit.drawing import MARKERS, dilatancy_loads, label_short_span, nearest_load
@@ -31,9 +31,7 @@ def stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) ->
         curve = curves.sel(resolution=k)
         row = {"spacing_mm": k * cell_side(specimen), "offset_mm": float(curve["offset"])}
         quantity = {"quantity": "k_ni, extrapolated to zero load", "resolved": True}
-        columns = {
-            f"stiffness{end}_MPa_per_mm": float(curve[f"hyperbola_k_ni{end}"]) for end in INTERVAL
-        }
+        columns = Estimate.read(curve, "hyperbola_k_ni").columns("stiffness", "MPa/mm")
         rows.append(row | quantity | columns)
         rows += [
             row
@@ -79,7 +77,7 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
         )
     initial = known[known["quantity"] != "tangent"]
     if len(initial):
-        value, low, high = (initial[f"stiffness{end}_MPa_per_mm"].values for end in INTERVAL)
+        value, low, high = Estimate.read(initial, "stiffness", unit="MPa/mm").ends
         axes.errorbar(
             initial["spacing_mm"],
             value,

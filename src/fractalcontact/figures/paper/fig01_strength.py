@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -145,20 +145,14 @@ def _table(laws):
             "barton_strength_MPa": laws["barton_strength"].values[:, j],
         }
         for i, share in enumerate(laws["share"].values):
-            values = {
-                f"{column}{end}": laws[f"{name}{end}"].values[i, :, j]
-                for column, name in (
-                    ("strength_MPa", "similar_strength"),
-                    ("slope", "similar_slope"),
-                )
-                for end in INTERVAL
-            }
+            strength, slope = (
+                Estimate.read(laws, name)[i, :, j] for name in ("similar_strength", "similar_slope")
+            )
+            values = strength.columns("strength_MPa") | slope.columns("slope")
             held = laws["similar_held"].values[i, :, j]
             row = {"at": "v/b", "v_over_b": share, **common, **values, "held_share": held}
             tables.append(pd.DataFrame(row))
-        values = {
-            f"strength_MPa{end}": laws[f"peak_strength{end}"].values[:, j] for end in INTERVAL
-        }
+        values = Estimate.read(laws, "peak_strength")[:, j].columns("strength_MPa")
         held = laws["held_share"].values[:, j]
         tables.append(pd.DataFrame({"at": "peak", **common, **values, "held_share": held}))
     return pd.concat(tables, ignore_index=True)

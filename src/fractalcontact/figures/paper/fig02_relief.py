@@ -15,8 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 from xarray import DataTree
 
-from ...core.estimate import DIMENSION, Estimate
-from ...core.intervals import INTERVAL
+from ...core.estimate import DIMENSION, Estimate, names_of
 from ...roughness.recommended import dimension_table
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, heading, headline, letter, settings_of
 from ..kit.empty import say_empty
@@ -195,13 +194,10 @@ def _table(dimension):
         {
             "face": "lower",
             "estimator": dimension["estimator"].values,
-            "dimension": dimension["dimension"].values,
-            "dimension_low": dimension["dimension_low"].values,
-            "dimension_high": dimension["dimension_high"].values,
             **{
-                f"hurst_{axis}{end}": dimension[f"hurst_{axis}{end}"].values
-                for axis in "xy"
-                for end in INTERVAL
+                of: dimension[of].values
+                for name in ("dimension", "hurst_x", "hurst_y")
+                for of in names_of(name)
             },
             "fit_min_mm": dimension["fit_min"].values,
             "fit_max_mm": dimension["fit_max"].values,

@@ -7,7 +7,6 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
-from ...core.intervals import INTERVAL
 from ...core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ...mechanics.closure_laws import (
     HYPERBOLA,
@@ -308,8 +307,7 @@ def _table(curves, drawn, laws):
         columns |= {column: curve[name].values for column, name in points.items()}
         columns |= {column: curve[name].item() for column, name in fitted.items()}
         columns["area_fitted"] = law["corrected_fitted"].values
-        for end in INTERVAL:
-            columns[f"area_exponent{end}"] = float(law[f"corrected_exponent{end}"])
+        columns |= Estimate.read(law, "corrected_exponent").columns("area_exponent")
         rows.append(pd.DataFrame(columns))
     return pd.concat(rows, ignore_index=True)
 

@@ -1,6 +1,7 @@
 """Fig. 11: the limit slope angle against the size of the joint."""
 
 import textwrap
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -8,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -162,22 +163,16 @@ def _table(laws):
                         "nominal_pressure_MPa": pressure,
                         "b_mm": laws["side"].values,
                         "windows": laws["windows"].values,
-                        **{
-                            f"angle_deg{end}": slope_angle(
-                                laws[f"similar_strength{end}"].values[i, :, j], pressure
-                            )
-                            for end in INTERVAL
-                        },
+                        **Estimate.read(laws, "similar_strength")[i, :, j]
+                        .mapped(partial(slope_angle, pressure=pressure))
+                        .columns("angle_deg"),
                         "held_share": laws["similar_held"].values[i, :, j],
                         "barton_angle_deg": slope_angle(
                             laws["barton_strength"].values[:, j], pressure
                         ),
-                        **{
-                            f"exponent{end}": float(
-                                laws[f"similar_strength_exponent{end}"].values[i, j]
-                            )
-                            for end in INTERVAL
-                        },
+                        **Estimate.read(laws, "similar_strength_exponent")[i, j].columns(
+                            "exponent"
+                        ),
                     }
                 )
             )

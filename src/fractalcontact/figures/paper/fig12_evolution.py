@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.intervals import INTERVAL
+from ...core.estimate import Estimate
 from ...core.resolved import CORRECTED_NODES
 from ..kit.domains import RISES, Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
@@ -163,9 +163,7 @@ def _table(loading, area, corrected, nominal):
                     "area_mm2": area,
                     "corrected_area_mm2": corrected,
                     "estimator": estimate.label,
-                    "delta_sigma": estimate.value,
-                    "delta_sigma_low": estimate.low,
-                    "delta_sigma_high": estimate.high,
+                    **estimate.columns("delta_sigma"),
                     "reason": estimate.reason,
                 }
             )
@@ -178,10 +176,12 @@ def _table(loading, area, corrected, nominal):
 
 def _null_table(loading, area, nominal, null):
     """One row a load of a null model of box counting."""
-    columns = {
-        f"delta_sigma{end}": loading.counts[f"delta_sigma_{null}{end}"].values
-        for end in (INTERVAL if null == "random" else ("",))
-    }
+    name = f"delta_sigma_{null}"
+    columns = (
+        Estimate.read(loading.counts, name).columns("delta_sigma")
+        if null == "random"
+        else {"delta_sigma": loading.counts[name].values}
+    )
     return pd.DataFrame(
         {
             "load_N": loading.forces,
