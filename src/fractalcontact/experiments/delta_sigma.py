@@ -304,13 +304,13 @@ def summary(result: xr.Dataset) -> str:
     rows = []
     for dimension in result["dimension"].values:
         one = result.sel(dimension=dimension)
-        low, high = one["mean_difference_low"].values, one["mean_difference_high"].values
+        mean, low, high = Estimate.read(one, "mean_difference").ends
         known = np.isfinite(low)
         if not known.any():
             rows.append(f"Delta_g = {dimension:g}: too few values to compare")
             continue
         agree = int(((low <= 0) & (high >= 0))[known].sum())
-        mean = one["mean_difference"].values[known]
+        mean = mean[known]
         rows.append(
             f"Delta_g = {dimension:g}: area less box counts is {mean.min():.2f} to "
             f"{mean.max():.2f} in the mean, zero lies in its interval at {agree} of "
@@ -321,7 +321,7 @@ def summary(result: xr.Dataset) -> str:
 
 
 def _trend(one: xr.Dataset, name: str, of: str) -> str:
-    low, high = one[f"{name}_low"].values, one[f"{name}_high"].values
+    _, low, high = Estimate.read(one, name).ends
     known = np.isfinite(low)
     if not known.any():
         return "shows no trend"

@@ -211,7 +211,7 @@ def summary(result: xr.Dataset) -> str:
     -------
     str
     """
-    measured = np.isfinite(result["area_exponent_low"].values)
+    measured = np.isfinite(Estimate.read(result, "area_exponent").low)
     if not measured.any():
         return "no load at which two sizes hold nodes enough to be tested"
     effect = int(result["size_effect"].values.sum())

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..core.estimate import Estimate
 from .findings import (
     FAILS,
     HOLDS,
@@ -108,15 +109,13 @@ def compliance_goes_with_dimension(joint: Joint) -> Finding:
 def larger_samples_close_more(joint: Joint) -> Finding:
     """Exponent of the compliance of the interface against the size of sub-windows."""
     windows = joint.map_windows()
-    value, low, high = (
-        float(windows[f"compliance_exponent{end}"]) for end in ("", "_low", "_high")
-    )
-    if not np.isfinite(value):
+    exponent = Estimate.read(windows, "compliance_exponent")
+    if not exponent.known:
         return Finding(UNDETERMINED, "fewer than two sizes of window with ten nodes in contact")
     closure = float(windows["closure_exponent"])
     return Finding(
-        by_sign(low, high, rising=True),
-        f"x = {value:z.2f} [{low:z.2f}, {high:z.2f}]",
+        by_sign(exponent, rising=True),
+        f"x = {exponent:z.2f}",
         f"compliance ~ b^x at {float(windows['nominal_pressure']):.3g} MPa; closure from first "
         f"contact, b^{closure:.2f}, grows as any largest value does",
     )
@@ -126,13 +125,13 @@ def larger_samples_close_more(joint: Joint) -> Finding:
 def area_is_linear(joint: Joint) -> Finding:
     """Exponent m of A_r ~ F^m at every offset, A_r corrected for the perimeter."""
     law = joint.stages["area"].sel(direction=joint.direction)
-    value, low, high = (law[f"corrected_exponent{end}"].values for end in ("", "_low", "_high"))
-    known = np.isfinite(value)
-    if not known.any():
+    exponent = Estimate.read(law, "corrected_exponent")
+    if not exponent.known.any():
         return Finding(UNDETERMINED, "no law of the area could be fitted")
-    value, low, high = value[known], low[known], high[known]
+    exponent = exponent[exponent.known]
+    value = exponent.value
     near = int((np.abs(value - 1) <= NEARLY).sum())
-    apart = int(((high < 1 - NEARLY) | (low > 1 + NEARLY)).sum())
+    apart = int(((exponent.high < 1 - NEARLY) | (exponent.low > 1 + NEARLY)).sum())
     verdict = FAILS if apart == value.size else PARTLY if apart else HOLDS
     verdict = UNDETERMINED if not apart and 2 * near <= value.size else verdict
     ends = " to ".join(dict.fromkeys(f"{m:.2f}" for m in (value.min(), value.max())))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.resolved import RESOLVED_NODES
 from ..mechanics.states import chosen_offset, forces_of
@@ -211,7 +212,7 @@ def trend(
         return Finding(UNDETERMINED, no_offsets("three"))
     v = v[chosen]
     return Finding(
-        by_sign(line.slope.low, line.slope.high, rising=rising),
+        by_sign(line.slope, rising=rising),
         f"x = {line.slope:z.2f}",
         f"{symbol} ~ v^x, v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
@@ -242,9 +243,10 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
     )
 
 
-def by_sign(low: float, high: float, *, rising: bool) -> str:
+def by_sign(found: Estimate, *, rising: bool) -> str:
     """Verdict on a claim of a sign, from the interval of what is to have it."""
-    above, below = (low > 0, high < 0) if rising else (high < 0, low > 0)
+    above, below = found.low > 0, found.high < 0
+    above, below = (above, below) if rising else (below, above)
     return HOLDS if above else FAILS if below else UNDETERMINED
 
 

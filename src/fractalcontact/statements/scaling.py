@@ -4,6 +4,7 @@ from collections import Counter
 
 import numpy as np
 
+from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS
 from ..domain.box_dimension import WIDEST
 from ..domain.pressure_trend import pressure_trend
@@ -41,15 +42,15 @@ ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 def area_is_lacunar(joint: Joint) -> Finding:
     """Exponent of A_r over the resolutions, at the load of the maps."""
     state = joint.map_state("scaling")
-    value, low, high = (float(state[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
-    if not np.isfinite(value):
+    delta = Estimate.read(state, "delta_sigma")
+    if not delta.known:
         return Finding(UNDETERMINED, f"{int(state['n'])} of {FEWEST_POINTS} resolutions needed")
     # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive. That it
     # falls is not yet a power law: for that its exponent must be determined.
-    falls = by_sign(2 - high, 2 - low, rising=True)
+    falls = by_sign(delta.mapped(lambda value: 2 - value, falling=True), rising=True)
     return Finding(
-        PARTLY if falls == HOLDS and high - low > WIDEST else falls,
-        f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {value:.2f} [{low:.2f}, {high:.2f}]",
+        PARTLY if falls == HOLDS and delta.width > WIDEST else falls,
+        f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {delta:.2f}",
         f"over {int(state['n'])} resolutions, r2 = {float(state['r2']):.3f}; at light load the "
         "exponent is that of the slopes h'_rms(s) of the surface",
     )
@@ -58,22 +59,22 @@ def area_is_lacunar(joint: Joint) -> Finding:
 def boxes_follow_one_law(joint: Joint) -> Finding:
     """Interval of the box-counting dimension at the load of the maps."""
     state = joint.map_state("domains")
-    value, low, high = (float(state[f"delta_sigma{end}"]) for end in ("", "_low", "_high"))
-    if not np.isfinite(value):
+    delta = Estimate.read(state, "delta_sigma")
+    if not delta.known:
         return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
     lengths = f"boxes of {float(state['fit_min']):.3g} to {float(state['fit_max']):.3g} mm"
-    width = high - low
+    width = delta.width
     if width > WIDEST:
         return Finding(UNDETERMINED, f"interval of Delta_sigma {width:.1f} wide, {lengths}")
     verdict = HOLDS if width <= 2 * NEARLY else PARTLY if width <= 2 * LOOSELY else FAILS
-    return Finding(verdict, f"Delta_sigma = {value:.2f} [{low:.2f}, {high:.2f}], {lengths}")
+    return Finding(verdict, f"Delta_sigma = {delta:.2f}, {lengths}")
 
 
 @of_the_area
 def estimates_agree(joint: Joint) -> Finding:
     """Whether A_r(s) and box counting have one Delta_sigma, over all loads."""
     states = joint.map_states("scaling")
-    width = (states["difference_high"] - states["difference_low"]).values
+    width = Estimate.read(states, "difference").width
     known = width <= WIDEST
     if not known.any():
         both = int(np.isfinite(width).sum())
@@ -96,9 +97,7 @@ def dimension_rises_by_area(joint: Joint) -> Finding:
     line = _over_load(joint.map_states("scaling")).line
     if not line.slope.known:
         return Finding(UNDETERMINED, _too_few(line))
-    return Finding(
-        by_sign(line.slope.low, line.slope.high, rising=True), _by_decade(line), f"{line.n} loads"
-    )
+    return Finding(by_sign(line.slope, rising=True), _by_decade(line), f"{line.n} loads")
 
 
 def dimension_rises_by_boxes(joint: Joint) -> Finding:
@@ -111,7 +110,7 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
     trend = _over_load(states, states["delta_sigma_random"].values)
     if not trend.line.slope.known:
         return Finding(UNDETERMINED, _too_few(trend.line))
-    verdict = by_sign(trend.line.slope.low, trend.line.slope.high, rising=True)
+    verdict = by_sign(trend.line.slope, rising=True)
     if verdict == HOLDS and not trend.departure.slope.low > 0:
         verdict = PARTLY
     return Finding(
@@ -129,16 +128,18 @@ def dimension_spans_all(joint: Joint) -> Finding:
     nodes = joint.stages["closure"]["nodes"].sel(direction=joint.direction)
     nodes = nodes.sel(offset=joint.map_offset, method="nearest")
     nodes = nodes.sel(resolution=nodes["resolution"].min()).values
-    value, low, high = (states[f"delta_sigma{end}"].values for end in ("", "_low", "_high"))
-    known = np.flatnonzero(np.isfinite(value))
+    delta = Estimate.read(states, "delta_sigma")
+    known = np.flatnonzero(delta.known)
     if not known.size:
         return Finding(UNDETERMINED, "no load with a dimension by boxes")
+    value = delta.value
     least, most = known[np.argmin(value[known])], known[np.argmax(value[known])]
     # Where random nodes do not come near an end either, the loads do not: it is not missed.
     random = states["delta_sigma_random"].values
-    reached = int(high[least] <= NEAR_POINTS) + int(low[most] >= NEAR_FULL)
-    missed = int(low[least] > NEAR_POINTS >= random[least]) + int(
-        high[most] < NEAR_FULL <= random[most]
+    lower, upper = delta[least], delta[most]
+    reached = int(lower.high <= NEAR_POINTS) + int(upper.low >= NEAR_FULL)
+    missed = int(lower.low > NEAR_POINTS >= random[least]) + int(
+        upper.high < NEAR_FULL <= random[most]
     )
     verdict = PARTLY if reached and missed else FAILS if missed else UNDETERMINED
     verdict = HOLDS if reached == 2 else verdict
@@ -146,8 +147,7 @@ def dimension_spans_all(joint: Joint) -> Finding:
     by_design = "; 2 at full yield is so by construction" if capped else ""
     return Finding(
         verdict,
-        f"by boxes {value[least]:.2f} [{low[least]:.2f}, {high[least]:.2f}] to {value[most]:.2f} "
-        f"[{low[most]:.2f}, {high[most]:.2f}]",
+        f"by boxes {lower:.2f} to {upper:.2f}",
         f"{int(nodes[least])} to {int(nodes[most])} nodes: near the lower end one more changes the "
         f"answer{by_design}",
     )
@@ -160,15 +160,15 @@ def size_effect_follows(joint: Joint) -> Finding:
     """
     test = joint.stages["size_test"].sel(estimator=list(ESTIMATES))
     test = test.isel(normal_force=~test["beyond_study"].values.astype(bool))
-    low, high = (test[f"area_exponent{end}"].values for end in ("_low", "_high"))
-    known = np.isfinite(high - low)
+    exponents = Estimate.read(test, "area_exponent")
+    known = np.isfinite(exponents.width)
     if not known.any():
         return Finding(UNDETERMINED, "no load at which two sizes of window hold nodes enough")
-    best = test.isel(normal_force=int(np.nanargmin(high - low)))
-    value, low, high = (float(best[f"area_exponent{end}"]) for end in ("", "_low", "_high"))
+    narrowest = int(np.nanargmin(exponents.width))
+    best, exponent = test.isel(normal_force=narrowest), exponents[narrowest]
     wanted = zip(ESTIMATES.values(), best["predicted_slope"].values, strict=True)
     numbers = (
-        f"A_r/A_0 ~ b^x, x = {value:z.2f} [{low:z.2f}, {high:z.2f}] at "
+        f"A_r/A_0 ~ b^x, x = {exponent:z.2f} at "
         f"{float(best['nominal_pressure']):.3g} MPa, eq. 6 has "
         + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
     )
@@ -207,14 +207,14 @@ def _why_open(reasons):
 def larger_domains_are_less_dense(joint: Joint) -> Finding:
     """Exponent of corrected A_r/A_0 against window size at one nominal pressure."""
     windows = joint.map_windows()
-    value, low, high = (float(windows[f"area_exponent{end}"]) for end in ("", "_low", "_high"))
-    if not np.isfinite(value):
+    exponent = Estimate.read(windows, "area_exponent")
+    if not exponent.known:
         return Finding(UNDETERMINED, "fewer than two sizes of window with 30 nodes in contact")
     pressure = float(windows["nominal_pressure"])
-    none = max(abs(low), abs(high)) < NO_EFFECT
+    none = max(abs(exponent.low), abs(exponent.high)) < NO_EFFECT
     return Finding(
-        FAILS if none else by_sign(low, high, rising=False),
-        f"x = {value:z.2f} [{low:z.2f}, {high:z.2f}]",
+        FAILS if none else by_sign(exponent, rising=False),
+        f"x = {exponent:z.2f}",
         f"A_r/A_0 ~ b^x at {pressure:.3g} MPa",
     )
 
@@ -227,10 +227,8 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     """
     windows = joint.stages["windows"]
     order = ("share", "normal_force")
-    value, low, high = (
-        windows[f"similar_strength_exponent{end}"].transpose(*order).values
-        for end in ("", "_low", "_high")
-    )
+    exponent = Estimate.read(windows.transpose(*order, ...), "similar_strength_exponent")
+    value, low, high = exponent.ends
     sizes = np.isfinite(windows["similar_strength"]).sum("part").transpose(*order).values
     held = (windows["similar_held"] > 0).any("part").transpose(*order).values
     cases = sizes >= FEWEST_POINTS
@@ -322,8 +320,8 @@ STATEMENTS = (
 
 def _over_load(states, random=np.nan):
     """How a determined Delta_sigma goes with log F, and that less the one of random nodes."""
-    value, low, high = (states[f"delta_sigma{end}"].values for end in ("", "_low", "_high"))
-    known = np.where(high - low <= WIDEST, value, np.nan)
+    delta = Estimate.read(states, "delta_sigma")
+    known = np.where(delta.width <= WIDEST, delta.value, np.nan)
     return pressure_trend(states["normal_force"].values, known, random)
 
 

@@ -54,7 +54,7 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
         return Finding(UNDETERMINED, "fewer than three surfaces with Delta_g and Delta_sigma")
     pairs = ", ".join(f"{effect[i]:.2f} at {dimension[i]:.2f}" for i in order)
     return Finding(
-        by_sign(line.slope.low, line.slope.high, rising=True),
+        by_sign(line.slope, rising=True),
         f"2 - Delta_sigma by A_r(s) {pairs}",
         "at light load it is the growth of the slopes h'_rms of the surface with resolution; "
         "whether strength follows that exponent as the size grows is what eq. 6 is judged for",

@@ -125,7 +125,7 @@ def _draw_quantity(axes, comparison, name):
         axes.fill_between(
             pressure, mean - deviation, mean + deviation, color=colour, alpha=0.15, lw=0
         )
-        low, high = one[f"{name}_mean_low"].values, one[f"{name}_mean_high"].values
+        _, low, high = Estimate.read(one, f"{name}_mean").ends
         axes.errorbar(
             pressure, mean, reach(mean, low, high), fmt="none", ecolor=colour, capsize=2, lw=0.8
         )

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.estimate import names_of
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -144,8 +145,7 @@ def _table(bias):
     """One row an estimator, H and size."""
     columns = [
         "bias",
-        "bias_low",
-        "bias_high",
+        *names_of("bias")[1:],
         "slope_bias",
         "scatter",
         "rms_error",

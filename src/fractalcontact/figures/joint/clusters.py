@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.estimate import EXPONENT, Estimate
+from ...core.estimate import EXPONENT, Estimate, names_of
 from ...core.fitting import fit_line
 from ...core.resolved import RESOLVED_NODES
 from ...domain.clusters import LARGEST_DISTANCE, follows_law
@@ -70,9 +70,7 @@ COLUMNS = {
 #: Null models that are drawn where they are known, at the offset of the maps: column, marker.
 NULLS = {"random": "+", "cut": "x"}
 EXPONENTS = {
-    "cluster_exponent": "exponent",
-    "cluster_exponent_low": "exponent_low",
-    "cluster_exponent_high": "exponent_high",
+    **dict(zip(names_of("cluster_exponent"), names_of("exponent"), strict=True)),
     "cluster_fit_min": "fit_min_mm2",
     "cluster_fit_max": "fit_max_mm2",
     "cluster_fit_n": "fit_clusters",

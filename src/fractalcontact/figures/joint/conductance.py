@@ -85,9 +85,7 @@ def _table(curves):
                     "conductance_per_mm": conductance,
                     "interface_stiffness_MPa_per_mm": curve["interface_stiffness"].values,
                     "fitted": inside & np.isfinite(conductance),
-                    "exponent": float(curve["conductance_exponent"]),
-                    "exponent_low": float(curve["conductance_exponent_low"]),
-                    "exponent_high": float(curve["conductance_exponent_high"]),
+                    **Estimate.read(curve, "conductance_exponent").columns("exponent"),
                 }
             )
         )
@@ -152,8 +150,9 @@ def _exponent_words(table):
     if fitted.empty:
         return "Too few pressures for an exponent."
     low, high = THEORY
-    reached = int(((fitted["exponent_low"] <= high) & (fitted["exponent_high"] >= low)).sum())
-    below = int((fitted["exponent_high"] < low).sum())
+    exponents = Estimate.read(fitted, "exponent")
+    reached = int(((exponents.low <= high) & (exponents.high >= low)).sum())
+    below = int((exponents.high < low).sum())
     above = len(fitted) - reached - below
     law = fitted.iloc[0]
     values = (

@@ -193,8 +193,8 @@ def _caption(state, table):
     span = state["generalised_dimension"].sel(order=[0.0, 4.0]).values
     spectrum = ""
     if np.isfinite(span).all():
-        low = state["generalised_dimension_low"].sel(order=0.0).item()
-        high = state["generalised_dimension_high"].sel(order=4.0).item()
+        low = Estimate.read(state.sel(order=0.0), "generalised_dimension").low
+        high = Estimate.read(state.sel(order=4.0), "generalised_dimension").high
         apart = "separate" if high < low else "overlap"
         spectrum = f"; intervals of D_0 = {span[0]:.2f} and D_4 = {span[1]:.2f} {apart}"
     return f"{words} {_law(state, table)} Delta_sigma is {', '.join(dimensions)}{spectrum}."

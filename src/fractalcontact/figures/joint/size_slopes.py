@@ -147,7 +147,7 @@ def _found_words(test):
     sure = known & test["well_conditioned"].values.astype(bool)
     loads = first_loads(test, "slope")
     loads = loads[sure[loads]] if sure[loads].any() else loads
-    width = (test["slope_high"] - test["slope_low"]).values[loads]
+    width = Estimate.read(test, "slope").width[loads]
     best = test.isel(normal_force=loads[np.argmin(np.where(np.isfinite(width), width, np.inf))])
     wanted = [
         f"{number(best['predicted_slope'].sel(estimator=estimator))} by {words.replace('$', '')}"

@@ -145,5 +145,5 @@ def _equal_pressure_table(test, i, common):
 
 def _few_words(test):
     """That there is nothing to measure the exponent with."""
-    known = np.isfinite(test["area_exponent_low"].values).any()
+    known = np.isfinite(Estimate.read(test, "area_exponent").low).any()
     return "" if known else "Parts hold too few nodes in contact."

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.estimate import ANGLE, Estimate
+from ...core.estimate import ANGLE, Estimate, names_of
 from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
 from ...mechanics.theory import LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
@@ -236,7 +236,7 @@ def _table(strength, shown):
 
 
 def _summary_table(strength):
-    columns = (*_SUMMARY, "residual_strength_low", "residual_strength_high")
+    columns = (*_SUMMARY, *names_of("residual_strength")[1:])
     return pd.DataFrame(
         {
             "curve": "peak and residual",

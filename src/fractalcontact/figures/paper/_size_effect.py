@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from ...core.estimate import Estimate
 from ...domain.renormalisation import nominal_pressure
 from ..kit.domains import Loading
 
@@ -58,24 +59,22 @@ def size_effect(loading: Loading, i: int) -> pd.DataFrame:
 def _by_one_estimate(loading, estimate, i):
     force = float(loading.forces[i])
     sides = loading.side * _SIDES
-    dimensions = (estimate.value[i], estimate.low[i], estimate.high[i])
-    stars = [fractal_pressure(force, loading.side, delta) for delta in dimensions]
+    dimension = estimate[i]
+    stars = [fractal_pressure(force, loading.side, delta) for delta in dimension.ends]
     value, *ends = (
-        nominal_pressure(star, delta, sides) for star, delta in zip(stars, dimensions, strict=True)
+        nominal_pressure(star, delta, sides)
+        for star, delta in zip(stars, dimension.ends, strict=True)
     )
+    # The lines of both ends cross: which is the lower depends on b.
+    pressure = Estimate(value, np.fmin(*ends), np.fmax(*ends))
     return pd.DataFrame(
         {
             "load_N": force,
             "estimator": estimate.label,
-            "delta_sigma": dimensions[0],
-            "delta_sigma_low": dimensions[1],
-            "delta_sigma_high": dimensions[2],
+            **dimension.columns("delta_sigma"),
             "sigma_star_N_mm^-delta": stars[0],
             "b_mm": sides,
-            "sigma_0_MPa": value,
-            # The lines of both ends cross: which is the lower depends on b.
-            "sigma_0_low_MPa": np.fmin(*ends),
-            "sigma_0_high_MPa": np.fmax(*ends),
+            **pressure.columns("sigma_0", "MPa"),
             "specimen_b_mm": loading.side,
             "specimen_sigma_0_MPa": force / loading.side**2,
         }

@@ -176,8 +176,8 @@ def _slope_words(laws, share):
     known = np.isfinite(laws["similar_slope_exponent"][share])
     if not known.any():
         return "Too few sizes can be compared at one v/b."
-    falls = int((laws["similar_slope_exponent_high"][share] < 0).sum())
-    rises = int((laws["similar_slope_exponent_low"][share] > 0).sum())
+    exponents = Estimate.read(laws.isel(share=share), "similar_slope_exponent")
+    falls, rises = int((exponents.high < 0).sum()), int((exponents.low > 0).sum())
     n = int(known.sum())
     if falls == n:
         return f"The slope falls with b under all {n} pressures (intervals of x below 0)."
