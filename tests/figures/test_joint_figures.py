@@ -114,6 +114,38 @@ def test_compliance_drawn_is_the_inverse_of_the_stiffness(atlas, name):
         np.testing.assert_array_equal(points["face_correlation"], stored)
 
 
+@pytest.mark.parametrize("name", SLIDING)
+def test_closures_drawn_over_the_offset_count_from_the_common_seat_of_the_atlas(atlas, name):
+    table = drawn(atlas, "compliance", name).data
+    closed = table[table["curve"] == "closure"]
+    curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
+    assert closed["common_seating_pressure_MPa"].unique() == [curves["common_seating_pressure"]]
+    for force, points in closed.groupby("force_N"):
+        np.testing.assert_array_equal(
+            points["closure_from_common_seat_mm"],
+            curves["closure_from_common_seat"].sel(normal_force=force),
+        )
+
+
+@pytest.mark.parametrize("name", SLIDING)
+def test_columns_of_one_name_hold_one_number_for_one_state(atlas, name):
+    """The tables of a specimen's figures of closure, at the offsets and loads that both have."""
+    tables = [drawn(atlas, figure, name).data for figure in ("compliance", "fig04_05_closure")]
+    state = ["offset_mm", "force_N"]
+    first, second = (
+        table[table["interface_closure_mm"].notna()].round(dict.fromkeys(state, 9)).set_index(state)
+        for table in tables
+    )
+    both = first.index.intersection(second.index)
+    assert len(both) > 3
+    columns = first.select_dtypes("number").columns.intersection(second.columns)
+    assert "interface_closure_mm" in columns
+    for column in columns:
+        np.testing.assert_array_equal(
+            first.loc[both, column].astype(float), second.loc[both, column].astype(float), column
+        )
+
+
 def test_plateau_holds_every_direction_of_all_that_slides(atlas):
     table = drawn(atlas, "plateau", ["flat", "sliding", "pair"]).data
     assert table["specimen"].nunique() == 2 + 2
