@@ -146,6 +146,17 @@ def test_columns_of_one_name_hold_one_number_for_one_state(atlas, name):
         )
 
 
+def test_the_slope_of_the_synthetic_joints_is_that_of_the_atlas(atlas):
+    told = with_changes(atlas, "roll_off/surfaces", slope=0.25, slope_low=0.2, slope_high=0.3)
+    stage = told["roll_off/surfaces"].to_dataset()
+    stage["trend"] = ("surface", ["falling", ""])
+    told["roll_off/surfaces"] = xr.DataTree(stage)
+    drawing = drawn(told, "plateau", ["sliding"])
+    shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
+    assert shown.count("slope 0.25 [0.2, 0.3] mm/mm") == 2
+    assert "synthetic joints falls, without it shows no trend" in drawing.caption
+
+
 def test_plateau_holds_every_direction_of_all_that_slides(atlas):
     table = drawn(atlas, "plateau", ["flat", "sliding", "pair"]).data
     assert table["specimen"].nunique() == 2 + 2
@@ -272,29 +283,6 @@ def test_a_conductance_without_a_fit_is_still_drawn(atlas):
     )
     caption = drawn(with_changes(atlas, "closure/flat", **nothing), "conductance", "flat").caption
     assert "Too few pressures" in caption
-
-
-def made_to_open(atlas, shape):
-    """The atlas with another dilatancy of the joints made with and without a roll-off."""
-
-    def opened(joints):
-        noise = 1 + 0.01 * joints["seed"]
-        return noise * shape(joints["rigid_offset"]) + 0 * joints["rigid_dilatancy"]
-
-    return with_changes(atlas, "roll_off/surfaces", rigid_dilatancy=opened)
-
-
-@pytest.mark.parametrize(
-    ("shape", "words"),
-    [
-        (lambda v: 1 - np.exp(-10 * v), "reaches a plateau"),
-        (lambda v: v, "keeps rising"),
-        (lambda v: 2 - 0.2 * v, "falls"),
-    ],
-)
-def test_a_plateau_is_separated_from_a_rise(atlas, shape, words):
-    caption = drawn(made_to_open(atlas, shape), "plateau", []).caption
-    assert caption.count(words) == 2  # shape is that of both kinds of joints
 
 
 def test_synthetic_joints_are_drawn_with_every_seed(atlas):

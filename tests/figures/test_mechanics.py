@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 from cases import representative
 from matplotlib.colors import to_rgb
+from matplotlib.text import Text
 
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
@@ -413,16 +414,17 @@ def test_parts_may_have_a_strength_where_the_whole_has_none(atlas):
     assert len(drawn(changed, "sliding", "fig11_slope_angle").data)
 
 
-def test_plateaus_are_counted_where_the_paper_says_nothing_of_the_material(atlas):
+def test_plateaus_are_those_of_the_atlas(atlas):
+    """In the legend, and in the caption where the paper says nothing of the material."""
     atlas = without_statements(atlas, "sliding")
-    level = with_changes(atlas, "dilatancy/sliding", rigid_dilatancy=0.5)
-    assert "4 of 4 directions have a plateau" in (
-        drawn(level, "sliding", "fig06_07_dilatancy").caption
-    )
-    rising = atlas.copy(deep=True)
-    dataset = rising["dilatancy/sliding"].to_dataset()
-    dataset["rigid_dilatancy"] = dataset["rigid_dilatancy"] * 0 + dataset["rigid_offset"]
-    rising["dilatancy/sliding"] = xr.DataTree(dataset)
-    caption = drawn(rising, "sliding", "fig06_07_dilatancy").caption
-    assert "0 of 4 directions" in caption
-    assert "(rising: East, North, West, South)" in caption
+    ends = {"plateau_change": 0.25, "plateau_change_low": 0.2, "plateau_change_high": 0.3}
+    for trend, words in (
+        ("level", "4 of 4 directions have a plateau"),
+        ("rising", "(rising: East, North, West, South)"),
+        ("falling", "0 of 4 directions have a plateau (changes within 10 %) (falling: "),
+    ):
+        told = with_changes(atlas, "joints/sliding", plateau_trend=trend, **ends)
+        drawing = drawn(told, "sliding", "fig06_07_dilatancy")
+        assert words in drawing.caption
+        shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
+        assert shown.count(f"+25 % [+20, +30], {trend}") == 4

@@ -333,6 +333,25 @@ def test_pressures_that_differ_by_their_windows_alone_are_one():
     assert main_load([], []) is None
 
 
+def with_told(atlas, group, **values):
+    """The atlas with some variables of a group told anew, one value in all places."""
+    changed = atlas.copy()
+    dataset = atlas[group].to_dataset().load()
+    for name, value in values.items():
+        dataset[name] = xr.full_like(dataset[name], value)
+    changed[group] = xr.DataTree(dataset)
+    return changed
+
+
+def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):
+    told = {"plateau_trend": "falling", "plateau_level": 0.7, "plateau_slope": -0.2}
+    found = summarised(Chosen(with_told(atlas, "joints/pair", **told), "pair")).dilatancy
+    assert (found.kind, found.level, found.slope) == ("falling", 0.7, -0.2)
+    none = with_told(atlas, "joints/pair", plateau_trend="", plateau_level=np.nan)
+    assert summarised(Chosen(none, "pair")).dilatancy.kind == "none"
+    assert summarised(Chosen(atlas, "flat.1")).dilatancy.kind == "none"
+
+
 def test_k_ni_is_undetermined_where_the_hyperbola_is_not_the_law(results):
     atlas = read_atlas(results / "atlas.nc")
     table = pd.read_csv(results / "summary.csv").set_index("specimen")

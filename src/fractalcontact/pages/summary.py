@@ -14,7 +14,6 @@ from ..domain.box_dimension import WIDEST
 from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
 from ..mechanics.model_validity import Validity
 from ..mechanics.overlap import DECISIVE
-from ..statements.sliding import Plateaus
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
@@ -298,18 +297,14 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
 
 
 def dilatancy_of(chosen: Chosen) -> Dilatancy:
-    """Level or slope of the rigid dilatancy, flat where the statements call it so."""
+    """Level and slope of the rigid dilatancy over the second half of the offsets."""
     joints = chosen.stage("joints")
-    plateaus = Plateaus.of(joints)
-    if chosen.direction not in plateaus.directions:
+    if chosen.direction not in joints["direction"]:
         return Dilatancy("none")
-    number = plateaus.directions.index(chosen.direction)
-    v = joints["rigid_offset"].values
-    second = v[v >= v[-1] / 2]
-    mean, change = float(plateaus.mean[number]), float(plateaus.change[number])
-    slope = change * mean / float(second[-1] - second[0])
-    kind = "level" if plateaus.flat[number] else "rising" if slope > 0 else "falling"
-    return Dilatancy(kind, mean, slope)
+    along = joints.sel(direction=chosen.direction)
+    kind = str(along["plateau_trend"].item())
+    level, slope = (finite(along[f"plateau_{name}"]) for name in ("level", "slope"))
+    return Dilatancy(kind or "none", level, slope)
 
 
 def summary_table(study: str, specimens: list[Specimen]) -> pd.DataFrame:

@@ -12,7 +12,6 @@ __getattr__, __dir__, __all__ = exports(
         "NEARLY": ".findings",
         "ONCE": ".comparison",
         "PARTLY": ".judge",
-        "Plateaus": ".sliding",
         "QUANTITIES": ".comparison",
         "STATEMENTS": ".study",
         "Statement": ".judge",
