@@ -34,7 +34,7 @@ def test_examples_of_the_library_run_and_find_what_was_put_in(tmp_path, monkeypa
     np.testing.assert_allclose(names["face"].values, names["heights"], atol=1e-12)
     assert names["low"] < 2.2 < names["high"]
     law = names["law"]
-    assert 0 < law.k_ni_low < law.k_ni < law.k_ni_high
+    assert 0 < law.k_ni.low < law.k_ni.value < law.k_ni.high
     assert law.n == 6
     assert names["state"].force == pytest.approx(40 * 9.6**2, rel=1e-6)
     assert names["dimension"].low <= names["dimension"].dimension <= names["dimension"].high
@@ -47,7 +47,7 @@ def test_hertz_of_the_gallery_is_close_and_the_rough_faces_close():
     errors = runpy.run_path(str(GALLERY / "hertz.py"))["main"]()
     assert max(map(abs, errors.values())) < 1e-3
     hyperbola, dimension = runpy.run_path(str(GALLERY / "rough_faces.py"))["main"]()
-    assert 0 < hyperbola.k_ni_low < hyperbola.k_ni
+    assert 0 < hyperbola.k_ni.low < hyperbola.k_ni.value
     assert 0 < dimension.dimension < 2
 
 

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from ensembles import ensemble
 
 from fractalcontact.core.directions import DIRECTIONS
-from fractalcontact.experiments.roll_off import roll_off_effect
+from fractalcontact.experiments.roll_off import add_trend, roll_off_effect
 
 RECIPE = {
     "label": "made",
@@ -34,6 +35,36 @@ def test_dilatancy_levels_off_with_a_roll_off_and_rises_on_without(effect):
     assert abs(change[0]) < 0.1
     assert change[1] > 0.15
     assert without["slope_low"] > 0
+    np.testing.assert_allclose([with_it["change"], without["change"]], change, rtol=0.02)
+    assert (with_it["trend"].item(), without["trend"].item()) == ("level", "rising")
+
+
+@pytest.mark.parametrize(
+    ("shape", "trend"),
+    [
+        (lambda v: 1 - np.exp(-10 * v), "level"),
+        (lambda v: v, "rising"),
+        (lambda v: 2 - 0.2 * v, "falling"),
+    ],
+)
+def test_a_plateau_is_separated_from_a_rise(effect, shape, trend):
+    made, v = effect.copy(), effect["rigid_offset"]
+    noise = 1 + 0.01 * effect["seed"]
+    made["rigid_dilatancy"] = noise * shape(v) + 0 * effect["rigid_dilatancy"]
+    add_trend(made)
+    assert (made["trend"] == trend).all()
+    second = v[v >= v[-1] / 2]
+    change = (shape(second)[-1] - shape(second)[0]) / shape(second).mean()
+    np.testing.assert_allclose(made["change"], change, rtol=0.05, atol=1e-6)
+
+
+def test_seeds_that_disagree_show_no_trend(effect):
+    made, v = effect.copy(), effect["rigid_offset"]
+    slopes = xr.where(effect["seed"] % 2 == 0, 1.0, -0.2)
+    made["rigid_dilatancy"] = 2 + slopes * v + 0 * effect["rigid_dilatancy"]
+    add_trend(made)
+    assert (made["trend"] == "").all()
+    assert (made["slope_low"] < 0).all()
 
 
 def test_the_spread_is_what_heights_and_correlation_make_it(effect):

@@ -114,6 +114,49 @@ def test_compliance_drawn_is_the_inverse_of_the_stiffness(atlas, name):
         np.testing.assert_array_equal(points["face_correlation"], stored)
 
 
+@pytest.mark.parametrize("name", SLIDING)
+def test_closures_drawn_over_the_offset_count_from_the_common_seat_of_the_atlas(atlas, name):
+    table = drawn(atlas, "compliance", name).data
+    closed = table[table["curve"] == "closure"]
+    curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
+    assert closed["common_seating_pressure_MPa"].unique() == [curves["common_seating_pressure"]]
+    for force, points in closed.groupby("force_N"):
+        np.testing.assert_array_equal(
+            points["closure_from_common_seat_mm"],
+            curves["closure_from_common_seat"].sel(normal_force=force),
+        )
+
+
+@pytest.mark.parametrize("name", SLIDING)
+def test_columns_of_one_name_hold_one_number_for_one_state(atlas, name):
+    """The tables of a specimen's figures of closure, at the offsets and loads that both have."""
+    tables = [drawn(atlas, figure, name).data for figure in ("compliance", "fig04_05_closure")]
+    state = ["offset_mm", "force_N"]
+    first, second = (
+        table[table["interface_closure_mm"].notna()].round(dict.fromkeys(state, 9)).set_index(state)
+        for table in tables
+    )
+    both = first.index.intersection(second.index)
+    assert len(both) > 3
+    columns = first.select_dtypes("number").columns.intersection(second.columns)
+    assert "interface_closure_mm" in columns
+    for column in columns:
+        np.testing.assert_array_equal(
+            first.loc[both, column].astype(float), second.loc[both, column].astype(float), column
+        )
+
+
+def test_the_slope_of_the_synthetic_joints_is_that_of_the_atlas(atlas):
+    told = with_changes(atlas, "roll_off/surfaces", slope=0.25, slope_low=0.2, slope_high=0.3)
+    stage = told["roll_off/surfaces"].to_dataset()
+    stage["trend"] = ("surface", ["falling", ""])
+    told["roll_off/surfaces"] = xr.DataTree(stage)
+    drawing = drawn(told, "plateau", ["sliding"])
+    shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
+    assert shown.count("slope 0.25 [0.2, 0.3] mm/mm") == 2
+    assert "synthetic joints falls, without it shows no trend" in drawing.caption
+
+
 def test_plateau_holds_every_direction_of_all_that_slides(atlas):
     table = drawn(atlas, "plateau", ["flat", "sliding", "pair"]).data
     assert table["specimen"].nunique() == 2 + 2
@@ -240,29 +283,6 @@ def test_a_conductance_without_a_fit_is_still_drawn(atlas):
     )
     caption = drawn(with_changes(atlas, "closure/flat", **nothing), "conductance", "flat").caption
     assert "Too few pressures" in caption
-
-
-def made_to_open(atlas, shape):
-    """The atlas with another dilatancy of the joints made with and without a roll-off."""
-
-    def opened(joints):
-        noise = 1 + 0.01 * joints["seed"]
-        return noise * shape(joints["rigid_offset"]) + 0 * joints["rigid_dilatancy"]
-
-    return with_changes(atlas, "roll_off/surfaces", rigid_dilatancy=opened)
-
-
-@pytest.mark.parametrize(
-    ("shape", "words"),
-    [
-        (lambda v: 1 - np.exp(-10 * v), "reaches a plateau"),
-        (lambda v: v, "keeps rising"),
-        (lambda v: 2 - 0.2 * v, "falls"),
-    ],
-)
-def test_a_plateau_is_separated_from_a_rise(atlas, shape, words):
-    caption = drawn(made_to_open(atlas, shape), "plateau", []).caption
-    assert caption.count(words) == 2  # shape is that of both kinds of joints
 
 
 def test_synthetic_joints_are_drawn_with_every_seed(atlas):

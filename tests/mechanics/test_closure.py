@@ -136,11 +136,54 @@ def test_seated_closure_begins_at_ten_nodes_or_where_the_study_says():
     assert np.isnan(stated["seated_closure"][:3]).all()
 
 
+def test_closures_of_all_offsets_count_from_one_pressure():
+    """The largest of their own seats: there the closure is 0, beyond it what it is more."""
+    _, _, curves = slid_joint([1, 4, 16], ["10 MPa", "40 MPa", "100 MPa", "250 MPa"], (1, 2))
+    pressure = curves["nominal_pressure"]
+    seats, common = curves["seating_pressure"], curves["common_seating_pressure"]
+    own = seats.sel(resolution=1).values.ravel()
+    assert own.min() < own.max()
+    np.testing.assert_array_equal(common, seats.max("offset"))
+    closing, seated = curves["interface_closure"], curves["closure_from_common_seat"]
+    there, beyond = abs(pressure - common) < 1e-9 * common, pressure > (1 - 1e-9) * common
+    at_seat = closing.where(there).max("normal_force")
+    expected = (closing - at_seat).where(beyond).transpose(*seated.dims)
+    np.testing.assert_array_equal(seated, expected)
+    error = curves["closure_from_common_seat_error"]
+    assert (error.where(there, 0) == 0).all()
+    np.testing.assert_array_equal(np.isfinite(error), np.isfinite(seated))
+    # Where the offset decides the common seat, both closures are one.
+    latest = curves.isel(offset=int(own.argmax()), resolution=0)
+    for end in ("", "_error"):
+        np.testing.assert_array_equal(
+            latest[f"closure_from_common_seat{end}"], latest[f"seated_closure{end}"]
+        )
+    assert (curves["no_common_seat"] == "").all()
+
+
+def test_an_offset_whose_state_at_the_common_seat_is_missing_has_no_closure_from_there():
+    _, _, curves = slid_joint([1, 16], ["10 MPa", "40 MPa", "100 MPa", "250 MPa"])
+    common = curves["common_seating_pressure"].item()
+    assert curves["seating_pressure"].values.ravel()[0] < common
+    states, offset = states_of(curves), curves["offset"]
+    lost = (offset == offset[0]) & (abs(curves["nominal_pressure"] - common) < 1e-9 * common)
+    states["closure"] = states["closure"].where(~lost)
+    again = closure_curves(states, (4.8, 4.8), 2e4)
+    assert again["common_seating_pressure"].item() == pytest.approx(common)
+    missing, other = (again["closure_from_common_seat"].isel(offset=i) for i in (0, 1))
+    assert np.isnan(missing).all()
+    assert np.isnan(again["closure_from_common_seat_error"].isel(offset=0)).all()
+    assert np.isfinite(other).any()
+
+
 def test_a_curve_without_resolved_states_is_not_seated():
     curve = curves_of(self_affine((64, 64), 0.1, 0.8, seed=2, rms=0.1), [0.01, 0.02]).squeeze()
     assert not curve["resolved"].any()
     assert np.isnan(curve["seating_pressure"])
     assert np.isnan(curve["seated_closure"]).all()
+    assert np.isnan(curve["common_seating_pressure"])
+    assert np.isnan(curve["closure_from_common_seat"]).all()
+    assert "10 nodes" in curve["no_common_seat"].item()
 
 
 def test_areas_are_fractions_of_the_window_and_flagged_where_few_nodes_touch():

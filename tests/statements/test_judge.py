@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.mechanics.plateau import rigid_plateaus
 from fractalcontact.statements import closure, nulls, scaling
 from fractalcontact.statements.judge import (
     FAILS,
@@ -135,6 +136,7 @@ def stages(**changes):
     of_parts = ("share", "part", "normal_force")
     windows["similar_strength"] = of_parts, np.ones((2, 3, 1))
     windows["similar_held"] = of_parts, np.repeat(np.asarray(values["held"])[:, np.newaxis], 3, 1)
+    slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
     specimen = xr.Dataset(
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
     )

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled, labelled_dataset
 from ..core.directions import DIRECTIONS
 from ..core.fitting import fit_line
 from ..core.intervals import mean_interval
@@ -22,6 +22,7 @@ from ..mechanics.joint import (
     face_correlation,
     rigid_dilatancy,
 )
+from ..mechanics.plateau import FALLING, LEVEL, LEVEL_CHANGE, RISING, relative_change, second_half
 from ..roughness.dimension import slope_statistics
 from ..study.embedded import embedded_surface
 from ..surface.specimen import faces, largest_offset, make_specimen, window_slices
@@ -47,9 +48,9 @@ def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[in
     -------
     xr.Dataset
         ``rigid_dilatancy``, ``composite_rms`` and ``face_correlation`` over (surface, seed,
-        direction, rigid_offset); ``face_rms`` and ``rms_slope`` over (surface, seed); ``slope`` of
-        the dilatancy over the second half of the offsets, mean over seeds, with its interval
-        (surface).
+        direction, rigid_offset); ``face_rms`` and ``rms_slope`` over (surface, seed); over
+        (surface,) ``slope`` of the dilatancy over the second half of the offsets, mean over seeds,
+        with its interval, its ``change`` there and its ``trend``.
 
     Notes
     -----
@@ -72,14 +73,43 @@ def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[in
     )
     result = result.assign_coords(surface=list(SURFACES))
     result["seed"] = ("seed", list(seeds), cf_attrs("1", "seed of the surface"))
-    v = result["rigid_offset"].values
-    second = v >= v[-1] / 2
-    opened = result["rigid_dilatancy"].mean("direction").transpose("surface", "seed", ...).values
-    slopes = [[fit_line(v[second], row[second]).slope.value for row in rows] for rows in opened]
-    words = "slope of the rigid dilatancy over the second half of v, mean over seeds"
-    result.update(mean_interval(slopes, axis=1).variables("slope", "surface", "1", words))
+    add_trend(result)
     result.attrs = {"roll_off": recipe["roll_off"], "window": window}
     return result
+
+
+def add_trend(result: xr.Dataset) -> None:
+    """Add slope, change and trend of the dilatancy over the second half of the offsets.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        With ``rigid_dilatancy`` over (surface, seed, direction, rigid_offset): ``slope``, its mean
+        over the seeds, with its interval, ``change`` and ``trend`` over (surface,) are added to it.
+    """
+    v = result["rigid_offset"].values
+    half = second_half(v)
+    opened = result["rigid_dilatancy"].mean("direction").transpose("surface", "seed", ...).values
+    opened = opened[..., half]
+    slope = mean_interval(
+        [[fit_line(v[half], row).slope.value for row in rows] for rows in opened], axis=1
+    )
+    words = "slope of the rigid dilatancy over the second half of v, mean over seeds"
+    result.update(slope.variables("slope", "surface", "1", words))
+    changes = relative_change(slope.value, v[half], opened.mean(axis=(1, 2)))
+    trends = [_trend(*ends) for ends in zip(changes, slope.low, slope.high, strict=True)]
+    table = {
+        "change": ("surface", "1", "change over the second half of v, a fraction of the mean"),
+        "trend": ("surface", "1", f"{LEVEL}, {RISING}, {FALLING}, or empty where none is certain"),
+    }
+    result.update(labelled(table, {"change": changes, "trend": np.array(trends)}))
+
+
+def _trend(change: float, low: float, high: float) -> str:
+    """Trend of many joints: level by its change, else a direction only where the slopes agree."""
+    if abs(change) <= LEVEL_CHANGE:
+        return LEVEL
+    return RISING if low > 0 else FALLING if high < 0 else ""
 
 
 def _surfaces(recipe: Mapping[str, Any], seeds: Sequence[int]) -> dict[str, list[np.ndarray]]:

@@ -133,12 +133,14 @@ def closure_curves(
     -------
     xr.Dataset
         ``bulk_settlement`` and ``nominal_pressure`` (normal_force); ``interface_closure``,
-        ``separation``, ``seated_closure``, ``interface_stiffness``, ``conductance``,
-        ``area_share``, ``area_corrected_share``, each with an ``_error``, ``resolved``,
-        ``area_corrected_resolved``, ``closure_spacing_error`` and the numbers of the states over
-        (direction, offset, resolution, load); ``seating_pressure``, ``prefractal_opening`` and the
-        fits of :func:`mechanics.closure_laws.add_closure_laws` over (direction, offset,
-        resolution); what :data:`mechanics.states.OFFSETS` names over (direction, offset).
+        ``separation``, ``seated_closure``, ``closure_from_common_seat``, ``interface_stiffness``,
+        ``conductance``, ``area_share``, ``area_corrected_share``, each with an ``_error``,
+        ``resolved``, ``area_corrected_resolved``, ``closure_spacing_error`` and the numbers of the
+        states over (direction, offset, resolution, load); ``seating_pressure``,
+        ``prefractal_opening`` and the fits of :func:`mechanics.closure_laws.add_closure_laws` over
+        (direction, offset, resolution); ``common_seating_pressure`` and why there is none over
+        (direction, resolution); what :data:`mechanics.states.OFFSETS` names over (direction,
+        offset).
     """
     area = window[0] * window[1]
     result = states[[*OF_STATES, *OFFSETS]].copy()

@@ -17,6 +17,7 @@ from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..surface.specimen import faces, largest_offset, nominal_area, window_slices
 from .composite_dimension import composite_dimensions
+from .plateau import rigid_plateaus
 from .rigid_slide import Slide, slide
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
@@ -261,9 +262,10 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
     -------
     xr.Dataset
         ``rigid_dilatancy``, ``composite_rms`` and ``face_correlation`` (direction, rigid_offset)
-        at every cell up to the largest offset; ``correlation_length`` and ``uncorrelated_offset``
-        (direction), ``correlation_limit``; ``offset_cells`` (direction, offset) of the contact
-        solves; for the first direction whose contact is solved ``composite`` (offset, window_y,
+        at every cell up to the largest offset; the plateaus of :func:`mechanics.plateau
+        .rigid_plateaus`, ``correlation_length`` and ``uncorrelated_offset`` (direction),
+        ``correlation_limit``; ``offset_cells`` (direction, offset) of the contact solves; for the
+        first direction whose contact is solved ``composite`` (offset, window_y,
         window_x) and its dimension Delta_g ``composite_dimension`` (offset), with its interval, the
         lengths fitted and why there is none.
 
@@ -306,7 +308,10 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
 def _describe_slide(
     specimen: xr.Dataset, directions: Sequence[str], cells: np.ndarray, spacing: float
 ) -> xr.Dataset:
-    """Rigid dilatancy and correlation of the faces at every cell of the reference direction."""
+    """Rigid dilatancy, its plateaus, and correlation of the faces at every cell.
+
+    Cells are those of the reference direction.
+    """
     dilatancy = np.full((len(directions), len(cells)), np.nan)
     spread, correlation = dilatancy.copy(), dilatancy.copy()
     for i, direction in enumerate(directions):
@@ -320,7 +325,7 @@ def _describe_slide(
     length, uncorrelated, limit = correlation_ranges(offsets, correlation, nominal_area(specimen))
     table = RIGID_SLIDE | _CORRELATION
     values = (dilatancy, spread, correlation, length, uncorrelated, limit)
-    return labelled_dataset(
+    result = labelled_dataset(
         table,
         dict(zip(table, values, strict=True)),
         coords={
@@ -328,6 +333,7 @@ def _describe_slide(
             "rigid_offset": ("rigid_offset", offsets, cf_attrs("mm", "shear offset v")),
         },
     )
+    return result.assign(rigid_plateaus(offsets, dilatancy, directions))
 
 
 def _automatic_offsets(specimen, directions):

@@ -12,6 +12,7 @@ import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.labels import cf_attrs
+from ..core.resolved import RESOLVED_NODES
 from .joint import composite_topography, prefractal
 from .states import error_attrs
 
@@ -53,10 +54,33 @@ def prefractal_openings(
     )
 
 
-#: Separation and seated closure: unit and long name.
+#: Separation and seated closures: unit and long name.
 _WORDS = {
     "separation": ("mm", "separation of the mean planes delta_r - w; 0 where faces are mated"),
     "seated_closure": ("mm", "interface closure from the seating pressure on"),
+    "closure_from_common_seat": (
+        "mm",
+        "interface closure from the common seating pressure on, one for all offsets",
+    ),
+}
+
+#: Seating pressures: dimensions, unit and long name.
+_SEATS = {
+    "seating_pressure": (
+        ("direction", "offset", "resolution"),
+        "MPa",
+        "nominal pressure from which closure is seated",
+    ),
+    "common_seating_pressure": (
+        ("direction", "resolution"),
+        "MPa",
+        "largest seating pressure of all offsets of a direction: closures compare from there on",
+    ),
+    "no_common_seat": (
+        ("direction", "resolution"),
+        "1",
+        "why there is no common seating pressure",
+    ),
 }
 
 
@@ -91,7 +115,7 @@ def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
 
 
 def add_seated_closure(curves: xr.Dataset, seating_force: float | None) -> None:
-    """Add the closure from a seating load to a closure stage.
+    """Add the closures from a seating load, of each offset and of all, to a closure stage.
 
     Parameters
     ----------
@@ -104,28 +128,47 @@ def add_seated_closure(curves: xr.Dataset, seating_force: float | None) -> None:
 
     Notes
     -----
-    Below the seating load there is none, nor where no state there was solved.
+    ``seated_closure`` counts from the seating load of its own offset, so that each curve begins as
+    early as it can. Closures of several offsets compare only from one pressure on:
+    ``closure_from_common_seat`` counts from the largest of these loads, at which enough nodes touch
+    at all offsets that have one. Below its load a closure has no value, nor where the state under
+    that load was not solved.
     """
-    dims = ("direction", "offset", "resolution")
     force = curves["normal_force"]
-    closing, solved = curves["interface_closure"], np.isfinite(curves["interface_closure"])
+    solved = np.isfinite(curves["interface_closure"])
     if seating_force is None:
         seats = force.where(curves["resolved"] & solved).min("normal_force")
     else:
         seat = float(force.sel(normal_force=seating_force, method="nearest"))
         seats = force.where(solved & (force == seat)).min("normal_force")
-    at_seat = force == seats
-    seated = closing - closing.where(at_seat).sum("normal_force")
-    error = curves["closure_error"] + curves["closure_error"].where(at_seat).sum("normal_force")
-    error = error.where(~at_seat, 0.0)
-    order = closing.dims
-    attrs = cf_attrs(*_WORDS["seated_closure"])
-    beyond = (force >= seats) & solved
-    curves["seated_closure"] = seated.where(beyond).transpose(*order).assign_attrs(attrs)
-    curves["seated_closure_error"] = (
-        error.where(beyond).transpose(*order).assign_attrs(error_attrs(attrs))
-    )
+    common = seats.max("offset")
+    _add_closure_from(curves, seats, "seated_closure")
+    _add_closure_from(curves, common, "closure_from_common_seat")
     area = float((force / curves["nominal_pressure"])[0])
-    pressure = {"seating_pressure": (seats / area).transpose(*dims).values}
-    table = {"seating_pressure": (dims, "MPa", "nominal pressure from which closure is seated")}
-    curves.update(labelled(table, pressure))
+    none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
+    if seating_force is not None:
+        none = "the state under the seating load was solved at no offset"
+    found = {
+        "seating_pressure": seats / area,
+        "common_seating_pressure": common / area,
+        "no_common_seat": xr.where(common.isnull(), none, ""),
+    }
+    values = {name: found[name].transpose(*dims).values for name, (dims, *_) in _SEATS.items()}
+    curves.update(labelled(_SEATS, values))
+
+
+def _add_closure_from(curves: xr.Dataset, seats: xr.DataArray, name: str) -> None:
+    """Add the closure counted from the states under the forces ``seats``, N, and its error."""
+    closing, error = curves["interface_closure"], curves["closure_error"]
+    force = curves["normal_force"]
+    at_seat = force == seats
+    at_its_seat = closing.where(at_seat).sum("normal_force", min_count=1)
+    seated = closing - at_its_seat
+    both = error + error.where(at_seat).sum("normal_force")
+    # The state at the seat less itself has no error.
+    both = both.where(~at_seat, 0.0)
+    beyond = (force >= seats) & np.isfinite(seated)
+    attrs = cf_attrs(*_WORDS[name])
+    order = closing.dims
+    curves[name] = seated.where(beyond).transpose(*order).assign_attrs(attrs)
+    curves[f"{name}_error"] = both.where(beyond).transpose(*order).assign_attrs(error_attrs(attrs))

@@ -1,7 +1,7 @@
 """The summary of a study: what each specimen is and does, one row a specimen and pressure."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,8 @@ import xarray as xr
 from ..core import estimate
 from ..core.determined import determined
 from ..domain.box_dimension import WIDEST
-from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
 from ..mechanics.model_validity import Validity
 from ..mechanics.overlap import DECISIVE
-from ..statements.sliding import Plateaus
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
@@ -22,7 +20,7 @@ from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
-from .words import in_table, percent
+from .words import in_table
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -229,16 +227,10 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
 
 
 def _initial_stiffness(curve):
-    """k_ni of the hyperbola: undetermined, with the reason, where that is not the law."""
-    law = str(curve["closure_law"].item())
-    why = str(curve["hyperbola_reason"].item())
-    if not why and law not in (HYPERBOLA, UNDECIDED):
-        misfit = float(curve["hyperbola_misfit"])
-        why = f"the hyperbola misses the curve by {percent(misfit)} rms of the largest closure"
-        if law == SEMI_LOGARITHMIC:
-            why += ", a logarithm less"
-    found = Estimate.of(curve, "hyperbola_k_ni", why)
-    return found if law in (HYPERBOLA, UNDECIDED) else replace(found, determined=False)
+    """k_ni of the hyperbola: undetermined, with the reason, where the atlas says so."""
+    value, low, high = map(finite, estimate.Estimate.read(curve, "hyperbola_k_ni").ends)
+    says, why = (curve[f"hyperbola_k_ni_{name}"].item() for name in ("determined", "reason"))
+    return Estimate(value, low, high, bool(says), why)
 
 
 def _at_load(chosen, curve, number):
@@ -298,18 +290,14 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
 
 
 def dilatancy_of(chosen: Chosen) -> Dilatancy:
-    """Level or slope of the rigid dilatancy, flat where the statements call it so."""
+    """Level and slope of the rigid dilatancy over the second half of the offsets."""
     joints = chosen.stage("joints")
-    plateaus = Plateaus.of(joints)
-    if chosen.direction not in plateaus.directions:
+    if chosen.direction not in joints["direction"]:
         return Dilatancy("none")
-    number = plateaus.directions.index(chosen.direction)
-    v = joints["rigid_offset"].values
-    second = v[v >= v[-1] / 2]
-    mean, change = float(plateaus.mean[number]), float(plateaus.change[number])
-    slope = change * mean / float(second[-1] - second[0])
-    kind = "level" if plateaus.flat[number] else "rising" if slope > 0 else "falling"
-    return Dilatancy(kind, mean, slope)
+    along = joints.sel(direction=chosen.direction)
+    kind = str(along["plateau_trend"].item())
+    level, slope = (finite(along[f"plateau_{name}"]) for name in ("level", "slope"))
+    return Dilatancy(kind or "none", level, slope)
 
 
 def summary_table(study: str, specimens: list[Specimen]) -> pd.DataFrame:
@@ -365,8 +353,8 @@ def _of_load(load):
         "suspect_load_share": load.suspect_share,
         "real_pressure_MPa": load.real_pressure,
         "elastic_model": load.model.verdict,
-        "elastic_model_good_to_MPa": load.model.good_to,
-        "elastic_model_poor_from_MPa": load.model.poor_from,
+        "elastic_model_good_to_MPa": load.model.limits.good_to,
+        "elastic_model_poor_from_MPa": load.model.limits.poor_from,
     }
     for name, quantity in load.quantities.items():
         if name == "delta_sigma":  # stands below, with its interval

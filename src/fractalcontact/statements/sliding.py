@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..core.fitting import fit_line
+from ..mechanics.plateau import LEVEL, LEVEL_CHANGE, RISING
 from .findings import (
     FAILS,
     HOLDS,
@@ -26,51 +26,50 @@ PLATEAUS, DIRECTIONS = 2, 4
 
 
 class Plateaus(NamedTuple):
-    """Rigid dilatancy over the second half of v, by direction.
+    """Rigid dilatancy over the second half of v, by direction, as the stage ``joints`` has it.
 
     Attributes
     ----------
     directions : list of str
-    mean : (n,) ndarray
-        mm.
+    trend : (n,) ndarray of str
+        :data:`mechanics.plateau.LEVEL`, ``RISING`` or ``FALLING``.
     change : (n,) ndarray
         Of the fitted line, a fraction of the mean.
     """
 
     directions: list[str]
-    mean: np.ndarray
+    trend: np.ndarray
     change: np.ndarray
 
     @classmethod
     def of(cls, joints: xr.Dataset) -> "Plateaus":
-        """Those of the stage ``joints``; directions without a fit are left out."""
-        v = joints["rigid_offset"].values
-        second = v >= v[-1] / 2
-        found = []
-        for name, opened in zip(
-            joints["direction"].values, joints["rigid_dilatancy"].values, strict=True
-        ):
-            slope = fit_line(v[second], opened[second]).slope
-            if slope.known:
-                mean, (first, last) = opened[second].mean(), slope.over
-                found.append((str(name), mean, slope.value * (last - first) / mean))
-        names, means, changes = zip(*found, strict=True) if found else ((), (), ())
-        return cls(list(names), np.array(means), np.array(changes))
+        """Those of the stage ``joints``; directions without a line are left out."""
+        fitted = joints.sel(direction=np.isfinite(joints["plateau_slope"].values))
+        return cls(
+            [str(name) for name in fitted["direction"].values],
+            fitted["plateau_trend"].values.astype(str),
+            fitted["plateau_change"].values,
+        )
 
     @property
     def flat(self) -> np.ndarray:
         """Which directions have a plateau."""
-        return np.abs(self.change) <= NEARLY
+        return self.trend == LEVEL
+
+    @property
+    def rising(self) -> np.ndarray:
+        """Which directions open on."""
+        return self.trend == RISING
 
     def finding(self, verdict: str) -> Finding:
         """A verdict with how many directions are flat, and by how much they change."""
-        rising = [self.directions[i] for i in np.flatnonzero(self.change > NEARLY)]
+        rising = [self.directions[i] for i in np.flatnonzero(self.rising)]
         more = f"; rising {', '.join(rising)}" if rising else ""
         return Finding(
             verdict,
             f"{self.flat.sum()} of {self.change.size} directions level{more}",
             f"{100 * self.change.min():+.0f} to {100 * self.change.max():+.0f} % of the mean over "
-            f"the second half of v, level within {100 * NEARLY:g} %",
+            f"the second half of v, level within {100 * LEVEL_CHANGE:g} %",
         )
 
 
@@ -87,7 +86,7 @@ def dilatancy_flattens_in_two(joint: Joint) -> Finding:
     plateaus = Plateaus.of(joint.stages["joints"])
     if plateaus.change.size < DIRECTIONS:
         return Finding(UNDETERMINED, f"{DIRECTIONS} directions needed")
-    flat, rising = int(plateaus.flat.sum()), int((plateaus.change > NEARLY).sum())
+    flat, rising = int(plateaus.flat.sum()), int(plateaus.rising.sum())
     both = flat > 0 and rising > 0
     verdict = HOLDS if both and flat == rising == PLATEAUS else PARTLY if both else FAILS
     return plateaus.finding(verdict)

@@ -3,7 +3,6 @@
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -12,12 +11,11 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
-from ...core.fitting import fit_line
-from ...core.intervals import mean_interval
 from ...core.labels import printable
 from ...core.mean_plane import without_mean_plane
 from ...core.units import quantity
 from ...experiments.roll_off import SURFACES
+from ...mechanics.plateau import FALLING, LEVEL, RISING, second_half
 from ...surface.specimen import faces, window_slices
 from ..kit.drawing import (
     LINES,
@@ -54,10 +52,13 @@ WIDE = 5
 #: Inches that a label's lines are broken for, so that a column of the legend holds them.
 COLUMN = 4
 
-#: A change over the second half of v below this share of the mean is called level.
-LEVEL = 0.1
-
-_PLATEAU = "reaches a plateau"
+#: Trends of the synthetic joints in words; without one nothing is certain.
+_TRENDS = {
+    LEVEL: "reaches a plateau",
+    RISING: "keeps rising",
+    FALLING: "falls",
+    "": "shows no trend",
+}
 
 #: The second half of the offsets, over which slopes are taken.
 _SECOND_HALF = {"lw": 3}
@@ -90,6 +91,10 @@ class Slide:
         Offset where the faces lose all correlation, mean of the directions; NaN if not reached.
     matched : bool
         Whether the upper face is the match of the lower one, so that sliding begins flush.
+    slope : tuple of float
+        Of many synthetic joints: slope of delta_r over the second half of v with its 95 % interval.
+    trend : str
+        Of many synthetic joints, as the stage ``roll_off`` has it.
     """
 
     label: str
@@ -103,6 +108,8 @@ class Slide:
     roll_off: float | None
     uncorrelated: float
     matched: bool
+    slope: tuple[float, float, float] | None = None
+    trend: str = ""
 
     @classmethod
     def of(cls, atlas: DataTree, name: str) -> "Slide":
@@ -138,19 +145,22 @@ class Slide:
         expected = joints["face_rms"] * np.sqrt(np.maximum(2 - 2 * joints["face_correlation"], 0))
         roll_off = float(joints.attrs["roll_off"]) if surface == "with_roll_off" else None
         words = f"with a roll-off at {short(roll_off)} mm" if roll_off else "without a roll-off"
-        mean = joints.mean("direction")
+        names = ("rigid_dilatancy", "composite_rms", "face_correlation")
+        opened, spread, correlation = (joints[name].mean("direction").values for name in names)
         return cls(
             label=f"{joints.sizes['seed']} synthetic joints {words}",
             rows=[f"seed {seed}" for seed in joints["seed"].values],
             v=joints["rigid_offset"].values,
-            opened=mean["rigid_dilatancy"].values,
-            spread=mean["composite_rms"].values,
+            opened=opened,
+            spread=spread,
             expected=expected.mean("direction").values,
-            correlation=mean["face_correlation"].values,
+            correlation=correlation,
             face=float(np.sqrt(np.mean(joints["face_rms"].values ** 2))),
             roll_off=roll_off,
             uncorrelated=np.nan,
             matched=True,
+            slope=Estimate.read(joints, "slope").ends,
+            trend=joints["trend"].item(),
         )
 
     @property
@@ -159,11 +169,6 @@ class Slide:
         return np.divide(
             self.opened, self.spread, out=np.full(self.spread.shape, np.nan), where=self.spread > 0
         )
-
-    @property
-    def second_half(self) -> np.ndarray:
-        """Which offsets are in the second half of those possible."""
-        return self.v >= self.v[-1] / 2
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -176,7 +181,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     _prepare(panels, slides)
     drawn = _without_repeats(slides)
     for n, slide in enumerate(drawn):
-        _draw_slide(panels, n, slide, slope=n < len(synthetic))
+        _draw_slide(panels, n, slide)
     _mark_ends(panels[1], slides)
     _start_at_zero(panels)
     legends_below(figure, entries(panels[0]), _marks())
@@ -216,14 +221,14 @@ def _alike(slide, other):
     )
 
 
-def _draw_slide(panels, n, slide, *, slope=False):
+def _draw_slide(panels, n, slide):
     colour, line = colour_of(n), LINES[n % 4]
     # In decades flush faces have no place, and what rounding leaves of their spread would be shown.
     shown = slide.v > 0 if panels[1].get_xscale() == "log" else np.full(slide.v.shape, True)
     v = slide.v[shown]
     label = label_in_lines(slide.label, width=COLUMN)
-    if slope:
-        label += f"\nslope {_change(slide)}"
+    if slide.slope is not None:
+        label += f"\nslope {_slope_words(*slide.slope)}"
     for axes, values in zip(panels, (slide.opened, slide.ratio), strict=True):
         if axes is panels[1] and not slide.matched:
             continue  # its dilatancy counts from faces that were apart already
@@ -233,8 +238,8 @@ def _draw_slide(panels, n, slide, *, slope=False):
             mean, low, high = (np.where(y > 0, y, np.nan) for y in (mean, low, high))
         axes.fill_between(v, low, high, color=colour, alpha=0.15, lw=0)
         axes.plot(v, mean, color=colour, ls=line, label=label)
-    if slope:
-        half = slide.second_half
+    if slide.slope is not None:
+        half = second_half(slide.v)
         mean = slide.opened[:, half].mean(axis=0)
         panels[0].plot(slide.v[half], mean, color=colour, **_SECOND_HALF)
     for at, marker in ((slide.roll_off, _ROLL_OFF), (slide.uncorrelated, _UNCORRELATED)):
@@ -316,32 +321,6 @@ def _table(slide):
     )
 
 
-class Trend(NamedTuple):
-    """Slope over the second half of v with its 95 % interval, and the change over its mean."""
-
-    slope: float
-    low: float
-    high: float
-    change: float
-
-    @classmethod
-    def of(cls, slide: Slide, values: np.ndarray) -> "Trend":
-        """Trend of one quantity, (rows, n): the mean slope of the rows.
-
-        Its interval comes from how the rows differ; from the points of the line where there is but
-        one, which takes neighbouring offsets as independent.
-        """
-        half = slide.second_half
-        v = slide.v[half]
-        lines = [fit_line(v, row[half]) for row in values]
-        slope, low, high = (
-            map(float, mean_interval([line.slope.value for line in lines]).ends)
-            if len(lines) > 1
-            else lines[0].slope.ends
-        )
-        return cls(slope, low, high, slope * np.ptp(v) / np.mean(values[:, half]))
-
-
 def _caption(slides, verdicts):
     synthetic = slides[: len(SURFACES)]
     words = (
@@ -373,8 +352,8 @@ def _explanation(synthetic, slides):
     """Whether delta_r follows sigma_z, and what the roll-off does to both."""
     with_it, without = synthetic
     return (
-        f"With a roll-off delta_r of synthetic joints {_level(with_it)}, without it "
-        f"{_level(without)} (slopes: legend); delta_r / sigma_z stays "
+        f"With a roll-off delta_r of synthetic joints {_TRENDS[with_it.trend]}, without it "
+        f"{_TRENDS[without.trend]} (slopes: legend); delta_r / sigma_z stays "
         f"{_span(_mean_ratios(slides))}."
     )
 
@@ -386,22 +365,11 @@ def _mean_ratios(slides):
     return ratios[np.isfinite(ratios)]
 
 
-def _change(slide):
+def _slope_words(slope, low, high):
     """Slope of delta_r over the second half of v, with its interval."""
-    trend = Trend.of(slide, slide.opened)
-    if not np.isfinite(trend.slope):
+    if not np.isfinite(slope):
         return "too few offsets"
-    return f"{Estimate(trend.slope, trend.low, trend.high, scale=EXPONENT).text()} mm/mm"
-
-
-def _level(slide):
-    """Whether the dilatancy levels off, by its change over the second half of v."""
-    trend = Trend.of(slide, slide.opened)
-    if abs(trend.change) <= LEVEL:
-        return _PLATEAU
-    if trend.low > 0:
-        return "keeps rising"
-    return "falls" if trend.high < 0 else "shows no trend"
+    return f"{Estimate(slope, low, high, scale=EXPONENT).text()} mm/mm"
 
 
 def _span(values, joint=" to "):

@@ -150,22 +150,8 @@ def _number_stages(axes, stages):
             )
 
 
-def _common_seat(curves):
-    """Place among the loads of the pressure from which closure is seated at every offset, or None.
-
-    Closures are comparable from one pressure on: that at which enough nodes touch at all offsets.
-    """
-    seats = curves["seating_pressure"].values
-    if not np.isfinite(seats).any():
-        return None
-    return int(np.argmin(abs(curves["nominal_pressure"].values - np.nanmax(seats))))
-
-
 def _closure_table(curves, shown):
     """Closure and compliance of the interface, load by load."""
-    seat = _common_seat(curves)
-    at_seat = np.nan if seat is None else curves["interface_closure"].isel(normal_force=seat)
-    pressure = np.nan if seat is None else float(curves["nominal_pressure"][seat])
     rows = [
         pd.DataFrame(
             {
@@ -176,8 +162,8 @@ def _closure_table(curves, shown):
                 "nodes": curves["nodes"][:, j].values,
                 "resolved": curves["resolved"][:, j].values,
                 "interface_closure_mm": curves["interface_closure"][:, j].values,
-                "seating_pressure_MPa": pressure,
-                "seated_closure_mm": (curves["interface_closure"][:, j] - at_seat).values,
+                "common_seating_pressure_MPa": float(curves["common_seating_pressure"]),
+                "closure_from_common_seat_mm": curves["closure_from_common_seat"][:, j].values,
                 **_compliance(curves.isel(normal_force=j)),
             }
         )
@@ -250,10 +236,10 @@ def _draw_correlation(axes, joint, solved):
 
 
 def _draw_closures(closed, compliance, table):
-    """Closure from the seating pressure, or else from first touch, and compliance."""
-    pressure = table["seating_pressure_MPa"].iloc[0]
-    seated = bool((table["seated_closure_mm"] > 0).any())
-    column = "seated_closure_mm" if seated else "interface_closure_mm"
+    """Closure from the common seat of all offsets, or else from first touch, and compliance."""
+    pressure = table["common_seating_pressure_MPa"].iloc[0]
+    seated = bool((table["closure_from_common_seat_mm"] > 0).any())
+    column = "closure_from_common_seat_mm" if seated else "interface_closure_mm"
     some_few, heights, tops = False, [], []
     for n, (force, points) in enumerate(table.groupby("force_N")):
         style = {"color": colour_of(n + 1), "marker": MARKERS[n % len(MARKERS)]}

@@ -185,7 +185,15 @@ def _law_words(curve):
     if not np.isfinite(misfits).any():
         return f"no fit: {no_law(curve)}"
     known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
-    return f"{', '.join(known)}; {Estimate.read(curve, 'hyperbola_k_ni', scale=EXPONENT).text()}"
+    return f"{', '.join(known)}; {_initial_stiffness(curve)}"
+
+
+def _initial_stiffness(curve):
+    """k_ni with its interval, and the word where the atlas calls it undetermined."""
+    k_ni = Estimate.read(curve, "hyperbola_k_ni", scale=EXPONENT)
+    if k_ni.known and not curve["hyperbola_k_ni_determined"]:
+        return k_ni.undetermined()
+    return k_ni.text()
 
 
 def _line(style, label):
@@ -290,6 +298,7 @@ def _table(curves, drawn, laws):
     fitted = {
         "seating_pressure_MPa": "seating_pressure",
         "k_ni_MPa_per_mm": "hyperbola_k_ni",
+        "k_ni_determined": "hyperbola_k_ni_determined",
         "k_ni_change": "hyperbola_k_ni_change",
         "w_m_mm": "hyperbola_w_m",
         "w_m_low_mm": "hyperbola_w_m_low",

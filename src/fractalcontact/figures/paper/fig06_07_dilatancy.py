@@ -6,8 +6,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.fitting import fit_line
+from ...core.estimate import Estimate
 from ...core.resolved import RESOLVED_NODES
+from ...mechanics.plateau import FALLING, LEVEL, LEVEL_CHANGE, RISING
 from ...surface.specimen import window_sides
 from ..kit.drawing import (
     LINES,
@@ -35,7 +36,7 @@ from ..kit.words import TOWARDS, area_label, force_label, opening, place, short
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
-NEEDS = ("specimens", "dilatancy", "closure", "contact", "statements")
+NEEDS = ("specimens", "joints", "dilatancy", "closure", "contact", "statements")
 ORDER = 100
 
 DOMAINS, COLUMNS = 6, 3
@@ -43,14 +44,12 @@ DOMAINS, COLUMNS = 6, 3
 _OF_AREA = ("nodes", "area_share", "area_corrected_share", "area_corrected_resolved")
 #: Of the fitted lines, points.
 _FIT_WIDTH = 2.2
-#: A change over the second half below this share of the mean there is called nearly flat.
-NEARLY_FLAT = 0.1
-_LEVEL = f"{NEARLY_FLAT:.0%}".replace("%", " %")
+_WITHIN = f"{LEVEL_CHANGE:.0%}".replace("%", " %")
 
 #: What the paper says of rock and of concrete, and the statements that judge it.
 _PLATEAUS = (
-    (f"plateau (changes within {_LEVEL}) in every direction", "dilatancy_flattens"),
-    (f"plateau (changes within {_LEVEL}) in two of four", "dilatancy_flattens_in_two"),
+    (f"plateau (changes within {_WITHIN}) in every direction", "dilatancy_flattens"),
+    (f"plateau (changes within {_WITHIN}) in two of four", "dilatancy_flattens_in_two"),
 )
 
 
@@ -69,7 +68,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     asked = [nearest_load(loads, load, specimen) for load in settings["dilatancy_loads"]]
     shown = sorted({*asked, mapped})
     points = spread(curves.sizes["offset"], DOMAINS)
-    plateaus = {str(d): _plateau(dilatancy, d) for d in dilatancy["direction"].values}
+    plateaus = group(atlas, "joints", name)
 
     rows = -(-len(points) // COLUMNS)
     figure = Figure(figsize=(WIDTH, 3.2 + 2.5 * rows))
@@ -97,27 +96,17 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     return Drawing(figure, table, caption)
 
 
-def _plateau(dilatancy, direction):
-    """Line of delta_r over the second half of the offsets, and its change over its mean there."""
-    v = dilatancy["rigid_offset"].values
-    second = v >= v[-1] / 2
-    opened = dilatancy["rigid_dilatancy"].sel(direction=direction).values[second]
-    line = fit_line(v[second], opened)
-    first, last = line.slope.over
-    return line, line.slope.value * (last - first) / opened.mean()
-
-
 def _draw_rigid(axes, dilatancy, plateaus):
     v = dilatancy["rigid_offset"].values
-    for n, (direction, plateau) in enumerate(plateaus.items()):
+    for n, direction in enumerate(dilatancy["direction"].values):
         opened = dilatancy["rigid_dilatancy"].sel(direction=direction)
-        label = f"{TOWARDS.get(direction, 'plane')}: {_change_words(*plateau)}"
+        plateau = plateaus.sel(direction=direction)
+        label = f"{TOWARDS.get(direction, 'plane')}: {_change_words(plateau)}"
         axes.plot(v, opened, label=label, **_direction_style(n))
-        line, _ = plateau
-        if line.slope.known:
-            ends = np.array(line.slope.over)
-            level = line.intercept.value + line.slope.value * ends
-            axes.plot(ends, level, color=colour_of(n), lw=_FIT_WIDTH, alpha=0.7)
+        ends = np.array([float(plateau[f"plateau_offset_{end}"]) for end in ("min", "max")])
+        if np.isfinite(ends).all():
+            line = float(plateau["plateau_intercept"]) + float(plateau["plateau_slope"]) * ends
+            axes.plot(ends, line, color=colour_of(n), lw=_FIT_WIDTH, alpha=0.7)
     axes.set_xlabel("offset $v$ (mm)")
     axes.set_ylabel(r"rigid dilatancy $\delta_r$ (mm)")
     axes.set_ylim(bottom=min(0, float(dilatancy["rigid_dilatancy"].min())))
@@ -130,15 +119,13 @@ def _direction_style(n):
     return {"color": colour_of(n), "ls": LINES[n % 4], "lw": 0.9}
 
 
-def _change_words(line, change):
+def _change_words(plateau):
     """Change of the fitted line in per cent of the mean, and what it is called."""
-    slope = line.slope
-    if not slope.known:
+    change, low, high = Estimate.read(plateau, "plateau_change").ends
+    if not np.isfinite(change):
         return "no fit"
-    ends = (100 * change / slope.value * end for end in (slope.low, slope.high))
-    low, high = (f"{end + 0.0:+.0f}" for end in ends) if slope.value else ("0", "0")
-    known = "level" if abs(change) <= NEARLY_FLAT else "rising" if change > 0 else "falling"
-    return f"{100 * change:+.0f} % [{low}, {high}], {known}"
+    ends = f"{100 * low + 0.0:+.0f}, {100 * high + 0.0:+.0f}"
+    return f"{100 * change:+.0f} % [{ends}], {plateau['plateau_trend'].item()}"
 
 
 def _keyed(axes, dilatancy):
@@ -153,7 +140,7 @@ def _keyed(axes, dilatancy):
             color="0.4",
             lw=_FIT_WIDTH,
             alpha=0.7,
-            label=f"fitted lines; level: change within {_LEVEL}",
+            label=f"fitted lines; level: change within {_WITHIN}",
         ),
     ]
 
@@ -272,13 +259,13 @@ def _caption(force):
 
 def _plateau_words(plateaus):
     """Which directions have a plateau over the second half of the offsets."""
-    changes = {d: change for d, (line, change) in plateaus.items() if line.slope.known}
-    if not changes:
+    trends = plateaus["plateau_trend"].values.astype(str)
+    fitted = int((trends != "").sum())
+    if not fitted:
         return "Too few offsets to decide whether there is a plateau."
-    flat = sum(abs(change) <= NEARLY_FLAT for change in changes.values())
-    rising = [TOWARDS[d] for d, change in changes.items() if change > NEARLY_FLAT]
-    falling = [TOWARDS[d] for d, change in changes.items() if change < -NEARLY_FLAT]
-    words = f"{flat} of {len(changes)} directions have a plateau (changes within {_LEVEL})"
-    words += f" (rising: {', '.join(rising)})" if rising else ""
-    words += f" (falling: {', '.join(falling)})" if falling else ""
+    words = f"{(trends == LEVEL).sum()} of {fitted} directions have a plateau"
+    words += f" (changes within {_WITHIN})"
+    for trend in (RISING, FALLING):
+        named = [TOWARDS[str(d)] for d in plateaus["direction"].values[trends == trend]]
+        words += f" ({trend}: {', '.join(named)})" if named else ""
     return f"{words}."

@@ -1,0 +1,123 @@
+"""Plateau of the rigid dilatancy: its line over the second half of the offsets (Figs. 6 and 7)."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.datasets import labelled
+from ..core.estimate import rows_of
+from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
+
+#: Change over the second half of the offsets, a fraction of the mean there, that is called level.
+LEVEL_CHANGE = 0.1
+
+#: Trends of the dilatancy.
+LEVEL, RISING, FALLING = "level", "rising", "falling"
+
+_HALF = "rigid dilatancy over the second half of the offsets"
+#: Quantities of every direction: unit and long name. Intervals take the offsets as independent.
+_WORDS = {
+    "plateau_level": ("mm", f"mean {_HALF}"),
+    **rows_of("plateau_slope", "1", f"slope of the {_HALF}"),
+    **rows_of("plateau_change", "1", f"change of the {_HALF}, a fraction of its mean"),
+    "plateau_intercept": ("mm", f"line through the {_HALF}, at no offset"),
+    "plateau_offset_min": ("mm", "smallest offset of that line"),
+    "plateau_offset_max": ("mm", "largest offset of that line"),
+    "plateau_trend": ("1", f"trend of the {_HALF}: {LEVEL}, {RISING} or {FALLING}"),
+    "no_plateau": ("1", "why it has no line"),
+}
+
+
+def second_half(offset: np.ndarray) -> np.ndarray:
+    """Offsets (n,) of the second half of the slide, where a plateau is looked for: a mask."""
+    return offset >= offset[-1] / 2
+
+
+def relative_change(slope: Any, offset: np.ndarray, mean: Any) -> Any:
+    """Change of a line over offsets as a fraction of its mean; positive where it rises.
+
+    Parameters
+    ----------
+    slope : float or ndarray
+        mm/mm.
+    offset : (n,) ndarray
+        mm, those of the line.
+    mean : float or ndarray
+        Of what the line goes through, mm.
+
+    Returns
+    -------
+    float or ndarray
+        NaN where the mean is zero.
+    """
+    size = np.where(np.asarray(mean) == 0, np.nan, np.abs(mean))
+    return slope * np.ptp(offset) / size
+
+
+def rigid_plateaus(
+    offset: np.ndarray, opened: ArrayLike, directions: Sequence[str]
+) -> dict[str, tuple]:
+    """Level, slope and trend of the rigid dilatancy over the second half of the offsets.
+
+    Parameters
+    ----------
+    offset : (n,) ndarray
+        v, mm, ascending.
+    opened : (directions, n) array_like
+        delta_r, mm.
+    directions : sequence of str
+
+    Returns
+    -------
+    dict
+        Variables over (direction,) as ``xr.Dataset`` takes them: ``plateau_level``,
+        ``plateau_slope`` and ``plateau_change`` with their 95 % intervals, ``plateau_intercept``
+        and the ends of the fit, ``plateau_trend`` and ``no_plateau``. Without a line all are
+        missing but the reason.
+
+    Notes
+    -----
+    A change of up to a tenth of the mean is called level. The intervals are those of one
+    least-squares line whose points count as independent; neighbouring offsets are not.
+    """
+    half = second_half(offset)
+    v, opened = offset[half], np.asarray(opened, float)[:, half]
+    rows = [
+        _plateau(fit_line(v, row), row.mean(), v, direction)
+        for row, direction in zip(opened, directions, strict=True)
+    ]
+    table = {name: ("direction", *words) for name, words in _WORDS.items()}
+    return labelled(table, {name: np.array([row[name] for row in rows]) for name in _WORDS})
+
+
+def _plateau(line: LineFit, mean: float, v: np.ndarray, direction: str) -> dict[str, Any]:
+    """Values of one direction."""
+    slope, first_and_last = line.slope, line.slope.over
+    change = slope.mapped(lambda rise: float(relative_change(rise, v, mean)))
+    return {
+        "plateau_level": mean if slope.known else np.nan,
+        **slope.columns("plateau_slope"),
+        **change.columns("plateau_change"),
+        "plateau_intercept": line.intercept.value,
+        "plateau_offset_min": first_and_last[0],
+        "plateau_offset_max": first_and_last[1],
+        "plateau_trend": _trend(change.value, slope.value),
+        "no_plateau": "" if slope.known else _reason(line.n, direction),
+    }
+
+
+def _trend(change: float, slope: float) -> str:
+    """Trend of a line; empty without one."""
+    if not np.isfinite(slope):
+        return ""
+    if slope == 0 or abs(change) <= LEVEL_CHANGE:
+        return LEVEL
+    return RISING if slope > 0 else FALLING
+
+
+def _reason(n: int, direction: str) -> str:
+    if direction == "none":
+        return "a surface against a plane does not slide"
+    return f"{n} offsets in the second half, {FEWEST_POINTS} needed"
