@@ -82,5 +82,6 @@ __getattr__, __dir__, __all__ = exports(
         "within": ".ranges",
         "without_mean_plane": ".mean_plane",
         "without_mean_planes": ".mean_plane",
+        "write_table": ".tables",
     },
 )
