@@ -41,9 +41,13 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
 OPTIONS = -- --cores $(CORES)
 
 .PHONY: all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
+# Two runs in one checkout would refuse each other.
+.NOTPARALLEL:
 all: study
 
-study: $(VENV)/installed
+# Not by another make: each that fails adds a line of its own below what the run said.
+smoke: override STUDY = config/smoke.yaml
+study smoke: $(VENV)/installed
 	@$(RUN) $(OPTIONS) $(TARGET)
 
 report: $(VENV)/installed
@@ -62,12 +66,10 @@ slurm: $(VENV)/slurm-installed
 verify: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.verify "$$STUDY" || { rm -f .snakemake/fractalcontact-digests.json; exit 1; }
 
-smoke:
-	@$(MAKE) --no-print-directory study STUDY=config/smoke.yaml
-
 # The experiment on the size effect in minutes, and its page in results/size_effect_small.
-size-effect-small:
-	@$(MAKE) --no-print-directory study STUDY=config/size_effect_small.yaml
+size-effect-small: override STUDY = config/size_effect_small.yaml
+size-effect-small: $(VENV)/installed
+	@$(RUN) $(OPTIONS) $(TARGET)
 	@$(BIN)/python -m fractalcontact.commands.size_effect_page \
 	  results/size_effect_small/atlas.nc results/size_effect_small/size_effect.md
 
@@ -76,9 +78,9 @@ check-scans: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
 
 # Times are compared: let nothing else run meanwhile.
-accuracy: $(if $(PEERS),$(VENV)/peers-installed)
-	@$(MAKE) --no-print-directory study TARGET=accuracy \
-	  $(if $(filter file,$(origin STUDY)),STUDY=config/accuracy.yaml)
+accuracy: STUDY := $(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
+accuracy: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
+	@$(RUN) $(OPTIONS) accuracy
 
 # The study, then all of it at full cost beside it (results/NAME_full), then the two compared.
 check-accuracy: study
@@ -180,7 +182,7 @@ $(VENV)/installed: requirements.lock pyproject.toml | $(VENV)/bin/python
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
 	$(BIN)/python -m compileall -q src
 # Compiled now too: else the first jobs of the first study would all do it.
-	$(BIN)/python -m fractalcontact.commands.compile_kernels
+	@$(BIN)/python -m fractalcontact.commands.compile_kernels
 	@touch $@
 
 $(VENV)/tests-installed: requirements-test.lock $(VENV)/installed

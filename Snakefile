@@ -2,7 +2,7 @@
 # A study is its configuration: snakemake --cores all --configfile config/paper.yaml
 from snakemake.utils import min_version
 
-min_version("9.0")
+min_version("9.27")
 
 if not workflow.configfiles:
 

@@ -65,15 +65,14 @@ def main():
     parser.add_argument("--measure", action="store_true")
     parser.add_argument("--run", action="store_true", help="compute all of it")
     parser.add_argument("--figures", default="none", choices=["none", "all"], help="of specimens")
-    parser.add_argument("--database", action="store_true", help="metadata in one file")
     options = parser.parse_args()
     folder = ROOT / f"results/campaigns/{options.specimens}"
     names = write_campaign(folder, options.specimens, options.figures)
     print(f"{folder.relative_to(ROOT)}: {len(names)} twins in {len(GROUPS)} groups")
     if options.run:
-        snakemake(folder, database=options.database)
+        snakemake(folder)
     if options.measure:
-        measure(folder, names, options.database)
+        measure(folder, names)
 
 
 def write_campaign(folder: Path, n: int, figures: str = "none") -> list[str]:
@@ -114,7 +113,7 @@ def _write(path, text):
             temporary.write_text(text, encoding="utf-8")
 
 
-def snakemake(folder: Path, *words: str, database: bool = False) -> dict[str, float]:
+def snakemake(folder: Path, *words: str) -> dict[str, float]:
     """Run Snakemake on the campaign: seconds, seconds of CPU and the largest memory, MB.
 
     Raises
@@ -125,7 +124,6 @@ def snakemake(folder: Path, *words: str, database: bool = False) -> dict[str, fl
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
     command += ["--directory", str(folder), "--configfile", str(folder / "study.yaml")]
     command += ["--workflow-profile", str(ROOT / "workflow/profiles/default"), "--cores", "1"]
-    command += ["--persistence-backend", "db"] if database else []
     begin, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
     with open(folder / "log.txt", "a+", encoding="utf-8") as log:
@@ -154,15 +152,15 @@ def _watched(child):
     return child.returncode, peak
 
 
-def measure(folder: Path, names: list[str], database: bool) -> None:
+def measure(folder: Path, names: list[str]) -> None:
     """Dry run, rerun without work, gather and comparison, and files and bytes: a table in JSON."""
     study = f"campaign_{len(names)}"
     results, donors = folder / f"results/{study}", ROOT / f"results/campaigns/{COMPUTED}"
     made_by = sorted((donors / f"results/campaign_{COMPUTED}/atlas").glob("*.nc"))
     if len(made_by) < COMPUTED:
         raise SystemExit(f"run first: python {Path(__file__).name} {COMPUTED} --run")
-    found = {"specimens": len(names), "database": database}
-    found["dry run"] = snakemake(folder, "--dry-run", "--quiet", "all", database=database)
+    found = {"specimens": len(names)}
+    found["dry run"] = snakemake(folder, "--dry-run", "--quiet", "all")
     begin = time.perf_counter()
     for number, name in enumerate(names):
         of_group = [path.stem for path in made_by if path.stem.startswith(name.partition("_")[0])]
@@ -170,23 +168,23 @@ def measure(folder: Path, names: list[str], database: bool) -> None:
         _copy(made_by[0].parents[1], results, donor, name)
         _copy_records(donors, folder, donor, name, study)
     found["copies"] = {"s": time.perf_counter() - begin}
-    found["gather and figures"] = snakemake(folder, database=database)
+    found["gather and figures"] = snakemake(folder)
     for job in ("atlas", "study_figures"):
         found[job] = _benchmark(results / f"benchmarks/{job}.tsv")
-    found["rerun without work"] = snakemake(folder, "--quiet", "all", database=database)
+    found["rerun without work"] = snakemake(folder, "--quiet", "all")
     found["results"], found["metadata"] = _files(results), _files(folder / ".snakemake")
-    found["one more"] = _one_more(folder, len(names), database)
+    found["one more"] = _one_more(folder, len(names))
     text = json.dumps(found, indent=1)
-    _write(folder / ("database.json" if database else "measured.json"), text + "\n")
+    _write(folder / "measured.json", text + "\n")
     print(text)
 
 
-def _one_more(folder, n, database):
+def _one_more(folder, n):
     """Jobs that a dry run names once a specimen is added, by rule."""
     extra = folder / "scans/rough/added.npy"
     shutil.copyfile(folder / "scans/rough/twin_00001.npy", extra)
     try:
-        cost = snakemake(folder, "--dry-run", database=database)
+        cost = snakemake(folder, "--dry-run")
         told = (folder / "log.txt").read_text(encoding="utf-8").rpartition("Job stats:")[2]
     finally:
         extra.unlink()

@@ -31,8 +31,7 @@ _FULL = ("No space left on device", "Disk quota exceeded", "no space left on its
 #: What Snakemake's reasons begin with, and what is said of them; the first that fits.
 _REASONS = {
     "Missing output files": "not made yet",
-    "Incomplete output files": "was left half done",
-    "Forced execution": "asked for",
+    "Forced execution": "left incomplete, or asked for",
     "Params have changed": "settings changed",
     "Code has changed": "its code changed",
     "Software environment": "its environment changed",

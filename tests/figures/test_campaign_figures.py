@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style, save
@@ -88,3 +89,15 @@ def test_many_specimens_strange_names_and_empty_quantities_are_drawn(figure, tmp
         save(drawing, tmp_path, figure)
     assert len(pd.read_csv(tmp_path / f"{figure}.csv")) == len(drawing.data)
     assert (tmp_path / f"{figure}.svg").stat().st_size < 2_000_000
+
+
+@pytest.mark.parametrize("figure", ["comparison", "comparison_loads"])
+def test_a_group_that_is_a_formula_is_text_in_its_table(figure, tmp_path):
+    generator = np.random.default_rng(1)
+    rows = {f"twin_{i}": made_row(generator, FORMULA) for i in range(2)}
+    drawing = drawing_of(figure, tree_of(rows))
+    with print_style():
+        save(drawing, tmp_path, figure)
+    text = (tmp_path / f"{figure}.csv").read_text(encoding="utf-8")
+    assert formulas_in(text) == []
+    assert f"'{FORMULA}" in text

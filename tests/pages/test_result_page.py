@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 import yaml
 from page_study import HOSTILE, STUDY
+from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
@@ -138,7 +139,7 @@ def test_untrusted_input_is_shown_as_text(results, pages):
     data = re.search(
         r'id="curves-data">(.*?)</script>', (results / "index.html").read_text("utf-8"), re.DOTALL
     )
-    assert {row["label"] for row in json.loads(data[1])} == {HOSTILE, "flat.1"}
+    assert {row["label"] for row in json.loads(data[1])} == {HOSTILE, FORMULA}
 
 
 def test_nothing_is_fetched(pages):
@@ -534,6 +535,14 @@ def test_tables_and_configuration_can_be_used_again(results):
         assert archive.read("summary.csv") == (results / "summary.csv").read_bytes()
     figures = {path.relative_to(results).as_posix() for path in results.rglob("figures/*/*.csv")}
     assert set(names) == figures | {"summary.csv", "curves.csv"}
+
+
+def test_no_table_has_a_cell_that_a_spreadsheet_runs(results):
+    with zipfile.ZipFile(results / "tables.zip") as archive:
+        tables = {name: archive.read(name).decode() for name in archive.namelist()}
+    assert f"'{FORMULA}" in tables["summary.csv"]
+    assert f"'{FORMULA}" in tables["curves.csv"]
+    assert {name: found for name, text in tables.items() if (found := formulas_in(text))} == {}
 
 
 @pytest.mark.full

@@ -12,7 +12,6 @@ from fractalcontact.pages.summary import Quantity
 from fractalcontact.pages.thumbnails import png_address, reduced, shaded
 from fractalcontact.pages.words import (
     duration,
-    in_table,
     interval,
     measured,
     percent,
@@ -51,14 +50,6 @@ def test_units_suit_the_number():
     assert with_unit(None, "mm") == "–"
     assert percent(0.0469) == "4.7 %"
     assert [duration(s) for s in (47, 192, 7500)] == ["47 s", "3 min 12 s", "2 h 5 min"]
-
-
-def test_a_label_is_one_line_and_no_formula():
-    assert in_table("granite, both faces") == "granite, both faces"
-    assert in_table("a\nb") == "a\\nb"
-    assert in_table("") == ""
-    for start in ("=", "+", "-", "@", " ="):
-        assert in_table(f"{start}1+1") == f"'{start}1+1"
 
 
 def test_what_is_undetermined_is_shown_with_its_error():

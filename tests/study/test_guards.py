@@ -1,10 +1,10 @@
-"""Results that a run must not lose, read damaged, or take for its own."""
+"""Results that a run must not lose or read damaged."""
 
 import pytest
 
 from fractalcontact.core import checksums
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.guards import refuse_damage, refuse_loss, refuse_unknown_origin
+from fractalcontact.study.guards import refuse_damage, refuse_loss
 
 
 @pytest.fixture
@@ -35,16 +35,6 @@ def test_an_atlas_loses_no_specimen_without_a_word(results, listed, aside):
 def test_without_an_atlas_there_is_nothing_to_lose(results):
     (results / "atlas.nc").unlink()
     refuse_loss(results, [])
-
-
-def test_results_that_snakemake_knows_nothing_of_are_refused(results):
-    with pytest.raises(InputError, match=r"since \.snakemake is not with them"):
-        refuse_unknown_origin(results)
-    notes = results.parents[1] / ".snakemake/metadata"
-    notes.mkdir(parents=True)
-    (notes / "of a file").write_text("")
-    refuse_unknown_origin(results)
-    refuse_unknown_origin(results.parent / "another study")
 
 
 def test_damage_is_refused_unless_a_killed_run_left_it(results):

@@ -1,6 +1,7 @@
-"""The study whose result page is tested: its label is hostile."""
+"""The study whose result page is tested: its labels are hostile."""
 
 from materials import ROCK
+from spreadsheets import FORMULA
 
 HOSTILE = "</script><script>alert(1)</script><img src='https://x.example/a.png'> $\\alpha$ \"q\""
 STUDY = {
@@ -18,6 +19,6 @@ STUDY = {
     },
     "specimens": {
         "pair": {"offsets": ["0 mm", "0.2 mm", "0.6 mm"], "label": HOSTILE},
-        "flat.1": {"opposite": "flat"},
+        "flat.1": {"opposite": "flat", "label": FORMULA},
     },
 }

@@ -1,5 +1,6 @@
-"""What a change makes again, on one small study that was made up to its atlas."""
+"""What a change makes again, on one small study that was made up to its atlas and one figure."""
 
+import base64
 import json
 import os
 import shutil
@@ -17,19 +18,20 @@ from fractalcontact.study.stages import STAGES, paths_of
 
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
-ATLAS = "results/test/atlas.nc"
+ATLAS, FIGURE = "results/test/atlas.nc", "results/test/figures/rock/fig02_relief.png"
 PACKAGE = ROOT / "src/fractalcontact"
 
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """A study of one scan against a plane, made up to its atlas: figures take longest."""
+    """A study of one scan against a plane, made up to its atlas and one figure."""
     folder = copy_project(tmp_path_factory.mktemp("finished"))
     document = yaml.safe_load((folder / small_study(folder)).read_text())
     document["defaults"] |= {"opposite": "flat", "resolutions": [1, 2]}
+    document["figures"] = ["fig02_relief"]
     (folder / STUDY).write_text(yaml.safe_dump(document))
     write_scan(folder, "rock")
-    done = made(folder, STUDY, targets=[ATLAS])
+    done = made(folder, STUDY, targets=[ATLAS, FIGURE])
     assert done.returncode == 0, done.stderr[-3000:]
     (folder / "said").write_text(done.stdout)
     return folder
@@ -42,8 +44,8 @@ def project(finished, tmp_path):
     return tmp_path / "project"
 
 
-def planned(project):
-    return jobs_of(run(project, STUDY, "--dry-run", ATLAS))
+def planned(project, *targets):
+    return jobs_of(run(project, STUDY, "--dry-run", *(targets or [ATLAS])))
 
 
 def append(project, name):
@@ -118,6 +120,97 @@ def test_a_missing_scan_and_a_damaged_file_stop_everything(project):
     assert "specimens that the study no longer has: rock" in refused.stderr
     assert "specimens/rock.nc: damaged or replaced after it was made; moved to" in refused.stderr
     assert (project / ATLAS).read_bytes() == content
+
+
+def record_of(project, name):
+    """What Snakemake keeps of how it made a file."""
+    return project / ".snakemake/metadata" / base64.urlsafe_b64encode(name.encode()).decode()
+
+
+#: Ways in which a record is lost.
+LOSSES = {
+    "lost": lambda path, content: path.unlink(),
+    "empty": lambda path, content: path.write_bytes(b""),
+    "zeroed": lambda path, content: path.write_bytes(bytes(len(content))),
+    "cut": lambda path, content: path.write_bytes(content[: len(content) // 2]),
+    "no text": lambda path, content: path.write_bytes(b"\xff" * len(content)),
+    "no record": lambda path, content: path.write_bytes(b'["a list"]'),
+}
+
+
+def lose(project, name, how):
+    path = record_of(project, name)
+    LOSSES[how](path, path.read_bytes())
+
+
+def change_scan(project):
+    np.save(project / "scans/rock.npy", rough_heights(seed=1))
+
+
+def change_study(project, **settings):
+    document = yaml.safe_load((project / STUDY).read_text())
+    document["defaults"] |= settings
+    (project / STUDY).write_text(yaml.safe_dump(document))
+
+
+def change_loads(project):
+    change_study(project, loads=["2 MPa", "20 MPa"])
+
+
+def change_label(project):
+    change_study(project, label="another name for it")
+
+
+#: A file of each kind: its rule, and what is changed of what that rule reads.
+KINDS = {
+    "results/test/specimens/rock.nc": ("specimen", change_scan),
+    "results/test/contact/rock/0.0.0.nc": ("contact", change_loads),
+    ATLAS: ("atlas", change_label),
+    FIGURE: ("figures_against_plane", change_label),
+}
+#: One way for each kind in `make test`, all of them in `make test-all`.
+_QUICK = list(zip(KINDS, LOSSES, strict=False))
+
+
+@pytest.mark.parametrize(
+    ("name", "how"),
+    [
+        pytest.param(name, how, marks=[] if (name, how) in _QUICK else pytest.mark.full)
+        for name in KINDS
+        for how in LOSSES
+    ],
+)
+def test_a_change_is_seen_though_the_record_of_a_result_is_lost(project, name, how):
+    rule, change = KINDS[name]
+    lose(project, name, how)
+    change(project)
+    assert planned(project, ATLAS, FIGURE)[rule] == 1
+
+
+def test_the_atlas_is_of_the_scan_and_the_study_of_now_though_records_are_lost(project):
+    for name, how in _QUICK:
+        lose(project, name, how)
+    change_scan(project)
+    change_loads(project)
+    done = made(project, STUDY, targets=[ATLAS])
+    assert done.returncode == 0, done.stderr[-3000:]
+    atlas = read_atlas(project / ATLAS)
+    scans = json.loads(atlas.attrs["scan_checksums"])["rock"]
+    assert scans == {"lower": sha256(project / "scans/rock.npy")}
+    assert atlas["closure/rock"]["nominal_pressure"].max() == pytest.approx(20)
+    assert "is missing or damaged" in " ".join(done.stderr.split())
+    assert planned(project) == {}
+
+
+def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of_it(project):
+    change_scan(project)
+    checksums = project / "results/test/checksums/specimens"
+    checksums.rename(project / "kept")
+    checksums.write_text("so the job fails once it has solved everything")
+    assert run(project, STUDY, ATLAS).returncode != 0
+    checksums.unlink()
+    (project / "kept").rename(checksums)
+    assert {"specimen", "contact", "atlas"} <= set(planned(project))
 
 
 def _files_behind(*modules):

@@ -21,6 +21,7 @@ os.environ.update(
 # On a cluster jobs are begun again after any error: theirs, which stay, they then only repeat.
 os.environ.update(FRACTALCONTACT_ATTEMPT=str(workflow.attempt))
 
+import _provenance
 import _running
 
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
@@ -56,13 +57,18 @@ try:
             logger.warning(f"{SCAN_FOLDER}: {made_alone}")
         for note in grouped_notes(SCAN_FOLDER, config.get("groups")) if SCAN_FOLDER else ():
             logger.warning(note)
-        guards.refuse_unknown_origin(RESULTS)
         # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
         # files aside, and the user, that specimens may go.
         if "FRACTALCONTACT_CHECKED" not in os.environ:
             guards.refuse_damage(RESULTS, DIGESTS.of)
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*STUDY.settings, *STUDY.labels])
+        if again := _provenance.mark_without_provenance(RESULTS, workflow.workflow_settings):
+            logger.warning(
+                f"{RESULTS}: {again} of its files will be made again, since Snakemake's record of "
+                "how a file was made (in .snakemake), or a file that it was made from, is missing "
+                "or damaged"
+            )
 except InputError as error:
     raise WorkflowError(str(error))
 

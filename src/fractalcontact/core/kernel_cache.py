@@ -174,8 +174,8 @@ class KernelCache(FunctionCache):
         if not KernelCache._announced and not any(path.is_dir() for path in self._paths):
             KernelCache._announced = True
             LOG.warning(
-                "compiling kernels for this processor, once after an installation: up to a minute "
-                "(python -m fractalcontact.commands.compile_kernels does it beforehand)"
+                "compiling kernels for this processor, which are kept: up to a minute "
+                "(python -m fractalcontact.commands.compile_kernels compiles all beforehand)"
             )
         LOG.info("compiling %s", self._name)
 

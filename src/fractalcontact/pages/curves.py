@@ -9,7 +9,6 @@ from ..core.determined import determined
 from ..core.estimate import Estimate, names_of
 from .chosen import Chosen, finite
 from .summary import DIMENSION
-from .words import in_table
 
 #: Of dimensions: an area has one of its own.
 DIMENSION_UNIT = "1"
@@ -48,7 +47,7 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
         start = {
             "study": study,
             "specimen": one.name,
-            "label": in_table(one.label),
+            "label": one.label,
             "direction": one.direction,
             "offset_mm": one.offset,
         }

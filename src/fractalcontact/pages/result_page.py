@@ -20,6 +20,7 @@ import yaml
 
 from ..core.atomic import atomic_write
 from ..core.labels import printable
+from ..core.tables import write_table
 from ..study.atlas import group_names, read_atlas
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import JOINT, SPECIMEN
@@ -41,8 +42,6 @@ from .templating import write_page
 from .thumbnails import relief_thumbnail
 from .words import duration, interval, measured, percent, short, undetermined, with_unit
 
-#: Digits of the numbers in tables: more than any of them has.
-_FORMAT = "%.8g"
 #: Time that all members of an archive have, so that the same tables are the same archive.
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Letters of a label in a table.
@@ -93,8 +92,8 @@ def write_result_page(place: Place) -> list[str]:
     specimens = [summarised(one, loads) for one in chosen]
     study = str(atlas.attrs["study"])
     curves = curves_table(study, chosen)
-    _write_table(place.folder / SUMMARY, summary_table(study, specimens))
-    _write_table(place.folder / CURVES, curves)
+    write_table(place.folder / SUMMARY, summary_table(study, specimens))
+    write_table(place.folder / CURVES, curves)
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
     head = _head(place, atlas)
@@ -299,12 +298,6 @@ def _specimen_values(
 
 
 # -- the files beside them -------------------------------------------------------------------------
-
-
-def _write_table(path: Path, table: pd.DataFrame) -> None:
-    text = table.to_csv(index=False, float_format=_FORMAT, lineterminator="\n")
-    with atomic_write(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
 
 
 def _write_configuration(path: Path, atlas: xr.DataTree) -> None:

@@ -20,7 +20,6 @@ from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
-from .words import in_table
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -318,9 +317,9 @@ def summary_table(study: str, specimens: list[Specimen]) -> pd.DataFrame:
 def _of_specimen(one):
     row = {
         "specimen": one.name,
-        "label": in_table(one.label),
+        "label": one.label,
         "opposite": one.opposite,
-        "material": in_table(one.material.name),
+        "material": one.material.name,
         "modulus_MPa": one.material.modulus,
         "poisson": one.material.poisson,
         "hardness_MPa": one.material.hardness,

@@ -2,7 +2,7 @@
 
 import math
 
-from ..core.labels import plain, printable
+from ..core.labels import plain
 
 #: Below and above these a number has an exponent.
 _PLAIN = (1e-4, 1e6)
@@ -65,12 +65,6 @@ def interval(value: float | None, low: float | None, high: float | None) -> str:
 def undetermined(value: str) -> str:
     """What the data do not determine: the word, with the value and its error in brackets."""
     return f"undetermined ({value})"
-
-
-def in_table(text: str) -> str:
-    """Untrusted text on one line, which no spreadsheet takes for a formula."""
-    shown = printable(text)
-    return f"'{shown}" if shown.lstrip()[:1] in tuple("=+-@") else shown
 
 
 def duration(seconds: float) -> str:

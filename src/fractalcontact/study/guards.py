@@ -6,7 +6,7 @@ from pathlib import Path
 from ..core import checksums
 from ..core.errors import InputError
 
-#: Where Snakemake keeps from what it made each file.
+#: Where Snakemake keeps what it knows of its jobs.
 SNAKEMAKE = Path(".snakemake")
 
 
@@ -43,22 +43,6 @@ def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
             f"{results}/atlas.nc has specimens that the study no longer has: {', '.join(lost)}; "
             "put their scans back or, if they are to go, run 'make DROP=yes' (with snakemake: "
             "set FRACTALCONTACT_DROP=yes in the environment). The atlas was not changed"
-        )
-
-
-def refuse_unknown_origin(results: Path | str) -> None:
-    """Refuse results where Snakemake, which notes it in its own folder, has not made them.
-
-    Raises
-    ------
-    InputError
-    """
-    have_results = any(Path(results, checksums.FOLDER).rglob(f"*{checksums.ENDING}"))
-    notes = [*SNAKEMAKE.glob("metadata/*"), *SNAKEMAKE.glob("*.db")]
-    if have_results and not notes:
-        raise InputError(
-            f"{results}: nothing says from which scans, settings and code these results were made, "
-            "since .snakemake is not with them; bring it back, or remove the results"
         )
 
 

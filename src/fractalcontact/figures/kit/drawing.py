@@ -28,6 +28,7 @@ from xarray import DataTree
 
 from ...core.atomic import atomic_write
 from ...core.labels import printable
+from ...core.tables import write_table
 from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
 from .empty import settle_empty_axes
@@ -138,8 +139,7 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
             FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
     with atomic_write(folder / f"{name}.txt") as path:
         path.write_text(drawing.caption + "\n", encoding="utf-8")
-    with atomic_write(folder / f"{name}.csv") as path:
-        drawing.data.to_csv(path, index=False, float_format="%.8g", lineterminator="\n")
+    write_table(folder / f"{name}.csv", drawing.data)
 
 
 def _lay_out(figure):

@@ -1,0 +1,51 @@
+"""Tables as CSV: the one writer of every table of a study, inert in a spreadsheet."""
+
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from .atomic import atomic_write
+from .labels import printable
+
+
+def write_table(path: Path | str, table: pd.DataFrame) -> None:
+    """CSV of a table without its index, numbers to eight digits, whole or not at all.
+
+    Labels, groups and names come from files of others. Control characters in a text are escaped,
+    and one that a spreadsheet would run as a formula (OWASP, "CSV Injection") begins with an
+    apostrophe.
+
+    Parameters
+    ----------
+    path : path-like
+    table : pandas.DataFrame
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    inert = table.copy()
+    texts = table.select_dtypes(exclude=["number", "bool"])
+    inert[texts.columns] = texts.map(_inert)
+    with atomic_write(path) as temporary:
+        inert.rename(columns=_inert).to_csv(
+            temporary, index=False, float_format="%.8g", lineterminator="\n"
+        )
+
+
+def _inert(cell: Any) -> Any:
+    if not isinstance(cell, str):
+        return cell
+    shown = printable(cell)
+    formula = shown.lstrip()[:1] in tuple("=+-@") and not _is_number(shown)
+    return f"'{shown}" if formula else shown
+
+
+def _is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

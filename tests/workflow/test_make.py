@@ -1,0 +1,93 @@
+"""What `make` runs for its targets, with a stand-in for Python: order, study, and what it says."""
+
+import os
+import shutil
+import subprocess
+
+import pytest
+from places import ROOT
+
+#: Notes the study and its arguments, and whether another runs meanwhile; fails where it is told to.
+PYTHON = """#!/bin/sh
+mkdir busy || echo two at once >> calls
+echo "$STUDY: $*" >> calls
+sleep 0.2
+rmdir busy
+case "$*" in
+  *compile_kernels) echo compiling kernels ;;
+  *run.py*) test -z "$FAIL" || { echo "the study did not finish" >&2; exit 1; } ;;
+esac
+"""
+
+
+@pytest.fixture
+def project(tmp_path):
+    """A folder with the Makefile and a finished installation of nothing."""
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    for name in ("requirements.lock", "pyproject.toml"):
+        (tmp_path / name).touch()
+    python = tmp_path / ".venv/bin/python"
+    python.parent.mkdir(parents=True)
+    python.write_text(PYTHON)
+    python.chmod(0o755)
+    (tmp_path / ".venv/installed").touch()
+    return tmp_path
+
+
+def make(project, *words, **environment):
+    """What make says, and the calls that it made."""
+    outer = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "STUDY")
+    kept = {name: value for name, value in os.environ.items() if name not in outer}
+    done = subprocess.run(
+        ["make", *words], cwd=project, capture_output=True, text=True, env=kept | environment
+    )
+    calls = project / "calls"
+    return done, calls.read_text().splitlines() if calls.exists() else []
+
+
+def test_targets_run_one_after_the_other_however_many_jobs_make_may_run(project):
+    done, calls = make(project, "-j8", "smoke", "report", "study")
+    assert done.returncode == 0, done.stderr
+    assert [call.partition(": ")[0] for call in calls] == [
+        "config/smoke.yaml",
+        "config/paper.yaml",
+        "config/paper.yaml",
+    ]
+    assert calls[1].endswith(" pages")
+
+
+@pytest.mark.parametrize(
+    ("words", "environment", "study"),
+    [
+        (["smoke", "STUDY=config/mine.yaml"], {}, "config/smoke.yaml"),
+        (["study", "STUDY=config/mine.yaml"], {}, "config/mine.yaml"),
+        (["study"], {"STUDY": "config/mine.yaml"}, "config/mine.yaml"),
+        (["size-effect-small"], {"STUDY": "config/mine.yaml"}, "config/size_effect_small.yaml"),
+        (["accuracy"], {}, "config/accuracy.yaml"),
+        (["accuracy", "STUDY=config/mine.yaml"], {}, "config/mine.yaml"),
+        (["accuracy"], {"STUDY": "config/mine.yaml"}, "config/mine.yaml"),
+    ],
+)
+def test_a_target_has_its_study(project, words, environment, study):
+    done, calls = make(project, *words, **environment)
+    assert done.returncode == 0, done.stderr
+    assert calls[0].startswith(f"{study}: workflow/run.py {study} ")
+    assert calls[0].endswith(" accuracy") == (words[0] == "accuracy")
+
+
+@pytest.mark.parametrize("target", ["study", "smoke", "report", "accuracy", "size-effect-small"])
+def test_below_the_words_of_a_run_that_failed_make_says_one_line_and_fails(project, target):
+    done, _ = make(project, target, FAIL="yes")
+    said, line = done.stderr.splitlines()
+    assert done.returncode == 2
+    assert said == "the study did not finish"
+    assert line.startswith("make: *** [")
+
+
+def test_an_installation_says_once_that_kernels_are_compiled(project):
+    (project / ".venv/installed").unlink()
+    done, calls = make(project, ".venv/installed")
+    assert done.returncode == 0, done.stderr
+    assert sum("compile_kernels" in call for call in calls) == 1
+    said = [line for line in done.stdout.splitlines() if "kernels" in line]
+    assert said == ["compiling kernels"]
