@@ -61,7 +61,7 @@ def test_scales_without_a_value_are_left_out():
     parts[0] = 0
     found = slope_of_sums(scales, parts, lambda sums: sums[:, 0])
     assert found.value == pytest.approx(-1)
-    assert (found.x_min, found.n) == (2, 7)
+    assert (found.over[0], found.n) == (2, 7)
     parts[:5] = 0
     none = slope_of_sums(scales, parts, lambda sums: sums[:, 0])
     assert np.isnan(none.value)

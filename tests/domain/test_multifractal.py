@@ -86,7 +86,7 @@ def test_unit_of_pressure_does_not_matter():
     pascal = generalised_dimensions(1e6 * mass, 0.1)
     for q, slope in generalised_dimensions(mass, 0.1).items():
         assert pascal[q].value == pytest.approx(slope.value)
-        assert slope.x_max <= 0.1 * 128 / 4 + 1e-9
+        assert slope.over[1] <= 0.1 * 128 / 4 + 1e-9
 
 
 def test_no_contact_has_no_measures():

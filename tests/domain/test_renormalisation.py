@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.domain.renormalisation import (
     compare_dimensions,
     hausdorff_measure,
@@ -143,9 +144,15 @@ def test_size_effect_and_renormalisation_are_the_same_statement():
     assert sigma_0.item() == pytest.approx(force / b**2)
 
 
+def known(values, half):
+    """Delta_sigma over the load with even intervals."""
+    values = np.array(values)
+    found = Estimate(values, values - half, values + half)
+    return xr.Dataset(found.variables("delta_sigma", "normal_force", "1", "dimension"))
+
+
 def test_dimensions_are_compared_with_their_intervals():
-    area, box = (xr.DataArray(v, dims="normal_force") for v in ([1.7, 1.5], [1.4, 1.45]))
-    result = compare_dimensions(area, area - 0.03, area + 0.03, box, box - 0.04, box + 0.04)
+    result = compare_dimensions(known([1.7, 1.5], 0.03), known([1.4, 1.45], 0.04))
     np.testing.assert_allclose(result.difference, [0.3, 0.05])
     np.testing.assert_allclose(result.difference_low, [0.25, 0.0], atol=1e-12)
     np.testing.assert_allclose(result.difference_high, [0.35, 0.1])
@@ -153,7 +160,6 @@ def test_dimensions_are_compared_with_their_intervals():
 
 
 def test_missing_dimension_never_disagrees():
-    one, nothing = xr.DataArray(1.5), xr.DataArray(np.nan)
-    result = compare_dimensions(one, one - 0.1, one + 0.1, nothing, nothing, nothing)
+    result = compare_dimensions(known([1.5], 0.1), known([np.nan], 0.1))
     assert np.isnan(result.difference)
     assert not result.disagree
