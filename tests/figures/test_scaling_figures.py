@@ -20,6 +20,7 @@ from fractalcontact.figures.kit import drawing as common
 from fractalcontact.figures.kit import words as _words
 from fractalcontact.figures.kit.domains import Loading
 from fractalcontact.figures.paper._size_effect import fractal_pressure, size_effect
+from fractalcontact.mechanics.model_validity import model_validity
 from fractalcontact.mechanics.states import chosen_offset
 
 NAMES = (
@@ -130,6 +131,18 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
     assert all("(raw)" in title for title in titles)
 
 
+def judged_of(atlas, material):
+    """The atlas as it is of another material, the elastic model judged anew."""
+    other = atlas.copy()
+    configuration = json.loads(atlas.attrs["configuration"])
+    settings = configuration["settings"]["sliding"]
+    settings["material"] |= material
+    other.attrs["configuration"] = json.dumps(configuration)
+    closure, area = (atlas[f"{stage}/sliding"].to_dataset() for stage in ("closure", "area"))
+    other["elastic_model/sliding"] = xr.DataTree(model_validity(closure, area, settings))
+    return other, settings["material"]
+
+
 @pytest.mark.parametrize(
     ("material", "words"),
     representative(
@@ -141,14 +154,7 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
     ),
 )
 def test_pressures_are_compared_with_what_the_material_bears(atlas, material, words):
-    other = atlas.copy()
-    configuration = json.loads(atlas.attrs["configuration"])
-    configuration["settings"]["sliding"]["material"] |= material
-    other.attrs["configuration"] = json.dumps(configuration)
-    # As many nodes as the domain has: 5 GPa.
-    scaling = other["scaling/sliding"].to_dataset()
-    scaling["area_corrected"] = scaling["area_corrected"] / 40
-    other["scaling/sliding"] = xr.DataTree(scaling)
+    other, _ = judged_of(atlas, material)
     drawing = draw(other, "fig08_prefractals", "sliding")
     assert words in drawing.caption
     assert "rms slope" in drawing.caption
@@ -327,11 +333,8 @@ def test_nodes_of_compared_maps_are_all_drawn_alike(atlas):
 
 
 def test_pressures_without_a_stated_strength_stand_beside_usual_ones(atlas):
-    other = atlas.copy()
-    configuration = json.loads(atlas.attrs["configuration"])
-    material = configuration["settings"]["sliding"]["material"]
-    material |= {"hardness": np.inf, "joint_wall_strength": np.nan}
-    other.attrs["configuration"] = json.dumps(configuration)
+    nothing = {"hardness": np.inf, "joint_wall_strength": np.nan}
+    other, material = judged_of(atlas, nothing)
     (axes,) = (a for a in draw(other, "fig08_prefractals", "sliding").figure.axes if not a.images)
     low, high = material["modulus"] / 1000, material["modulus"] / 200
     (band,) = axes.patches

@@ -352,6 +352,24 @@ def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):
     assert summarised(Chosen(atlas, "flat.1")).dilatancy.kind == "none"
 
 
+def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
+    """On the page, in its light and in the caption of Fig. 8, which judge nothing themselves."""
+    atlas = read_atlas(results / "atlas.nc")
+    told = {"verdict": "in part", "reason": "it is told so", "pressure": 7.0, "good_to": 5.0}
+    for name in NAMES:
+        changed = with_told(atlas, f"elastic_model/{name}", **told)
+        specimen = summarised(Chosen(changed, name))
+        assert {(at.model.verdict, at.model.reason) for at in specimen.loads} == {
+            ("in part", "it is told so")
+        }
+        assert {at.real_pressure for at in specimen.loads} == {7.0}
+        (light,) = [one for one in specimen.lights if one.key == "model"]
+        assert (light.word, light.reason.split(",")[0]) == ("in part", "it is told so")
+        with print_style():
+            caption = drawer_of("fig08_prefractals")(changed, name).caption
+        assert "it is told so: elastic model good in part." in caption
+
+
 def test_k_ni_is_undetermined_where_the_hyperbola_is_not_the_law(results):
     atlas = read_atlas(results / "atlas.nc")
     table = pd.read_csv(results / "summary.csv").set_index("specimen")

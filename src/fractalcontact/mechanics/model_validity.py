@@ -1,14 +1,17 @@
 """Validity of the elastic model: real mean pressure against strength, and slope of the faces.
 
 The model is a linear elastic half-space (of a stated hardness elastic-perfectly plastic), for small
-slopes. One function judges it; the result page, its summary and the caption of Fig. 8 quote it.
+slopes. One function judges it, once, for the atlas: the stage ``elastic_model``, which the result
+page, its summary and the caption of Fig. 8 quote.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
+from ..core.datasets import labelled_dataset
 from ..core.resolved import CORRECTED_NODES
 
 #: Verdicts, best first; the last where there is no state to judge.
@@ -29,11 +32,40 @@ LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
-_HARDNESS, _USUAL = "hardness", "usual strengths"
+
+#: What the pressure is judged by.
+HARDNESS, STRENGTH, USUAL = "hardness", "joint wall strength", "usual strengths"
 
 
-@dataclass(frozen=True)
-class Validity:
+class Limits(NamedTuple):
+    """Pressures that bound the elastic model of a material, and what they follow from.
+
+    Attributes
+    ----------
+    criterion : str
+        :data:`HARDNESS`, :data:`STRENGTH` or, where neither is stated, :data:`USUAL`.
+    strength_low, strength_high : float
+        Ends of that strength, MPa; one value where it is stated.
+    good_to, poor_from : float
+        Real mean pressures up to which the model is good, and from which it is poor, MPa.
+    """
+
+    criterion: str
+    strength_low: float
+    strength_high: float
+    good_to: float
+    poor_from: float
+
+    @property
+    def words(self) -> str:
+        """Criterion and its strength: "joint wall strength (80 MPa)"."""
+        if self.criterion != USUAL:
+            return f"{self.criterion} ({_pressure(self.strength_low)})"
+        ends = f"{self.strength_low:.3g} to {self.strength_high:.3g}"
+        return f"{USUAL}, none being stated (E/1000 to E/200: {ends} MPa)"
+
+
+class Validity(NamedTuple):
     """A verdict on the elastic model, and what decides it.
 
     Attributes
@@ -41,40 +73,97 @@ class Validity:
     verdict : str
         :data:`GOOD`, :data:`PARTLY`, :data:`POOR` or :data:`NOT_ASKED`.
     pressure : float
-        Real mean pressure, MPa.
-    good_to, poor_from : float
-        Pressures up to which it is good, and from which it is poor, MPa.
-    limit : str
-        What they are, in words: "joint wall strength (80 MPa)".
-    rms_slope : float
-        Of the composite topography.
+        Real mean pressure that is judged, MPa.
     reason : str
-        One line on both.
+        One line on pressure and slope.
+    limits : Limits
     """
 
     verdict: str
     pressure: float
-    good_to: float
-    poor_from: float
-    limit: str
-    rms_slope: float
     reason: str
+    limits: Limits
+
+    @classmethod
+    def of(cls, state: xr.Dataset) -> "Validity":
+        """The verdict on one state of the stage ``elastic_model``."""
+        limits = Limits(*(state[name].item() for name in Limits._fields))
+        verdict, pressure, reason = (state[name].item() for name in _OF_STATES)
+        return cls(verdict, pressure, reason, limits)
 
     @property
     def capped(self) -> bool:
         """Whether a stated hardness caps the pressure, which then is no test of the model."""
-        return self.limit.startswith(_HARDNESS)
+        return self.limits.criterion == HARDNESS
 
     @property
     def stated(self) -> bool:
         """Whether a strength or a hardness was stated, and judges the pressure."""
-        return not self.limit.startswith(_USUAL)
+        return self.limits.criterion != USUAL
 
     @property
     def sentence(self) -> str:
         """Reason and verdict, for a caption."""
         verdict = "good in part" if self.verdict == PARTLY else self.verdict
         return f"{self.reason}: elastic model {verdict}."
+
+
+#: Verdicts of the states, over (direction, offset, load): unit and long name.
+_OF_STATES = {
+    "verdict": ("1", f"verdict on the elastic model: {GOOD}, {PARTLY}, {POOR} or {NOT_ASKED}"),
+    "pressure": (
+        "MPa",
+        f"real mean pressure judged; of the raw area where under {CORRECTED_NODES} nodes touch",
+    ),
+    "reason": ("1", "what decides the verdict"),
+}
+#: Limits of the material: unit and long name.
+_OF_MATERIAL = {
+    "criterion": ("1", f"what the pressure is judged by: {HARDNESS}, {STRENGTH} or {USUAL}"),
+    "strength_low": ("MPa", "lower end of that strength"),
+    "strength_high": ("MPa", "upper end of that strength"),
+    "good_to": ("MPa", "real mean pressure up to which the elastic model is good"),
+    "poor_from": ("MPa", "real mean pressure from which the elastic model is poor"),
+}
+
+
+def model_validity(closure: xr.Dataset, area: xr.Dataset, settings: Mapping) -> xr.Dataset:
+    """Verdicts on the elastic model in every state at the scan's own resolution.
+
+    Parameters
+    ----------
+    closure, area : xr.Dataset
+        Of the stages of these names.
+    settings : mapping
+        From :func:`study.configuration.resolve_settings`; its ``material`` counts.
+
+    Returns
+    -------
+    xr.Dataset
+        ``verdict``, ``pressure`` and ``reason`` over (direction, offset, load), and the
+        :class:`Limits` of the material.
+    """
+    dims = ("direction", "offset", "normal_force")
+    finest = closure.sel(resolution=closure["resolution"].min(), drop=True)
+    states, area = xr.align(finest, area, join="exact")
+    states = states[["area", "area_corrected", "nodes"]].transpose(*dims)
+    slopes = area["rms_slope"].transpose(*dims[:2]).values
+    judged = np.empty(states["nodes"].shape, object)
+    for place in np.ndindex(judged.shape):
+        of_contact = (float(states[name].values[place]) for name in states)
+        pressure = real_mean_pressure(float(states["normal_force"][place[2]]), *of_contact)
+        slope = float(slopes[place[:2]])
+        judged[place] = elastic_model_validity(pressure, slope, settings["material"])
+    values: dict[str, Any] = {
+        name: np.array([getattr(one, name) for one in judged.flat]).reshape(judged.shape)
+        for name in _OF_STATES
+    }
+    table: dict[str, Any] = {
+        **{name: (dims, *words) for name, words in _OF_STATES.items()},
+        **{name: ((), *words) for name, words in _OF_MATERIAL.items()},
+    }
+    limits = material_limits(settings["material"])
+    return labelled_dataset(table, values | limits._asdict(), coords=dict(states.coords))
 
 
 def real_mean_pressure(force: float, area: float, area_corrected: float, nodes: float) -> float:
@@ -118,60 +207,54 @@ def elastic_model_validity(
         ``modulus``, ``hardness`` (infinite where nothing yields) and ``joint_wall_strength`` (NaN
         where not stated), MPa.
     """
-    good_to, poor_from, limit = _limits(material)
+    limits = material_limits(material)
     if not np.isfinite(pressure):
-        reason = "no state of contact under this load"
-        return Validity(NOT_ASKED, pressure, good_to, poor_from, limit, rms_slope, reason)
-    by_pressure = _graded(pressure, good_to * (1 + _ROUNDING), poor_from * (1 + _ROUNDING))
+        return Validity(NOT_ASKED, pressure, "no state of contact under this load", limits)
+    ends = (limits.good_to * (1 + _ROUNDING), limits.poor_from * (1 + _ROUNDING))
+    by_pressure = _graded(pressure, *ends)
     by_slope = GOOD
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
     verdict = max(by_pressure, by_slope, key=(GOOD, PARTLY, POOR).index)
-    place = _place(pressure, by_pressure, material)
-    reason = f"sigma_n = {_pressure(pressure)}, {place} the {limit}"
-    if np.isfinite(material["hardness"]):
+    place = _place(pressure, by_pressure, limits)
+    reason = f"sigma_n = {_pressure(pressure)}, {place} the {limits.words}"
+    if limits.criterion == HARDNESS:
         reason += ", which caps it: not a test of the model"
     if np.isfinite(rms_slope):
         size = "small" if by_slope == GOOD else "not small"
         reason += f"; rms slope {rms_slope:.3g}, {size}"
-    return Validity(verdict, pressure, good_to, poor_from, limit, rms_slope, reason)
+    return Validity(verdict, pressure, reason, limits)
 
 
 def _graded(value, good_to, poor_from):
     return GOOD if value <= good_to else PARTLY if value <= poor_from else POOR
 
 
-def _place(pressure, verdict, material):
+def _place(pressure, verdict, limits):
     """Where a pressure lies, as the limit's words go on; a strength not stated is a range."""
-    if np.isfinite(material["hardness"]) or np.isfinite(material["joint_wall_strength"]):
+    if limits.criterion != USUAL:
         return "within" if verdict == GOOD else "beyond"
     if verdict == GOOD:
         return "below"
-    return "among" if pressure <= float(material["modulus"]) / LEAST_RATIO else "above"
+    return "among" if pressure <= limits.strength_high else "above"
 
 
-def _limits(material):
-    """Pressures up to which the model is good, and from which it is poor, and what they are."""
-    hardness, strength = float(material["hardness"]), float(material["joint_wall_strength"])
-    if np.isfinite(hardness):
-        return hardness, hardness, f"{_HARDNESS} ({_pressure(hardness)})"
-    if np.isfinite(strength):
-        return strength, CONFINED * strength, f"joint wall strength ({_pressure(strength)})"
-    low, high = usual_strengths(material)
-    words = f"{_USUAL}, none being stated (E/1000 to E/200: {low:.3g} to {high:.3g} MPa)"
-    return low, CONFINED * high, words
-
-
-def usual_strengths(material: Mapping[str, float]) -> tuple[float, float]:
-    """Least and largest uniaxial strength usual for the modulus of a material, MPa.
+def material_limits(material: Mapping[str, float]) -> Limits:
+    """Limits of the elastic model of a material: its hardness, its strength, or usual strengths.
 
     Parameters
     ----------
     material : mapping of str to float
-        ``modulus`` in MPa.
+        As for :func:`elastic_model_validity`.
     """
+    hardness, strength = float(material["hardness"]), float(material["joint_wall_strength"])
+    if np.isfinite(hardness):
+        return Limits(HARDNESS, hardness, hardness, hardness, hardness)
+    if np.isfinite(strength):
+        return Limits(STRENGTH, strength, strength, strength, CONFINED * strength)
     modulus = float(material["modulus"])
-    return modulus / LARGEST_RATIO, modulus / LEAST_RATIO
+    low, high = modulus / LARGEST_RATIO, modulus / LEAST_RATIO
+    return Limits(USUAL, low, high, low, CONFINED * high)
 
 
 def _pressure(pressure):

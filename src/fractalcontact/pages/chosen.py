@@ -23,6 +23,7 @@ STAGES = (
     "domains",
     "scaling",
     "error_budget",
+    "elastic_model",
     "statements",
     "study_statements",
     "contact_maps",

@@ -8,15 +8,7 @@ from dataclasses import dataclass
 
 from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..core.units import share
-from ..mechanics.model_validity import (
-    GOOD,
-    NOT_ASKED,
-    PARTLY,
-    POOR,
-    Validity,
-    elastic_model_validity,
-    real_mean_pressure,
-)
+from ..mechanics.model_validity import GOOD, NOT_ASKED, PARTLY, POOR, Validity
 from ..roughness.quality_words import overlap_words
 from ..statements.findings import NEARLY
 from ..study.configuration import ACCURACY, solver_settings
@@ -57,12 +49,8 @@ def lights_of(chosen: Chosen) -> list[Light]:
 
 
 def validity_at(chosen: Chosen, number: int) -> Validity:
-    """Whether the elastic model is valid under the load of this number, with its real pressure."""
-    state = chosen.values("closure", "area", "area_corrected", "nodes").isel(normal_force=number)
-    areas = (float(state[name]) for name in ("area", "area_corrected", "nodes"))
-    slope = float(chosen.values("area", "rms_slope")["rms_slope"])
-    pressure = real_mean_pressure(float(chosen.forces[number]), *areas)
-    return elastic_model_validity(pressure, slope, chosen.settings["material"])
+    """The verdict on the elastic model under the load of this number, with its real pressure."""
+    return Validity.of(chosen.values("elastic_model").isel(normal_force=number))
 
 
 def warnings_of(chosen: Chosen) -> list[str]:

@@ -140,8 +140,8 @@ def _tested(known: _At) -> str:
 
 def _limits(tested: _At) -> str:
     """What the pressures are judged by: strengths that are stated, or usual ones."""
-    stated = [at.model.good_to for _, at in tested if at.model.stated]
-    usual = [at.model.good_to for _, at in tested if not at.model.stated]
+    stated = [at.model.limits.good_to for _, at in tested if at.model.stated]
+    usual = [at.model.limits.good_to for _, at in tested if not at.model.stated]
     parts = [f"joint wall strength {_range(stated, _pressure)}"] if stated else []
     if usual:
         parts.append(f"no strength stated, usual ones from {_range(usual, _pressure)}")

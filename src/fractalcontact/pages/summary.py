@@ -360,8 +360,8 @@ def _of_load(load):
         "suspect_load_share": load.suspect_share,
         "real_pressure_MPa": load.real_pressure,
         "elastic_model": load.model.verdict,
-        "elastic_model_good_to_MPa": load.model.good_to,
-        "elastic_model_poor_from_MPa": load.model.poor_from,
+        "elastic_model_good_to_MPa": load.model.limits.good_to,
+        "elastic_model_poor_from_MPa": load.model.limits.poor_from,
     }
     for name, quantity in load.quantities.items():
         if name == "delta_sigma":  # stands below, with its interval

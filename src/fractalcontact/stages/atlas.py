@@ -1,4 +1,4 @@
-"""The atlas of a study from its stages, with the paper's statements judged."""
+"""The atlas of a study from its stages, with model and statements of the paper judged."""
 
 import json
 from collections.abc import Mapping
@@ -7,6 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from ..core.netcdf import versions
+from ..mechanics.model_validity import model_validity
 from ..statements.comparison import UNGROUPED, compare_specimens, specimen_row
 from ..statements.judge import judge
 from ..statements.study import judge_study
@@ -23,7 +24,7 @@ def join_stages(
     configuration: Mapping,
     made_with: Mapping[str, Mapping[str, dict]] | None = None,
 ) -> dict[str, list[str]]:
-    """Write stages into one atlas, and with them the statements, judged for every specimen.
+    """Write stages into one atlas, and with them what is judged of every specimen.
 
     Parameters
     ----------
@@ -52,7 +53,8 @@ def join_stages(
         for name in configuration["settings"]
     }
     compared = _compared(of_joints, configuration["settings"])
-    everything = {**stages, **_judged(of_joints, configuration), **compared}
+    models = _models(of_joints, configuration["settings"])
+    everything = {**stages, **models, **_judged(of_joints, configuration), **compared}
     study = configuration["study"]["study"]
     return write_atlas(
         _without_remade_fields(everything),
@@ -139,6 +141,20 @@ def _without_remade_fields(stages):
         for name, joint in stages.get("joints", {}).items()
     }
     return {**stages, "joints": joints} if joints else stages
+
+
+def _models(of_joints, settings):
+    """The verdict on the elastic model of every specimen.
+
+    Not of a job before, which would then solve again for another joint wall strength.
+    """
+    if not of_joints:
+        return {}
+    judged = {
+        name: model_validity(stages["closure"], stages["area"], settings[name])
+        for name, stages in of_joints.items()
+    }
+    return {"elastic_model": judged}
 
 
 def _compared(of_joints, settings):

@@ -181,6 +181,14 @@ _TABLE = (
         "experiments.size_strength:size_strength",
     ),
     Stage(
+        "elastic_model",
+        "verdict on the elastic model: real mean pressure against strength, slope of the faces",
+        SPECIMEN,
+        "mechanics.model_validity:model_validity",
+        ("closure", "area"),
+        filed=False,
+    ),
+    Stage(
         "statements",
         "what the paper says, and whether it holds here",
         SPECIMEN,

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from ...core.resolved import CORRECTED_NODES
 from ...domain.renormalisation import RESOLUTION
-from ...mechanics.model_validity import elastic_model_validity, usual_strengths
+from ...mechanics.model_validity import USUAL, Validity
 from ..kit.domains import Loading, fall_reason
 from ..kit.drawing import (
     COLOURS,
@@ -32,7 +32,7 @@ from ..kit.words import (
 
 TITLE = "Fig. 8: contact domains of the pre-fractals under one load, and their mean pressure"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "area", "statements")
+NEEDS = ("specimens", "contact", "domains", "scaling", "area", "elastic_model", "statements")
 ORDER = 130
 
 #: Maps side by side, and the most times as wide as they are that all draw their nodes.
@@ -46,6 +46,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     table = _table(loading, i)
     laws = group(atlas, "area", name).sel(direction=loading.direction)
     slope = float(laws["rms_slope"].sel(offset=loading.offset, method="nearest"))
+    models = group(atlas, "elastic_model", name).sel(direction=loading.direction)
+    model = Validity.of(models.sel(offset=loading.offset, method="nearest").isel(normal_force=i))
     rows, columns = -(-len(table) // _COLUMNS), min(len(table), _COLUMNS)
     aspect = loading.sides[0] / loading.sides[1]
     height = rows * (WIDTH / _COLUMNS * aspect + 0.75)
@@ -62,7 +64,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for axes in panels[len(table) :]:
         axes.remove()
     axes = bottom.subplots()
-    _draw_pressures(axes, table, loading.settings["material"])
+    _draw_pressures(axes, table, model.limits)
     found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {_exponent_words(loading.estimates[0], i)}"
     title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(slope)}"
     letter(axes, letters[len(table)], title)
@@ -72,7 +74,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     why = fall_reason(loading.estimates[0], i)
     caption = sentences(
         f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}.",
-        _model_words(loading, table, slope),
+        model.sentence,
         claim(atlas, name, "fall of A_r", "area_is_lacunar", numbers=not why, why=why),
     )
     return Drawing(figure, table.assign(rms_slope=slope), caption)
@@ -134,7 +136,7 @@ def _area_words(row):
     )
 
 
-def _draw_pressures(axes, table, material):
+def _draw_pressures(axes, table, limits):
     style = {"color": COLOURS[0], "marker": "o"}
     known = table.dropna(subset="sigma_n_MPa")
     if len(known):
@@ -142,7 +144,7 @@ def _draw_pressures(axes, table, material):
         axes.plot(known["spacing_mm"], known["sigma_n_MPa"], **style, label=label)
     raw = {"mfc": "none", "ls": ":", "lw": 0.8}
     axes.plot(table["spacing_mm"], table["sigma_n_raw_MPa"], **style, **raw, label="$A_r$ raw")
-    _draw_limit(axes, material)
+    _draw_limit(axes, limits)
     axes.set(xscale="log", yscale="log")
     axes.set_xticks(table["spacing_mm"], [short(s) for s in table["spacing_mm"]])
     axes.xaxis.set_minor_locator(NullLocator())
@@ -152,22 +154,12 @@ def _draw_pressures(axes, table, material):
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
 
 
-def _draw_limit(axes, material):
+def _draw_limit(axes, limits):
     """The pressure that the material bears: what the study states, or that of usual materials."""
-    for key, words in (("hardness", "hardness"), ("joint_wall_strength", "joint wall strength")):
-        if np.isfinite(material[key]):
-            label = f"{words}: {short(material[key])} MPa"
-            axes.axhline(float(material[key]), color=COLOURS[2], ls="--", label=label)
-            return
-    low, high = usual_strengths(material)
-    label = f"usual strengths:\n{short(low)} to {short(high)} MPa"
+    low, high = limits.strength_low, limits.strength_high
+    if limits.criterion != USUAL:
+        label = f"{limits.criterion}: {short(low)} MPa"
+        axes.axhline(low, color=COLOURS[2], ls="--", label=label)
+        return
+    label = f"{USUAL}:\n{short(low)} to {short(high)} MPa"
     axes.axhspan(low, high, color=COLOURS[2], alpha=0.2, lw=0, label=label)
-
-
-def _model_words(loading, table, slope):
-    """Whether pressures and slopes are beyond what the model of elastic half-spaces can bear."""
-    finest = table.iloc[0]
-    pressure = finest["sigma_n_MPa"]
-    if not np.isfinite(pressure):
-        pressure = finest["sigma_n_raw_MPa"]
-    return elastic_model_validity(pressure, slope, loading.settings["material"]).sentence
