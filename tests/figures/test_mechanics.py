@@ -19,6 +19,8 @@ from fractalcontact.figures.kit.words import force_label, force_unit, length_uni
 from fractalcontact.figures.paper.fig02_relief import _shaded
 from fractalcontact.figures.paper.fig03_composite import Slid
 from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.pages.chosen import Chosen
+from fractalcontact.pages.summary import summarised
 from fractalcontact.study.figure_list import figures_of
 
 FIGURES = ("fig02_relief", "fig03_composite", "fig04_05_closure", "fig06_07_dilatancy")
@@ -428,3 +430,24 @@ def test_plateaus_are_those_of_the_atlas(atlas):
         assert words in drawing.caption
         shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
         assert shown.count(f"+25 % [+20, +30], {trend}") == 4
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "flat", "pair"])
+def test_figure_and_page_call_the_same_k_ni_undetermined(atlas, specimen):
+    known = summarised(Chosen(atlas, specimen)).k_ni
+    figure = drawn(atlas, specimen, "fig04_05_closure").figure
+    legend = " ".join(text.get_text() for text in figure.axes[-1].get_legend().get_texts())
+    drawn_one = known.value is not None
+    assert ("bars 95 %:\nundetermined, " in legend) == (drawn_one and not known.determined)
+
+
+def test_every_k_ni_of_the_closure_curves_is_as_determined_as_the_atlas_says(atlas):
+    ends = {f"hyperbola_k_ni{end}": x for end, x in (("", 20.0), ("_low", 16.0), ("_high", 25.0))}
+    ends |= {"hyperbola_misfit": 0.01, "semi_logarithmic_misfit": 0.01}
+    for determined, words in ((True, "; 20 [16, 25]"), (False, "; undetermined (20")):
+        told = with_changes(atlas, "closure/sliding", **ends, hyperbola_k_ni_determined=determined)
+        figure = drawn(told, "sliding", "fig04_05_closure").figure
+        legend = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert sum(words in text for text in legend) == 5
+        table = drawn(told, "sliding", "fig04_05_closure").data
+        assert set(table["k_ni_determined"].dropna()) == {determined}

@@ -14,6 +14,7 @@ from fractalcontact.mechanics.closure_laws import (
     better_law,
     fit_hyperbola,
     fit_semi_logarithmic,
+    undetermined_stiffness,
 )
 
 PRESSURE = np.geomspace(0.5, 100, 8)
@@ -126,6 +127,38 @@ def test_like_misfits_decide_nothing():
         assert better_law(*pair).name == name, misfits
 
 
+@pytest.mark.parametrize(
+    ("misfits", "name", "words"),
+    [
+        ((0.01, 0.03), HYPERBOLA, ""),
+        ((0.01, 0.0101), UNDECIDED, ""),
+        (
+            (0.015, 0.01),
+            SEMI_LOGARITHMIC,
+            "by 1.5 % rms of the largest closure, a logarithm less",
+        ),
+        ((0.058, 0.07), NEITHER, "the hyperbola misses the curve by 5.8 % rms"),
+    ],
+)
+def test_k_ni_is_undetermined_where_the_hyperbola_is_not_the_law(misfits, name, words):
+    fits = fit_hyperbola(PRESSURE, hyperbola(PRESSURE)), fit_semi_logarithmic(PRESSURE, PRESSURE)
+    fits = [fit._replace(misfit=misfit) for fit, misfit in zip(fits, misfits, strict=True)]
+    law = better_law(*fits)
+    assert law.name == name
+    known = fits[0]._replace(k_ni_low=0.9 * fits[0].k_ni, k_ni_high=1.1 * fits[0].k_ni)
+    why = undetermined_stiffness(known, law)
+    assert bool(why) == bool(words)
+    assert words in why
+    # Nor is it determined by the best of laws where its interval spans decades.
+    wide = known._replace(k_ni_low=known.k_ni / 20, k_ni_high=20 * known.k_ni)
+    assert undetermined_stiffness(wide, law)
+
+
+def test_k_ni_without_a_fit_has_the_reason_of_the_fit():
+    none = fit_hyperbola([1, 2, 3], [0.1, 0.15, -1])
+    assert undetermined_stiffness(none, law_of([1, 2, 3], [0.1, 0.15, -1])) == none.reason
+
+
 # -- into the stage --------------------------------------------------------------------------------
 
 
@@ -165,6 +198,16 @@ def test_states_of_few_nodes_are_not_fitted():
     add_closure_laws(curves, None)
     assert curves["closure_law"].item() == ""
     assert "3 points" in curves["closure_law_reason"].item()
+
+
+def test_the_stage_says_of_every_k_ni_whether_it_is_determined():
+    closures = [hyperbola(PRESSURE) * (1 + 0.002 * np.cos(PRESSURE)), 0.3 + 0.05 * np.log(PRESSURE)]
+    curves = made_curves(np.full(8, 50), closures, resolutions=(1, 4))
+    add_closure_laws(curves, None)
+    assert curves["closure_law"].values.ravel().tolist() == [HYPERBOLA, SEMI_LOGARITHMIC]
+    assert curves["hyperbola_k_ni_determined"].values.ravel().tolist() == [True, False]
+    reasons = curves["hyperbola_k_ni_reason"].values.ravel().tolist()
+    assert [bool(reason) for reason in reasons] == [False, True]
 
 
 def test_the_range_of_the_study_is_that_of_both_laws():

@@ -343,6 +343,22 @@ def with_told(atlas, group, **values):
     return changed
 
 
+def test_k_ni_is_as_determined_as_the_atlas_says(results, atlas):
+    table = pd.read_csv(results / "summary.csv").set_index("specimen")
+    ends = {f"hyperbola_k_ni{end}": x for end, x in (("", 100.0), ("_low", 1.0), ("_high", 1e4))}
+    for name in NAMES:
+        for determined, why in ((True, ""), (False, "it is told so")):
+            told = {"hyperbola_k_ni_determined": determined, "hyperbola_k_ni_reason": why}
+            changed = with_told(atlas, f"closure/{name}", **ends, **told)
+            found = summarised(Chosen(changed, name)).k_ni
+            assert (found.value, found.low, found.high) == (100, 1, 1e4)
+            assert (found.determined, found.why) == (determined, why)
+        row = table.loc[[name]].iloc[0]
+        known = Chosen(atlas, name).values("closure")
+        assert row["k_ni_MPa_per_mm_determined"] == known["hyperbola_k_ni_determined"].item()
+        assert row["k_ni_reason"] == known["hyperbola_k_ni_reason"].item()
+
+
 def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):
     told = {"plateau_trend": "falling", "plateau_level": 0.7, "plateau_slope": -0.2}
     found = summarised(Chosen(with_told(atlas, "joints/pair", **told), "pair")).dilatancy
@@ -368,31 +384,6 @@ def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
         with print_style():
             caption = drawer_of("fig08_prefractals")(changed, name).caption
         assert "it is told so: elastic model good in part." in caption
-
-
-def test_k_ni_is_undetermined_where_the_hyperbola_is_not_the_law(results):
-    atlas = read_atlas(results / "atlas.nc")
-    table = pd.read_csv(results / "summary.csv").set_index("specimen")
-    for name in NAMES:
-        laws = {"hyperbola": "", "semi-logarithmic": "a logarithm less", "neither": "misses"}
-        for law, reason in laws.items():
-            changed = atlas.copy()
-            curves = atlas[f"closure/{name}"].to_dataset().load()
-            curves["closure_law"] = xr.full_like(curves["closure_law"], law)
-            curves["hyperbola_reason"] = xr.full_like(curves["hyperbola_reason"], "")
-            curves["hyperbola_misfit"] = xr.full_like(curves["hyperbola_misfit"], 0.058)
-            for end, value in (("", 100.0), ("_low", 90.0), ("_high", 110.0)):
-                known = curves[f"hyperbola_k_ni{end}"]
-                curves[f"hyperbola_k_ni{end}"] = xr.full_like(known, value)
-            changed[f"closure/{name}"] = xr.DataTree(curves)
-            found = summarised(Chosen(changed, name)).k_ni
-            assert found.value == 100
-            assert found.determined == (law == "hyperbola")
-            assert reason in found.why
-        row = table.loc[[name]].iloc[0]
-        if row["closure_law"] not in ("hyperbola", "undecided"):
-            assert not row["k_ni_MPa_per_mm_determined"]
-            assert row["k_ni_reason"]
 
 
 def test_the_page_opens_with_numbers_and_verdicts(results):

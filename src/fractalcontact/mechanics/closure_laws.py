@@ -11,9 +11,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
+from ..core.determined import determined
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
-from ..core.labels import cf_attrs
+from ..core.labels import cf_attrs, percent
 from ..core.ranges import within
 
 #: States a law of two parameters needs before its interval means anything.
@@ -192,6 +193,32 @@ def better_law(hyperbola: Hyperbola, semi_logarithmic: SemiLogarithmic) -> Law:
     return Law(best, "")
 
 
+def undetermined_stiffness(hyperbola: Hyperbola, law: Law) -> str:
+    """Reason why k_ni of a closure curve is undetermined; empty where it is determined.
+
+    Parameters
+    ----------
+    hyperbola : Hyperbola
+    law : Law
+        From :func:`better_law`, of the same curve.
+
+    Returns
+    -------
+    str
+        k_ni is a parameter of the hyperbola: it is undetermined where that is not the law of the
+        curve, and where its interval leaves nearly everything open.
+    """
+    if hyperbola.reason:
+        return hyperbola.reason
+    if law.name not in (HYPERBOLA, UNDECIDED):
+        missed = f"{percent(hyperbola.misfit)} rms of the largest closure"
+        less = ", a logarithm less" if law.name == SEMI_LOGARITHMIC else ""
+        return f"the hyperbola misses the curve by {missed}{less}"
+    if not determined(hyperbola.k_ni, hyperbola.k_ni_low, hyperbola.k_ni_high):
+        return "its 95 % interval leaves nearly everything open"
+    return ""
+
+
 def _usable(pressure: ArrayLike, closure: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Points that either law can be fitted to."""
     sigma, w = np.asarray(pressure, float), np.asarray(closure, float)
@@ -245,6 +272,8 @@ _OF_CURVES = {
         "1",
         "k_ni at twice the spacing over that at this one, less one; none where it was not solved",
     ),
+    "hyperbola_k_ni_determined": ("1", "whether the hyperbola is the law, and k_ni is determined"),
+    "hyperbola_k_ni_reason": ("1", "why k_ni is undetermined"),
     "closure_law": ("1", "the law that fits better: hyperbola, semi-logarithmic, or none of them"),
     "closure_law_reason": ("1", "why no law is named"),
     "closure_fit_min": ("N", "smallest force fitted"),
@@ -279,15 +308,19 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
             values = np.array([getattr(fit[n], name) for fit in fits.flat], kind)
             curves[f"{prefix}_{name}"] = (_DIMS, values.reshape(fits.shape), cf_attrs(units, words))
     forces = np.where(fitted, force, np.nan)
+    undetermined = [undetermined_stiffness(hyperbola, law) for hyperbola, _, law in fits.flat]
     of_curves = {
         "hyperbola_k_ni_change": _changes(curves["hyperbola_k_ni"]),
-        "closure_law": np.array([fit[2].name for fit in fits.flat]).reshape(fits.shape),
-        "closure_law_reason": np.array([fit[2].reason for fit in fits.flat]).reshape(fits.shape),
+        "hyperbola_k_ni_determined": np.array([not why for why in undetermined]),
+        "hyperbola_k_ni_reason": np.array(undetermined),
+        "closure_law": np.array([fit[2].name for fit in fits.flat]),
+        "closure_law_reason": np.array([fit[2].reason for fit in fits.flat]),
         "closure_fit_min": _extreme(np.fmin, forces),
         "closure_fit_max": _extreme(np.fmax, forces),
     }
     table = {name: (_DIMS, *words) for name, words in _OF_CURVES.items()}
-    curves.update(labelled(table, of_curves))
+    shaped = {name: values.reshape(fits.shape) for name, values in of_curves.items()}
+    curves.update(labelled(table, shaped))
 
 
 def _extreme(which: np.ufunc, forces: np.ndarray) -> np.ndarray:

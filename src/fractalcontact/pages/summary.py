@@ -1,7 +1,7 @@
 """The summary of a study: what each specimen is and does, one row a specimen and pressure."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,6 @@ import xarray as xr
 from ..core.determined import determined
 from ..core.intervals import bounds
 from ..domain.box_dimension import WIDEST
-from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
 from ..mechanics.model_validity import Validity
 from ..mechanics.overlap import DECISIVE
 from ..surface.grid import spacing_of
@@ -21,7 +20,7 @@ from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
-from .words import in_table, percent
+from .words import in_table
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -228,16 +227,10 @@ def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
 
 
 def _initial_stiffness(curve):
-    """k_ni of the hyperbola: undetermined, with the reason, where that is not the law."""
-    law = str(curve["closure_law"].item())
-    why = str(curve["hyperbola_reason"].item())
-    if not why and law not in (HYPERBOLA, UNDECIDED):
-        misfit = float(curve["hyperbola_misfit"])
-        why = f"the hyperbola misses the curve by {percent(misfit)} rms of the largest closure"
-        if law == SEMI_LOGARITHMIC:
-            why += ", a logarithm less"
-    found = Estimate.of(curve, "hyperbola_k_ni", why)
-    return found if law in (HYPERBOLA, UNDECIDED) else replace(found, determined=False)
+    """k_ni of the hyperbola: undetermined, with the reason, where the atlas says so."""
+    value, low, high = map(finite, bounds(curve, "hyperbola_k_ni"))
+    says, why = (curve[f"hyperbola_k_ni_{name}"].item() for name in ("determined", "reason"))
+    return Estimate(value, low, high, bool(says), why)
 
 
 def _at_load(chosen, curve, number):

@@ -14,7 +14,7 @@ from ...surface.specimen import cell_side
 from ..kit.drawing import MARKERS, dilatancy_loads, label_short_span, nearest_load
 from ..kit.empty import TOO_FULL, say_empty
 from ..kit.points import draw_points, reach
-from ..kit.words import force_label, percent, short
+from ..kit.words import UNDETERMINED, force_label, percent, short
 
 #: Greys and markers of the loads: colours and the other markers stand for offsets in this figure.
 _GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), MARKERS[5:]
@@ -30,7 +30,11 @@ def stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) ->
     for k in np.sort(curves["resolution"].values):
         curve = curves.sel(resolution=k)
         row = {"spacing_mm": k * cell_side(specimen), "offset_mm": float(curve["offset"])}
-        quantity = {"quantity": "k_ni, extrapolated to zero load", "resolved": True}
+        quantity = {
+            "quantity": "k_ni, extrapolated to zero load",
+            "resolved": True,
+            "determined": bool(curve["hyperbola_k_ni_determined"]),
+        }
         columns = {
             f"stiffness{end}_MPa_per_mm": float(curve[f"hyperbola_k_ni{end}"]) for end in INTERVAL
         }
@@ -89,7 +93,7 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
             ls=(0, (4, 2)),
             lw=0.8,
             capsize=2,
-            label=f"$k_{{ni}}$ of the hyperbola, bars 95 %: {_numbers(initial)}",
+            label=f"$k_{{ni}}$ of the hyperbola, bars 95 %:{_initial_numbers(initial)}",
         )
     axes.set_xscale("log")
     if len(known):
@@ -121,6 +125,13 @@ def stiffness_words(table: pd.DataFrame) -> str:
     _, initial = _with_change(table[table["quantity"] != "tangent"])
     also = f", k_ni by {initial}" if initial else ""
     return f"Twice the spacing changes tangent stiffness at {at} by {change}{also}."
+
+
+def _initial_numbers(rows):
+    """As :func:`_numbers` of k_ni; in a line of its own where the atlas calls it undetermined."""
+    finest = rows.loc[rows["spacing_mm"].idxmin()]
+    known = _numbers(rows)
+    return f" {known}" if finest["determined"] else f"\n{UNDETERMINED}, {known}"
 
 
 def _numbers(rows):

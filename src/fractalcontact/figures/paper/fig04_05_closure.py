@@ -40,6 +40,7 @@ from ..kit.words import (
     percent,
     place,
     short,
+    undetermined,
 )
 from ._closure_words import all_offsets, laws_words, linear_words, no_law
 from ._stiffness import draw_stiffness, stiffness_table, stiffness_words
@@ -192,7 +193,15 @@ def _law_words(curve):
     if not np.isfinite(misfits).any():
         return f"no fit: {no_law(curve)}"
     known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
-    return f"{', '.join(known)}; {estimate(*bounds(curve, 'hyperbola_k_ni'))}"
+    return f"{', '.join(known)}; {_initial_stiffness(curve)}"
+
+
+def _initial_stiffness(curve):
+    """k_ni with its interval, and the word where the atlas calls it undetermined."""
+    ends = bounds(curve, "hyperbola_k_ni")
+    if np.isfinite(ends[0]) and not curve["hyperbola_k_ni_determined"]:
+        return undetermined(*ends)
+    return estimate(*ends)
 
 
 def _line(style, label):
@@ -297,6 +306,7 @@ def _table(curves, drawn, laws):
     fitted = {
         "seating_pressure_MPa": "seating_pressure",
         "k_ni_MPa_per_mm": "hyperbola_k_ni",
+        "k_ni_determined": "hyperbola_k_ni_determined",
         "k_ni_change": "hyperbola_k_ni_change",
         "w_m_mm": "hyperbola_w_m",
         "w_m_low_mm": "hyperbola_w_m_low",
