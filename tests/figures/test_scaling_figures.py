@@ -123,11 +123,13 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
     few = atlas.copy()
     scaling = few["scaling/sliding"].to_dataset()
     scaling["nodes"] = scaling["nodes"] * 0 + 29
+    scaling["sigma_n"] = scaling["sigma_n"] * np.nan
     few["scaling/sliding"] = xr.DataTree(scaling)
     drawing = draw(few, "fig08_prefractals", "sliding")
     assert drawing.data["sigma_n_MPa"].isna().all()
     titles = [axes.get_title(loc="left") for axes in drawing.figure.axes if axes.images]
     assert all("(raw)" in title for title in titles)
+    assert "fewer than 30 nodes in contact" in drawing.caption
 
 
 @pytest.mark.parametrize(
@@ -148,6 +150,7 @@ def test_pressures_are_compared_with_what_the_material_bears(atlas, material, wo
     # As many nodes as the domain has: 5 GPa.
     scaling = other["scaling/sliding"].to_dataset()
     scaling["area_corrected"] = scaling["area_corrected"] / 40
+    scaling["sigma_n"] = scaling["sigma_n"] * 40
     other["scaling/sliding"] = xr.DataTree(scaling)
     drawing = draw(other, "fig08_prefractals", "sliding")
     assert words in drawing.caption

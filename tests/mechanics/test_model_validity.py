@@ -9,7 +9,6 @@ from fractalcontact.mechanics.model_validity import (
     PARTLY,
     POOR,
     elastic_model_validity,
-    real_mean_pressure,
 )
 
 NOTHING = {"modulus": 20e3, "hardness": np.inf, "joint_wall_strength": np.nan}
@@ -73,10 +72,3 @@ def test_the_reason_names_the_limit_and_both_numbers():
     )
     assumed = elastic_model_validity(5.0, 0.1, NOTHING)
     assert "none being stated (E/1000 to E/200: 20 to 100 MPa)" in assumed.reason
-
-
-def test_the_real_pressure_balances_the_force():
-    assert real_mean_pressure(100.0, 4.0, 2.0, 30) == 50
-    assert real_mean_pressure(100.0, 4.0, 2.0, 29) == 25
-    assert np.isnan(real_mean_pressure(100.0, np.nan, np.nan, np.nan))
-    assert np.isnan(real_mean_pressure(0.0, 0.0, 0.0, 0))

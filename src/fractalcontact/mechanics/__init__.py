@@ -73,7 +73,6 @@ __getattr__, __dir__, __all__ = exports(
         "prefractal": ".joint",
         "prefractal_openings": ".separation",
         "profile_roughness": ".jrc",
-        "real_mean_pressure": ".model_validity",
         "residual": ".strength",
         "rigid_dilatancy": ".joint",
         "scaled_joint": ".theory",

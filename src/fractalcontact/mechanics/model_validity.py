@@ -27,6 +27,9 @@ CONFINED = 3.0
 #: 1966: most rocks 200 to 500; concrete up to 1000): bounds of a strength that is not stated.
 LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
+#: Why there is no real mean pressure: the areas of fewer nodes are not corrected for their edge.
+NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a real mean pressure"
+
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
 _HARDNESS, _USUAL = "hardness", "usual strengths"
@@ -41,7 +44,7 @@ class Validity:
     verdict : str
         :data:`GOOD`, :data:`PARTLY`, :data:`POOR` or :data:`NOT_ASKED`.
     pressure : float
-        Real mean pressure, MPa.
+        Real mean pressure, MPa; NaN where there is none.
     good_to, poor_from : float
         Pressures up to which it is good, and from which it is poor, MPa.
     limit : str
@@ -77,27 +80,6 @@ class Validity:
         return f"{self.reason}: elastic model {verdict}."
 
 
-def real_mean_pressure(force: float, area: float, area_corrected: float, nodes: float) -> float:
-    """Real mean pressure F / A_r: of the corrected area where enough nodes touch, else the raw one.
-
-    Parameters
-    ----------
-    force : float
-        N.
-    area, area_corrected : float
-        mm2.
-    nodes : float
-        In contact.
-
-    Returns
-    -------
-    float
-        MPa; NaN of a state without contact, or that was not solved.
-    """
-    used = area_corrected if nodes >= CORRECTED_NODES else area
-    return force / used if used > 0 else np.nan
-
-
 def elastic_model_validity(
     pressure: float, rms_slope: float, material: Mapping[str, float]
 ) -> Validity:
@@ -111,7 +93,7 @@ def elastic_model_validity(
     Parameters
     ----------
     pressure : float
-        Real mean pressure, MPa.
+        Real mean pressure, MPa: ``sigma_n`` of the stage ``scaling``. NaN gives no verdict.
     rms_slope : float
         Of the composite topography; NaN counts nothing.
     material : mapping of str to float
@@ -120,8 +102,7 @@ def elastic_model_validity(
     """
     good_to, poor_from, limit = _limits(material)
     if not np.isfinite(pressure):
-        reason = "no state of contact under this load"
-        return Validity(NOT_ASKED, pressure, good_to, poor_from, limit, rms_slope, reason)
+        return Validity(NOT_ASKED, pressure, good_to, poor_from, limit, rms_slope, NO_PRESSURE)
     by_pressure = _graded(pressure, good_to * (1 + _ROUNDING), poor_from * (1 + _ROUNDING))
     by_slope = GOOD
     if np.isfinite(rms_slope):

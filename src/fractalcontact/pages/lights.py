@@ -15,7 +15,6 @@ from ..mechanics.model_validity import (
     POOR,
     Validity,
     elastic_model_validity,
-    real_mean_pressure,
 )
 from ..roughness.quality_words import overlap_words
 from ..statements.findings import NEARLY
@@ -58,10 +57,8 @@ def lights_of(chosen: Chosen) -> list[Light]:
 
 def validity_at(chosen: Chosen, number: int) -> Validity:
     """Whether the elastic model is valid under the load of this number, with its real pressure."""
-    state = chosen.values("closure", "area", "area_corrected", "nodes").isel(normal_force=number)
-    areas = (float(state[name]) for name in ("area", "area_corrected", "nodes"))
+    pressure = float(chosen.values("scaling", "sigma_n")["sigma_n"].isel(normal_force=number))
     slope = float(chosen.values("area", "rms_slope")["rms_slope"])
-    pressure = real_mean_pressure(float(chosen.forces[number]), *areas)
     return elastic_model_validity(pressure, slope, chosen.settings["material"])
 
 

@@ -12,7 +12,7 @@ from ..core.determined import determined
 from ..core.intervals import bounds
 from ..domain.box_dimension import WIDEST
 from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
-from ..mechanics.model_validity import Validity
+from ..mechanics.model_validity import NO_PRESSURE, Validity
 from ..mechanics.overlap import DECISIVE
 from ..statements.sliding import Plateaus
 from ..surface.grid import spacing_of
@@ -132,8 +132,13 @@ class AtLoad:
 
     @property
     def real_pressure(self) -> float | None:
-        """Real mean pressure F / A_r, MPa."""
+        """Real mean pressure F / A_r, MPa; None where too few nodes touch."""
         return finite(self.model.pressure)
+
+    @property
+    def no_real_pressure(self) -> str:
+        """Why there is no real mean pressure; empty where there is one."""
+        return NO_PRESSURE if self.real_pressure is None else ""
 
     @property
     def decided_by_scan(self) -> bool:
@@ -364,6 +369,7 @@ def _of_load(load):
         "contact_nodes": load.contact_nodes,
         "suspect_load_share": load.suspect_share,
         "real_pressure_MPa": load.real_pressure,
+        "real_pressure_reason": load.no_real_pressure,
         "elastic_model": load.model.verdict,
         "elastic_model_good_to_MPa": load.model.good_to,
         "elastic_model_poor_from_MPa": load.model.poor_from,

@@ -95,7 +95,7 @@ def _table(loading, i):
             "area_share": area / np.prod(loading.sides),
             "area_corrected_mm2": np.where(enough, corrected, np.nan),
             "area_corrected_share": np.where(enough, corrected, np.nan) / np.prod(loading.sides),
-            "sigma_n_MPa": force / np.where(enough, corrected, np.nan),
+            "sigma_n_MPa": scaling["sigma_n"].values,
             "sigma_n_raw_MPa": force / area,
         }
     )
@@ -166,8 +166,5 @@ def _draw_limit(axes, material):
 
 def _model_words(loading, table, slope):
     """Whether pressures and slopes are beyond what the model of elastic half-spaces can bear."""
-    finest = table.iloc[0]
-    pressure = finest["sigma_n_MPa"]
-    if not np.isfinite(pressure):
-        pressure = finest["sigma_n_raw_MPa"]
+    pressure = table["sigma_n_MPa"].iloc[0]
     return elastic_model_validity(pressure, slope, loading.settings["material"]).sentence
