@@ -170,7 +170,7 @@ def test_states_of_few_nodes_are_not_fitted():
     ("nodes", "closing", "fit_range", "words"),
     [
         # The closures of all are known: nodes are what is wanting.
-        ([3] * 5 + [10, 20, 30], 8, None, "3 of 8 states have 10 or more nodes in contact"),
+        ([3] * 5 + [10, 20, 30], 8, None, "10 nodes touch in 3 of 8 states"),
         ([50] * 8, 8, (1, 2), "2 of 8 states lie in hyperbola_range"),
         ([50] * 8, 3, None, "3 points with w_int > 0"),
     ],

@@ -306,9 +306,9 @@ def _few_states(*states: np.ndarray) -> str:
         lie = f"{fitted} of {resolved} states lie in hyperbola_range"
         return f"{lie}, {FEWEST_CLOSURE_POINTS} needed: widen it"
     if closed >= FEWEST_CLOSURE_POINTS:
-        have = f"{resolved} of {closed} states have {RESOLVED_NODES} or more nodes in contact"
-        more = "heavier loads or a larger or finer scan would give more"
-        return f"{have}, {FEWEST_CLOSURE_POINTS} needed: {more}"
+        touch = f"{RESOLVED_NODES} nodes touch in {resolved} of {closed} states"
+        more = "heavier loads or a larger or finer scan would help"
+        return f"{touch}, {FEWEST_CLOSURE_POINTS} needed: {more}"
     return _too_few(closed)
 
 

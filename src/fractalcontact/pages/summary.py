@@ -22,7 +22,7 @@ from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
-from .words import in_table, percent
+from .words import in_table, percent, with_unit
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -84,6 +84,8 @@ class Quantity:
     name : str
         As the budget has it.
     meaning, unit : str
+    absolute : bool
+        Whether its errors are stated in the unit alone, never as fractions of the value.
     value : float or None
     errors : dict of str to float or None
         Half-widths at 95 %, in the unit: of this surface, of its population.
@@ -96,15 +98,17 @@ class Quantity:
     name: str
     meaning: str
     unit: str
+    absolute: bool
     value: float | None
     errors: dict[str, float | None]
     sources: dict[str, float | None]
     reasons: dict[str, str]
 
-    def relative(self, which: str = "surface") -> float | None:
-        """An error as a fraction of the value."""
-        error = self.errors[which]
-        return None if error is None or not self.value else abs(error / self.value)
+    def error_words(self, error: float | None) -> str:
+        """An error in per cent of the value where the quantity has fractions, else in its unit."""
+        if error is None or self.absolute or not self.value:
+            return with_unit(error, self.unit, 2)
+        return percent(abs(error / self.value))
 
 
 @dataclass(frozen=True)
@@ -294,6 +298,7 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
             name=name,
             meaning=str(one["meaning"].item()),
             unit=str(one["unit"].item()),
+            absolute=bool(one["absolute"]),
             value=finite(one["published"]),
             errors={which: finite(one[total]) for which, total in TOTALS.items()},
             sources={source: finite(one["error"].sel(source=source)) for source in sources},

@@ -190,7 +190,7 @@ def _law_words(curve):
     """Misfits of both laws, and k_ni with its interval, as the legend's heading says."""
     misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
     if not np.isfinite(misfits).any():
-        return f"no fit: {no_law(curve).split(':')[0]}"
+        return f"no fit: {no_law(curve)}"
     known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
     return f"{', '.join(known)}; {estimate(*bounds(curve, 'hyperbola_k_ni'))}"
 
@@ -322,7 +322,7 @@ def _table(curves, drawn, laws):
 
 def _caption(curves, stiffness):
     return (
-        f"{opening('Figs. 4 and 5')} Closure, contact area, stiffness. "
+        f"{opening('Figs. 4 and 5')} Closure, area, stiffness. "
         f"{laws_words(curves)} {stiffness_words(stiffness)}"
     )
 
