@@ -280,7 +280,7 @@ def scaling_over_resolutions(
     inside = True if fit_range is None else within(s, *fit_range)
     nodes, force = curves["nodes"].where(inside), curves["normal_force"]
     result = renormalisation(s, curves["area_corrected"], force, nodes, CORRECTED_NODES)
-    used = np.isfinite(result["sigma_n"]) & np.isfinite(result["delta_sigma"])
+    used = result["sigma_n"].notnull() & result["delta_sigma"].notnull()
     result["area_used"] = used.assign_attrs(cf_attrs("1", "resolution in the fit of delta_sigma"))
     # The pressure does not depend on which spacings are fitted.
     enough = curves["nodes"] >= CORRECTED_NODES

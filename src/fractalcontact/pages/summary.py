@@ -13,7 +13,7 @@ from ..core.intervals import bounds
 from ..domain.box_dimension import WIDEST
 from ..mechanics.closure_laws import HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED
 from ..mechanics.model_validity import NO_PRESSURE, Validity
-from ..mechanics.overlap import DECISIVE
+from ..mechanics.overlap import decided_by_scan
 from ..statements.sliding import Plateaus
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
@@ -31,6 +31,8 @@ DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
 #: Columns of the summary that are not called as the error budget calls their quantity.
 _COLUMNS = {"closure": "interface_closure"}
 
+#: Why there is no Delta_sigma from the area where its stage gives no reason.
+TOO_FEW_RESOLUTIONS = "too few resolutions were solved under this load with nodes enough in contact"
 #: Why a number is undetermined where its stage gives no other reason.
 _WIDE = "its 95 % interval leaves nearly everything open"
 
@@ -147,7 +149,7 @@ class AtLoad:
     @property
     def decided_by_scan(self) -> bool:
         """Whether suspicious cells of the scans carry most of the load: its numbers are theirs."""
-        return self.suspect_share is not None and self.suspect_share > DECISIVE
+        return self.suspect_share is not None and bool(decided_by_scan(self.suspect_share))
 
 
 @dataclass(frozen=True)
@@ -274,7 +276,7 @@ def _dimension(chosen, stage, state):
     found = chosen.values(stage, *names).isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
     if not note and np.isnan(float(found["delta_sigma"])):
-        note = "too few resolutions were solved under this load with nodes enough in contact"
+        note = TOO_FEW_RESOLUTIONS
     return Estimate.of(found, "delta_sigma", note, **DIMENSION)
 
 
