@@ -5,6 +5,7 @@ from ..core.lazy import exports
 __getattr__, __dir__, __all__ = exports(
     __name__,
     {
+        "ABSOLUTE": ".refinement",
         "DEFAULT_RTOL": ".speed",
         "ERRORS": ".speed",
         "FACTORS": ".refinement",
