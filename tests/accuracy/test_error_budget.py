@@ -106,7 +106,14 @@ def test_totals_are_root_sums_of_squares(one):
         budget["total_of_population"].values[known],
         np.hypot(budget["total"], larger).values[known],
     )
-    np.testing.assert_allclose(budget["relative_total"], budget["total"] / abs(budget["published"]))
+    # What may be zero or of either sign has no fraction, whatever its value.
+    absolute = budget["absolute"]
+    assert absolute["quantity"].values[absolute].tolist() == ["separation", "delta_sigma"]
+    for name in ("relative_error", "relative_total", "relative_total_of_population"):
+        error = budget[name.removeprefix("relative_")]
+        assert np.isfinite(error.where(absolute)).any()
+        fraction = (error / abs(budget["published"])).where(~absolute)
+        np.testing.assert_allclose(budget[name], fraction.transpose(*budget[name].dims))
 
 
 def test_an_undetermined_dimension_has_no_small_error(one):

@@ -1,5 +1,6 @@
 """The explorer in a real browser: it shows the atlas's numbers, each control does what it says."""
 
+import re
 import time
 
 import numpy as np
@@ -130,14 +131,9 @@ def state_of(atlas, name, place):
 def number_in(words):
     """The first number of words such as "0.3601 ± 2.6 × 10⁻⁸"."""
     raised = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-    text = (
-        words.replace("−", "-")
-        .split(" ± ")[0]
-        .split(" [")[0]
-        .removesuffix(" at the finest spacing")
-    )
-    mantissa, _, power = text.partition(" × 10")
-    return float(mantissa) * 10.0 ** int(power.translate(raised) or 0)
+    number = r"(?:undetermined \()?(-?[\d.]+)(?: × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?"
+    mantissa, power = re.match(number, words.replace("−", "-")).groups()
+    return float(mantissa) * 10.0 ** int((power or "0").translate(raised))
 
 
 def specimens_of(atlas):
@@ -153,6 +149,52 @@ def random_places(atlas, n):
         solved = atlas[f"closure/{name}"]["solved"].transpose(*DIMENSIONS).values
         among = np.argwhere(solved if rng.random() < 0.85 else np.ones_like(solved))
         yield name, tuple(int(index) for index in rng.choice(among))
+
+
+#: Rows that have the total error of a quantity of the error budget.
+TOTALS = {
+    "closure/closure": "closure",
+    "closure/interface_closure": "closure",
+    "closure/separation": "separation",
+    "closure/interface_stiffness": "stiffness",
+}
+
+
+def test_errors_and_the_word_undetermined_are_those_of_the_result_page(open_page, atlas):
+    """At the offset of the maps the total error; no solver bound alone passes for an error."""
+    by_scan = known = 0
+    with open_page("explorer.html") as page:
+        explorer = Explorer(page)
+        for name in specimens_of(atlas):
+            curves = atlas[f"closure/{name}"].to_dataset()
+            budget = atlas[f"error_budget/{name}"].to_dataset()
+            here = curves.sel(direction=budget.attrs["direction"], resolution=1)
+            for offset in here["offset"].values:
+                for force in here["normal_force"].values:
+                    state = here.sel(offset=offset, normal_force=force)
+                    if not state["solved"]:
+                        continue
+                    place = f"{budget.attrs['direction']}~{offset}~{force}~1"
+                    explorer.visit(f"a={name}~{place}")
+                    decided = float(state["suspect_load_share"]) > 0.5
+                    shown_words = explorer.words()
+                    for key, quantity in TOTALS.items():
+                        words = shown_words[key]
+                        if words == "–":
+                            continue
+                        assert words.startswith("undetermined (") == decided, (name, key, words)
+                        assert words.endswith("), by the scan") == decided
+                        by_scan += decided
+                        at_maps = offset == budget.attrs["offset_mm"]
+                        total = float(budget["total"].sel(quantity=quantity, normal_force=force))
+                        if at_maps and np.isfinite(total):
+                            shown = number_in(words.split(" ± ")[1])
+                            assert shown == pytest.approx(total, rel=0.051)
+                            known += 1
+                        else:
+                            assert "error not known (solver’s part" in words
+    assert by_scan > 3
+    assert known > 20
 
 
 def test_opens_from_the_disk_and_asks_for_nothing(open_page, results, report, shots):
@@ -183,7 +225,6 @@ def test_a_hundred_random_states_show_the_numbers_and_maps_of_the_atlas(open_pag
             for key, (value, words) in shown.items():
                 np.testing.assert_equal(value, expected[key], err_msg=f"{name} {where} {key}")
                 if np.isfinite(value):
-                    words = words.removeprefix("undetermined (")
                     assert number_in(words) == pytest.approx(value, rel=5.1e-4), (key, words)
                     compared += 1
             field = atlas[f"contact/{name}"][f"in_contact_{where.pop('resolution')}"].sel(where)

@@ -111,6 +111,16 @@ def test_resolutions_of_few_nodes_are_in_no_fit(fields):
     assert np.isfinite(result["delta_sigma_raw"])
 
 
+def test_the_real_mean_pressure_does_not_depend_on_the_spacings_that_are_fitted(fields):
+    nodes = [6400, 1600, 400, 29]
+    result = scaled(fields, nodes, fit_range=(2 * SPACING, 8 * SPACING))
+    everywhere = scaled(fields, nodes)
+    np.testing.assert_array_equal(result["sigma_n"], everywhere["sigma_n"])
+    assert np.isfinite(result["sigma_n"]).values.tolist() == [True, True, True, False]
+    assert everywhere["area_used"].values.tolist() == [True, True, True, False]
+    assert not result["area_used"].any()  # two spacings have no slope
+
+
 def test_range_of_the_study_is_that_of_both_fits(fields):
     result = scaled(fields, [6400, 1600, 400, 100], fit_range=(SPACING, 4 * SPACING))
     assert (result["n"], result["delta_sigma_raw_n"]) == (3, 3)

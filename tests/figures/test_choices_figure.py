@@ -26,5 +26,15 @@ def test_stated_errors_are_the_largest_of_the_atlas(atlas, name):
     worst = (curves["area_error"] / curves["area"]).max("offset")
     area = drawing.data[drawing.data["quantity"] == "real contact area"]
     np.testing.assert_allclose(area["largest"], worst.values)
+    # A dimension may be 0: its error is no fraction of it.
+    domains = atlas[f"domains/{name}"].to_dataset().isel(direction=0).sel(resolution=1)
+    dimension = drawing.data[drawing.data["kind"] == "absolute"]
+    known = domains["delta_sigma_error"].max("offset").dropna("normal_force")
+    np.testing.assert_allclose(dimension["largest"], known.values)
+    assert (
+        not drawing.data.loc[drawing.data["kind"] == "relative", "quantity"]
+        .str.contains("Delta")
+        .any()
+    )
     halved = bool(np.isfinite(curves["closure_spacing_error"]).any())
     assert ("twice the spacing changes the closure by" in drawing.caption) == halved

@@ -18,13 +18,17 @@ def test_errors_drawn_are_those_of_the_budget(atlas, name):
     assert set(drawing.data["source"]) <= {*SOURCES, *TOTALS}
     for (quantity, source), rows in drawing.data.groupby(["quantity", "source"]):
         here = budget.sel(quantity=quantity)
-        stated = here[source] if source in TOTALS else here["relative_error"].sel(source=source)
-        np.testing.assert_array_equal(rows["relative_error"], stated)
+        for column in ("error", "relative_error"):
+            prefix = column.removesuffix("error")
+            kept = (
+                here[f"{prefix}{source}"] if source in TOTALS else here[column].sel(source=source)
+            )
+            np.testing.assert_array_equal(rows[column], kept)
     # What is not drawn at all is unknown or zero at every load.
     drawn = set(zip(drawing.data["quantity"], drawing.data["source"], strict=True))
     for quantity in budget["quantity"].values:
         for source in SOURCES:
-            errors = budget["relative_error"].sel(quantity=quantity, source=source)
+            errors = budget["error"].sel(quantity=quantity, source=source)
             assert ((str(quantity), source) in drawn) == bool((errors > 0).any())
     at_map = budget.sel(normal_force=budget["normal_force"].max())
     assert np.isfinite(at_map["relative_total"].sel(quantity="closure"))

@@ -323,7 +323,7 @@ def test_a_missing_fit_is_said_with_its_reason(atlas):
     words = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
     assert len(words) == 8  # of closure, then of contact area and of hollow points
     assert all(re.search(r"no fit: \d points with w_int > 0, 4 needed", x) for x in words[:3])
-    assert "No law could be fitted" in drawing.caption
+    assert "No law fitted" in drawing.caption
 
 
 def test_a_surface_without_a_dimension_is_still_drawn(atlas):

@@ -20,6 +20,7 @@ from fractalcontact.figures.kit import drawing as common
 from fractalcontact.figures.kit import words as _words
 from fractalcontact.figures.kit.domains import Loading
 from fractalcontact.figures.paper._size_effect import fractal_pressure, size_effect
+from fractalcontact.mechanics.model_validity import model_validity
 from fractalcontact.mechanics.states import chosen_offset
 
 NAMES = (
@@ -101,6 +102,18 @@ def test_loads_spread_evenly_with_the_one_asked_for(atlas):
     assert list(loading.spread_loads(99)) == list(range(6))
 
 
+def judged_anew(atlas, **material):
+    """The atlas with the elastic model judged by its areas, of another material if one is given."""
+    other = atlas.copy()
+    configuration = json.loads(atlas.attrs["configuration"])
+    settings = configuration["settings"]["sliding"]
+    settings["material"] |= material
+    other.attrs["configuration"] = json.dumps(configuration)
+    area, scaling = (atlas[f"{stage}/sliding"].to_dataset() for stage in ("area", "scaling"))
+    other["elastic_model/sliding"] = xr.DataTree(model_validity(area, scaling, settings))
+    return other, settings["material"]
+
+
 # Against the atlas, by another way
 
 
@@ -122,11 +135,13 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
     few = atlas.copy()
     scaling = few["scaling/sliding"].to_dataset()
     scaling["nodes"] = scaling["nodes"] * 0 + 29
+    scaling["sigma_n"] = scaling["sigma_n"] * np.nan
     few["scaling/sliding"] = xr.DataTree(scaling)
-    drawing = draw(few, "fig08_prefractals", "sliding")
+    drawing = draw(judged_anew(few)[0], "fig08_prefractals", "sliding")
     assert drawing.data["sigma_n_MPa"].isna().all()
     titles = [axes.get_title(loc="left") for axes in drawing.figure.axes if axes.images]
     assert all("(raw)" in title for title in titles)
+    assert "fewer than 30 nodes in contact" in drawing.caption
 
 
 @pytest.mark.parametrize(
@@ -141,13 +156,12 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
 )
 def test_pressures_are_compared_with_what_the_material_bears(atlas, material, words):
     other = atlas.copy()
-    configuration = json.loads(atlas.attrs["configuration"])
-    configuration["settings"]["sliding"]["material"] |= material
-    other.attrs["configuration"] = json.dumps(configuration)
     # As many nodes as the domain has: 5 GPa.
     scaling = other["scaling/sliding"].to_dataset()
     scaling["area_corrected"] = scaling["area_corrected"] / 40
+    scaling["sigma_n"] = scaling["sigma_n"] * 40
     other["scaling/sliding"] = xr.DataTree(scaling)
+    other, _ = judged_anew(other, **material)
     drawing = draw(other, "fig08_prefractals", "sliding")
     assert words in drawing.caption
     assert "rms slope" in drawing.caption
@@ -328,11 +342,7 @@ def test_nodes_of_compared_maps_are_all_drawn_alike(atlas):
 
 
 def test_pressures_without_a_stated_strength_stand_beside_usual_ones(atlas):
-    other = atlas.copy()
-    configuration = json.loads(atlas.attrs["configuration"])
-    material = configuration["settings"]["sliding"]["material"]
-    material |= {"hardness": np.inf, "joint_wall_strength": np.nan}
-    other.attrs["configuration"] = json.dumps(configuration)
+    other, material = judged_anew(atlas, hardness=np.inf, joint_wall_strength=np.nan)
     (axes,) = (a for a in draw(other, "fig08_prefractals", "sliding").figure.axes if not a.images)
     low, high = material["modulus"] / 1000, material["modulus"] / 200
     (band,) = axes.patches

@@ -199,7 +199,27 @@ def test_states_of_few_nodes_are_not_fitted():
     curves = made_curves(np.where(nodes > 30, nodes, 3), w)
     add_closure_laws(curves, None)
     assert curves["closure_law"].item() == ""
-    assert "3 points" in curves["closure_law_reason"].item()
+
+
+@pytest.mark.parametrize(
+    ("nodes", "closing", "fit_range", "words"),
+    [
+        # The closures of all are known: nodes are what is wanting.
+        ([3] * 5 + [10, 20, 30], 8, None, "10 nodes touch in 3 of 8 states"),
+        ([50] * 8, 8, (1, 2), "2 of 8 states lie in hyperbola_range"),
+        ([50] * 8, 3, None, "3 points with w_int > 0"),
+    ],
+)
+def test_why_there_is_no_law_names_what_is_wanting_and_what_helps(nodes, closing, fit_range, words):
+    w = np.where(np.arange(8) < closing, 0.3 + 0.05 * np.log(PRESSURE), 0.0)
+    curves = made_curves(np.array(nodes), w)
+    limits = None if fit_range is None else tuple(100 * PRESSURE[list(fit_range)])
+    add_closure_laws(curves, limits)
+    for law in ("hyperbola_reason", "semi_logarithmic_reason", "closure_law_reason"):
+        why = curves[law].item()
+        assert why.startswith(f"{words}, 4 needed")
+        for cause, help_ in (("nodes", "heavier loads"), ("hyperbola_range", "widen")):
+            assert (help_ in why) == (cause in why)
 
 
 def test_the_stage_says_of_every_k_ni_whether_it_is_determined():

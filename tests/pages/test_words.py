@@ -59,10 +59,11 @@ def test_what_is_undetermined_is_shown_with_its_error():
     assert interval(None, None, None) == "–"
 
 
-def quantity(unit="mm", **sources):
+def quantity(unit="mm", value=2.0, *, absolute=False, **sources):
     surface = sum((v or 0) ** 2 for k, v in sources.items() if k != "window") ** 0.5
     errors = {"surface": surface, "population": 1.0}
-    return Quantity("closure", "closure", unit, 2.0, errors, sources, dict.fromkeys(sources, "why"))
+    why = dict.fromkeys(sources, "why")
+    return Quantity("closure", "closure", unit, absolute, value, errors, sources, why)
 
 
 class OneLoad:
@@ -83,9 +84,15 @@ def test_parts_of_a_bar_are_squares_and_fill_it():
     assert (bar.surface, bar.population) == ("25 %", "50 %")
 
 
-def test_a_dimension_has_its_error_as_it_is():
-    (bar,) = bars_of(OneLoad(quantity("1", estimator=0.25)))
-    assert (bar.value, bar.surface) == ("2", "0.25")
+@pytest.mark.parametrize("value", [2.0, 1e-6, 0.0, -0.04])
+def test_what_may_cross_zero_has_its_errors_in_its_unit_whatever_its_value(value):
+    """A dimension and a separation: the form of an error follows from the kind of the quantity."""
+    of_kind = {"absolute": True, "numerical": 0.25}
+    for unit, words in (("1", "0.25"), ("mm", "250 µm")):
+        (bar,) = bars_of(OneLoad(quantity(unit, value, **of_kind)))
+        assert (bar.surface, bar.parts[0].words) == (words, words)
+    (bar,) = bars_of(OneLoad(quantity("mm", 0.04, numerical=0.25)))
+    assert bar.surface == "620 %"
 
 
 def test_relief_is_lit_from_the_upper_left_and_missing_cells_are_white():

@@ -1,4 +1,4 @@
-"""The study whose result page is tested: its labels are hostile."""
+"""A study with a result page: a hostile label, and few nodes in contact at the smallest load."""
 
 from materials import ROCK
 from spreadsheets import FORMULA
@@ -11,9 +11,9 @@ STUDY = {
         "material": "rock",
         "contact_directions": ["W"],
         "directions": ["W", "E"],
-        "loads": ["1 MPa", "12.5 MPa", "25 MPa"],
-        "dilatancy_loads": ["1 MPa", "25 MPa"],
-        "map_load": "12.5 MPa",
+        "loads": ["1 MPa", "125 MPa", "250 MPa"],
+        "dilatancy_loads": ["1 MPa", "250 MPa"],
+        "map_load": "125 MPa",
         "resolutions": [1, 2],
         "window": "3.2 mm",
     },

@@ -17,6 +17,7 @@ from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
 from .other_windows import FEWEST_EFFECTIVE, TOO_SMALL, other_composites, window_spread
 from .refinement import (
+    ABSOLUTE,
     BUDGET_QUANTITIES,
     LoadCurve,
     Refinement,
@@ -63,6 +64,7 @@ _TABLE = {
     "numerical_from": ("normal_force", "1", "what the numerical error is from"),
     "unit": ("quantity", "1", "unit of the quantity"),
     "meaning": ("quantity", "1", "quantity"),
+    "absolute": ("quantity", "1", "its errors are in its unit alone: it may be zero or negative"),
     "reason": (("quantity", "source"), "1", "why a source has no value, or is none"),
     "windows_solved": ((), "1", "windows of the scan compared, this one among them"),
     "windows_effective": ((), "1", "area that those windows cover, in windows"),
@@ -158,7 +160,8 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     if curve.loading.specimen.attrs["opposite"] == "scanned":
         sampling = np.hypot(sampling, errors["registration"])
     of_population = np.hypot(total, sampling)
-    size = np.abs(np.where(values == 0, np.nan, values))
+    absolute = np.isin(list(BUDGET_QUANTITIES), ABSOLUTE)
+    size = np.abs(np.where((values == 0) | absolute[:, np.newaxis], np.nan, values))
     side = float(np.sqrt(curve.space.cell_area))
     n_windows, effective = windows
     table: dict[str, Any] = {
@@ -175,6 +178,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
         "numerical_from": [_FROM[n] if found.finest.max() > 1 else "" for n in found.finest],
         "unit": [unit for unit, _ in BUDGET_QUANTITIES.values()],
         "meaning": [words for _, words in BUDGET_QUANTITIES.values()],
+        "absolute": absolute,
         "reason": reasons,
         "windows_solved": n_windows,
         "windows_effective": effective,

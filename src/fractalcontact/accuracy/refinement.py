@@ -32,6 +32,9 @@ FACTORS = (1, 2, 4)
 #: Quantities of the budget, in its order: unit, long name.
 _OTHERS = {"delta_sigma": ("1", "Delta_sigma by box counting")}
 BUDGET_QUANTITIES = QUANTITIES | _OTHERS
+#: Those that may be zero or of either sign: an error of them is stated in their unit, never as a
+#: fraction. Faces pressed into each other have a separation below zero, single nodes no dimension.
+ABSOLUTE = ("separation", "delta_sigma")
 
 
 @dataclass(frozen=True, eq=False)

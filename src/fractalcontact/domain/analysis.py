@@ -256,6 +256,8 @@ def scaling_over_resolutions(
         offset, load), and both estimates of Delta_sigma with their difference; the box counts are
         those at the scan's own resolution. ``delta_sigma_raw``, with its interval and ``_n``, is
         that of the raw area; ``area``, ``area_corrected`` and ``nodes`` are those of the states.
+        ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch, and
+        ``area_used`` says which of these areas Delta_sigma is fitted to.
 
     Notes
     -----
@@ -268,6 +270,13 @@ def scaling_over_resolutions(
     inside = True if fit_range is None else within(s, *fit_range)
     nodes, force = curves["nodes"].where(inside), curves["normal_force"]
     result = renormalisation(s, curves["area_corrected"], force, nodes, CORRECTED_NODES)
+    used = result["sigma_n"].notnull() & result["delta_sigma"].notnull()
+    result["area_used"] = used.assign_attrs(cf_attrs("1", "resolution in the fit of delta_sigma"))
+    # The pressure does not depend on which spacings are fitted.
+    enough = curves["nodes"] >= CORRECTED_NODES
+    result["sigma_n"] = force / curves["area_corrected"].where(enough)
+    words = f"real mean pressure F / A_r; none below {CORRECTED_NODES} nodes in contact"
+    result["sigma_n"].attrs = cf_attrs("MPa", words)
     raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES)
     for name, raw_name in zip(names_of("delta_sigma"), names_of("delta_sigma_raw"), strict=True):
         result[raw_name] = raw[name]

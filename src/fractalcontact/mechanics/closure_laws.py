@@ -16,6 +16,7 @@ from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs, percent
 from ..core.ranges import within
+from ..core.resolved import RESOLVED_NODES
 
 #: States a law of two parameters needs before its interval means anything.
 FEWEST_CLOSURE_POINTS = 4
@@ -253,11 +254,16 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
     inside = within(force, *(fit_range or (force.min(), force.max())))
     order = (*_DIMS, "normal_force")
     closure = curves["interface_closure"].transpose(*order).values
-    fitted = curves["resolved"].transpose(*order).values & inside & (closure > 0)
+    resolved = curves["resolved"].transpose(*order).values & (closure > 0)
+    fitted = resolved & inside
     fits = np.empty(closure.shape[:-1], object)
     for place in np.ndindex(fits.shape):
         points = pressure[fitted[place]], closure[place][fitted[place]]
         hyperbola, semi_logarithmic = fit_hyperbola(*points), fit_semi_logarithmic(*points)
+        if fitted[place].sum() < FEWEST_CLOSURE_POINTS:
+            few = _few_states(closure[place] > 0, resolved[place], fitted[place])
+            hyperbola = hyperbola._replace(reason=few)
+            semi_logarithmic = semi_logarithmic._replace(reason=few)
         fits[place] = hyperbola, semi_logarithmic, better_law(hyperbola, semi_logarithmic)
     for law, (prefix, parameters) in enumerate(_PARAMETERS.items()):
         for name, words in parameters.items():
@@ -280,6 +286,22 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
     table = {name: (_DIMS, *words) for name, words in _OF_CURVES.items()}
     shaped = {name: values.reshape(fits.shape) for name, values in of_curves.items()}
     curves.update(labelled(table, shaped))
+
+
+def _few_states(*states: np.ndarray) -> str:
+    """Why too few states of a curve are left to be fitted and, after a colon, what would help.
+
+    ``states`` says which have a closure above 0, which of them are resolved, and which are fitted.
+    """
+    closed, resolved, fitted = (int(those.sum()) for those in states)
+    if resolved >= FEWEST_CLOSURE_POINTS:
+        lie = f"{fitted} of {resolved} states lie in hyperbola_range"
+        return f"{lie}, {FEWEST_CLOSURE_POINTS} needed: widen it"
+    if closed >= FEWEST_CLOSURE_POINTS:
+        touch = f"{RESOLVED_NODES} nodes touch in {resolved} of {closed} states"
+        more = "heavier loads or a larger or finer scan would help"
+        return f"{touch}, {FEWEST_CLOSURE_POINTS} needed: {more}"
+    return _too_few(closed)
 
 
 def _extreme(which: np.ufunc, forces: np.ndarray) -> np.ndarray:

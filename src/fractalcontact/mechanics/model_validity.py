@@ -30,6 +30,9 @@ CONFINED = 3.0
 #: 1966: most rocks 200 to 500; concrete up to 1000): bounds of a strength that is not stated.
 LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
+#: Why there is no real mean pressure: the areas of fewer nodes are not corrected for their edge.
+NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a real mean pressure"
+
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
 
@@ -73,7 +76,7 @@ class Validity(NamedTuple):
     verdict : str
         :data:`GOOD`, :data:`PARTLY`, :data:`POOR` or :data:`NOT_ASKED`.
     pressure : float
-        Real mean pressure that is judged, MPa.
+        Real mean pressure that is judged, MPa; NaN where there is none.
     reason : str
         One line on pressure and slope.
     limits : Limits
@@ -111,10 +114,7 @@ class Validity(NamedTuple):
 #: Verdicts of the states, over (direction, offset, load): unit and long name.
 _OF_STATES = {
     "verdict": ("1", f"verdict on the elastic model: {GOOD}, {PARTLY}, {POOR} or {NOT_ASKED}"),
-    "pressure": (
-        "MPa",
-        f"real mean pressure judged; of the raw area where under {CORRECTED_NODES} nodes touch",
-    ),
+    "pressure": ("MPa", "real mean pressure sigma_n that is judged"),
     "reason": ("1", "what decides the verdict"),
 }
 #: Limits of the material: unit and long name.
@@ -127,12 +127,12 @@ _OF_MATERIAL = {
 }
 
 
-def model_validity(closure: xr.Dataset, area: xr.Dataset, settings: Mapping) -> xr.Dataset:
+def model_validity(area: xr.Dataset, scaling: xr.Dataset, settings: Mapping) -> xr.Dataset:
     """Verdicts on the elastic model in every state at the scan's own resolution.
 
     Parameters
     ----------
-    closure, area : xr.Dataset
+    area, scaling : xr.Dataset
         Of the stages of these names.
     settings : mapping
         From :func:`study.configuration.resolve_settings`; its ``material`` counts.
@@ -144,15 +144,12 @@ def model_validity(closure: xr.Dataset, area: xr.Dataset, settings: Mapping) -> 
         :class:`Limits` of the material.
     """
     dims = ("direction", "offset", "normal_force")
-    finest = closure.sel(resolution=closure["resolution"].min(), drop=True)
-    states, area = xr.align(finest, area, join="exact")
-    states = states[["area", "area_corrected", "nodes"]].transpose(*dims)
-    slopes = area["rms_slope"].transpose(*dims[:2]).values
-    judged = np.empty(states["nodes"].shape, object)
+    finest = scaling["sigma_n"].sel(resolution=scaling["resolution"].min(), drop=True)
+    pressures, slopes = xr.align(finest.transpose(*dims), area["rms_slope"], join="exact")
+    of_offsets = slopes.transpose(*dims[:2]).values
+    judged = np.empty(pressures.shape, object)
     for place in np.ndindex(judged.shape):
-        of_contact = (float(states[name].values[place]) for name in states)
-        pressure = real_mean_pressure(float(states["normal_force"][place[2]]), *of_contact)
-        slope = float(slopes[place[:2]])
+        pressure, slope = float(pressures.values[place]), float(of_offsets[place[:2]])
         judged[place] = elastic_model_validity(pressure, slope, settings["material"])
     values: dict[str, Any] = {
         name: np.array([getattr(one, name) for one in judged.flat]).reshape(judged.shape)
@@ -163,28 +160,7 @@ def model_validity(closure: xr.Dataset, area: xr.Dataset, settings: Mapping) -> 
         **{name: ((), *words) for name, words in _OF_MATERIAL.items()},
     }
     limits = material_limits(settings["material"])
-    return labelled_dataset(table, values | limits._asdict(), coords=dict(states.coords))
-
-
-def real_mean_pressure(force: float, area: float, area_corrected: float, nodes: float) -> float:
-    """Real mean pressure F / A_r: of the corrected area where enough nodes touch, else the raw one.
-
-    Parameters
-    ----------
-    force : float
-        N.
-    area, area_corrected : float
-        mm2.
-    nodes : float
-        In contact.
-
-    Returns
-    -------
-    float
-        MPa; NaN of a state without contact, or that was not solved.
-    """
-    used = area_corrected if nodes >= CORRECTED_NODES else area
-    return force / used if used > 0 else np.nan
+    return labelled_dataset(table, values | limits._asdict(), coords=dict(pressures.coords))
 
 
 def elastic_model_validity(
@@ -200,7 +176,7 @@ def elastic_model_validity(
     Parameters
     ----------
     pressure : float
-        Real mean pressure, MPa.
+        Real mean pressure, MPa: ``sigma_n`` of the stage ``scaling``. NaN gives no verdict.
     rms_slope : float
         Of the composite topography; NaN counts nothing.
     material : mapping of str to float
@@ -209,7 +185,7 @@ def elastic_model_validity(
     """
     limits = material_limits(material)
     if not np.isfinite(pressure):
-        return Validity(NOT_ASKED, pressure, "no state of contact under this load", limits)
+        return Validity(NOT_ASKED, pressure, NO_PRESSURE, limits)
     ends = (limits.good_to * (1 + _ROUNDING), limits.poor_from * (1 + _ROUNDING))
     by_pressure = _graded(pressure, *ends)
     by_slope = GOOD

@@ -14,6 +14,7 @@ from ..core.directions import axis_and_sign
 from ..core.resolved import RESOLVED_NODES
 from ..surface.specimen import nominal_area, window_slices
 from .states import chosen_offset, forces_of
+from .theory import Numbers
 
 #: Above this fraction of the load on suspicious cells, errors of the scans decide a number.
 DECISIVE = 0.5
@@ -107,6 +108,21 @@ def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:
     return float(pressure[suspicious].sum()) / total if total > 0 else 0.0
 
 
+def decided_by_scan(share: Numbers) -> Any:
+    """States whose numbers errors of the scans decide: suspicious cells carry most of the load.
+
+    Parameters
+    ----------
+    share : float, ndarray or xr.DataArray
+        Fraction of the force on suspicious cells; NaN where it is not known.
+
+    Returns
+    -------
+    bool, or array of bool
+    """
+    return share > DECISIVE
+
+
 def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
     """Curves whose fits rest on errors of the scans.
 
@@ -121,7 +137,7 @@ def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
         Where suspicious cells carry more than half of the load in half or more of the states that
         have the nodes to be fitted; of all states where none has.
     """
-    decisive = curves["suspect_load_share"] > DECISIVE
+    decisive = decided_by_scan(curves["suspect_load_share"])
     enough = curves["nodes"] >= RESOLVED_NODES
     counted = enough.where(enough.any("normal_force"), curves["nodes"] > 0)
     states = counted.sum("normal_force")
@@ -151,10 +167,10 @@ def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: Mapping[str
     mapped = finest["suspect_load_share"].sel(normal_force=force, method="nearest")
     parts = []
     worst = float(mapped.max())
-    if worst > DECISIVE:
-        where = _offset_words(mapped["offset"].values[mapped.values > DECISIVE])
-        share = float(mapped.sel(offset=at_map))
-        maps = ", the contact maps among them" if share > DECISIVE else ""
+    if decided_by_scan(worst):
+        where = _offset_words(mapped["offset"].values[decided_by_scan(mapped.values)])
+        at_maps = decided_by_scan(float(mapped.sel(offset=at_map)))
+        maps = ", the contact maps among them" if at_maps else ""
         parts.append(f"up to {worst:.0%} of the map load (v = {where} mm{maps})")
     fitted = fits_undetermined(finest)
     if fitted.any():

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from .summary import Quantity, Specimen
-from .words import percent, with_unit
+from .words import with_unit
 
 #: Sources of the total of this surface, in the order of the bar; the rest belong to the population.
 OF_SURFACE = ("solver", "numerical", "estimator")
@@ -68,8 +68,8 @@ def _bar(quantity: Quantity) -> Bar:
         name=quantity.name,
         meaning=quantity.meaning,
         value=with_unit(quantity.value, quantity.unit),
-        surface=_of_value(quantity, quantity.errors["surface"]),
-        population=_of_value(quantity, quantity.errors["population"]),
+        surface=quantity.error_words(quantity.errors["surface"]),
+        population=quantity.error_words(quantity.errors["population"]),
         parts=parts,
     )
 
@@ -77,16 +77,5 @@ def _bar(quantity: Quantity) -> Bar:
 def _words(quantity, source):
     error = quantity.sources[source]
     if error is not None and not (error == 0 and quantity.reasons[source]):
-        return _of_value(quantity, error)
+        return quantity.error_words(error)
     return quantity.reasons[source] or "not known"
-
-
-def _of_value(quantity, error):
-    """An error as a fraction of its value; of a dimension as it is."""
-    if error is None or quantity.unit == "1":
-        return with_unit(error, quantity.unit, 2)
-    return (
-        percent(abs(error / quantity.value), 2)
-        if quantity.value
-        else with_unit(error, quantity.unit)
-    )

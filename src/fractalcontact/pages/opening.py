@@ -86,8 +86,9 @@ def _closure(found: _At, under: str, total: int) -> Markup | None:
 
 
 def _error(at):
-    error = at.quantities["closure"].relative()
-    return "" if error is None else f", ± {percent(error)}"
+    closure = at.quantities["closure"]
+    error = closure.errors["surface"]
+    return "" if error is None else f", ± {closure.error_words(error)}"
 
 
 def _ends(found, value_of):

@@ -14,9 +14,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..core.determined import determined
+from ..core.labels import cf_attrs
 from ..domain.count_law import LawTerms, law_count
-from ..mechanics.overlap import overlapping_nodes, suspect_nodes
+from ..mechanics.model_validity import NO_PRESSURE
+from ..mechanics.overlap import decided_by_scan, overlapping_nodes, suspect_nodes
 from ..surface.specimen import cell_side
+from .summary import DIMENSION, TOO_FEW_RESOLUTIONS
 
 #: Order of the dimensions of all that is packed; one-dimensional coordinates stand apart.
 ORDER = (
@@ -39,6 +43,7 @@ STATE = (
     ("closure", "area"),
     ("closure", "area_share"),
     ("closure", "area_corrected_share"),
+    ("scaling", "sigma_n"),
     ("closure", "nodes"),
     ("closure", "stiffness"),
     ("closure", "interface_stiffness"),
@@ -68,9 +73,25 @@ CURVES = (
 #: Ends of intervals and error bounds, where a quantity has them. Those of `delta_sigma_area` have
 #: the names of the estimate by areas itself.
 BOUNDS = ("_low", "_high", "_error")
-BOUNDS_OF_AREA = {"_low": "delta_sigma_low", "_high": "delta_sigma_high"}
-#: Why a number of a state is missing, by the quantity it is about.
-REASONS = (("domains", "reason"),)
+BOUNDS_OF_AREA = {"": "delta_sigma", "_low": "delta_sigma_low", "_high": "delta_sigma_high"}
+#: Rows whose total error is that of a quantity of the error budget. What w and w_int differ by,
+#: the bulk settlement, is exact.
+TOTALS = {
+    "closure/closure": "closure",
+    "closure/interface_closure": "closure",
+    "closure/separation": "separation",
+    "closure/area_corrected_share": "area_corrected",
+    "closure/interface_stiffness": "stiffness",
+    "domains/delta_sigma": "delta_sigma",
+}
+#: Rows of a number that the scan does not determine where its suspicious cells carry the load.
+OF_JOINT = (
+    *("closure/closure", "closure/interface_closure", "closure/seated_closure"),
+    *("closure/separation", "dilatancy/elastic_dilatancy", "closure/area", "closure/area_share"),
+    *("closure/area_corrected_share", "closure/stiffness", "closure/interface_stiffness"),
+)
+#: Rows of dimensions.
+DIMENSION_ROWS = ("domains/delta_sigma", "domains/delta_sigma_ordinary", "scaling/delta_sigma_area")
 #: Of the texts: 9 takes ten times as long, for a page smaller by a fortieth.
 COMPRESSION = 5
 #: Steps that the largest gap of a specimen has; the code after the last stands for a missing gap.
@@ -135,8 +156,10 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     dict
         Coordinates (`direction`, `offset`, `resolution`, `normal_force`, `nominal_pressure`,
         `rigid_direction`, `rigid_offset`), `arrays` (stage, variable, units, meaning, dims, shape,
-        start of each in `numbers`), `numbers` (text), `reasons`, `window`, `domains` (text by
-        resolution, direction and offset), `marks` and `fields`.
+        start of each in `numbers`), `numbers` (text), `of_joint`, `reasons`, `window`, `domains`
+        (text by resolution, direction and offset), `marks` and `fields`. Arrays called
+        ``total/ROW`` are errors of all sources; ``undetermined/ROW``, and for the rows `of_joint`
+        ``undetermined/by_scan``, say where the pages call a number undetermined.
     """
     stages = {
         stage: atlas[f"{stage}/{name}"].to_dataset()
@@ -150,6 +173,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     for stage, variable in (*STATE, *CURVES):
         _add_with_bounds(numbers, stages[stage], stage, variable)
     numbers.add("domains", "delta_sigma", _law(stages["domains"]), key="law_count")
+    _add_undetermined(numbers, stages)
     return {
         **{
             key: closure[key].values.tolist()
@@ -160,9 +184,8 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
             for key in ("rigid_direction", "rigid_offset")
         },
         "rows": [f"{stage}/{variable}" for stage, variable in STATE],
-        "reasons": {
-            f"{stage}/delta_sigma": _reasons(stages[stage][variable]) for stage, variable in REASONS
-        },
+        "of_joint": OF_JOINT,
+        "reasons": _reasons(stages),
         "totals": _totals(atlas, name, numbers),
         "arrays": numbers.entries,
         "numbers": numbers.text(),
@@ -176,11 +199,15 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 def _add_with_bounds(numbers, dataset, stage, variable):
     numbers.add(stage, variable, dataset[variable])
     for ending in BOUNDS:
-        other = f"{variable}{ending}"
-        if variable == "delta_sigma_area":
-            other = BOUNDS_OF_AREA.get(ending, "")
+        other = _bound_of(variable, ending)
         if other in dataset:
             numbers.add(stage, other, dataset[other], key=f"{stage}/{variable}{ending}")
+
+
+def _bound_of(variable, ending):
+    if variable == "delta_sigma_area":
+        return BOUNDS_OF_AREA.get(ending, "")
+    return f"{variable}{ending}"
 
 
 def _law(domains):
@@ -197,7 +224,37 @@ def _law(domains):
     )
 
 
-def _reasons(words: xr.DataArray) -> dict[str, Any]:
+def _add_undetermined(numbers, stages):
+    """Where the result page calls a number undetermined: by the scan, or by its interval."""
+    by_scan = decided_by_scan(stages["closure"]["suspect_load_share"])
+    attrs = cf_attrs("1", "whether suspicious cells of the scans decide what follows from contact")
+    numbers.add("closure", "", by_scan.assign_attrs(attrs), key="undetermined/by_scan")
+    for key in DIMENSION_ROWS:
+        stage, variable = key.split("/")
+        names = [_bound_of(variable, ending) for ending in ("", "_low", "_high")]
+        says = xr.apply_ufunc(
+            lambda *ends: determined(*ends, **DIMENSION),
+            *(stages[stage][name] for name in names),
+            vectorize=True,
+        )
+        attrs = cf_attrs("1", "whether its interval leaves nearly everything open")
+        numbers.add(stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{key}")
+
+
+def _reasons(stages):
+    """Why a number of a solved state is missing, in the words of the result page."""
+    missing = (
+        ("scaling", "sigma_n", NO_PRESSURE),
+        ("scaling", "delta_sigma_area", TOO_FEW_RESOLUTIONS),
+    )
+    words = {"domains/delta_sigma": stages["domains"]["reason"]}
+    for stage, variable, why in missing:
+        values = stages[stage][variable]
+        words[f"{stage}/{variable}"] = xr.where(np.isfinite(values), "", why)
+    return {key: _listed(of_states) for key, of_states in words.items()}
+
+
+def _listed(words: xr.DataArray) -> dict[str, Any]:
     """Words of states as places in a list of the different ones, in ``ORDER``."""
     words = words.transpose(*(name for name in ORDER if name in words.dims))
     different, places = np.unique(words.values.astype(str).ravel(), return_inverse=True)
@@ -209,17 +266,16 @@ def _totals(atlas, name, numbers):
     if "error_budget" not in atlas.children or name not in atlas["error_budget"].children:
         return None
     budget = atlas[f"error_budget/{name}"].to_dataset()
-    keys = {
-        "closure": "closure/interface_closure",
-        "separation": "closure/separation",
-        "area_corrected": "closure/area_corrected",
-        "stiffness": "closure/interface_stiffness",
-        "delta_sigma": "domains/delta_sigma",
-    }
-    for quantity in budget["quantity"].values.tolist():
+    # Over the offsets delta = u + w_b: its error is that of the separation.
+    sliding = {"dilatancy/elastic_dilatancy": "separation"}
+    keys = TOTALS | (sliding if budget.attrs["direction"] != "none" else {})
+    closure = atlas[f"closure/{name}"].to_dataset()
+    area = float((closure["normal_force"] / closure["nominal_pressure"])[0])
+    for key, quantity in keys.items():
         total = budget["total"].sel(quantity=quantity, drop=True)
-        total.attrs["units"] = str(budget["unit"].sel(quantity=quantity).item())
-        numbers.add("error_budget", "total", total, key=f"total/{keys[quantity]}")
+        total = total / area if key.endswith("_share") else total
+        total.attrs = cf_attrs(numbers.entries[key]["units"], "error of all sources")
+        numbers.add("error_budget", "total", total, key=f"total/{key}")
     return {
         "direction": str(budget.attrs["direction"]),
         "offset": float(budget.attrs["offset_mm"]),

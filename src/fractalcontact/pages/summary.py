@@ -11,8 +11,8 @@ import xarray as xr
 from ..core import estimate
 from ..core.determined import determined
 from ..domain.box_dimension import WIDEST
-from ..mechanics.model_validity import Validity
-from ..mechanics.overlap import DECISIVE
+from ..mechanics.model_validity import NO_PRESSURE, Validity
+from ..mechanics.overlap import decided_by_scan
 from ..surface.grid import spacing_of
 from ..surface.specimen import window_sides
 from .chosen import Chosen, finite
@@ -20,6 +20,7 @@ from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
+from .words import percent, with_unit
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -28,6 +29,8 @@ DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
 #: Columns of the summary that are not called as the error budget calls their quantity.
 _COLUMNS = {"closure": "interface_closure"}
 
+#: Why there is no Delta_sigma from the area where its stage gives no reason.
+TOO_FEW_RESOLUTIONS = "too few resolutions were solved under this load with nodes enough in contact"
 #: Why a number is undetermined where its stage gives no other reason.
 _WIDE = "its 95 % interval leaves nearly everything open"
 
@@ -81,6 +84,8 @@ class Quantity:
     name : str
         As the budget has it.
     meaning, unit : str
+    absolute : bool
+        Whether its errors are stated in the unit alone, never as fractions of the value.
     value : float or None
     errors : dict of str to float or None
         Half-widths at 95 %, in the unit: of this surface, of its population.
@@ -93,15 +98,17 @@ class Quantity:
     name: str
     meaning: str
     unit: str
+    absolute: bool
     value: float | None
     errors: dict[str, float | None]
     sources: dict[str, float | None]
     reasons: dict[str, str]
 
-    def relative(self, which: str = "surface") -> float | None:
-        """An error as a fraction of the value."""
-        error = self.errors[which]
-        return None if error is None or not self.value else abs(error / self.value)
+    def error_words(self, error: float | None) -> str:
+        """An error in per cent of the value where the quantity has fractions, else in its unit."""
+        if error is None or self.absolute or not self.value:
+            return with_unit(error, self.unit, 2)
+        return percent(abs(error / self.value))
 
 
 @dataclass(frozen=True)
@@ -129,13 +136,18 @@ class AtLoad:
 
     @property
     def real_pressure(self) -> float | None:
-        """Real mean pressure F / A_r, MPa."""
+        """Real mean pressure F / A_r, MPa; None where too few nodes touch."""
         return finite(self.model.pressure)
+
+    @property
+    def no_real_pressure(self) -> str:
+        """Why there is no real mean pressure; empty where there is one."""
+        return NO_PRESSURE if self.real_pressure is None else ""
 
     @property
     def decided_by_scan(self) -> bool:
         """Whether suspicious cells of the scans carry most of the load: its numbers are theirs."""
-        return self.suspect_share is not None and self.suspect_share > DECISIVE
+        return self.suspect_share is not None and bool(decided_by_scan(self.suspect_share))
 
 
 @dataclass(frozen=True)
@@ -256,7 +268,7 @@ def _dimension(chosen, stage, state):
     found = chosen.values(stage, *names).isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
     if not note and np.isnan(float(found["delta_sigma"])):
-        note = "too few resolutions were solved under this load with nodes enough in contact"
+        note = TOO_FEW_RESOLUTIONS
     return Estimate.of(found, "delta_sigma", note, **DIMENSION)
 
 
@@ -280,6 +292,7 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
             name=name,
             meaning=str(one["meaning"].item()),
             unit=str(one["unit"].item()),
+            absolute=bool(one["absolute"]),
             value=finite(one["published"]),
             errors={which: finite(one[total]) for which, total in TOTALS.items()},
             sources={source: finite(one["error"].sel(source=source)) for source in sources},
@@ -351,6 +364,7 @@ def _of_load(load):
         "contact_nodes": load.contact_nodes,
         "suspect_load_share": load.suspect_share,
         "real_pressure_MPa": load.real_pressure,
+        "real_pressure_reason": load.no_real_pressure,
         "elastic_model": load.model.verdict,
         "elastic_model_good_to_MPa": load.model.limits.good_to,
         "elastic_model_poor_from_MPa": load.model.limits.poor_from,

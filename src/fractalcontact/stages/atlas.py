@@ -151,7 +151,7 @@ def _models(of_joints, settings):
     if not of_joints:
         return {}
     judged = {
-        name: model_validity(stages["closure"], stages["area"], settings[name])
+        name: model_validity(stages["area"], stages["scaling"], settings[name])
         for name, stages in of_joints.items()
     }
     return {"elastic_model": judged}

@@ -185,7 +185,7 @@ _TABLE = (
         "verdict on the elastic model: real mean pressure against strength, slope of the faces",
         SPECIMEN,
         "mechanics.model_validity:model_validity",
-        ("closure", "area"),
+        ("area", "scaling"),
         filed=False,
     ),
     Stage(

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...accuracy.refinement import ABSOLUTE
 from ..kit.drawing import (
     COLOURS,
     LINES,
@@ -19,7 +21,7 @@ from ..kit.drawing import (
     legends_below,
     settings_of,
 )
-from ..kit.words import SUPPLEMENTARY, force_label, percent, place
+from ..kit.words import SUPPLEMENTARY, force_label, percent, place, short
 
 TITLE = "Largest errors of all offsets: by the solver, and by the spacing"
 SUBJECT = "specimen"
@@ -31,7 +33,7 @@ ERRORS = (
     ("closure", "interface_closure", "interface_closure_error", "interface closure"),
     ("closure", "area", "area_error", "real contact area"),
     ("closure", "interface_stiffness", "interface_stiffness_error", "interface stiffness"),
-    ("domains", "delta_sigma", "delta_sigma_error", "$\\Delta_\\sigma$ by box counting"),
+    ("domains", "delta_sigma", "delta_sigma_error", "$\\Delta_\\sigma$ by box counting, in 0.01"),
     (
         "closure",
         "interface_closure",
@@ -68,13 +70,14 @@ def _errors(atlas, name, direction):
     for stage, variable, key, words in ERRORS:
         states = group(atlas, stage, name)[[variable, key]].sel(direction=direction)
         states = states.sel(resolution=states["resolution"].min())
-        size = abs(states[variable])
+        size = xr.ones_like(states[variable]) if variable in ABSOLUTE else abs(states[variable])
         errors = states[key] / size.where(size > 0)
         for load in errors["normal_force"].values:
             here = errors.sel(normal_force=load).values
             known = here[np.isfinite(here)]
             if known.size:
                 row = {"quantity": words, "force_N": load, "offsets": known.size}
+                row["kind"] = "absolute" if variable in ABSOLUTE else "relative"
                 rows.append(row | {"median": np.median(known), "largest": known.max()})
     return pd.DataFrame(rows)
 
@@ -92,8 +95,8 @@ def _draw_errors(axes, errors, forces):
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_ymargin(0.12)
-    axes.set_ylabel("largest error (% of the value)")
-    axes.set_title(f"at the bottom: errors of {100 * LEAST:g} % and less", loc="left")
+    axes.set_ylabel("largest error (% of the value, or in 0.01)")
+    axes.set_title(f"at the bottom: errors of {100 * LEAST:g} and less", loc="left")
     _write_ends(axes, errors, size)
 
 
@@ -121,14 +124,16 @@ def _write_ends(axes, errors, size):
 
 
 def _by_source(errors):
-    """Errors by the solver, and by the spacing."""
+    """Errors that are fractions of their values: by the solver, and by the spacing."""
     spaced = errors["quantity"] == ERRORS[-1][-1]
-    return errors[~spaced], errors[spaced]
+    return errors[~spaced & (errors["kind"] == "relative")], errors[spaced]
 
 
 def _caption(errors):
     solver, spacing = _by_source(errors)
     worst = solver.loc[solver["largest"].idxmax()]
+    absolute = errors.loc[errors["kind"] == "absolute", "largest"].max()
+    dimension = f", of Delta_sigma {short(absolute, 2)}" if np.isfinite(absolute) else ""
     by_spacing = ""
     if len(spacing):
         ends = spacing["largest"].min(), spacing["largest"].max()
@@ -137,10 +142,5 @@ def _caption(errors):
     return (
         f"{SUPPLEMENTARY} Largest error of each quantity under each load, over all offsets. The "
         f"largest by the solver is {percent(worst['largest'])}, of the "
-        f"{_plain(worst['quantity'])} at {force_label(worst['force_N'])}{by_spacing}."
+        f"{worst['quantity']} at {force_label(worst['force_N'])}{dimension}{by_spacing}."
     )
-
-
-def _plain(words):
-    """Words of a legend without formulas."""
-    return words.replace("$\\Delta_\\sigma$", "Delta_sigma")

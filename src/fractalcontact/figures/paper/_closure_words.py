@@ -26,8 +26,8 @@ _FOLLOWED = {
 
 
 def no_law(curve: xr.Dataset) -> str:
-    """Why no law could be fitted to a curve."""
-    return str(curve["closure_law_reason"].values)
+    """Why no law could be fitted to a curve, without what would help."""
+    return str(curve["closure_law_reason"].values).split(":")[0]
 
 
 def all_offsets(curves: xr.Dataset, laws: xr.Dataset) -> tuple[list[Line2D], list[Line2D]]:
@@ -78,7 +78,7 @@ def laws_words(curves: xr.Dataset) -> str:
     """Which law the curves follow, beside the paper's hyperbola."""
     named = _followed(curves)
     if not named:
-        return f"No law could be fitted ({no_law(curves.isel(offset=-1))})."
+        return f"No law fitted ({no_law(curves.isel(offset=-1))})."
     if sum(named.values()) == 1:
         followed = next(words for words, n in named.items() if n)
         return f"The curve follows {followed.replace('neither', 'neither law')}."

@@ -323,7 +323,7 @@ def _table(curves, drawn, laws):
 
 def _caption(curves, stiffness):
     return (
-        f"{opening('Figs. 4 and 5')} Closure, contact area, stiffness. "
+        f"{opening('Figs. 4 and 5')} Closure, area, stiffness. "
         f"{laws_words(curves)} {stiffness_words(stiffness)}"
     )
 

@@ -97,7 +97,7 @@ def _table(loading, i):
             "area_share": area / np.prod(loading.sides),
             "area_corrected_mm2": np.where(enough, corrected, np.nan),
             "area_corrected_share": np.where(enough, corrected, np.nan) / np.prod(loading.sides),
-            "sigma_n_MPa": force / np.where(enough, corrected, np.nan),
+            "sigma_n_MPa": scaling["sigma_n"].values,
             "sigma_n_raw_MPa": force / area,
         }
     )

@@ -58,7 +58,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _area_table(loading):
     """One row a load and resolution; every load of the study, drawn or not."""
     scaling = loading.scaling.sortby(RESOLUTION)
-    frame = scaling[["area", "area_corrected", "nodes", "sigma_n"]].to_dataframe().reset_index()
+    frame = scaling[["area", "area_corrected", "nodes", "area_used"]].to_dataframe().reset_index()
     spacing = scaling["spacing"].to_series()
     measure = scaling["hausdorff_measure"].to_series()
     delta = scaling["delta_sigma"].to_series()
@@ -72,7 +72,7 @@ def _area_table(loading):
             "nodes": frame["nodes"],
             "area_mm2": frame["area"],
             "area_corrected_mm2": frame["area_corrected"],
-            "used": np.isfinite(frame["sigma_n"]) & np.isfinite(exponent),
+            "used": frame["area_used"],
             "fitted_area_mm2": frame["normal_force"].map(measure) * s**exponent,
         }
     ).sort_values(["load_N", "spacing_mm"], ignore_index=True)

@@ -268,16 +268,19 @@ function valueRow(key, { units, meaning }) {
 /** A value with its interval or error, or why there is none. */
 function valueWords(key, { states, place }, value) {
   if (!Number.isFinite(value)) return states.solved(place) ? states.reason(key, place) || "–" : "not solved";
-  const [low, high] = ["_low", "_high"].map((end) => states.at(key + end, place));
-  if (Number.isFinite(low) && Number.isFinite(high)) {
-    const words = `${short(value)} [${short(low, 3)}, ${short(high, 3)}]`;
-    return high - low > 1 ? `undetermined (${words})` : words;
-  }
-  const [total, solver] = [states.total(key, place), states.at(`${key}_error`, place)];
-  let words = short(value);
-  if (total > 0) words += ` ± ${short(total, 2)}`;
-  else if (solver > 0) words += ` ± ${short(solver, 2)} (solver)`;
-  return states.ofFinest(key, place) ? `${words} at the finest spacing` : words;
+  const words = short(value) + errorWords(key, states, place);
+  const by = states.undetermined(key, place);
+  const said = by ? `undetermined (${words})${by === "scan" ? ", by the scan" : ""}` : words;
+  return states.ofFinest(key, place) ? `${said} at the finest spacing` : said;
+}
+
+/** Interval or total error of a number of the joint; where neither is known, the solver's part of it. */
+function errorWords(key, states, place) {
+  const [low, high, solver] = ["_low", "_high", "_error"].map((end) => states.at(key + end, place));
+  if (Number.isFinite(low) && Number.isFinite(high)) return ` [${short(low, 3)}, ${short(high, 3)}]`;
+  const total = states.total(key, place);
+  if (Number.isFinite(total)) return ` ± ${short(total, 2)}`;
+  return states.raw.of_joint.includes(key) ? `, error not known (solver’s part ${short(solver, 2)})` : "";
 }
 
 function showCode() {

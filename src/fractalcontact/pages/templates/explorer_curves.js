@@ -64,7 +64,7 @@ function dimensionPoint(key) {
   return (states, place) => {
     const [y, low, high] = ["", "_low", "_high"].map((end) => states.at(key + end, place));
     const x = forceOf(states, place);
-    const determined = high - low <= 1;
+    const determined = !states.undetermined(key, place);
     const value = `${short(y, 3)} [${short(low, 3)}, ${short(high, 3)}]`;
     const words = `Δσ = ${determined ? value : `undetermined (${value})`} under ${forceWords(x)}`;
     return { x, y, low: determined ? low : NaN, high: determined ? high : NaN, hollow: !determined, words };

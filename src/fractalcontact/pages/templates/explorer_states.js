@@ -64,7 +64,7 @@ class States {
   solved(place) {
     return this.at("closure/solved", place) === 1;
   }
-  /** Why Delta_sigma is missing, in the atlas's words. */
+  /** Why a number of a solved state is missing, in the words of the result page. */
   reason(key, place) {
     const reasons = this.raw.reasons[key];
     if (!reasons) return "";
@@ -86,6 +86,12 @@ class States {
       this.raw.offset[place.offset] === where.offset &&
       this.raw.resolution[place.resolution] === where.resolution;
     return here ? this.at(`total/${key}`, place) : NaN;
+  }
+  /** Whether the result page calls a number undetermined: "interval" or "scan" decides, "" if not. */
+  undetermined(key, place) {
+    if (this.at(`undetermined/${key}`, place) === 1) return "interval";
+    const byScan = this.raw.of_joint.includes(key) && this.at("undetermined/by_scan", place) === 1;
+    return byScan ? "scan" : "";
   }
   /** What `make` gives, made once. */
   async once(key, make) {
