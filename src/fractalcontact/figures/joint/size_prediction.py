@@ -129,7 +129,7 @@ def _table(test):
                 f"predicted{end}": test[f"predicted_{quantity}{end}"].values[:, j]
                 for end in INTERVAL
             }
-            columns["solved"] = float(test[f"direct_{quantity}"][j])
+            columns["direct"] = float(test[f"direct_{quantity}"][j])
             columns["unit"] = test[f"direct_{quantity}"].attrs["units"]
             tables.append(pd.DataFrame(columns))
     return pd.concat(tables[1:] or tables, ignore_index=True)

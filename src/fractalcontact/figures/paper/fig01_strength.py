@@ -149,7 +149,7 @@ def _table(laws):
                 f"{column}{end}": laws[f"{name}{end}"].values[i, :, j]
                 for column, name in (
                     ("strength_MPa", "similar_strength"),
-                    ("slope", "similar_slope"),
+                    ("similar_slope", "similar_slope"),
                 )
                 for end in INTERVAL
             }

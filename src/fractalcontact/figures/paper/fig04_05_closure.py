@@ -313,9 +313,9 @@ def _table(curves, drawn, laws):
         columns = {"panel": "a, b, c", "offset_mm": float(curve["offset"])}
         columns |= {column: curve[name].values for column, name in points.items()}
         columns |= {column: curve[name].item() for column, name in fitted.items()}
-        columns["area_fitted"] = law["corrected_fitted"].values
+        columns["corrected_fitted"] = law["corrected_fitted"].values
         for end in INTERVAL:
-            columns[f"area_exponent{end}"] = float(law[f"corrected_exponent{end}"])
+            columns[f"corrected_exponent{end}"] = float(law[f"corrected_exponent{end}"])
         rows.append(pd.DataFrame(columns))
     return pd.concat(rows, ignore_index=True)
 

@@ -173,7 +173,7 @@ def _table(laws):
                             laws["barton_strength"].values[:, j], pressure
                         ),
                         **{
-                            f"exponent{end}": float(
+                            f"similar_strength_exponent{end}": float(
                                 laws[f"similar_strength_exponent{end}"].values[i, j]
                             )
                             for end in INTERVAL
