@@ -88,11 +88,11 @@ def test_conductance_drawn_is_that_of_the_atlas(atlas, name):
         np.testing.assert_allclose(
             points["interface_stiffness_MPa_per_mm"], points["conductance_per_mm"] * e_star
         )
-        fitted = points[points["fitted"]]
+        fitted = points[points["conductance_fitted"]]
         line = fit_line(
             np.log(fitted["nominal_pressure_MPa"]), np.log(fitted["conductance_per_mm"])
         )
-        np.testing.assert_allclose(points["exponent"].iloc[0], line.slope.value)
+        np.testing.assert_allclose(points["conductance_exponent"].iloc[0], line.slope.value)
 
 
 @pytest.mark.parametrize("name", representative(SLIDING))

@@ -187,10 +187,10 @@ def test_closure_points_are_those_of_the_atlas(atlas, specimen):
 def test_area_exponent_is_that_of_the_points_marked_as_fitted(atlas):
     table = closures_drawn(atlas, "sliding")
     for _, points in table.groupby("offset_mm"):
-        fitted = points[points["area_fitted"]]
+        fitted = points[points["corrected_fitted"]]
         assert (fitted["nodes"] >= 30).all()
         line = fit_line(np.log(fitted["force_N"]), np.log(fitted["area_corrected_mm2"]))
-        np.testing.assert_array_equal(points["area_exponent"].unique(), line.slope.value)
+        np.testing.assert_array_equal(points["corrected_exponent"].unique(), line.slope.value)
 
 
 def test_both_laws_are_drawn_over_the_loads_fitted_each_with_its_own_line(atlas):

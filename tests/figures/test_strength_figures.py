@@ -104,7 +104,7 @@ def test_strength_by_size_is_that_of_the_atlas(atlas):
     laws = atlas["windows/sliding"].to_dataset()
     similar = table[table["at"] == "v/b"]
     stored = laws["similar_slope"].transpose("normal_force", "share", "part").values.ravel()
-    np.testing.assert_array_equal(similar["slope"], stored)
+    np.testing.assert_array_equal(similar["similar_slope"], stored)
     peak = table[table["at"] == "peak"]
     stored = laws["peak_strength"].transpose("normal_force", "part").values.ravel()
     np.testing.assert_array_equal(peak["strength_MPa"], stored)

@@ -242,7 +242,7 @@ def _table(curve, law):
         "corrected_kappa": law["corrected_kappa"].values,
         "fitted": law["fitted"].values,
         "corrected_fitted": law["corrected_fitted"].values,
-        "light": law["corrected_light"].values,
+        "corrected_light": law["corrected_light"].values,
     }
     return pd.DataFrame(columns | {name: law[name].values for name, *_ in THEORIES})
 

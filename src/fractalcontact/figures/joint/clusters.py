@@ -70,7 +70,7 @@ COLUMNS = {
 #: Null models that are drawn where they are known, at the offset of the maps: column, marker.
 NULLS = {"random": "+", "cut": "x"}
 EXPONENTS = {
-    **dict(zip(names_of("cluster_exponent"), names_of("exponent"), strict=True)),
+    **{name: name for name in names_of("cluster_exponent")},
     "cluster_fit_min": "fit_min_mm2",
     "cluster_fit_max": "fit_max_mm2",
     "cluster_fit_n": "fit_clusters",
@@ -150,7 +150,7 @@ def _band_entries(table):
 def _size_heading(sizes, force):
     """What the numbers and lines of (d) are: fitted laws, and when sizes follow them."""
     at = f"(d) at $F$ = {force}"
-    fitted = sizes[np.isfinite(sizes["exponent"])]
+    fitted = sizes[np.isfinite(sizes["cluster_exponent"])]
     if fitted.empty:
         return [heading(at)]
     low, high = (short(end) for end in (fitted["fit_min_mm2"].min(), fitted["fit_max_mm2"].max()))
@@ -244,11 +244,11 @@ def _draw_sizes(axes, sizes):
     """Clusters of some area or more, with the laws fitted to them."""
     for n, (offset, points) in enumerate(sizes.groupby("offset_mm")):
         law = points.iloc[0]
-        exponent = Estimate.read(law, "exponent", scale=EXPONENT).text()
+        exponent = Estimate.read(law, "cluster_exponent", scale=EXPONENT).text()
         area, at_least = points["cluster_area_mm2"], points["clusters_at_least"]
         colour = _OFFSET_COLOURS[n]
         style = {"color": colour, "marker": _OFFSET_MARKERS[n], "ls": "none"}
-        fits = np.isfinite(law["exponent"])
+        fits = np.isfinite(law["cluster_exponent"])
         words = rf"$\beta$ = {exponent}" if fits else "too few for a law"
         if fits:
             words += f", {_TEST} = {_distance(law):.2f}"
@@ -261,7 +261,7 @@ def _draw_sizes(axes, sizes):
             # From the octave that holds the smallest cluster fitted.
             first = area[area <= law["fit_min_mm2"] * (1 + 1e-9)].max()
             ends = np.array([first, law["fit_max_mm2"]])
-            fitted = law["fit_clusters"] * (ends / first) ** -law["exponent"]
+            fitted = law["fit_clusters"] * (ends / first) ** -law["cluster_exponent"]
             axes.plot(ends, fitted, color=colour, lw=0.8)
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -290,14 +290,15 @@ def _caption(clustered, sizes):
 def _size_words(sizes):
     """The exponents of the sizes of clusters, and whether the sizes follow the law."""
     laws = sizes.drop_duplicates("offset_mm")
-    fitted = laws[np.isfinite(laws["exponent"])]
+    fitted = laws[np.isfinite(laws["cluster_exponent"])]
     if fitted.empty:
         return "Too few clusters for a law of sizes."
     if len(fitted) == 1:
         law = fitted.iloc[0]
-        values = Estimate.read(law, "exponent", scale=EXPONENT).text()
+        values = Estimate.read(law, "cluster_exponent", scale=EXPONENT).text()
     else:
-        values = f"{short(fitted['exponent'].min())} to {short(fitted['exponent'].max())}"
+        exponents = fitted["cluster_exponent"]
+        values = f"{short(exponents.min())} to {short(exponents.max())}"
     broken = [
         law
         for _, law in fitted.iterrows()

@@ -61,7 +61,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     )
     n = table["offset_mm"].nunique()
     remarks = [*entries(axes)[n:], heading("lines: fits, exponents with 95 % intervals")]
-    if not table["fitted"].all():
+    if not table["conductance_fitted"].all():
         remarks.append(heading(f"hollow: not fitted (fewer than {RESOLVED_NODES} nodes)"))
     legends_below(figure, entries(axes)[:n], remarks)
     headline(figure, settings["label"], place(direction))
@@ -84,8 +84,8 @@ def _table(curves):
                     "nominal_pressure_MPa": pressure,
                     "conductance_per_mm": conductance,
                     "interface_stiffness_MPa_per_mm": curve["interface_stiffness"].values,
-                    "fitted": inside & np.isfinite(conductance),
-                    **Estimate.read(curve, "conductance_exponent").columns("exponent"),
+                    "conductance_fitted": inside & np.isfinite(conductance),
+                    **Estimate.read(curve, "conductance_exponent").columns("conductance_exponent"),
                 }
             )
         )
@@ -97,8 +97,8 @@ def _state(direction, offset):
 
 
 def _draw_curve(axes, n, state, points):
-    law, fitted = points.iloc[0], points["fitted"]
-    exponent = Estimate.read(law, "exponent", scale=EXPONENT).text()
+    law, fitted = points.iloc[0], points["conductance_fitted"]
+    exponent = Estimate.read(law, "conductance_exponent", scale=EXPONENT).text()
     words = (
         f"exponent {exponent}"
         if np.isfinite(points["conductance_per_mm"]).any()
@@ -107,14 +107,14 @@ def _draw_curve(axes, n, state, points):
     style = {"color": colour_of(n), "marker": MARKERS[n], "label": f"{state}: {words}"}
     x, y = points["nominal_pressure_MPa"], points["conductance_per_mm"]
     draw_points(axes, x, y, fitted, **style)
-    if np.isfinite(law["exponent"]):
+    if np.isfinite(law["conductance_exponent"]):
         # A least-squares line goes through the mean of its points.
         p, h = (
             np.log(points.loc[fitted, column])
             for column in ("nominal_pressure_MPa", "conductance_per_mm")
         )
         ends = np.array([p.min(), p.max()])
-        line = np.exp(h.mean() + law["exponent"] * (ends - p.mean()))
+        line = np.exp(h.mean() + law["conductance_exponent"] * (ends - p.mean()))
         axes.plot(np.exp(ends), line, color=colour_of(n), lw=0.8)
 
 
@@ -124,7 +124,7 @@ def _draw_theory(axes, table):
     if known.empty:
         say_empty(axes, TOO_FULL)
         return
-    middle = known[known["fitted"]] if known["fitted"].any() else known
+    middle = known[known["conductance_fitted"]] if known["conductance_fitted"].any() else known
     p, h = (np.log(middle[key]) for key in ("nominal_pressure_MPa", "conductance_per_mm"))
     ends = np.array([p.min(), p.mean(), p.max()])
     for slope, name in zip(
@@ -146,19 +146,19 @@ def _caption(table):
 def _exponent_words(table):
     """The powers of the pressure, beside those of theory."""
     laws = table.drop_duplicates("offset_mm")
-    fitted = laws[np.isfinite(laws["exponent"])]
+    fitted = laws[np.isfinite(laws["conductance_exponent"])]
     if fitted.empty:
         return "Too few pressures for an exponent."
     low, high = THEORY
-    exponents = Estimate.read(fitted, "exponent")
+    exponents = Estimate.read(fitted, "conductance_exponent", scale=EXPONENT)
+    value = exponents.value
     reached = int(((exponents.low <= high) & (exponents.high >= low)).sum())
     below = int((exponents.high < low).sum())
     above = len(fitted) - reached - below
-    law = fitted.iloc[0]
     values = (
-        f"a power {Estimate.read(law, 'exponent', scale=EXPONENT).text()}"
+        f"a power {exponents[0].text()}"
         if len(fitted) == 1
-        else f"powers from {fitted['exponent'].min():.3g} to {fitted['exponent'].max():.3g}"
+        else f"powers from {value.min():.3g} to {value.max():.3g}"
     )
     verdict = (
         f"as theory has it ({low:g} to {high:g})"

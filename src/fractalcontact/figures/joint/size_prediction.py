@@ -127,7 +127,7 @@ def _table(test):
             }
             predicted = Estimate.read(test, f"predicted_{quantity}")
             columns |= predicted[:, j].columns("predicted")
-            columns["solved"] = float(test[f"direct_{quantity}"][j])
+            columns["direct"] = float(test[f"direct_{quantity}"][j])
             columns["unit"] = test[f"direct_{quantity}"].attrs["units"]
             tables.append(pd.DataFrame(columns))
     return pd.concat(tables[1:] or tables, ignore_index=True)

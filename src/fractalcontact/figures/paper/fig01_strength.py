@@ -148,7 +148,7 @@ def _table(laws):
             strength, slope = (
                 Estimate.read(laws, name)[i, :, j] for name in ("similar_strength", "similar_slope")
             )
-            values = strength.columns("strength_MPa") | slope.columns("slope")
+            values = strength.columns("strength_MPa") | slope.columns("similar_slope")
             held = laws["similar_held"].values[i, :, j]
             row = {"at": "v/b", "v_over_b": share, **common, **values, "held_share": held}
             tables.append(pd.DataFrame(row))

@@ -315,8 +315,8 @@ def _table(curves, drawn, laws):
         columns = {"panel": "a, b, c", "offset_mm": float(curve["offset"])}
         columns |= {column: curve[name].values for column, name in points.items()}
         columns |= {column: curve[name].item() for column, name in fitted.items()}
-        columns["area_fitted"] = law["corrected_fitted"].values
-        columns |= Estimate.read(law, "corrected_exponent").columns("area_exponent")
+        columns["corrected_fitted"] = law["corrected_fitted"].values
+        columns |= Estimate.read(law, "corrected_exponent").columns("corrected_exponent")
         rows.append(pd.DataFrame(columns))
     return pd.concat(rows, ignore_index=True)
 

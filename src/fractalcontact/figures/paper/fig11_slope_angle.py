@@ -171,7 +171,7 @@ def _table(laws):
                             laws["barton_strength"].values[:, j], pressure
                         ),
                         **Estimate.read(laws, "similar_strength_exponent")[i, j].columns(
-                            "exponent"
+                            "similar_strength_exponent"
                         ),
                     }
                 )
