@@ -18,7 +18,7 @@ from enum import Enum, auto
 import numpy as np
 
 from ..core.kernel_cache import njit
-from .feasible import first_iterate, verified
+from .feasible import first_iterate, projected_closure, verified
 from .kkt import Iterate, KKTResidual, Problem, Solution, kkt_residual
 from .node_sets import symmetric_difference
 from .operator import Operator
@@ -207,12 +207,16 @@ class ActiveSetMethod:
         return method.solve(start.pressure, start.displacement)
 
     def _kkt_residual(self, iterate):
+        """The KKT residual of an iterate, under a force at the closure of a projected step."""
+        problem = self.problem
+        if problem.by_force and np.isfinite(problem.cap):
+            iterate.closure = projected_closure(problem, iterate)
         return kkt_residual(
             iterate.pressure,
             iterate.displacement,
-            self.problem.clearance,
+            problem.clearance,
             iterate.closure,
-            self.problem.cap,
+            problem.cap,
         )
 
     def _step(

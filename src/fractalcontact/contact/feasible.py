@@ -74,25 +74,11 @@ def _scaled_to_force(problem, operator, pressure, displacement):
         return problem.first_touch(), None
     factor = problem.load / total
     if pressure.max() * factor > problem.cap:
-        return _within_cap(problem, operator, pressure), None
+        # What the loaded nodes cannot carry, the first step gives to the next ones to touch.
+        pressure = np.clip(pressure, 0.0, problem.cap)
+        _scale_to(problem.load, pressure, problem.cap)
+        return pressure, None
     return pressure * factor, None if displacement is None else displacement * factor
-
-
-def _within_cap(problem, operator, pressure):
-    """A start of the given force that breaks no bound.
-
-    What its nodes cannot carry goes to those that are nearest to touching.
-    """
-    pressure = np.clip(pressure, 0.0, problem.cap)
-    _scale_to(problem.load, pressure, problem.cap)
-    lacking = problem.load - pressure.sum()
-    if lacking > FORCE_ROUNDING * problem.load:
-        displacement = operator(pressure.astype(np.float32))
-        empty = np.flatnonzero(pressure == 0)
-        order = np.argsort((displacement + problem.clearance)[empty], kind="stable")
-        nearest = empty[order[: int(2 * lacking / problem.cap) + 1]]
-        pressure[nearest] = lacking / nearest.size
-    return pressure
 
 
 def _energy_factor(problem, pressure, displacement):
@@ -107,10 +93,77 @@ def _energy_factor(problem, pressure, displacement):
     return min(factor, problem.cap / pressure.max()) if factor > 0 else 1.0
 
 
+def projected_closure(problem: Problem, iterate: Iterate) -> float:
+    """Closure of an iterate under a given force where nodes yield: that of a projected step.
+
+    Parameters
+    ----------
+    problem : Problem
+        Under a given force, with a finite cap.
+    iterate : Iterate
+
+    Returns
+    -------
+    float
+        w such that min(max(p - g, 0), H) has the sum F; the iterate's own where no node is at the
+        cap.
+
+    Notes
+    -----
+    The active set follows from the closure, and the force must come from the active set, as all
+    other nodes carry 0 or H. Where nearly all that touches yields, the closure of the last linear
+    solve is that of a few nodes: all others that it makes enter or leave do so at once, the force
+    is then not met, or by the wrong nodes, and sets cycle; where it is of no node at all, nothing
+    is violated and yet the force is lacking. The step along the negative gradient, projected on
+    the bounds and the force together, moves the nodes that are to be the active set at its
+    closure; so they can carry the force, and as much enters as leaves. (A node's own pressure
+    displaces it by about itself in these units. P. H. Calamai and J. J. More, Projected gradient
+    methods for linearly constrained problems, Math. Program. 39 (1987) 93.)
+    """
+    pressure, cap = iterate.pressure, problem.cap
+    if 0 < pressure.max() < cap:
+        return iterate.closure
+    arguments = pressure, iterate.displacement, problem.clearance, cap, problem.load
+    return _projected_closure(*arguments)
+
+
+@njit(cache=True)
+def _projected_closure(pressure, displacement, clearance, cap, load):
+    """Closure w at which the sum of min(max(p - g, 0), cap) is a force, by Newton and bisection."""
+    low, high = np.inf, -np.inf
+    for i in range(pressure.size):
+        reached = displacement[i] + clearance[i] - min(max(pressure[i], 0.0), cap)
+        low, high = min(low, reached), max(high, reached + cap)
+    closure = low
+    while True:
+        total, between = 0.0, 0
+        for i in range(pressure.size):
+            reached = displacement[i] + clearance[i] - min(max(pressure[i], 0.0), cap)
+            aim = closure - reached
+            if aim >= cap:
+                total += cap
+            elif aim > 0:
+                total += aim
+                between += 1
+        if abs(total - load) <= FORCE_ROUNDING * load:
+            return closure
+        low, high = (closure, high) if total < load else (low, closure)
+        if between:
+            closure += (load - total) / between
+        if not low < closure < high:
+            closure = (low + high) / 2
+            if not low < closure < high:
+                return closure
+
+
 @njit(cache=True)
 def _scale_to(total, pressure, cap):
-    """Scale a pressure to a total in place, none above the cap."""
-    for _ in range(CLIPPING_PASSES):
+    """Scale a pressure to a total in place, none above the cap.
+
+    Less than the total is left only where all that was positive is at the cap.
+    """
+    passes, reached = 0, True
+    while reached or passes < CLIPPING_PASSES:
         lacking, below_cap = total, 0.0
         for value in pressure:
             lacking -= value
@@ -118,7 +171,9 @@ def _scale_to(total, pressure, cap):
                 below_cap += value
         if abs(lacking) <= FORCE_ROUNDING * total or below_cap == 0:
             break
-        factor = 1 + lacking / below_cap
+        factor, reached = 1 + lacking / below_cap, False
         for i in range(pressure.size):
-            if pressure[i] < cap:
+            if 0 < pressure[i] < cap:
                 pressure[i] = min(pressure[i] * factor, cap)
+                reached = reached or pressure[i] == cap
+        passes += 1
