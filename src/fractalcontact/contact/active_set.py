@@ -18,11 +18,12 @@ from enum import Enum, auto
 import numpy as np
 
 from ..core.kernel_cache import njit
-from .feasible import first_iterate, projected_closure, verified
+from .feasible import first_iterate, verified
 from .kkt import Iterate, KKTResidual, Problem, Solution, kkt_residual
 from .node_sets import symmetric_difference
 from .operator import Operator
 from .projected_cg import ProjectedCG, add
+from .projected_step import closure_of_step
 from .safeguards import (
     SAFETY,
     many_iterations,
@@ -207,10 +208,9 @@ class ActiveSetMethod:
         return method.solve(start.pressure, start.displacement)
 
     def _kkt_residual(self, iterate):
-        """The KKT residual of an iterate, under a force at the closure of a projected step."""
+        """KKT residual of an iterate, whose closure becomes that of a step where nodes yield."""
         problem = self.problem
-        if problem.by_force and np.isfinite(problem.cap):
-            iterate.closure = projected_closure(problem, iterate)
+        iterate.closure = closure_of_step(problem, iterate)
         return kkt_residual(
             iterate.pressure,
             iterate.displacement,

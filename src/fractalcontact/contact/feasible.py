@@ -3,12 +3,9 @@
 import numpy as np
 
 from ..core.kernel_cache import njit
-from .kkt import Iterate, Problem, Solution, kkt_residual
+from .kkt import FORCE_ROUNDING, Iterate, Problem, Solution, kkt_residual
 from .operator import Operator
 from .projected_cg import CLIPPING_PASSES
-
-# A total this close to F is F.
-FORCE_ROUNDING = 1e-12
 
 
 def first_iterate(
@@ -91,69 +88,6 @@ def _energy_factor(problem, pressure, displacement):
         return 1.0
     factor = pressure @ (problem.load - problem.clearance) / work
     return min(factor, problem.cap / pressure.max()) if factor > 0 else 1.0
-
-
-def projected_closure(problem: Problem, iterate: Iterate) -> float:
-    """Closure of an iterate under a given force where nodes yield: that of a projected step.
-
-    Parameters
-    ----------
-    problem : Problem
-        Under a given force, with a finite cap.
-    iterate : Iterate
-
-    Returns
-    -------
-    float
-        w such that min(max(p - g, 0), H) has the sum F; the iterate's own where no node is at the
-        cap.
-
-    Notes
-    -----
-    The active set follows from the closure, and the force must come from the active set, as all
-    other nodes carry 0 or H. Where nearly all that touches yields, the closure of the last linear
-    solve is that of a few nodes: all others that it makes enter or leave do so at once, the force
-    is then not met, or by the wrong nodes, and sets cycle; where it is of no node at all, nothing
-    is violated and yet the force is lacking. The step along the negative gradient, projected on
-    the bounds and the force together, moves the nodes that are to be the active set at its
-    closure; so they can carry the force, and as much enters as leaves. (A node's own pressure
-    displaces it by about itself in these units. P. H. Calamai and J. J. More, Projected gradient
-    methods for linearly constrained problems, Math. Program. 39 (1987) 93.)
-    """
-    pressure, cap = iterate.pressure, problem.cap
-    if 0 < pressure.max() < cap:
-        return iterate.closure
-    arguments = pressure, iterate.displacement, problem.clearance, cap, problem.load
-    return _projected_closure(*arguments)
-
-
-@njit(cache=True)
-def _projected_closure(pressure, displacement, clearance, cap, load):
-    """Closure w at which the sum of min(max(p - g, 0), cap) is a force, by Newton and bisection."""
-    low, high = np.inf, -np.inf
-    for i in range(pressure.size):
-        reached = displacement[i] + clearance[i] - min(max(pressure[i], 0.0), cap)
-        low, high = min(low, reached), max(high, reached + cap)
-    closure = low
-    while True:
-        total, between = 0.0, 0
-        for i in range(pressure.size):
-            reached = displacement[i] + clearance[i] - min(max(pressure[i], 0.0), cap)
-            aim = closure - reached
-            if aim >= cap:
-                total += cap
-            elif aim > 0:
-                total += aim
-                between += 1
-        if abs(total - load) <= FORCE_ROUNDING * load:
-            return closure
-        low, high = (closure, high) if total < load else (low, closure)
-        if between:
-            closure += (load - total) / between
-        if not low < closure < high:
-            closure = (low + high) / 2
-            if not low < closure < high:
-                return closure
 
 
 @njit(cache=True)
