@@ -67,7 +67,9 @@ def _bar(quantity: Quantity) -> Bar:
     return Bar(
         name=quantity.name,
         meaning=quantity.meaning,
-        value=with_unit(quantity.value, quantity.unit),
+        value=f"none ({quantity.missing})"
+        if quantity.missing
+        else with_unit(quantity.value, quantity.unit),
         surface=_of_value(quantity, quantity.errors["surface"]),
         population=_of_value(quantity, quantity.errors["population"]),
         parts=parts,

@@ -69,8 +69,12 @@ CURVES = (
 #: the names of the estimate by areas itself.
 BOUNDS = ("_low", "_high", "_error")
 BOUNDS_OF_AREA = {"_low": "delta_sigma_low", "_high": "delta_sigma_high"}
-#: Why a number of a state is missing, by the quantity it is about.
-REASONS = (("domains", "reason"),)
+#: Why a number of a state is missing: row of the table, and stage and variable that say so.
+REASONS = {
+    "domains/delta_sigma": ("domains", "reason"),
+    "closure/stiffness": ("closure", "interface_stiffness_reason"),
+    "closure/interface_stiffness": ("closure", "interface_stiffness_reason"),
+}
 #: Of the texts: 9 takes ten times as long, for a page smaller by a fortieth.
 COMPRESSION = 5
 #: Steps that the largest gap of a specimen has; the code after the last stands for a missing gap.
@@ -161,7 +165,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
         },
         "rows": [f"{stage}/{variable}" for stage, variable in STATE],
         "reasons": {
-            f"{stage}/delta_sigma": _reasons(stages[stage][variable]) for stage, variable in REASONS
+            row: _reasons(stages[stage][variable]) for row, (stage, variable) in REASONS.items()
         },
         "totals": _totals(atlas, name, numbers),
         "arrays": numbers.entries,

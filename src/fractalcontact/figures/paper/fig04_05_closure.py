@@ -42,7 +42,7 @@ from ..kit.words import (
     short,
 )
 from ._closure_words import all_offsets, laws_words, linear_words, no_law
-from ._stiffness import draw_stiffness, stiffness_table, stiffness_words
+from ._stiffness import draw_stiffness, missing_stiffness, stiffness_table, stiffness_words
 
 TITLE = "Figs. 4 and 5: closure curves with their laws, real contact area, and stiffness"
 SUBJECT = "specimen"
@@ -91,6 +91,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
             *_keyed(r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]", panels["c"], area_line),
             *_hollow_entries(panels),
             *of_areas,
+            *(heading(line) for line in missing_stiffness(stiffness)),
         ],
     )
     some = f", {len(drawn)} of the {count} offsets drawn" if len(drawn) < count else ""
@@ -288,6 +289,7 @@ def _table(curves, drawn, laws):
         "seated_closure_mm": "seated_closure",
         "separation_mm": "separation",
         "interface_stiffness_MPa_per_mm": "interface_stiffness",
+        "stiffness_missing_because": "interface_stiffness_reason",
         "area_mm2": "area",
         "area_share": "area_share",
         "area_corrected_mm2": "area_corrected",

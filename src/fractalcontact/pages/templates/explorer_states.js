@@ -64,7 +64,7 @@ class States {
   solved(place) {
     return this.at("closure/solved", place) === 1;
   }
-  /** Why Delta_sigma is missing, in the atlas's words. */
+  /** Why a number is missing, in the atlas's words. */
   reason(key, place) {
     const reasons = this.raw.reasons[key];
     if (!reasons) return "";
