@@ -216,6 +216,17 @@ def test_beyond_the_curve_nothing_is_read():
     assert np.isnan(closure_at_force(10, [1, 2, 3], [0.1, 0.2, 0.3], [10, 10, 10])).all()
 
 
+def test_a_closure_is_read_beside_states_without_a_stiffness():
+    """On a power law, which its secants tell as its slopes do."""
+    force = np.geomspace(1, 1000, 10)
+    closure = 0.1 * force**0.3
+    stiffness = force / (0.3 * closure)
+    stiffness[[0, 4, 5, 9]] = np.nan
+    for wanted in (1.5, 30.0, 47.0, 800.0):
+        read = closure_at_force(wanted, force, closure, stiffness)
+        assert read.closure == pytest.approx(0.1 * wanted**0.3, rel=1e-9)
+
+
 def test_what_a_left_out_state_misses_is_in_the_atlas():
     _, joint, curves = slid_joint([4], loads=[f"{p} MPa" for p in (0.3, 1.1, 4, 13)])
     missed = elastic_dilatancy(curves, joint)["left_out_error"].squeeze().values

@@ -20,6 +20,7 @@ ENSEMBLES: dict[str, tuple] = {
     # contact
     "candidate problems": (20, 1000),
     "random energies": (10, 60),
+    "capped programmes": (20, 200),
     "candidate problem side": (80, 200),
     # accuracy
     "random problems": (50, 300),

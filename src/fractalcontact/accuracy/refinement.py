@@ -90,9 +90,17 @@ class LoadCurve:
         )
 
     def decay_length(self) -> np.ndarray:
-        """sigma_0/(d sigma/d w_int) (normal_force), mm: over it the pressure falls by e."""
+        """sigma_0/(d sigma/d w_int) (normal_force), mm: over it the pressure falls by e.
+
+        That of the curve through the loads where states that yield have no stiffness.
+        """
         pressure = self.forces / self.loading.area
-        return pressure / self.curve["interface_stiffness"].values
+        length = pressure / self.curve["interface_stiffness"].values
+        missing = np.isnan(self.curve["stiffness"].values)
+        if missing.any() and len(length) > 1:
+            of_curve = np.gradient(self.curve["interface_closure"].values, np.log(self.forces))
+            length = np.where(missing, of_curve, length)
+        return length
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,6 +23,7 @@ from .kkt import Iterate, KKTResidual, Problem, Solution, kkt_residual
 from .node_sets import symmetric_difference
 from .operator import Operator
 from .projected_cg import ProjectedCG, add
+from .projected_step import closure_of_step
 from .safeguards import (
     SAFETY,
     many_iterations,
@@ -207,12 +208,15 @@ class ActiveSetMethod:
         return method.solve(start.pressure, start.displacement)
 
     def _kkt_residual(self, iterate):
+        """KKT residual of an iterate, whose closure becomes that of a step where nodes yield."""
+        problem = self.problem
+        iterate.closure = closure_of_step(problem, iterate)
         return kkt_residual(
             iterate.pressure,
             iterate.displacement,
-            self.problem.clearance,
+            problem.clearance,
             iterate.closure,
-            self.problem.cap,
+            problem.cap,
         )
 
     def _step(

@@ -10,7 +10,9 @@ made: pair by pair where pairs are few, else a fast multipole method (`operator`
 `elastic.multipole`). Nested iteration goes on as always, with candidates on each of its grids.
 """
 
+import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -111,6 +113,19 @@ class LoadCase:
         clearance = self.topography.clearance(self.level).ravel() / self.length
         return Problem(self.space, clearance, self.load, self.by_force, self.cap)
 
+    @cached_property
+    def least_closure(self) -> float:
+        """Lower bound on the closure of a given force: that of the bearing area that can carry it.
+
+        No node carries more than the cap, and what touches has no more clearance than the closure,
+        as displacements are nowhere negative. 0 without a cap.
+        """
+        if not self.by_force or np.isinf(self.cap):
+            return 0.0
+        total = self.space.shape[0] * self.space.shape[1]
+        touching = min(max(math.ceil(self.load / self.cap), 1), total)
+        return self.topography.bearing_clearance(touching, self.level) / self.length
+
     def restricted(
         self, bound: float, cells: np.ndarray | None, gain: float = 1.0
     ) -> "Restricted | None":
@@ -129,6 +144,10 @@ class LoadCase:
         Restricted or None
         """
         total = self.space.shape[0] * self.space.shape[1]
+        if self.load > MOST_CANDIDATES * total * self.cap and self.by_force:
+            return None
+        if bound < MARGIN * self.least_closure:
+            bound, cells = MARGIN * self.least_closure, None
         nodes = self.topography.below(bound * self.length, self.level, cells)
         if nodes.size > MOST_CANDIDATES * total:
             return None
@@ -275,6 +294,9 @@ def _start(case):
     if coarse_case.space.shape[0] * coarse_case.space.shape[1] > KEPT_CELLS:
         forget_preconditioner(coarse_case.space)
     bound = _bound(case, solution.closure, coarse.coarse_closure)
+    if solution.pressure.max() >= coarse_case.cap:
+        growth = case.least_closure - coarse_case.least_closure
+        bound = max(bound, MARGIN * (solution.closure + growth))
     # Whatever is a candidate here lies in a cell that is one of the same bound there.
     if coarse.restricted is not None and bound <= coarse.restricted.bound:
         cells = coarse.restricted.nodes[coarse.problem.clearance < bound]

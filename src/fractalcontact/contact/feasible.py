@@ -3,12 +3,9 @@
 import numpy as np
 
 from ..core.kernel_cache import njit
-from .kkt import Iterate, Problem, Solution, kkt_residual
+from .kkt import FORCE_ROUNDING, Iterate, Problem, Solution, kkt_residual
 from .operator import Operator
 from .projected_cg import CLIPPING_PASSES
-
-# A total this close to F is F.
-FORCE_ROUNDING = 1e-12
 
 
 def first_iterate(
@@ -74,25 +71,11 @@ def _scaled_to_force(problem, operator, pressure, displacement):
         return problem.first_touch(), None
     factor = problem.load / total
     if pressure.max() * factor > problem.cap:
-        return _within_cap(problem, operator, pressure), None
+        # What the loaded nodes cannot carry, the first step gives to the next ones to touch.
+        pressure = np.clip(pressure, 0.0, problem.cap)
+        _scale_to(problem.load, pressure, problem.cap)
+        return pressure, None
     return pressure * factor, None if displacement is None else displacement * factor
-
-
-def _within_cap(problem, operator, pressure):
-    """A start of the given force that breaks no bound.
-
-    What its nodes cannot carry goes to those that are nearest to touching.
-    """
-    pressure = np.clip(pressure, 0.0, problem.cap)
-    _scale_to(problem.load, pressure, problem.cap)
-    lacking = problem.load - pressure.sum()
-    if lacking > FORCE_ROUNDING * problem.load:
-        displacement = operator(pressure.astype(np.float32))
-        empty = np.flatnonzero(pressure == 0)
-        order = np.argsort((displacement + problem.clearance)[empty], kind="stable")
-        nearest = empty[order[: int(2 * lacking / problem.cap) + 1]]
-        pressure[nearest] = lacking / nearest.size
-    return pressure
 
 
 def _energy_factor(problem, pressure, displacement):
@@ -109,8 +92,12 @@ def _energy_factor(problem, pressure, displacement):
 
 @njit(cache=True)
 def _scale_to(total, pressure, cap):
-    """Scale a pressure to a total in place, none above the cap."""
-    for _ in range(CLIPPING_PASSES):
+    """Scale a pressure to a total in place, none above the cap.
+
+    Less than the total is left only where all that was positive is at the cap.
+    """
+    passes, reached = 0, True
+    while reached or passes < CLIPPING_PASSES:
         lacking, below_cap = total, 0.0
         for value in pressure:
             lacking -= value
@@ -118,7 +105,9 @@ def _scale_to(total, pressure, cap):
                 below_cap += value
         if abs(lacking) <= FORCE_ROUNDING * total or below_cap == 0:
             break
-        factor = 1 + lacking / below_cap
+        factor, reached = 1 + lacking / below_cap, False
         for i in range(pressure.size):
-            if pressure[i] < cap:
+            if 0 < pressure[i] < cap:
                 pressure[i] = min(pressure[i] * factor, cap)
+                reached = reached or pressure[i] == cap
+        passes += 1

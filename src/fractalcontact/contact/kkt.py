@@ -14,6 +14,9 @@ import numpy as np
 from ..core.kernel_cache import njit
 from ..elastic.halfspace import HalfSpace
 
+# A total this close to F is F.
+FORCE_ROUNDING = 1e-12
+
 
 @dataclass
 class Problem:
@@ -54,12 +57,13 @@ class Problem:
         return Problem(self.space.coarser(2), clearance, load, self.by_force, cap)
 
     def first_touch(self) -> np.ndarray:
-        """The given force on the nodes that touch first, where nothing better is known.
+        """The given force on the nodes that touch first, as far as the cap lets them carry it.
 
-        Forces so small that the depths of all other nodes drown theirs leave no other start.
+        Where nothing better is known: forces so small that the depths of all other nodes drown
+        theirs leave no other start.
         """
         touching = self.clearance == 0
-        return touching * (self.load / np.count_nonzero(touching))
+        return touching * min(self.load / np.count_nonzero(touching), self.cap)
 
     def closure_at_force(self, pressure: np.ndarray, displacement: np.ndarray) -> float:
         """The closure at which a given force acts: it makes the mean gap in contact vanish.

@@ -265,7 +265,8 @@ def _multiplier_of_total(aim, response, low, high, total):
     # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
     response = np.maximum(response.astype(np.float64), LEAST_RESPONSE * response.mean())
     multiplier, least, most = 0.0, -np.inf, np.inf
-    for _ in range(CLIPPING_PASSES):
+    passes, bounded = 0, np.isfinite(high - low)
+    while passes < CLIPPING_PASSES or bounded:
         missing, slope = total, 0.0
         for i in range(n):
             end = aim[i] + multiplier * response[i]
@@ -279,9 +280,15 @@ def _multiplier_of_total(aim, response, low, high, total):
             multiplier += missing / slope
         # Between two bounds Newton's step may go to where every node is at one of them.
         if not least < multiplier < most:
-            if np.isinf(most - least):
+            if bounded:
+                least = max(least, np.min((low - aim) / response))
+                most = min(most, np.max((high - aim) / response))
+            elif np.isinf(most - least):
                 break
             multiplier = (least + most) / 2
+            if not least < multiplier < most:
+                break
+        passes += 1
     for i in range(n):
         aim[i] += multiplier * response[i]
     return multiplier

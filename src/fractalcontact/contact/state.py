@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.errors import NotConverged
+from ..core.resolved import RESOLVED_NODES
 from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from .effort import SOLVING
@@ -116,17 +117,26 @@ class ContactState:
 
     @computed_once
     def stiffness(self) -> float:
-        """Normal stiffness dF/dw, N/mm, from K q = 1 on the nodes strictly between the bounds.
-
-        It is 0 without any.
+        """Normal stiffness dF/dw, N/mm: 0 without contact, NaN of single cells beside yielded ones.
 
         Raises
         ------
         NotConverged
             If it is not known to :data:`STIFFNESS_ERROR`.
+
+        Notes
+        -----
+        From K q = 1 on the nodes strictly between the bounds: the elastic response of these alone,
+        as yielded nodes keep their pressure, the hardness. Where nearly all of the contact yields
+        they are the cell or two that the force happens to leave below the hardness, while the
+        force rises by nodes that come into contact and yield: the number is one of the grid. So
+        where nodes yield it is missing with fewer than `RESOLVED_NODES` others in contact.
         """
+        operator, active = self._operator_on_active()
+        if active.size < RESOLVED_NODES and (self.pressure >= self.hardness).any():
+            return np.nan
         with SOLVING.counted(0):
-            value, error = stiffness(*self._operator_on_active())
+            value, error = stiffness(operator, active)
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         return value * self.space.modulus * self.space.cell

@@ -89,6 +89,19 @@ class Topography:
             return _all_below(height.ravel(), self.highest, clearance)
         return _children_below(cells, height, self.highest, clearance)
 
+    def bearing_clearance(self, count: int, level: int = 0) -> float:
+        """Clearance of the bearing area: opening at first touch of the count-th highest node, mm.
+
+        Parameters
+        ----------
+        count : int
+            From one to all.
+        level : int
+        """
+        height = self.height(level).ravel()
+        at = height.size - count
+        return self.highest - float(np.partition(height, at)[at])
+
 
 def _is_as_wanted(array, shape):
     """Whether compiled code can read it as it is."""

@@ -17,6 +17,14 @@ from .separation import add_seated_closure, add_separation
 from .states import OF_STATES, OFFSETS, error_attrs
 from .theory import Numbers
 
+#: Why a state that was solved has no stiffness of the interface.
+FLUSH_FACES = "the faces lie flush: there is no interface"
+SINGLE_CELLS = (
+    f"fewer than {RESOLVED_NODES} nodes in contact are below the hardness: a stiffness would be "
+    "that of single cells"
+)
+FULL_CONTACT = "contact is so full that joint and blocks together are no softer than the blocks"
+
 
 def bulk_settlement(force: ArrayLike, e_star: float, side_y: float, side_x: float) -> np.ndarray:
     """w_b, mm: mean settlement under the force spread evenly over the nominal window.
@@ -135,7 +143,8 @@ def closure_curves(
         ``bulk_settlement`` and ``nominal_pressure`` (normal_force); ``interface_closure``,
         ``separation``, ``seated_closure``, ``closure_from_common_seat``, ``interface_stiffness``,
         ``conductance``, ``area_share``, ``area_corrected_share``, each with an ``_error``,
-        ``resolved``, ``area_corrected_resolved``, ``closure_spacing_error`` and the numbers of the
+        ``interface_stiffness_reason``, ``resolved``, ``area_corrected_resolved``,
+        ``closure_spacing_error`` and the numbers of the
         states over (direction, offset, resolution, load); ``seating_pressure``,
         ``prefractal_opening`` and the fits of :func:`mechanics.closure_laws.add_closure_laws` over
         (direction, offset, resolution); ``common_seating_pressure`` and why there is none over
@@ -194,6 +203,21 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         "MPa/mm",
         "tangent stiffness d sigma_0 / d w_int of the interface; none if flush",
     )
+    _add_stiffness_reason(curves, flush)
+
+
+def _add_stiffness_reason(curves: xr.Dataset, flush: xr.DataArray) -> None:
+    """Why solved states have no stiffness of the interface, into ``curves``; "" of all others."""
+    known = curves["interface_stiffness"].notnull() | ~curves["solved"]
+    reasons = {"": known, FLUSH_FACES: flush, SINGLE_CELLS: curves["stiffness"].isnull()}
+    dims = curves["closure"].dims
+    conditions = [
+        condition.broadcast_like(curves["closure"]).transpose(*dims).values
+        for condition in reasons.values()
+    ]
+    words = np.select(conditions, [np.array(reason) for reason in reasons], FULL_CONTACT)
+    attrs = cf_attrs("1", "why there is no tangent stiffness of the interface")
+    curves["interface_stiffness_reason"] = (dims, words, attrs)
 
 
 def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:

@@ -24,7 +24,8 @@ def closure_at_force(
     force : float
         F, N.
     forces, closures, stiffnesses : (n,) array_like
-        F (ascending, > 0), w (mm) and dF/dw (N/mm) of the states of the curve.
+        F (ascending, > 0), w (mm) and dF/dw (N/mm) of the states of the curve. A stiffness that is
+        missing is taken from the states around.
 
     Returns
     -------
@@ -42,6 +43,8 @@ def closure_at_force(
     forces, closures = np.asarray(forces), np.asarray(closures)
     x, y = np.log(forces), np.log(closures)
     slope = forces / (closures * np.asarray(stiffnesses))
+    if np.isnan(slope).any():
+        slope = np.where(np.isnan(slope), np.gradient(y, x), slope)
     at = np.log(force)
     if not x[0] <= at <= x[-1]:
         return InterpolatedClosure(np.nan, np.nan)

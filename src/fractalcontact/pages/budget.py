@@ -67,7 +67,9 @@ def _bar(quantity: Quantity) -> Bar:
     return Bar(
         name=quantity.name,
         meaning=quantity.meaning,
-        value=with_unit(quantity.value, quantity.unit),
+        value=f"none ({quantity.missing})"
+        if quantity.missing
+        else with_unit(quantity.value, quantity.unit),
         surface=quantity.error_words(quantity.errors["surface"]),
         population=quantity.error_words(quantity.errors["population"]),
         parts=parts,

@@ -247,7 +247,11 @@ def _reasons(stages):
         ("scaling", "sigma_n", NO_PRESSURE),
         ("scaling", "delta_sigma_area", TOO_FEW_RESOLUTIONS),
     )
-    words = {"domains/delta_sigma": stages["domains"]["reason"]}
+    words = {
+        "domains/delta_sigma": stages["domains"]["reason"],
+        "closure/stiffness": stages["closure"]["interface_stiffness_reason"],
+        "closure/interface_stiffness": stages["closure"]["interface_stiffness_reason"],
+    }
     for stage, variable, why in missing:
         values = stages[stage][variable]
         words[f"{stage}/{variable}"] = xr.where(np.isfinite(values), "", why)

@@ -93,6 +93,8 @@ class Quantity:
         By source.
     reasons : dict of str to str
         Why a source has none.
+    missing : str
+        Why there is no value, where that is known.
     """
 
     name: str
@@ -103,6 +105,7 @@ class Quantity:
     errors: dict[str, float | None]
     sources: dict[str, float | None]
     reasons: dict[str, str]
+    missing: str = ""
 
     def error_words(self, error: float | None) -> str:
         """An error in per cent of the value where the quantity has fractions, else in its unit."""
@@ -285,6 +288,8 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
     force = chosen.forces[number]
     budget = budget.sel(normal_force=force, method="nearest")
     sources = [str(source) for source in budget["source"].values]
+    why = chosen.values("closure", "interface_stiffness_reason").isel(normal_force=number)
+    missing = {"stiffness": str(why["interface_stiffness_reason"].item())}
     found = {}
     for name in map(str, budget["quantity"].values):
         one = budget.sel(quantity=name)
@@ -297,6 +302,7 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
             errors={which: finite(one[total]) for which, total in TOTALS.items()},
             sources={source: finite(one["error"].sel(source=source)) for source in sources},
             reasons={source: str(one["reason"].sel(source=source).item()) for source in sources},
+            missing=missing.get(name, ""),
         )
     return found
 
@@ -376,6 +382,8 @@ def _of_load(load):
         unit = quantity.unit.replace("/", "_per_")
         row[f"{name}_{unit}"] = quantity.value
         row |= {f"{name}_error_{which}_{unit}": error for which, error in quantity.errors.items()}
+        if name == "stiffness":
+            row["stiffness_reason"] = quantity.missing
     row |= _columns("delta_sigma_boxes", load.delta_sigma_boxes)
     return row | _columns("delta_sigma_areas", load.delta_sigma_areas)
 

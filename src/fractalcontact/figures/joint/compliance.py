@@ -26,7 +26,7 @@ from ..kit.drawing import (
     offset_axis,
     settings_of,
 )
-from ..kit.empty import TOO_FULL, say_empty
+from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.points import draw_points, hollow_entry
 from ..kit.sizes import draw_bars, plain_decades
 from ..kit.verdicts import row_of, sentences, verdict_words
@@ -79,9 +79,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     force = group(atlas, "statements", name).attrs["force"]
     ends = _ends_of_correlation(joint, direction)
     stages = _stages(atlas, name, ends, curves["offset"].values)
+    columns = [entries(correlation), entries(compliance), *_judged(stages, force)]
     if np.isfinite(closures["interface_compliance_mm_per_MPa"]).any():
         _number_stages(compliance, stages)
-    columns = [entries(correlation), entries(compliance), *_judged(stages, force)]
+        why = closures["stiffness_missing_because"]
+        columns[-1] = columns[-1] + [heading(line) for line in missing_lines(why, "c")]
     legends_below(figure, *columns, columnspacing=1.5)
     headline(figure, settings["label"], place(direction))
     caption = sentences(
@@ -180,6 +182,7 @@ def _compliance(states):
     name, unit = "interface_compliance", "mm_per_MPa"
     low, high = stiffness + error, stiffness - error
     return {
+        "stiffness_missing_because": states["interface_stiffness_reason"].values.astype(str),
         f"{name}_{unit}": 1 / stiffness,
         f"{name}_low_{unit}": 1 / low,
         f"{name}_high_{unit}": np.divide(
@@ -259,7 +262,8 @@ def _draw_closures(closed, compliance, table):
     if some_few:
         hollow_entry(compliance, f"hollow: fewer than {RESOLVED_NODES} nodes touch")
     if not np.isfinite(table["interface_compliance_mm_per_MPa"]).any():
-        say_empty(compliance, TOO_FULL)
+        why = different_reasons(table["stiffness_missing_because"])
+        say_empty(compliance, "\n".join(why) or TOO_FULL)
     if any(heights):
         closed.set_ylim(bottom=min(0, *heights))
     elif not heights:

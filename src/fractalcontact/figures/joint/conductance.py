@@ -21,7 +21,7 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.empty import TOO_FULL, say_empty
+from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.points import draw_points
 from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, place, short
 
@@ -63,6 +63,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     remarks = [*entries(axes)[n:], heading("lines: fits, exponents with 95 % intervals")]
     if not table["conductance_fitted"].all():
         remarks.append(heading(f"hollow: not fitted (fewer than {RESOLVED_NODES} nodes)"))
+    if np.isfinite(table["conductance_per_mm"]).any():
+        remarks += [heading(line) for line in missing_lines(table["stiffness_missing_because"])]
     legends_below(figure, entries(axes)[:n], remarks)
     headline(figure, settings["label"], place(direction))
     return Drawing(figure, table, _caption(table))
@@ -75,7 +77,9 @@ def _table(curves):
         curve = curves.isel(offset=i)
         pressure = curve["nominal_pressure"].values
         low, high = (float(curve[f"conductance_pressure_{end}"]) for end in ("low", "high"))
-        conductance = curve["conductance"].values
+        conductance, why = (
+            curve[name].values for name in ("conductance", "interface_stiffness_reason")
+        )
         inside = within(pressure, low, high) & curve["resolved"].values
         rows.append(
             pd.DataFrame(
@@ -84,6 +88,7 @@ def _table(curves):
                     "nominal_pressure_MPa": pressure,
                     "conductance_per_mm": conductance,
                     "interface_stiffness_MPa_per_mm": curve["interface_stiffness"].values,
+                    "stiffness_missing_because": why.astype(str),
                     "conductance_fitted": inside & np.isfinite(conductance),
                     **Estimate.read(curve, "conductance_exponent").columns("conductance_exponent"),
                 }
@@ -102,7 +107,7 @@ def _draw_curve(axes, n, state, points):
     words = (
         f"exponent {exponent}"
         if np.isfinite(points["conductance_per_mm"]).any()
-        else "no interface (faces flush, or contact full)"
+        else "no stiffness of the interface"
     )
     style = {"color": colour_of(n), "marker": MARKERS[n], "label": f"{state}: {words}"}
     x, y = points["nominal_pressure_MPa"], points["conductance_per_mm"]
@@ -122,7 +127,8 @@ def _draw_theory(axes, table):
     """The slopes of the theories, through the middle of the points fitted and behind them."""
     known = table[np.isfinite(table["conductance_per_mm"])]
     if known.empty:
-        say_empty(axes, TOO_FULL)
+        why = different_reasons(table["stiffness_missing_because"])
+        say_empty(axes, "\n".join(why) or TOO_FULL)
         return
     middle = known[known["conductance_fitted"]] if known["conductance_fitted"].any() else known
     p, h = (np.log(middle[key]) for key in ("nominal_pressure_MPa", "conductance_per_mm"))

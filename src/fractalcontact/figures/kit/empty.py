@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
+from numpy.typing import ArrayLike
 
 #: Why there is nothing of the interface to draw.
 TOO_FULL = (
@@ -25,6 +26,34 @@ _LINE = 48
 _ENDS = (0.1, 1.0)
 #: What a panel says whose figure gives no reason of its own.
 _NOTHING = "nothing above zero to draw on a logarithmic axis"
+
+
+def different_reasons(reasons: ArrayLike) -> list[str]:
+    """Reasons for missing numbers, as the atlas states them: sorted, each once.
+
+    Parameters
+    ----------
+    reasons : array_like of str
+        Empty where nothing is missing.
+    """
+    return [reason for reason in np.unique(np.asarray(reasons).astype(str)).tolist() if reason]
+
+
+def missing_lines(reasons: ArrayLike, panel: str = "") -> list[str]:
+    """Lines of a legend that say why points are missing; none where none is.
+
+    Parameters
+    ----------
+    reasons : array_like of str
+        As of `different_reasons`.
+    panel : str, optional
+        Letter of the panel that lacks them.
+    """
+    start = f"({panel}): missing" if panel else "missing"
+    lines: list[str] = []
+    for reason in different_reasons(reasons):
+        lines += textwrap.wrap(f"{start}: {reason}", _LINE, subsequent_indent="    ")
+    return lines
 
 
 def say_empty(axes: Axes, reason: str, *, ticks: bool = True) -> None:

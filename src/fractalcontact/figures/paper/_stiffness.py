@@ -12,7 +12,7 @@ from ...core.estimate import Estimate
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import cell_side
 from ..kit.drawing import MARKERS, dilatancy_loads, label_short_span, nearest_load
-from ..kit.empty import TOO_FULL, say_empty
+from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.points import draw_points, reach
 from ..kit.words import UNDETERMINED, force_label, percent, short
 
@@ -44,6 +44,7 @@ def stiffness_table(curves: xr.Dataset, settings: dict, specimen: xr.Dataset) ->
                 "force_N": forces[j],
                 "nominal_pressure_MPa": float(curve["nominal_pressure"][j]),
                 "stiffness_MPa_per_mm": float(curve["interface_stiffness"][j]),
+                "stiffness_missing_because": str(curve["interface_stiffness_reason"][j].item()),
                 "resolved": bool(curve["resolved"][j]),
                 "map_load": j == mapped,
             }
@@ -102,7 +103,8 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
         title = "at the finest $s$ (change at $2s$), MPa/mm"
         axes.legend(loc="upper left", handlelength=1.5, title=title, title_fontsize=7)
     else:
-        say_empty(axes, TOO_FULL)
+        why = different_reasons(_reasons(table))
+        say_empty(axes, "\n".join(why) or TOO_FULL)
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel(r"stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
     label_short_span(axes.yaxis)
@@ -111,13 +113,25 @@ def draw_stiffness(axes: Axes, table: pd.DataFrame) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
 
 
+def missing_stiffness(table: pd.DataFrame) -> list[str]:
+    """Lines of the legend on tangent stiffnesses that are missing beside others."""
+    if table["stiffness_MPa_per_mm"].isna().all():
+        return []  # the panel says it
+    return missing_lines(_reasons(table), "d")
+
+
+def _reasons(table):
+    return table.loc[table["quantity"] == "tangent", "stiffness_missing_because"]
+
+
 def stiffness_words(table: pd.DataFrame) -> str:
     """What twice the spacing makes of the tangent stiffness at the map load, and of k_ni."""
     tangent = table[table["map_load"].eq(True)]
     at = force_label(tangent["force_N"].iloc[0])
     value, change = _with_change(tangent)
     if not np.isfinite(value):
-        return f"No tangent stiffness at {at}."
+        why = tangent.sort_values("spacing_mm")["stiffness_missing_because"].iloc[0]
+        return f"No tangent stiffness at {at}: {why}."
     if not change:
         return f"Tangent stiffness at {at}: {short(value)} MPa/mm."
     _, initial = _with_change(table[table["quantity"] != "tangent"])

@@ -35,7 +35,7 @@ from ..kit.points import draw_points
 from ..kit.verdicts import claim, sentences
 from ..kit.words import NOMINAL_PRESSURE, opening, percent, place, short
 from ._closure_words import all_offsets, laws_words, linear_words, no_law
-from ._stiffness import draw_stiffness, stiffness_table, stiffness_words
+from ._stiffness import draw_stiffness, missing_stiffness, stiffness_table, stiffness_words
 
 TITLE = "Figs. 4 and 5: closure curves with their laws, real contact area, and stiffness"
 SUBJECT = "specimen"
@@ -84,6 +84,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
             *_keyed(r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]", panels["c"], area_line),
             *_hollow_entries(panels),
             *of_areas,
+            *(heading(line) for line in missing_stiffness(stiffness)),
         ],
     )
     some = f", {len(drawn)} of the {count} offsets drawn" if len(drawn) < count else ""
@@ -289,6 +290,7 @@ def _table(curves, drawn, laws):
         "seated_closure_mm": "seated_closure",
         "separation_mm": "separation",
         "interface_stiffness_MPa_per_mm": "interface_stiffness",
+        "stiffness_missing_because": "interface_stiffness_reason",
         "area_mm2": "area",
         "area_share": "area_share",
         "area_corrected_mm2": "area_corrected",

@@ -1,0 +1,122 @@
+"""A stiffness that single cells would decide is missing in atlas, pages, explorer and figures."""
+
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+from chain import atlas_of_scan
+from extremes import Extreme, rough, write_extreme
+from materials import ROCK
+
+from fractalcontact.core.resolved import RESOLVED_NODES
+from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.mechanics.closure import SINGLE_CELLS
+from fractalcontact.pages.packed_states import packed_states
+from fractalcontact.pages.result_page import Place, write_result_page
+from fractalcontact.study.atlas import read_atlas
+
+LOADS = ["0.2 MPa", "1 MPa", "5 MPa", "20 MPa", "60 MPa", "120 MPa"]
+HARDNESS = 150.0
+
+
+@pytest.fixture(scope="module")
+def atlas_file(tmp_path_factory):
+    """A joint that yields at all loads but the lightest."""
+    folder = tmp_path_factory.mktemp("project") / "results/small"
+    folder.mkdir(parents=True)
+    material = {"material": ROCK | {"hardness": f"{HARDNESS:g} MPa"}}
+    settings = material | {"loads": LOADS, "map_load": "5 MPa"}
+    files = write_extreme(folder, Extreme(rough(), settings=settings), "specimen")
+    path, _ = atlas_of_scan(*files[:3], folder, files[3])
+    return path
+
+
+@pytest.fixture(scope="module")
+def atlas(atlas_file):
+    return read_atlas(atlas_file)
+
+
+@pytest.fixture(scope="module")
+def curves(atlas):
+    return atlas["closure/specimen"].to_dataset()
+
+
+def test_whatever_is_missing_has_its_reason_and_nothing_else_has_one(curves):
+    missing = curves["solved"] & curves["interface_stiffness"].isnull()
+    reasons = curves["interface_stiffness_reason"]
+    assert missing.any()
+    np.testing.assert_array_equal(reasons != "", missing)
+    assert not (curves["interface_stiffness"] <= 0).any()
+    for name in (
+        "stiffness_error",
+        "interface_stiffness_error",
+        "conductance",
+        "conductance_error",
+    ):
+        assert curves[name].where(missing).isnull().all(), name
+
+
+def test_no_stiffness_is_that_of_a_few_cells_beside_yielded_ones(atlas, curves):
+    """Under the loads of the maps, whose pressures the atlas holds."""
+    contact = atlas["contact/specimen"].to_dataset()
+    chosen = {"direction": contact.attrs["map_direction"], "resolution": 1}
+    here = curves.sel(chosen).sel(offset=contact.attrs["map_offset"], method="nearest")
+    checked = 0
+    for force, pressure in contact["map_pressure"].groupby("normal_force"):
+        p = pressure.values.ravel()
+        yielded = p >= HARDNESS * (1 - 1e-6)
+        few = np.count_nonzero((p > 0) & ~yielded) < RESOLVED_NODES and yielded.any()
+        state = here.sel(normal_force=force)
+        assert bool(state["stiffness"].isnull()) == few
+        assert (state["interface_stiffness_reason"].item() == SINGLE_CELLS) == few
+        checked += few
+    assert 0 < checked < len(LOADS)
+
+
+def test_errors_of_the_closure_stay_known_beside_a_missing_stiffness(atlas, curves):
+    budget = atlas["error_budget/specimen"].to_dataset()
+    assert np.isfinite(budget["total"].sel(quantity="closure")).all()
+    left_out = atlas["dilatancy/specimen"].to_dataset()["left_out_error"]
+    assert np.isfinite(left_out.isel(normal_force=slice(1, -1))).all()
+
+
+def test_the_explorer_has_the_reason(atlas, curves):
+    data = packed_states(atlas, "specimen")
+    for row in ("closure/stiffness", "closure/interface_stiffness"):
+        reasons = data["reasons"][row]
+        words = np.array(reasons["words"])[reasons["places"]]
+        order = data["arrays"][row]["dims"]
+        expected = curves["interface_stiffness_reason"].transpose(*order).values.ravel()
+        assert words.tolist() == expected.astype(str).tolist()
+    json.dumps(data["reasons"])
+
+
+def test_page_and_summary_have_the_reason(atlas_file):
+    folder = atlas_file.parent
+    write_result_page(Place.of(folder))
+    summary = pd.read_csv(folder / "summary.csv")
+    missing = summary["stiffness_MPa_per_mm"].isna()
+    assert missing.any()
+    assert (summary["stiffness_reason"][missing] == SINGLE_CELLS).all()
+    assert summary["stiffness_reason"][~missing].isna().all()
+    for page in (folder / "index.html", folder / "pages/specimen.html"):
+        text = re.sub(r"\s+", " ", page.read_text(encoding="utf-8"))
+        assert SINGLE_CELLS in text, page.name
+
+
+@pytest.mark.parametrize("figure", ["compliance", "conductance", "fig04_05_closure"])
+def test_figures_say_why_points_are_missing(atlas, figure):
+    with print_style():
+        drawing = drawer_of(figure)(atlas, "specimen")
+    shown = [text.get_text() for legend in drawing.figure.legends for text in legend.get_texts()]
+    shown += [text.get_text() for axes in drawing.figure.axes for text in axes.texts]
+    assert SINGLE_CELLS in re.sub(r"\s+", " ", " ".join(shown))
+    table = drawing.data
+    ends = "stiffness_MPa_per_mm", "compliance_mm_per_MPa"
+    known = [name for name in table if name.endswith(ends)]
+    reasons = table["stiffness_missing_because"].fillna("")
+    for name in known:
+        assert table.loc[reasons != "", name].isna().all()
