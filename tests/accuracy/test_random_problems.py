@@ -8,9 +8,10 @@ import os
 import numpy as np
 import pytest
 from ensembles import ensemble
+from random_problems import KINDS, LOADINGS, random_problem
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.accuracy.random_problems import KINDS, LOADINGS, random_problem, violation
+from fractalcontact.accuracy.violation import violation
 from fractalcontact.contact import active_set
 
 #: Every kind is met under every loading.

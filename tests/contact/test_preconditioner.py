@@ -1,11 +1,11 @@
 """The preconditioner on contact sets: exact where it can be, symmetric, positive, close."""
 
 import numpy as np
+import plain_twins
 import pytest
 from ensembles import ensemble
 
 from fractalcontact import HalfSpace
-from fractalcontact.contact import reference
 from fractalcontact.contact.coarse_correction import LEAST_RIDGE, RIDGE, CoarseCorrection
 from fractalcontact.contact.inverse_cholesky import (
     NARROW_NEIGHBOURHOOD,
@@ -39,7 +39,7 @@ def test_few_nodes_are_inverted_exactly():
     space = HalfSpace((40, 30), (0.1, 0.2), 1.0)
     nodes = np.sort(np.random.default_rng(1).choice(1200, DIRECT, replace=False)).astype(np.int32)
     right_side = np.random.default_rng(2).standard_normal(DIRECT).astype(np.float32)
-    exact = np.linalg.solve(reference.operator_on(space, nodes), right_side)
+    exact = np.linalg.solve(plain_twins.operator_on(space, nodes), right_side)
     np.testing.assert_allclose(inverse_on(space, nodes)(right_side), exact, rtol=1e-4, atol=1e-4)
 
 
@@ -56,7 +56,7 @@ def test_factor_is_that_of_scalar_loops(shape, spacing, fraction, neighbourhood)
     nodes = rough_set(shape, fraction)
     factor = InverseCholesky(space, neighbourhood)
     factor.update(nodes)
-    plain = reference.inverse_cholesky(space, nodes, neighbourhood)
+    plain = plain_twins.inverse_cholesky(space, nodes, neighbourhood)
     matrix = np.array([factor(unit) for unit in np.eye(nodes.size, dtype=np.float32)])
     np.testing.assert_allclose(matrix, plain @ plain.T, rtol=0, atol=2e-5 * np.abs(matrix).max())
     assert np.count_nonzero(plain, axis=0).max() > 10 * (neighbourhood is WIDE_NEIGHBOURHOOD)
@@ -76,7 +76,7 @@ def test_coarse_correction_is_that_of_dense_matrices():
     interpolation = (along[0][:, :, None] * along[1][:, None, :]).reshape(nodes.size, -1)
     # A pressure on fine cells is 1/64 of it on coarse ones, eight times as wide.
     every = np.arange(np.prod(coarse.shape))
-    smooth = interpolation @ reference.operator_on(coarse, every) / 8 @ interpolation.T
+    smooth = interpolation @ plain_twins.operator_on(coarse, every) / 8 @ interpolation.T
     own = np.eye(nodes.size) * (space.influence()[0, 0] - np.diag(smooth))
     operator = smooth + own
     hats = [
@@ -89,7 +89,7 @@ def test_coarse_correction_is_that_of_dense_matrices():
     diagonal = np.diag(matrix)
     ridge = np.diag(RIDGE * diagonal + LEAST_RIDGE * diagonal.max())
     approximate = np.diag(np.random.default_rng(8).uniform(0.5, 1, nodes.size))
-    plain = reference.balanced(approximate, operator, basis, np.linalg.inv(matrix + ridge))
+    plain = plain_twins.balanced(approximate, operator, basis, np.linalg.inv(matrix + ridge))
     residual = np.random.default_rng(9).standard_normal(nodes.size).astype(np.float32)
     balanced = correction.balance(
         residual, lambda values: (approximate @ values).astype(np.float32)
@@ -118,7 +118,7 @@ def test_spectrum_of_the_product_is_narrow(shape, spacing, fraction):
     inverse = inverse_on(space, nodes)
     matrix = np.array([inverse(unit) for unit in np.eye(nodes.size, dtype=np.float32)], float)
     # Those of M K are those of L' M L, which is symmetric, with K = L L'.
-    lower = np.linalg.cholesky(reference.operator_on(space, nodes))
+    lower = np.linalg.cholesky(plain_twins.operator_on(space, nodes))
     values = np.linalg.eigvalsh(lower.T @ matrix @ lower)
     assert values.min() > 0.2
     assert np.mean((values > 0.5) & (values < 2)) > 0.97

@@ -11,7 +11,6 @@ from fractalcontact.domain.box_counts import (
     box_count,
     box_sizes,
     cover_and_mean,
-    is_minimal,
     mean_count,
     whole_sizes,
     window_sizes,
@@ -75,15 +74,17 @@ def test_cover_is_minimal_over_every_origin_of_large_boxes(size):
 @settings(max_examples=30, deadline=None)
 def test_cover_of_parts_of_cells_is_minimal(domain, numerator, denominator):
     size = max(numerator / denominator, 1.0)
-    assert is_minimal([size]).all()
     expected = counted_at_every_origin(domain, size, 0.05) if domain.any() else 0
     assert box_count(domain, [size])[0] == expected
 
 
-def test_bounds_are_told_from_minimal_covers():
-    assert is_minimal([1, 7, 12.5, 200 / 3, 200 / 7]).tolist() == [True, True, True, True, False]
-    assert is_minimal(window_sizes((200, 248))).all()
-    assert not is_minimal(box_sizes(200)).all()
+def test_every_origin_is_tried_of_boxes_that_divide_a_window_and_not_of_all():
+    domain = np.random.default_rng(4).random((200, 248)) < 0.02
+    for sizes in ([1, 7, 12.5, 200 / 3], window_sizes(domain.shape)):
+        few = box_count(domain, sizes, max_shifts=1)
+        np.testing.assert_array_equal(few, box_count(domain, sizes))
+    sizes = box_sizes(200)
+    assert (box_count(domain, sizes, max_shifts=1) > box_count(domain, sizes)).any()
 
 
 @given(DOMAINS, st.lists(st.integers(1, 20), min_size=1, max_size=4))

@@ -16,9 +16,13 @@ def states():
     return domains, np.array([np.maximum(HEIGHTS - level, 0) for level in levels])
 
 
+def row_of(domain, pressure):
+    return domain_measures(domain, 0.1, pressure, lacunarity(domain, 0.1))
+
+
 def test_row_holds_what_the_measures_say():
     domains, pressures = states()
-    row = domain_measures(domains[2], 0.1, pressures[2])
+    row = row_of(domains[2], pressures[2])
     box = dimension_of_domain(domains[2], 0.1)
     assert row["delta_sigma"] == box.dimension
     assert (row["delta_sigma_low"], row["delta_sigma_r_max"]) == (box.low, box.over[1])
@@ -30,16 +34,16 @@ def test_row_holds_what_the_measures_say():
 
 
 def test_orders_do_not_rise_with_q_where_pressure_is_uneven():
-    row = domain_measures(np.ones(HEIGHTS.shape, bool), 0.1, np.exp(2 * HEIGHTS))
+    row = row_of(np.ones(HEIGHTS.shape, bool), np.exp(2 * HEIGHTS))
     found = [row[order_name(q)] for q in ORDERS]
     assert (np.diff(found) < 0.02).all()
     assert found[-1] < found[2] - 0.02
 
 
-def test_without_pressure_every_node_weighs_the_same():
+def test_under_an_even_pressure_every_node_weighs_the_same():
     domain = states()[0][2]
-    even = domain_measures(domain, 0.1, 7.0 * domain)
-    for key, value in domain_measures(domain, 0.1).items():
+    even = row_of(domain, 7.0 * domain)
+    for key, value in row_of(domain, domain).items():
         assert even[key] == pytest.approx(value, nan_ok=True)
 
 
@@ -48,7 +52,7 @@ def test_states_of_a_specimen():
     found = measures_of_states(domains, pressures, 0.1, [0.0, 10.0, 100.0])
     for variable in found.variables.values():
         assert {"units", "long_name"} <= set(variable.attrs)
-    row = domain_measures(domains[1], 0.1, pressures[1])
+    row = row_of(domains[1], pressures[1])
     state = found.sel(normal_force=10.0)
     assert state["delta_sigma"] == row["delta_sigma"]
     assert state["generalised_dimension_high"].sel(order=-1) == row["d_minus_1_high"]

@@ -4,8 +4,7 @@ from ensembles import ensemble
 from places import SCANS
 
 from fractalcontact.roughness.dimension import (
-    LITTLE_BIASED,
-    hurst_exponents,
+    measured_exponents,
     slope_statistics,
     surface_dimension,
 )
@@ -13,6 +12,8 @@ from fractalcontact.roughness.recommended import dimension_table
 from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 
+#: Their slope is H itself within 0.03 for H from 0.5 to 0.9, even without correction.
+LITTLE_BIASED = ["second_differences", "roughness_length", "power_spectrum"]
 WITH_AXES = ["variogram", "second_differences", "roughness_length", "power_spectrum"]
 
 
@@ -51,7 +52,7 @@ def test_every_estimator_finds_the_hurst_exponent(target):
         for s in range(ensemble("surfaces of known H"))
     ]
     mean = sum(result.hurst.to_series() for result in results) / len(results)
-    assert mean[list(LITTLE_BIASED)].to_numpy() == pytest.approx(target, abs=0.04)
+    assert mean[LITTLE_BIASED].to_numpy() == pytest.approx(target, abs=0.04)
     assert mean.to_numpy() == pytest.approx(target, abs=0.08)
     held = sum(
         ((result.hurst_low <= target) & (target <= result.hurst_high)).to_series()
@@ -161,7 +162,7 @@ def test_wrong_range_or_shape_is_refused(surface):
 
 def test_plain_numbers_are_those_of_the_dataset(surface):
     result = surface_dimension(surface, 0.1)
-    for name, estimate in hurst_exponents(surface, 0.1).items():
+    for name, estimate in measured_exponents(surface, 0.1)[0].items():
         chosen = result.sel(estimator=name)
         for axis, ending in (("both", ""), ("x", "_x"), ("y", "_y")):
             stored = [chosen[f"hurst{ending}{end}"].item() for end in ("", "_low", "_high")]

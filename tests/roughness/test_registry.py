@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import fractalcontact.roughness.estimators as folder
-from fractalcontact.roughness.dimension import LITTLE_BIASED
 from fractalcontact.roughness.registry import ESTIMATORS
 
 
@@ -16,7 +15,3 @@ def test_estimators_come_in_the_order_they_declare():
     places = [estimator.place for estimator in ESTIMATORS.values()]
     assert places == sorted(set(places))
     assert list(ESTIMATORS)[:3] == ["variogram", "second_differences", "roughness_length"]
-
-
-def test_little_bias_is_declared_by_the_estimators_themselves():
-    assert LITTLE_BIASED == ("second_differences", "roughness_length", "power_spectrum")

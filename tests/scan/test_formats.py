@@ -515,9 +515,9 @@ def test_nothing_but_the_reader_process_imports_the_readers(tmp_path):
     code = (
         "import sys, numpy\n"
         "from fractalcontact.scan.read import read_matrix\n"
-        "from fractalcontact.study.scan_files import find_scans\n"
+        "from fractalcontact.study.scan_files import list_scans\n"
         "numpy.save('rock.npy', numpy.arange(99.0).reshape(9, 11))\n"
-        "assert list(find_scans('.')) == ['rock']\n"
+        "assert list(list_scans('.')[0]) == ['rock']\n"
         "read_matrix('rock.npy', {'unit': 'mm', 'spacing': 1})\n"
         "print([name for name in sys.modules if 'scan.readers' in name or 'scan.formats' in name])"
     )

@@ -14,7 +14,7 @@ from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.mechanics.theory import scaled_joint
-from fractalcontact.roughness.dimension import roughness_length
+from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
 from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
 from fractalcontact.size_effect.laws import size_laws
@@ -253,7 +253,8 @@ def test_local_roughness_is_that_of_the_plane_by_least_squares():
 
 def test_local_roughness_is_that_of_the_roughness_length_estimator():
     heights = self_affine((128, 128), 0.1, 0.8, rms=1, seed=4)
-    sides, rms = roughness_length(heights, 0.1)
+    curve = roughness_length_curves(heights, 0.1)["both"]
+    sides, rms = curve.length, np.sqrt(curve.measure())
     for side in (8, 16, 32):
         own = local_roughness(split(heights, 128 // side))
         at = np.flatnonzero(np.isclose(sides, side * 0.1)).item()

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from known_sets import punch_dimensions
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.roughness.dimension import surface_dimension
 from fractalcontact.study.configuration import resolve_embedded
 from fractalcontact.study.embedded import embedded_surface
-from fractalcontact.surface.known_dimension import punch_dimensions
 
 RECIPE = {
     "label": "synthetic",

@@ -29,3 +29,12 @@ def percolation_cluster(n, seed):
     label, _ = ndimage.label(np.random.default_rng(seed).random((n, n)) < 0.592746)
     sizes = np.bincount(label.ravel())
     return label == 1 + np.argmax(sizes[1:])
+
+
+def punch_dimensions(parts=2, narrowing=1.5, lowering=1.3):
+    """Dimension of a Cantor punch's profile, and of the set at which it touches a plane.
+
+    Of generation n there are parts^n steps, lowering^-n high and (parts narrowing)^-n wide.
+    """
+    ratio = np.log(parts * narrowing)
+    return 1 + max(np.log(parts / lowering) / ratio, 0.0), np.log(parts) / ratio

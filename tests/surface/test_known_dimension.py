@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
 from ensembles import ensemble
+from known_sets import punch_dimensions
 
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.mean_plane import without_mean_plane
-from fractalcontact.roughness.dimension import hurst_exponents
+from fractalcontact.roughness.dimension import measured_exponents
 from fractalcontact.surface.known_dimension import (
     cantor_punch,
     extruded,
-    punch_dimensions,
     random_midpoint,
     weierstrass_mandelbrot,
 )
@@ -70,9 +70,9 @@ def test_estimators_find_the_dimension_again(make, target):
         [
             [
                 estimate.hurst["both"].value
-                for estimate in hurst_exponents(
+                for estimate in measured_exponents(
                     make((256, 256), 0.1, target, rms=0.3, seed=seed), 0.1, estimators=names
-                ).values()
+                )[0].values()
             ]
             for seed in range(ensemble("surfaces of other makers"))
         ],
@@ -88,7 +88,7 @@ def test_an_extruded_profile_has_one_dimension_more_than_the_profile():
     for seed in range(seeds):
         profile = weierstrass_mandelbrot((2, n), 0.1, target, rms=0.3, seed=seed)[0]
         surface = extruded(profile, n)
-        estimate = hurst_exponents(surface, 0.1, estimators=["second_differences"])
+        estimate, _ = measured_exponents(surface, 0.1, estimators=["second_differences"])
         found.append(estimate["second_differences"].hurst["x"].value)
         assert np.isnan(estimate["second_differences"].hurst["y"].value)  # no roughness at all
     assert 3 - np.mean(found) == pytest.approx((2 - target) + 1, abs=0.05)

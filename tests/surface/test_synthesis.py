@@ -5,7 +5,7 @@ import pytest
 import yaml
 from ensembles import ensemble
 
-from fractalcontact.roughness.dimension import roughness_length
+from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
 from fractalcontact.study.embedded import write_scan
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 
@@ -43,7 +43,8 @@ def test_roughness_length_finds_the_hurst_exponent_too():
     found = []
     for seed in SEEDS:
         surface = self_affine((256, 256), SPACING, 0.79, rms=0.3, seed=seed)
-        side, rms = roughness_length(surface, SPACING)
+        curve = roughness_length_curves(surface, SPACING)["both"]
+        side, rms = curve.length, np.sqrt(curve.measure())
         fitted = (side >= 8 * SPACING) & (side <= 64 * SPACING)
         found.append(np.polyfit(np.log(side[fitted]), np.log(rms[fitted]), 1)[0])
     assert np.mean(found) == pytest.approx(0.79, abs=0.05)

@@ -15,7 +15,7 @@ from projects import ROOT, command, project, run, small_study, write_scan
 
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import accuracy_figures_of, figures_of, study_figures_of
-from fractalcontact.study.scan_files import find_scans
+from fractalcontact.study.scan_files import list_scans
 from fractalcontact.study.stages import EXPERIMENT, paths_of
 
 __all__ = ["project"]  # a fixture
@@ -157,12 +157,12 @@ def test_files_of_any_permitted_name_are_scheduled_and_run(project):
     study = small_study(project)
     for name in HOSTILE:
         write_scan(project, name)
-    scans = find_scans(project / "scans")
+    scans, _ = list_scans(project / "scans")
     assert len(scans) == len(HOSTILE)
     planned = run(project, study, "--dry-run")
     assert planned.returncode == 0, planned.stdout[-3000:] + planned.stderr
     worst = [
-        name for name, scan in scans.items() if scan.original_name in HOSTILE[1:4] + HOSTILE[11:13]
+        name for name, scan in scans.items() if scan.lower.stem in HOSTILE[1:4] + HOSTILE[11:13]
     ]
     made = [f"results/test/specimens/{name}.nc" for name in worst]
     done = run(project, study, *made)

@@ -1,16 +1,15 @@
-"""Convergence of the discrete contact to exact solutions, and what its discretisation decides."""
+"""Convergence of the discrete contact to exact solutions."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from ..contact.solve import solve_contact
 from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
-from ..elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
+from ..elastic.halfspace import HalfSpace
 from .richardson import richardson
 
 # The window is this many times the contact across: what lies outside never touches.
@@ -203,48 +202,4 @@ def richardson_trials(
             "quantity": ("quantity", names, cf_attrs("1", "what is extrapolated")),
             "cells": ("case", ratios, cf_attrs("1", "cells across the radius, finest spacing")),
         },
-    )
-
-
-#: Variables of `kernel_effect`: dimensions, unit, long name.
-_KERNEL_EFFECT: dict[str, tuple[str, str, str]] = {
-    "force": ("kernel", "N", "normal force"),
-    "area": ("kernel", "mm2", "area of the contact domain"),
-    "stiffness": ("kernel", "N/mm", "normal stiffness dF/dw"),
-}
-
-
-def kernel_effect(
-    composite: ArrayLike, spacing: float, modulus: float, closure: float
-) -> xr.Dataset:
-    """What the choice of the kernel decides: Love's, or a reading of the paper's rigid plate.
-
-    Parameters
-    ----------
-    composite : (ny, nx) array_like
-        Composite topography, mm.
-    spacing : float
-        Side of the square cells, mm.
-    modulus : float
-        E*, MPa.
-    closure : float
-        w from first touch, mm.
-
-    Returns
-    -------
-    Dataset
-        ``force`` (N), ``area`` (mm2) and ``stiffness`` (N/mm) on ``kernel``.
-    """
-    kernels = ["love", *RIGID_PLATE_SELF_TERMS]
-    shape = np.shape(composite)
-    states = [
-        solve_contact(
-            composite, HalfSpace(shape, (spacing, spacing), modulus, kernel=k), closure=closure
-        )
-        for k in kernels
-    ]
-    return labelled_dataset(
-        _KERNEL_EFFECT,
-        {name: [getattr(state, name) for state in states] for name in _KERNEL_EFFECT},
-        coords={"kernel": ("kernel", kernels, cf_attrs("1", "influence of a loaded node"))},
     )

@@ -1,8 +1,8 @@
 """Contact problems of the kinds that methods fail on, each drawn at random from a seed.
 
-Those of `random_problems` mix sizes, shapes and units to find any fault of our own solver. Here
-every kind isolates one difficulty and stays small enough for direct elimination, so that it can be
-said of any method which difficulty it cannot take.
+Those of `tests/support/random_problems.py` mix sizes, shapes and units to find any fault of our own
+solver. Here every kind isolates one difficulty and stays small enough for direct elimination, so
+that it can be said of any method which difficulty it cannot take.
 
 Kinds that are hard for their surface, or for how deeply it is pressed, are in `hard_surfaces`; here
 are those hard for their window, units, start or hardness, or for what they lack.

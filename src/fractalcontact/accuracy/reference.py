@@ -20,7 +20,7 @@ from ..elastic.halfspace import HalfSpace
 from ..methods.registry import METHODS
 from ..surface.synthesis import self_affine
 from .cheap_models import CheapState
-from .random_problems import violation
+from .violation import violation
 
 SIDE = 1.0  # mm
 E_STAR = 1.0  # MPa

@@ -14,7 +14,7 @@ from ..methods.common import NotOffered
 from ..methods.registry import METHODS, installed_peers
 from .hard_problems import KINDS, hard_problem
 from .hard_surfaces import HardProblem
-from .random_problems import violation
+from .violation import violation
 
 RTOL = 1e-6
 #: A state is right if it violates the contact conditions by no more than this many times the

@@ -9,7 +9,7 @@ problem is solved exactly, which minimises the Kullback-Leibler divergence among
 sparsity (F. Schaefer, M. Katzfuss and H. Owhadi, Sparse Cholesky factorization by Kullback-Leibler
 minimization, SIAM J. Sci. Comput. 43 (2021) A2019; in geostatistics, Vecchia's approximation: A. V.
 Vecchia, J. R. Stat. Soc. B 50 (1988) 297). Sixteen nodes are solved side by side, one in each lane
-of the processor's SIMD vectors; `reference.inverse_cholesky` is the same in plain loops.
+of the processor's SIMD vectors; `tests/support/plain_twins.py` has the same in plain loops.
 """
 
 import numpy as np

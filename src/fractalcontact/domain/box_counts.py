@@ -115,8 +115,8 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     Returns
     -------
     (k,) int64
-        N(r): the minimum over every grid origin where :func:`is_minimal` says so, else an upper
-        bound of it. Linear in cells for each size.
+        N(r): the minimum over every grid origin for whole sizes and for halves, thirds and quarters
+        of cells, else an upper bound of it. Linear in cells for each size.
 
     Raises
     ------
@@ -140,24 +140,6 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
         origins = _origins(sizes[k], max_shifts)
         counts[k] = _minimal_cover(nodes, sizes[k], origins)
     return counts if extent.any() else np.zeros(sizes.size, np.int64)
-
-
-def is_minimal(sizes: np.ndarray) -> np.ndarray:
-    """Whether :func:`box_count` tries every grid origin; otherwise its count is an upper bound.
-
-    Boxes of p / q cells have p origins along each axis that part the nodes in different ways. All
-    are tried for whole sizes, and for halves, thirds and quarters of cells.
-
-    Parameters
-    ----------
-    sizes : (k,) array_like
-        Box sides in cells.
-
-    Returns
-    -------
-    (k,) bool
-    """
-    return np.array([_ratio(size) is not None for size in _checked_sizes(sizes)], bool)
 
 
 def _ratio(size: float) -> Fraction | None:

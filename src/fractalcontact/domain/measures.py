@@ -14,7 +14,7 @@ from .box_counts import box_count, window_sizes
 from .box_dimension import dimension_of_domain, local_slopes
 from .correlation import correlation_dimension
 from .isotropy import LAG_FIELDS, contact_at_lag
-from .multifractal import ORDERS, generalised_dimensions, lacunarity
+from .multifractal import ORDERS, SizeCurve, generalised_dimensions, lacunarity
 
 #: Measures of a domain that are slopes, with their long names.
 SLOPES = {
@@ -32,19 +32,22 @@ def order_name(q: float) -> str:
 def domain_measures(
     domain: np.ndarray,
     spacing: float,
-    pressure: np.ndarray | None = None,
+    pressure: np.ndarray,
+    gliding: SizeCurve,
     fit_range: tuple[float, float] | None = None,
 ) -> dict[str, float]:
     """Every measure of a contact domain as one row of a table.
 
     Parameters
     ----------
-    domain : (ny, nx) bool array_like
+    domain : (ny, nx) bool ndarray
         Nodes in contact.
     spacing : float
         mm.
-    pressure : (ny, nx) array_like, optional
-        MPa; without it the generalised dimensions are those of the nodes, each of the same mass.
+    pressure : (ny, nx) ndarray
+        MPa, or whatever the generalised dimensions are to weigh nodes by.
+    gliding : SizeCurve
+        Lacunarity of the domain.
     fit_range : (float, float), optional
         Smallest and largest box of Delta_sigma, mm; by default all between the cut-offs.
 
@@ -55,19 +58,12 @@ def domain_measures(
         the value, ``_low``, ``_high``, ``_r_min``, ``_r_max`` (mm) and ``_n`` scales. NaN and 0
         where there is none.
     """
-    domain = np.asarray(domain, dtype=bool)
-    return _row(domain, spacing, lacunarity(domain, spacing), pressure, fit_range)
-
-
-def _row(domain, spacing, gliding, pressure, fit_range):
-    """:func:`domain_measures` of a domain whose lacunarity is known."""
     box = dimension_of_domain(domain, spacing, fit_range=fit_range)
-    mass = domain if pressure is None else pressure
     slopes = {
         "delta_sigma": box,
         "correlation_dimension": correlation_dimension(domain, spacing),
         "lacunarity_slope": gliding.slope if domain.any() else Estimate(),
-        **{order_name(q): slope for q, slope in generalised_dimensions(mass, spacing).items()},
+        **{order_name(q): slope for q, slope in generalised_dimensions(pressure, spacing).items()},
     }
     row: dict[str, float] = {}
     for name, slope in slopes.items():
@@ -151,8 +147,8 @@ def measures_of_states(
             "do not belong together"
         )
     curves = [lacunarity(domain, spacing) for domain in domains]
-    states = zip(domains, curves, pressures, strict=True)
-    rows = [_row(domain, spacing, curve, p, fit_range) for domain, curve, p in states]
+    states = zip(domains, pressures, curves, strict=True)
+    rows = [domain_measures(domain, spacing, p, curve, fit_range) for domain, p, curve in states]
     side, local = _local_slopes(domains, spacing)
     variables: dict[str, Any] = {}
     for name, long_name in SLOPES.items():

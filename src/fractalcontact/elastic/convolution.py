@@ -4,7 +4,7 @@ Sixteen transforms go on side by side, one in each lane of the processor's SIMD 
 which libraries built for every processor do not use in full. What is known is left out: columns
 beyond the window are not transformed along y, and as the kernel's spectrum is put in the order in
 which the forward transform leaves its result and the inverse takes it, nothing is sorted.
-`reference.convolution` is the same with scipy.fft.
+`tests/support/plain_twins.py` has the same with scipy.fft.
 
 The transform along y comes first, of two real columns as one complex. Their spectra, for half the
 wave numbers, stand in blocks of sixteen wave numbers and are transformed along x, multiplied, and

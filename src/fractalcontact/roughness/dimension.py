@@ -19,7 +19,6 @@ from ..core.mean_plane import without_mean_plane
 from ..core.ranges import within
 from .curves import Curve, jackknife_standard_error
 from .estimator import Estimator
-from .estimators.roughness_length import roughness_length_curves
 from .fit_range import FitRange, choose_fit_range
 from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
 from .recommended import recommended_variables
@@ -32,9 +31,6 @@ FLATNESS = 1e-12
 
 #: Cells this close to square, as a part of their side, are taken as square.
 SQUARENESS = 1e-3
-
-#: Those whose slope is H itself within 0.03 for H from 0.5 to 0.9, even without correction.
-LITTLE_BIASED = tuple(name for name, of in ESTIMATORS.items() if of.little_biased)
 
 #: Added to either end of an interval for the bias that is left: at H from 0.5 to 0.9 on synthetic
 #: surfaces it is at most twice this (roughness-length at H = 0.5), mostly below it.
@@ -188,21 +184,6 @@ class MeasuredCurve(NamedTuple):
     """H along both axes before the correction of known bias."""
 
 
-def hurst_exponents(
-    heights: np.ndarray,
-    spacing: float | tuple[float, float],
-    *,
-    fit_range: tuple[float, float] | FitRange | None = None,
-    estimators: Sequence[str] | None = None,
-) -> dict[str, MeasuredCurve]:
-    """Hurst exponent by estimator, as plain numbers.
-
-    Parameters and errors as :func:`surface_dimension`.
-    """
-    found, _ = measured_exponents(heights, spacing, fit_range=fit_range, estimators=estimators)
-    return found
-
-
 def measured_exponents(
     heights: np.ndarray,
     spacing: float | tuple[float, float],
@@ -210,7 +191,10 @@ def measured_exponents(
     fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
 ) -> tuple[dict[str, MeasuredCurve], FitRange]:
-    """Hurst exponents as :func:`hurst_exponents`, and the range they were fitted over."""
+    """Hurst exponent by estimator, and the range all were fitted over.
+
+    Parameters and errors as :func:`surface_dimension`.
+    """
     heights = np.asarray(heights, float)
     if heights.ndim != 2:
         raise ValueError(f"heights must be a (y, x) grid, not of shape {heights.shape}")
@@ -299,15 +283,6 @@ def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tup
         return np.nan, np.nan
     of_parts = t_quantile(parts - 1) * estimator.spread * jackknife_standard_error(without)
     return every[0], max(of_regression, of_parts) + BIAS_LEFT
-
-
-def roughness_length(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Rms height about the local mean plane (mm) in square windows of side b (mm): grows as b^H.
-
-    See :func:`roughness.estimators.roughness_length.roughness_length_curves`.
-    """
-    curve = roughness_length_curves(np.asarray(heights, float), spacing)["both"]
-    return curve.length, np.sqrt(curve.measure())
 
 
 # -- statistics that the classical theories ask for ------------------------------------------------

@@ -37,5 +37,3 @@ class Estimator(NamedTuple):
     nodes: str = POINTS
     """What they are taken for. Errors of measurement make short lags too rough, as missing waves
     make them too smooth: of scans neither is taken off."""
-    little_biased: bool = False
-    """Whether the slope is H itself within 0.03 for H from 0.5 to 0.9, even uncorrected."""

@@ -166,7 +166,7 @@ def with_coordinates(
     Parameters
     ----------
     scans : mapping of str to ScanFiles
-        From :func:`study.scan_files.find_scans`, which lists every file for itself.
+        From :func:`study.scan_files.list_scans`, which lists every file for itself.
     options : mapping of str to mapping
         Scan keys of their sidecars.
 

@@ -105,7 +105,7 @@ def _cantor_punch(shape: tuple[int, int], recipe: Mapping) -> np.ndarray:
     """The extruded punch of two parts, of three nodes a generation, whose profile has Delta_g - 1.
 
     Dimension of the profile: 1 + ln(2/lowering)/ln 3, see
-    :func:`surface.known_dimension.punch_dimensions`.
+    :func:`surface.known_dimension.cantor_punch`.
     """
     lowering = 2 / 3 ** (recipe["dimension"] - 2)
     profile = cantor_punch(round(np.log(shape[1]) / np.log(3)), lowering=lowering)

@@ -39,8 +39,6 @@ class ScanFiles:
         The scan of the upper face, if there is one.
     sidecar : Path or None
         What the user says about the scan, for both faces.
-    original_name : str
-        The name as the files spell it.
     coordinates : tuple of Path
         Files of x and y of a contact map, where its sidecar names them.
     group : str
@@ -57,7 +55,6 @@ class ScanFiles:
     lower: Path
     upper: Path | None
     sidecar: Path | None
-    original_name: str
     coordinates: tuple[Path, ...] = ()
     group: str = ""
     shared: Path | None = None
@@ -70,40 +67,14 @@ class ScanFiles:
         return tuple(path for path in (self.lower, self.upper, *self.coordinates) if path)
 
 
-def find_scans(folder: Path | str) -> dict[str, ScanFiles]:
-    """List the specimens of a folder.
+def list_scans(
+    folder: Path | str, group_folders: Collection[str] = ()
+) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
+    """List the specimens of a folder, and what is wrong with its other files.
 
     ``NAME.ext`` is one face, ``NAME.lower.ext`` and ``NAME.upper.ext`` are two, ``NAME.yaml`` is
     the sidecar of either. Hidden files, README*, LICENSE*, sub-folders and what systems and editors
     leave behind are passed over: :func:`folder_notes` says so.
-
-    Parameters
-    ----------
-    folder : path-like
-
-    Returns
-    -------
-    dict of str to ScanFiles
-        By specimen name, sorted.
-
-    Raises
-    ------
-    InputError
-        If the folder does not exist; two files claim one name, or names that differ in case alone;
-        a face lacks its counterpart, a sidecar has no scan; a name is too long, has no usable
-        character, invisible ones or braces; a link leads out of the folder; a file is a pipe or a
-        device, or a folder has the name of a scan file.
-    """
-    scans, refused = list_scans(folder)
-    for error in refused.values():
-        raise error
-    return scans
-
-
-def list_scans(
-    folder: Path | str, group_folders: Collection[str] = ()
-) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
-    """List the specimens of a folder, and what is wrong with those that have none.
 
     Parameters
     ----------
@@ -114,9 +85,13 @@ def list_scans(
     Returns
     -------
     scans : dict of str to ScanFiles
-        As `find_scans` gives them.
+        By specimen name, sorted.
     refused : dict of str to InputError
-        By specimen name, or by file name where it gives none: the first thing wrong with each.
+        By specimen name, or by file name where it gives none, the first thing wrong with each: two
+        files claim one name, or names that differ in case alone; a face lacks its counterpart, a
+        sidecar has no scan; a name is too long, has no usable character, invisible ones or braces;
+        a link leads out of the folder; a file is a pipe or a device, or a folder has the name of a
+        scan file.
 
     Raises
     ------
@@ -297,7 +272,7 @@ def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
             f"{first}: the {missing} face is missing; add {original_name}.{missing}{first.suffix}, "
             f"or rename this file {original_name}{first.suffix} if only one face was scanned"
         )
-    return ScanFiles(name, first, upper, roles.get("sidecar"), original_name)
+    return ScanFiles(name, first, upper, roles.get("sidecar"))
 
 
 def _without_scan(sidecar: Path) -> InputError:

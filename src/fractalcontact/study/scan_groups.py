@@ -224,7 +224,7 @@ def _scan_of_row(folder: Path, cells: Mapping[str, str], where: str) -> ScanFile
         if text and key not in (*_FILES, _NAME)
     }
     sidecar = _sidecar_beside(first.parent, original)
-    return ScanFiles(name, first, upper, sidecar, stated, row=row, row_of=where)
+    return ScanFiles(name, first, upper, sidecar, row=row, row_of=where)
 
 
 def _path(folder: Path, text: str, where: str) -> Path:

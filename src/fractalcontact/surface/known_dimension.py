@@ -110,7 +110,9 @@ def cantor_punch(
     Notes
     -----
     Borodich & Mosolov, J. Appl. Math. Mech. 56 (1992) 681; its parts and ratios as in Warren &
-    Krajcinovic, Int. J. Solids Struct. 33 (1996) 1. Dimensions: :func:`punch_dimensions`.
+    Krajcinovic, Int. J. Solids Struct. 33 (1996) 1. The set at which it touches a plane has the
+    dimension ln(parts) / ln(parts narrowing); the profile, counted with the flanks of its steps,
+    1 + ln(parts / lowering) / ln(parts narrowing), or 1 if that is less.
     """
     ratio = round(parts * narrowing)
     gap = (ratio - parts) / (parts - 1)
@@ -126,26 +128,6 @@ def cantor_punch(
         standing = np.kron(standing, first)
         heights = np.repeat(heights, ratio) + standing * float(lowering) ** -generation
     return heights
-
-
-def punch_dimensions(
-    parts: int = 2, narrowing: float = 1.5, lowering: float = 1.3
-) -> tuple[float, float]:
-    """Dimension of a Cantor punch's profile, and of the set at which it touches a plane.
-
-    Parameters
-    ----------
-    parts, narrowing, lowering
-        As :func:`cantor_punch`.
-
-    Returns
-    -------
-    profile, contact : float
-        One more each for the extruded punch. The profile counts with the flanks of its steps: of
-        generation n there are parts^n, lowering^-n high and (parts narrowing)^-n wide.
-    """
-    ratio = np.log(parts * narrowing)
-    return 1 + max(np.log(parts / lowering) / ratio, 0.0), np.log(parts) / ratio
 
 
 def extruded(profile: ArrayLike, rows: int) -> np.ndarray:

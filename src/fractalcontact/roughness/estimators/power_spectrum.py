@@ -47,5 +47,4 @@ ESTIMATOR = Estimator(
     factor=2,
     spread=1.2,
     expected_hurst=expected_hurst,
-    little_biased=True,
 )

@@ -136,5 +136,4 @@ ESTIMATOR = Estimator(
     factor=2,
     spread=1.25,
     expected_hurst=expected_hurst,
-    little_biased=True,
 )

@@ -64,5 +64,4 @@ ESTIMATOR = Estimator(
     factor=1,
     spread=1.3,
     expected_hurst=expected_hurst,
-    little_biased=True,
 )

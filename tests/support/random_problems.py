@@ -1,15 +1,12 @@
-"""Random contact problems of every size, shape and unit, and a judge of their states."""
+"""Random contact problems of every size, shape and unit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import fftconvolve
 
-from ..contact.state import ContactState
-from ..elastic.halfspace import HalfSpace
-from ..elastic.influence import love_displacement
-from ..surface.synthesis import self_affine
+from fractalcontact import HalfSpace
+from fractalcontact.surface.synthesis import self_affine
 
 #: What a problem's topography is.
 KINDS = (
@@ -129,36 +126,3 @@ def _closure(generator, height, loading):
     fraction = {"light": 0.05, "half": 0.5, "heavy": 0.9}[loading] * generator.uniform(0.5, 1)
     # Nodes are pushed down around those in contact, hence the factor.
     return depth[int(fraction * (depth.size - 1))] * generator.uniform(1, 3) + 1e-6 * depth[-1]
-
-
-def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
-    """Largest violation of the contact conditions, judged by a convolution of its own.
-
-    Parameters
-    ----------
-    state : ContactState
-        Solved with Love's kernel.
-    height : (ny, nx) ndarray
-        mm.
-
-    Returns
-    -------
-    violation, rounding : float
-        Relative to the closure: how far gaps and pressures are from a state of contact, and how
-        much of it the rounding of the heights themselves explains.
-    """
-    (ny, nx), (dy, dx) = state.space.shape, state.space.spacing
-    y, x = np.arange(1 - ny, ny)[:, None] * dy, np.arange(1 - nx, nx)[None, :] * dx
-    kernel = love_displacement(x, y, dx, dy) / state.space.modulus
-    displacement = fftconvolve(state.pressure, kernel, mode="full")[ny - 1 :, nx - 1 :][:ny, :nx]
-    gap = displacement + (height.max() - height) - state.closure
-    pressure, cap = state.pressure, state.hardness
-    between = (pressure > 0) & (pressure < cap)
-    worst = max(
-        np.abs(gap[between]).max(initial=0.0),
-        -gap[pressure < cap].min(initial=0.0),
-        gap[pressure >= cap].max(initial=0.0),
-    )
-    if pressure.min() < 0 or pressure.max() > cap:
-        worst = np.inf
-    return worst / state.closure, 4 * np.spacing(np.abs(height).max()) / state.closure

@@ -1,13 +1,39 @@
-"""Plain twins of the preconditioner, in dense matrices and scalar loops.
+"""Plain twins of the convolution and the preconditioner: scipy.fft, dense matrices, loops.
 
-They document the vectorised code, and are what the tests compare it with. Each takes a time and a
-memory that grow with the square of the nodes, or faster.
+They say in a few lines what the hand-written transforms and the vectorised code compute, and are
+what the tests compare these with. Those of the preconditioner take a time and a memory that grow
+with the square of the nodes, or faster.
 """
 
 import numpy as np
+from scipy import fft
 
-from ..elastic.halfspace import HalfSpace
-from .inverse_cholesky import block_shifts
+from fractalcontact.contact.inverse_cholesky import block_shifts
+from fractalcontact.elastic.halfspace import HalfSpace
+
+
+def convolution(kernel: np.ndarray, field: np.ndarray) -> np.ndarray:
+    """Zero-padded convolution of a field with an even kernel.
+
+    Parameters
+    ----------
+    kernel : (ny, nx) ndarray
+        At distances from zero on; it is the same at negative ones.
+    field : (ny, nx) ndarray
+
+    Returns
+    -------
+    (ny, nx) ndarray
+        At (y, x) the sum over all (j, i) of kernel(abs(y - j), abs(x - i)) field(j, i).
+    """
+    ny, nx = field.shape
+    # Long enough that what is periodic in the transform does not reach round into the window.
+    padded = [fft.next_fast_len(2 * n - 1, real=True) for n in field.shape]
+    circulant = np.zeros(padded)
+    y, x = np.arange(1 - ny, ny)[:, None], np.arange(1 - nx, nx)
+    circulant[y, x] = kernel[np.abs(y), np.abs(x)]
+    product = fft.rfft2(circulant) * fft.rfft2(field, s=padded)
+    return fft.irfft2(product, s=padded)[:ny, :nx]
 
 
 def operator_on(space: HalfSpace, nodes: np.ndarray) -> np.ndarray:
