@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from places import ROOT
 
+from fractalcontact.mechanics.joint import composite_topography
+
 DOCS = ROOT / "docs"
 
 
@@ -36,12 +38,16 @@ def test_the_gallery_draws_the_states_of_the_atlas(names, atlas_file, tmp_path):
     figure = script["draw"](names["atlas"], "sliding")
     relief, domain, curves, *_ = figure.axes
     assert len(domain.lines[0].get_xdata()) == int(names["touching"].sum())
+    contact = names["contact"].attrs
+    offset, direction = contact["map_offset"], contact["map_direction"]
+    shown = np.ma.filled(relief.images[0].get_array(), np.nan)
     np.testing.assert_array_equal(
-        relief.images[0].get_array(),
-        names["joint"]["composite"].sel(
-            offset=names["contact"].attrs["map_offset"], method="nearest"
-        ),
+        shown, names["joint"]["composite"].sel(offset=offset, method="nearest")
     )
+    # What is pressed is what the faces give, to the steps that the atlas keeps heights in.
+    specimen = names["atlas"]["specimens/sliding"].to_dataset()
+    pressed = composite_topography(specimen, direction, round(offset / specimen.attrs["spacing_x"]))
+    np.testing.assert_allclose(shown, pressed, atol=1e-4 * np.ptp(pressed))
     assert 2 <= len(curves.lines) <= 5
     picture = tmp_path / "joint.png"
     script["main"](str(atlas_file), "sliding", str(picture))

@@ -1,13 +1,17 @@
 """Figures as print has them: no letters too small, no words over words, none cut off."""
 
+import json
+
 import numpy as np
 import pytest
+import xarray as xr
 from cases import representative
 from matplotlib.figure import Figure
-from print_size import faults, laid_out
+from places import ROOT
+from print_size import faults, faults_of_study
 
-from fractalcontact.figures.draw import drawer_of
-from fractalcontact.figures.kit.drawing import WIDTH, print_style
+from fractalcontact.figures.draw import draw_figure, drawer_of
+from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.figures.kit.maps import LEAST_DOT, MOST_BLACK, enlarged
 from fractalcontact.study.figure_list import accuracy_figures_of, all_figures, figures_of
 
@@ -21,20 +25,26 @@ KINDS = [
         if name not in FIRST and figure.subject != "accuracy" and figure.key != "contact_maps"
     ),
 ]
+#: Those with titles and legends full of numbers come first.
+LONG = sorted(KINDS, key=lambda name: name not in ("fig13_size_effect", "area_theories"))
+#: Ends of an interval that leaves everything open are this many times apart from their value.
+WIDE = 31.7
+NUMBERS = (
+    "+0.25 [-0.52, +1.02] a decade of F, less that of as many random nodes -0.17 [-0.88, +0.55]"
+)
+#: 200 letters that are wider than most, among them a word longer than a line and no formula.
+CAPITALS = ("MITTELKÖRNIGER SANDSTEIN, KLUFT 3A, FÜR $5 $ VERMESSEN AM " + "M" * 80 + " " * 1) * 2
+CAPITALS = CAPITALS[:200]
 
 
 def drawn(atlas, name, subject="sliding"):
     of_study = all_figures()[name].subject == "study"
-    with print_style():
-        drawing = drawer_of(name)(atlas, ["sliding", "pair", "flat"] if of_study else subject)
-        return laid_out(drawing.figure)
+    return draw_figure(atlas, name, ["sliding", "pair", "flat"] if of_study else subject).figure
 
 
 @pytest.mark.parametrize("name", representative(KINDS, len(FIRST)))
 def test_every_word_can_be_read_in_print(atlas, name):
-    figure = drawn(atlas, name)
-    assert figure.get_figwidth() <= WIDTH
-    assert faults(figure) == []
+    assert faults(drawn(atlas, name)) == []
 
 
 @pytest.mark.full
@@ -46,6 +56,43 @@ def test_words_of_other_specimens_can_be_read(atlas, name, subject):
     assert faults(drawn(atlas, name, subject)) == []
 
 
+@pytest.fixture(scope="module")
+def long_winded(atlas):
+    """The atlas with the widest intervals and labels, and long numbers behind every verdict."""
+    changed = atlas.copy()
+    for node in changed.subtree:
+        found = node.to_dataset()
+        for name in list(found.data_vars):
+            ends = {f"{name}_low", f"{name}_high"} <= set(found.data_vars)
+            if ends and found[name].dtype.kind == "f":
+                value, ends = found[name], (found[name] / WIDE, found[name] * WIDE)
+                found[f"{name}_low"] = np.minimum(*ends).where(value.notnull())
+                found[f"{name}_high"] = np.maximum(*ends).where(value.notnull())
+        if node.path.startswith("/statements/"):
+            for name, words in (("verdict", "undetermined"), ("numbers", NUMBERS)):
+                found[name] = xr.full_like(found[name], words)
+        node.dataset = found
+    configuration = json.loads(changed.attrs["configuration"])
+    for settings in configuration["settings"].values():
+        settings["label"] = CAPITALS
+    changed.attrs["configuration"] = json.dumps(configuration)
+    return changed
+
+
+@pytest.mark.parametrize("name", representative(LONG, 2))
+def test_words_find_room_however_long_they_are(long_winded, name):
+    assert faults(drawn(long_winded, name)) == []
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("study", ["paper", "smoke"])
+def test_every_word_of_a_study_that_was_made_here_can_be_read(study):
+    path = ROOT / "results" / study / "atlas.nc"
+    if not path.is_file():
+        pytest.skip(f"`make STUDY=config/{study}.yaml` was not run in this checkout")
+    assert faults_of_study(path) == {}
+
+
 def test_faults_are_found():
     with print_style():
         figure = Figure(figsize=(3, 2))
@@ -54,7 +101,10 @@ def test_faults_are_found():
         axes.text(0.5, 0.7, "one over the other")
         axes.text(0.5, 0.7, "another of the two")
         figure.text(0.9, 0.01, "which leaves the figure", fontsize=9)
-        found = " ".join(faults(laid_out(figure)))
+        axes.legend([axes.plot(0)[0]], ["a"], bbox_to_anchor=(-1, 0.5))
+        figure.set_layout_engine("none")
+        found = " ".join(faults(figure))
+    assert "a legend is cut off" in found
     assert "5 pt: 'tiny'" in found
     assert "overlap: 'one over the other' and 'another of the two'" in found
     assert "cut off: 'which leaves the figure'" in found

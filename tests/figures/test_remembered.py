@@ -7,8 +7,9 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
-from fractalcontact.figures.kit import drawing
+from fractalcontact.figures.kit import drawing, layout
 from fractalcontact.figures.kit.drawing import Drawing, print_style, save
+from fractalcontact.figures.kit.remembered import remember_ticks
 
 
 def _figure():
@@ -36,7 +37,7 @@ def test_files_are_the_same_bytes_without(tmp_path, monkeypatch, ending):
     with print_style():
         save(_figure(), tmp_path, "with")
         monkeypatch.setattr(drawing, "layouts_remembered", contextlib.nullcontext)
-        monkeypatch.setattr(drawing, "remember_ticks", lambda figure: None)
+        monkeypatch.setattr(layout, "remember_ticks", lambda figure: None)
         save(_figure(), tmp_path, "without")
     assert (tmp_path / f"with.{ending}").read_bytes() == (
         tmp_path / f"without.{ending}"
@@ -47,7 +48,7 @@ def test_ticks_follow_the_view_and_the_size_of_their_axis():
     figure = Figure(figsize=(6, 4), dpi=100)
     axes = figure.subplots()
     axes.plot([0, 1], [0, 1])
-    drawing.remember_ticks(figure)
+    remember_ticks(figure)
     before = [tick.get_loc() for tick in axes.xaxis._update_ticks()]
     assert [tick.get_loc() for tick in axes.xaxis._update_ticks()] == before
     axes.set_xlim(0, 7)

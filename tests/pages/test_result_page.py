@@ -17,7 +17,6 @@ from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.pages.cards import redrawn
 from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
@@ -38,7 +37,7 @@ from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
 from fractalcontact.pages.summary import summarised
 from fractalcontact.pages.words import with_unit
 from fractalcontact.statements.judge import all_statements
-from fractalcontact.study.atlas import group_names, read_atlas, write_atlas
+from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.figure_list import figures_of
 
 NAMES = ("flat.1", "pair")
@@ -433,59 +432,6 @@ def test_verdicts_of_several_specimens_are_counted(verdicts, words):
     sentences = opening_of([], CommonLoad("p0", 25.0, {}), [row])
     assert sentences[-1] == f"The size effect of eq. 6 {words} (windows within one joint)."
     assert opening_of([], None, [row]) == []
-
-
-@pytest.mark.parametrize(
-    ("figure", "specimen"),
-    [
-        ("statements", "pair"),
-        pytest.param("study_statements", "", marks=pytest.mark.full),
-        pytest.param("fig04_05_closure", "flat.1", marks=pytest.mark.full),
-    ],
-)
-def test_the_lines_on_the_page_draw_the_figure_again(
-    results, pages, tmp_path, monkeypatch, figure, specimen
-):
-    groups = group_names(results / "atlas.nc")
-    code = redrawn(figure, specimen, "results/tiny/atlas.nc", groups)
-    if specimen:
-        assert code in "".join(pages[results / f"pages/{specimen}.html"].texts)
-    (tmp_path / "results").symlink_to(results.parent)
-    monkeypatch.chdir(tmp_path)
-    values = {}
-    exec(code, values)
-    assert (tmp_path / f"{figure}.pdf").read_bytes().startswith(b"%PDF")
-    assert len(values["drawing"].data) > 0
-    values["atlas"].close()
-
-
-def test_the_lines_on_the_page_read_groups_that_exist(results, pages):
-    """Those of every figure: run on the atlas, each leads to a group with numbers in it."""
-    whole = read_atlas(results / "atlas.nc")
-    assert group_names(results / "atlas.nc") == {
-        node.path.strip("/")
-        for node in whole.subtree
-        if node.path != "/" and (node.data_vars or node.children)
-    }
-    for name, opposite in (("pair", "match"), ("flat.1", "flat")):
-        text = "".join(pages[results / f"pages/{name}.html"].texts)
-        for figure in figures_of(opposite):
-            code = redrawn(figure, name, "results/tiny/atlas.nc", group_names(results / "atlas.nc"))
-            assert code in text
-            read = re.findall(r"^(\w+) = (atlas\[.+\])$", code, re.MULTILINE)
-            assert read, figure
-            for _, expression in read:
-                assert eval(expression, {"atlas": whole}).to_dataset().data_vars, expression
-
-
-def test_measured_maps_are_read_where_the_atlas_has_them():
-    """They are no specimen's."""
-    specimens = {"specimens", "specimens/a", "contact/a"}
-    code = redrawn("fig12_evolution", "a", "atlas.nc", specimens)
-    assert "contact_maps" not in code
-    assert "specimens = atlas['specimens/a']" in code
-    code = redrawn("fig12_evolution", "a", "atlas.nc", specimens | {"contact_maps"})
-    assert "contact_maps = atlas['contact_maps']\n" in code
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,17 @@
 """What keeps a figure from being read in print: small letters, words over words or cut off."""
 
+import json
 from itertools import combinations
 
 from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.legend import Legend
 from matplotlib.text import Annotation, Text
 
-from fractalcontact.figures.kit.drawing import DPI, _lay_out
-from fractalcontact.figures.kit.empty import settle_empty_axes
-from fractalcontact.figures.kit.ticks import plain_ticks
+from fractalcontact.figures.draw import draw_figure
+from fractalcontact.figures.kit.drawing import WIDTH
+from fractalcontact.figures.kit.layout import lay_out
+from fractalcontact.study.atlas import read_atlas
+from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
 
 #: Points that letters have at least, at the width that the figure is printed at.
 LEAST_SIZE = 6.0
@@ -16,15 +19,27 @@ LEAST_SIZE = 6.0
 _SLACK = 3.0
 
 
-def laid_out(figure):
-    """The figure drawn as it is saved, without its files: legends have their places only then."""
-    figure.set_dpi(DPI)
-    settle_empty_axes(figure)
-    canvas = FigureCanvasAgg(figure)
-    plain_ticks(figure)
-    _lay_out(figure)
-    canvas.draw()
-    return figure
+def faults_of_study(path):
+    """Faults of every figure of an atlas, by subject and figure; those without any are left out."""
+    atlas = read_atlas(path)
+    configuration = json.loads(atlas.attrs["configuration"])
+    names = sorted(atlas["specimens"].children)
+    of_study = study_figures_of([*configuration["study"], "defaults", "comparison"])
+    subjects = [(figure, names) for figure in of_study if _has(atlas, figure)]
+    for name in names:
+        opposite = configuration["settings"][name]["opposite"]
+        subjects += [(figure, name) for figure in figures_of(opposite)]
+    assert len(subjects) > 20
+    found = {
+        f"{subject} {figure}": faults(draw_figure(atlas, figure, subject).figure)
+        for figure, subject in subjects
+    }
+    return {figure: words for figure, words in found.items() if words}
+
+
+def _has(atlas, figure):
+    """Whether an atlas has the stages of a figure."""
+    return all(stage in atlas.children for stage in all_figures()[figure].needs)
 
 
 def shown_texts(figure):
@@ -60,9 +75,11 @@ def _tick_labels(axis):
 
 
 def faults(figure):
-    """What cannot be read of a figure that is laid out, in words."""
-    found = []
-    renderer = figure.canvas.get_renderer()
+    """What cannot be read of a figure, in words."""
+    canvas = lay_out(figure)
+    canvas.draw()  # legends have their places only then
+    found = [] if figure.get_figwidth() <= WIDTH else [f"{figure.get_figwidth():g} inches wide"]
+    renderer = canvas.get_renderer()
     texts = shown_texts(figure)
     boxes = {
         text: Text.get_window_extent(text, renderer)
@@ -74,17 +91,23 @@ def faults(figure):
         words = text.get_text().replace("\n", " ")[:40]
         if text.get_fontsize() < LEAST_SIZE:
             found.append(f"{text.get_fontsize():g} pt: {words!r}")
-        inside = (
-            box.x0 >= -_SLACK
-            and box.y0 >= -_SLACK
-            and box.x1 <= figure.bbox.x1 + _SLACK
-            and box.y1 <= figure.bbox.y1 + _SLACK
-        )
-        if not inside:
+        if not _inside(box, figure):
             found.append(f"cut off: {words!r}")
+    # Lines and markers of a legend stand beside its words.
+    legends = [one.get_window_extent(renderer) for one in figure.findobj(Legend)]
+    found += ["a legend is cut off" for box in legends if not _inside(box, figure)]
     for (one, a), (other, b) in combinations(boxes.items(), 2):
         width = min(a.x1, b.x1) - max(a.x0, b.x0)
         height = min(a.y1, b.y1) - max(a.y0, b.y0)
         if width > _SLACK and height > _SLACK:
             found.append(f"overlap: {one.get_text()[:30]!r} and {other.get_text()[:30]!r}")
     return found
+
+
+def _inside(box, figure):
+    return (
+        box.x0 >= -_SLACK
+        and box.y0 >= -_SLACK
+        and box.x1 <= figure.bbox.x1 + _SLACK
+        and box.y1 <= figure.bbox.y1 + _SLACK
+    )

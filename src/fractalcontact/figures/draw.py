@@ -17,7 +17,16 @@ from ..core.errors import InputError, OutputError
 from ..study.atlas import read_atlas
 from ..study.figure_list import all_figures
 from ..study.stages import STAGES
-from .kit.drawing import Drawing, entitle, garbage_collection_paused, print_style, save
+from .kit.drawing import (
+    Drawing,
+    entitle,
+    garbage_collection_paused,
+    keep_style,
+    print_style,
+    save,
+)
+from .kit.layout import lay_out
+from .kit.remembered import layouts_remembered
 from .kit.undrawn import undrawn
 
 #: A full disk, no memory, or an atlas that cannot be read fails every figure.
@@ -73,6 +82,35 @@ def drawer_of(name: str) -> Callable[..., Drawing]:
     return entitled
 
 
+def draw_figure(atlas: DataTree, name: str, subject: str | list[str]) -> Drawing:
+    """Drawing of a figure in the style of print, laid out: ``.figure.savefig`` gives the picture.
+
+    Parameters
+    ----------
+    atlas : xr.DataTree
+        With the stages that the figure reads.
+    name : str
+        Of the figure.
+    subject : str or list of str
+        The specimen; of a figure of a study the names of all its specimens.
+
+    Returns
+    -------
+    figures.kit.drawing.Drawing
+        The same whatever settings matplotlib has.
+
+    Raises
+    ------
+    KeyError
+        If no figure has this name.
+    """
+    with print_style():
+        drawing = drawer_of(name)(atlas, subject)
+        lay_out(drawing.figure)
+    keep_style(drawing.figure)
+    return drawing
+
+
 def draw_figures(
     atlas_path: Path | str, specimen: str, folder: Path | str, names: Sequence[str]
 ) -> Drawn:
@@ -123,9 +161,9 @@ def _draw(atlas, subject, folder, names):
     drawn = Drawn()
     with print_style():
         for name in names:
-            with garbage_collection_paused():
+            with garbage_collection_paused(), layouts_remembered():
                 try:
-                    drawing = drawer_of(name)(atlas, subject)
+                    drawing = draw_figure(atlas, name, subject)
                     save(drawing, folder, name)
                 except _NOT_OF_THE_FIGURE:
                     raise

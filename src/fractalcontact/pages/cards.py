@@ -144,12 +144,12 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
     return "\n".join(
         [
             "import xarray as xr",
-            "from fractalcontact.figures.draw import drawer_of",
+            "from fractalcontact.figures.draw import draw_figure",
             "",
             f"atlas = xr.open_datatree({atlas!r})",
             *read,
             "",
-            f"drawing = drawer_of({name!r})(atlas, {subject})",
+            f"drawing = draw_figure(atlas, {name!r}, {subject})",
             f"drawing.figure.savefig({name + '.pdf'!r})",
             "drawing.data  # the numbers, a table",
         ]

@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from ..core.netcdf import versions
@@ -130,16 +131,20 @@ def join_rows(
 
 
 def _without_remade_fields(stages):
-    """Stages without the composite topographies that no figure draws, the bulk of them.
+    """Stages without most composite topographies, the bulk of them.
 
-    They are missing, but for the largest offset; the file of the stage has all.
+    They are missing, but for the largest offset and that of the contact maps; the file of the
+    stage has all.
     """
-    joints = {
-        name: joint.assign(
-            composite=joint["composite"].where(joint["offset"] == joint["offset"].max())
+    joints = {}
+    for name, joint in stages.get("joints", {}).items():
+        kept = [joint["offset"].max().item()]
+        if name in stages.get("contact", {}):
+            kept.append(stages["contact"][name].attrs["map_offset"])
+        drawn = np.isclose(joint["offset"].values[:, np.newaxis], kept, rtol=1e-9).any(axis=1)
+        joints[name] = joint.assign(
+            composite=joint["composite"].where(xr.DataArray(drawn, dims="offset"))
         )
-        for name, joint in stages.get("joints", {}).items()
-    }
     return {**stages, "joints": joints} if joints else stages
 
 

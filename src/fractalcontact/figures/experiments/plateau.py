@@ -18,6 +18,7 @@ from ...experiments.roll_off import SURFACES
 from ...mechanics.plateau import FALLING, LEVEL, RISING, second_half
 from ...surface.specimen import faces, window_slices
 from ..kit.drawing import (
+    LINE,
     LINES,
     WIDTH,
     Drawing,
@@ -184,6 +185,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         _draw_slide(panels, n, slide)
     _mark_ends(panels[1], slides)
     _start_at_zero(panels)
+    # What is below loses no height to long labels.
+    lines = sum(
+        str(entry.get_label()).count("\n") for entry in entries(panels[0])[len(synthetic) :]
+    )
+    figure.set_figheight(figure.get_figheight() + LINE * lines)
     legends_below(figure, entries(panels[0]), _marks())
     table = pd.concat([_table(slide) for slide in slides], ignore_index=True)
     return Drawing(figure, table, _caption(slides, _verdicts(atlas, sliding)))

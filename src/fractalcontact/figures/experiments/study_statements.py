@@ -1,7 +1,6 @@
 """Statements of the paper over all specimens of a study: a table of verdicts."""
 
 from collections.abc import Sequence
-from textwrap import wrap
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -11,6 +10,7 @@ from ...core.labels import printable
 from ...statements.judge import all_statements
 from ..joint.statements import DATA, SIGNS
 from ..kit.drawing import WIDTH, Drawing, group, settings_of
+from ..kit.line_breaks import in_lines, width_of
 from ..kit.tables import LINE_HEIGHT, draw_texts, wrap_rows
 from ..kit.words import PAPER
 
@@ -23,9 +23,9 @@ ORDER = 5
 #: Where the columns of words begin and end, as fractions of the width, and their letters.
 COLUMNS = {"figure": (0.01, 8), "claim": (0.07, 62)}
 FIRST, LAST = 0.53, 0.99
-#: Letters of a specimen's label in a line, upright, lines of the table that each takes, and the
-#: inches that a line of the label is wide.
-LETTERS, LINES_A_LETTER, LABEL_LINE = 24, 0.48, 0.13
+#: Of a specimen's label, upright: points of its letters, inches that a line is long and wide, how
+#: many letters a line holds of usual ones, and lines at most.
+LABEL_SIZE, LABEL_LENGTH, LABEL_LINE, LETTERS, LABEL_LINES = 7, 1.55, 0.13, 24, 3
 #: What stands where a statement is not asked of a specimen, in the key, and its colour.
 NOT_ASKED = ("–", "not asked of it", "0.7")
 #: What each line of a row takes less than in a table with sentences.
@@ -49,7 +49,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     texts, lines = wrap_rows(shown, COLUMNS)
     heights = [n - LESS for n in lines]
     heads = _heads(atlas, list(tables))
-    top = 1 + LINES_A_LETTER * max(len(line) for head in heads.values() for line in head)
+    top = 1 + max(width_of(head, LABEL_SIZE) for head in heads.values()) / LINE_HEIGHT
     height = LINE_HEIGHT * (top + sum(heights) + 3.2)
     figure = Figure(figsize=(WIDTH, height))
     figure.set_layout_engine("none")
@@ -62,11 +62,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.text(
             at[name],
             top - 0.6,
-            "\n".join(heads[name]),
+            heads[name],
             rotation=90,
             va="bottom",
             ha="center",
-            fontsize=7,
+            fontsize=LABEL_SIZE,
             linespacing=1,
         )
         for statement, y in zip(rows, places, strict=False):
@@ -108,13 +108,18 @@ def _draw_sign(axes, x, y, verdict, circular, words=""):
 def _heads(atlas, names):
     """Labels of the specimens in lines, as many as a column is wide."""
     width = (LAST - FIRST) * WIDTH / len(names)
-    most = max(1, min(3, int(width / LABEL_LINE)))
-    heads = {}
-    for name in names:
-        label = settings_of(atlas, name)["label"]
-        text = printable(label, LETTERS * most).replace("$", r"\$")
-        heads[name] = wrap(text, LETTERS)[:most] or [name]
-    return heads
+    most = max(1, min(LABEL_LINES, int(width / LABEL_LINE)))
+    return {name: _head(settings_of(atlas, name)["label"] or name, most) for name in names}
+
+
+def _head(label, most):
+    """A label in up to ``most`` lines; of a long one the middle is left out."""
+    letters = LETTERS * most
+    while True:
+        text = in_lines(printable(label, letters).replace("$", r"\$"), LABEL_SIZE, LABEL_LENGTH)
+        if text.count("\n") < most:
+            return text
+        letters -= 2
 
 
 def _counts(tables, whole):

@@ -3,13 +3,12 @@
 import contextlib
 import gc
 import json
-import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import matplotlib
+import matplotlib.style
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -17,7 +16,7 @@ from cycler import cycler
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure, FigureBase, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -31,9 +30,10 @@ from ...core.labels import printable
 from ...core.tables import write_table
 from ...mechanics.states import forces_of
 from ...surface.specimen import nominal_area
-from .empty import settle_empty_axes
-from .remembered import layouts_remembered, remember_ticks
-from .ticks import keep_labels, plain_ticks
+from .layout import lay_out
+from .line_breaks import in_lines
+from .remembered import layouts_remembered
+from .ticks import keep_labels
 from .words import force_unit, formulas
 
 #: Okabe and Ito's colours, distinguished by colour-blind readers; black first.
@@ -51,15 +51,15 @@ WIDTH = 7.2
 DPI = 200
 #: Of the PNG: a third less time than by default, for files larger by a fiftieth.
 COMPRESSION = 3
-#: Points of the letters of a figure's title, how many stand in an inch, and inches a line is high.
-TITLE_SIZE, LETTERS_AN_INCH, LINE = 9, 14, 0.15
+#: Points of the letters of a figure's title, and inches that a line of it is high.
+TITLE_SIZE, LINE = 9, 0.15
 #: Inches between the edge of a figure and its title.
 _EDGE = 0.05
 #: Letters of a specimen's label that are shown.
 LONGEST_LABEL = 300
-_DOLLAR = "\ue000"
 
 _STYLE: dict[str, Any] = {
+    "figure.dpi": DPI,
     "font.size": 8,
     "axes.titlesize": 8,
     "legend.fontsize": 7,
@@ -70,7 +70,7 @@ _STYLE: dict[str, Any] = {
     "image.origin": "lower",
     "figure.constrained_layout.use": True,
     # Titles stand on their axes. To find out what may be in their way, every tick would be measured
-    # each time; `_lay_out` knows the one thing that can be.
+    # each time; `lay_out` knows the one thing that can be.
     "axes.titley": 1.0,
     # The same figure twice is the same file twice.
     "svg.hashsalt": "fractalcontact",
@@ -98,9 +98,20 @@ class Drawing:
 
 @contextlib.contextmanager
 def print_style() -> Iterator[None]:
-    """Style of every figure."""
-    with matplotlib.rc_context(_STYLE):  # type: ignore[arg-type]  # names of settings
+    """Style of every figure, whatever a user has set for his own."""
+    with matplotlib.style.context(["default", _STYLE]):
         yield
+
+
+def keep_style(figure: Figure) -> None:
+    """Draw a figure in the style of print wherever that is done: some settings count only then."""
+    draw = figure.draw
+
+    def in_style(renderer: RendererBase) -> None:
+        with print_style():
+            draw(renderer)
+
+    vars(figure)["draw"] = in_style
 
 
 @contextlib.contextmanager
@@ -123,15 +134,10 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
     """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
     figure = drawing.figure
-    figure.set_dpi(DPI)
-    settle_empty_axes(figure)
     # The layout is found once and each file drawn once. `savefig` draws everything once more for
     # either file, to find the layout; and what the layout has measured, this canvas remembers.
-    canvas = FigureCanvasAgg(figure)
-    plain_ticks(figure)
-    remember_ticks(figure)
     with layouts_remembered():
-        _lay_out(figure)
+        canvas = lay_out(figure)
         with atomic_write(folder / f"{name}.png") as path:
             canvas.print_png(path, pil_kwargs={"compress_level": COMPRESSION})
         keep_labels(figure)
@@ -140,28 +146,6 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
     with atomic_write(folder / f"{name}.txt") as path:
         path.write_text(drawing.caption + "\n", encoding="utf-8")
     write_table(folder / f"{name}.csv", drawing.data)
-
-
-def _lay_out(figure):
-    """Find the layout, and keep it."""
-    layout = figure.get_layout_engine()
-    if layout is None:
-        return
-    layout.execute(figure)
-    # A common factor of the numbers along y stands where a title does, which then moves up.
-    crowded = [axes for axes in figure.axes if axes.yaxis.get_offset_text().get_text()]
-    for axes in crowded:
-        top = axes.yaxis.get_offset_text().get_window_extent().ymax
-        y = axes.transAxes.inverted().transform((0, top))[1]
-        for loc in ("left", "center"):
-            axes.set_title(axes.get_title(loc), loc=loc, y=y)
-    if crowded:
-        layout.execute(figure)
-    figure.set_layout_engine("none")
-    # The layout's solver takes its constraints in the order of their addresses: the last bits of
-    # what it finds differ from run to run, and with them the files.
-    for axes in figure.axes:
-        axes.set_position(np.round(axes.get_position(original=True).bounds, 9))
 
 
 def settings_of(atlas: DataTree, specimen: str) -> dict:
@@ -298,8 +282,8 @@ def entitle(figure: Figure, title: str) -> None:
     title : str
         Symbols as captions have them.
     """
-    width = int(LETTERS_AN_INCH * figure.bbox.width / figure.dpi)
-    lines = textwrap.wrap(title, width)
+    words = in_lines(formulas(title), TITLE_SIZE, figure.get_figwidth() - 2 * _EDGE)
+    lines = words.split("\n")
     before = figure.get_figheight()
     figure.set_figheight(before + LINE * len(lines))
     laid_out = isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine)
@@ -309,18 +293,17 @@ def entitle(figure: Figure, title: str) -> None:
             x, y, width, height = axes.get_position().bounds
             part = before / figure.get_figheight()
             axes.set_position((x, y * part, width, height * part))
-    words = (*map(formulas, lines), figure.get_suptitle())
-    shown = figure.suptitle("\n".join(filter(None, words)), fontsize=TITLE_SIZE)
+    everything = filter(None, (words, figure.get_suptitle()))
+    shown = figure.suptitle("\n".join(everything), fontsize=TITLE_SIZE)
     if not laid_out:
         shown.set_y(1 - _EDGE / figure.get_figheight())
 
 
 def label_in_lines(label: str, *where: str, width: float) -> str:
     """A label and what follows it, as :func:`headline` has it, in lines of ``width`` inches."""
-    # Dollar signs of a label make no formula. What stands in for them is in no printable text.
-    label = printable(label, LONGEST_LABEL).replace("$", _DOLLAR)
-    text = textwrap.fill(", ".join((label, *where)), int(LETTERS_AN_INCH * width))
-    return text.replace(_DOLLAR, r"\$")
+    # Dollar signs of a label make no formula.
+    label = printable(label, LONGEST_LABEL).replace("$", r"\$")
+    return in_lines(", ".join((label, *where)), TITLE_SIZE, width - 2 * _EDGE)
 
 
 def entries(axes: Axes) -> list[Artist]:

@@ -1,6 +1,5 @@
 """Fig. 13: what eq. 6 makes of the size of the joint, for growing load."""
 
-import textwrap
 from typing import Any
 
 import numpy as np
@@ -38,8 +37,6 @@ SECTION = "size effect"
 _MOST_LOADS = 6
 #: Bars of the n-th load stand the n-th power of this factor of b beyond the ends of its line.
 _BESIDE = 1.04
-#: Letters of a line above a panel.
-_TITLE = 58
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -54,8 +51,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         columns.append(_draw_lines(axes, loading, estimate, shown, table))
         draw_axes(axes)
         rises = verdict_words(atlas, name, RISES[estimate.key], numbers=False)
-        words = rf"$\Delta_\sigma$ by {estimate.symbol}; the paper's rise with $F$: {rises}"
-        letter(axes, which, "\n".join([words, *_numbers(atlas, name, estimate)]))
+        words = rf"$\Delta_\sigma$ by {estimate.symbol}; the paper's rise with $F$:"
+        found = "; ".join(filter(None, (rises, _numbers(atlas, name, estimate))))
+        letter(axes, which, f"{words}\n{found}")
     plain_decades(panels[0].xaxis)
     panels[1].set_ylabel("")
     # Of both panels.
@@ -67,13 +65,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _numbers(atlas, name, estimate):
-    """The numbers that decide about the rise by one estimate, in lines of a panel's title."""
+    """The numbers that decide about the rise by one estimate; empty where it was not asked."""
     row = row_of(atlas, "statements", name, RISES[estimate.key])
     if row is None:
-        return []
+        return ""
     # As many nodes as touch: the legend of Fig. 12 has the room to say so.
     numbers = str(row["numbers"].item()).replace("as many random", "random")
-    return textwrap.wrap(numbers.replace(" of F", " of $F$"), _TITLE)
+    return numbers.replace(" of F", " of $F$")
 
 
 def _draw_lines(axes, loading, estimate, shown, table):
