@@ -124,6 +124,20 @@ def test_load_steps(monkeypatch, control):
 
 
 @pytest.mark.usefixtures("always")
+@pytest.mark.parametrize("spacing", [(0.1, 0.1), (0.12, 0.1)])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-3, 5e-3])
+@pytest.mark.parametrize("control", ["closure", "force"])
+def test_nodes_that_may_touch_within_the_tolerance_are_candidates(spacing, rtol, control):
+    height, _ = rough((64, 80))
+    space = HalfSpace(height.shape, spacing, 1e4)
+    last = solve_contact(height, space, closure=0.2 * np.ptp(height))
+    state = solve_contact(height, space, rtol=rtol, **{control: getattr(last, control)})
+    assert isinstance(state, CandidateState)
+    near = np.flatnonzero(height.max() - height < (1 + rtol) * state.closure)
+    assert np.isin(near, state._candidates.nodes).all()
+
+
+@pytest.mark.usefixtures("always")
 def test_a_bound_that_is_too_low_is_found_out(monkeypatch):
     height, space = rough((64, 64))
     force = solve_contact(height, space, closure=0.3 * np.ptp(height)).force

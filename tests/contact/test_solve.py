@@ -12,7 +12,8 @@ import pytest
 from ensembles import ensemble
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.contact import active_set
+from fractalcontact.contact import active_set, projected_cg
+from fractalcontact.contact.reference import operator_on
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.surface.synthesis import self_affine
 
@@ -277,6 +278,23 @@ def test_stiffness_is_the_slope_of_force_against_closure(closure, spacing):
     )
     np.testing.assert_array_equal(above.in_contact, below.in_contact)
     assert state.stiffness == pytest.approx((above.force - below.force) / (2 * step), rel=1e-4)
+
+
+def test_a_stiffness_is_known_to_a_millionth_or_refused(monkeypatch):
+    height, _ = rough((60, 44), seed=5)
+    space = HalfSpace(height.shape, (2 * SPACING, SPACING), MODULUS)
+    state = solve_contact(height, space, closure=0.2, rtol=1e-10)
+    matrix = operator_on(space, np.flatnonzero(state.in_contact))
+    exact = np.linalg.solve(matrix, np.ones(len(matrix))).sum() * MODULUS * space.cell
+    refused = []
+    for iterations in range(1, 9):
+        monkeypatch.setattr(projected_cg, "MAX_INNER", iterations)
+        try:
+            assert replace(state).stiffness == pytest.approx(exact, rel=1e-6)
+        except NotConverged as error:
+            refused.append(error.residual)
+    assert any(error < 1e-2 for error in refused)  # near, but not near enough
+    assert len(refused) < 8
 
 
 def test_load_steps_cost_less_than_cold_solves():

@@ -53,6 +53,14 @@ def test_mean_counts_agree_with_counting_by_hand(domain, r, blocks):
     np.testing.assert_allclose(mean_count(domain, [r], blocks=blocks)[0], places / r**2)
 
 
+@given(DOMAINS, st.integers(1, 9))
+@settings(max_examples=60, deadline=None)
+def test_cover_is_the_same_on_halved_cells(domain, r):
+    """No origin between the old nodes covers them with fewer boxes of whole cells."""
+    halved = np.kron(domain, np.ones((2, 2), bool))
+    assert box_count(halved, [2 * r])[0] == box_count(domain, [r])[0]
+
+
 def counted_at_every_origin(domain, size, step):
     """N(r) by putting every centre in its box, at origins a step apart along both axes."""
     y, x = np.nonzero(domain)

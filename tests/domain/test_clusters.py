@@ -215,6 +215,17 @@ def test_interval_of_the_exponent_holds_the_truth(beta):
     assert held >= 0.89 * draws  # 95 %, less what choosing the range costs
 
 
+def test_the_limit_of_a_power_law_is_no_wider_than_chance_needs():
+    """Exact laws stay within it in 95 of 100 draws, the widest ones in no more than 99."""
+    rng = np.random.default_rng(7)
+    followed = 0
+    for _ in range(1000):
+        sizes = np.minimum(rng.random(60) ** (-1 / 0.4), 2.0**39).astype(np.int64)
+        found = size_exponent(octave_counts(sizes, 2**40), sizes, 1.0)
+        followed += follows_law(found["cluster_fit_n"], found["cluster_fit_distance"])
+    assert 950 <= followed <= 990
+
+
 def test_sizes_without_a_power_law_are_told():
     rng = np.random.default_rng(5)
     sizes = np.ceil(rng.lognormal(3, 0.7, 3000)).astype(np.int64)
@@ -257,6 +268,15 @@ def test_unit_of_length_changes_only_areas():
     mm, um = cluster_statistics(domain, 0.1), cluster_statistics(domain, 100.0)
     for name, (unit, _) in CLUSTER_FIELDS.items():
         np.testing.assert_allclose(um[name], mm[name] * (1e6 if unit == "mm2" else 1))
+
+
+def test_halved_cells_leave_clusters_as_they_are():
+    domain = self_affine((96, 96), 1.0, 0.7, rms=1.0, seed=4)[:, :64] > 0.8
+    whole = cluster_statistics(domain, 0.3)
+    halved = cluster_statistics(np.kron(domain, np.ones((2, 2), bool)), 0.15)
+    of_area = ["clusters", "largest_share", "cluster_area_mean", "cluster_area_median"]
+    for name in (*of_area, "half_share"):
+        assert halved[name] == pytest.approx(whole[name], rel=1e-12)
 
 
 def test_direction_does_not_matter():

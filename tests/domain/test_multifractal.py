@@ -81,6 +81,26 @@ def test_moments_agree_with_summing_by_hand():
 # -- properties ------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("size", [2, 4, 10])
+def test_parts_of_a_mass_turn_with_it(size):
+    """A box belongs to the part that holds its middle."""
+    mass = np.random.default_rng(3).random((29, 43)) ** 4  # odd: no middle between two parts
+    moments, places = (found.reshape(-1, BLOCKS, BLOCKS) for found in parts_of(mass, size))
+    for turned, axes in ((mass[::-1], 1), (mass[:, ::-1], 2)):
+        other, there = (found.reshape(-1, BLOCKS, BLOCKS) for found in parts_of(turned, size))
+        np.testing.assert_array_equal(np.flip(there, axes), places)
+        np.testing.assert_allclose(np.flip(other, axes), moments, rtol=1e-12)
+    other, there = (found.reshape(-1, BLOCKS, BLOCKS) for found in parts_of(mass.T, size))
+    np.testing.assert_array_equal(there.swapaxes(1, 2), places)
+    np.testing.assert_allclose(other.swapaxes(1, 2), moments, rtol=1e-12)
+
+
+def parts_of(mass, size):
+    """Moments and places of boxes of one size, by part of the window."""
+    moments, places = gliding_moments(mass, [size], [-1.0, 0.0, 2.0])
+    return moments[0], places[0]
+
+
 def test_unit_of_pressure_does_not_matter():
     mass = cascade(7)
     pascal = generalised_dimensions(1e6 * mass, 0.1)

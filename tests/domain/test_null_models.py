@@ -8,7 +8,7 @@ from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 from fractalcontact.domain.box_counts import mean_count, whole_sizes
 from fractalcontact.domain.box_dimension import dimension_of_domain, is_determined
 from fractalcontact.domain.correlation import pair_counts, pair_distances, pairs_slope
-from fractalcontact.domain.counted_domain import QUANTITIES
+from fractalcontact.domain.counted_domain import QUANTITIES, CountedDomain
 from fractalcontact.domain.departure import (
     BEYOND_BOTH,
     BEYOND_RANDOM,
@@ -46,6 +46,20 @@ def test_expected_counts_of_a_full_window_are_its_own():
     sizes = np.array([1, 3, 4])
     expected = mean_count(np.ones((9, 7), bool), sizes).sum(axis=(1, 2))
     np.testing.assert_allclose(expected_mean_counts((9, 7), 63, sizes), expected)
+
+
+def test_clusters_belong_to_the_part_of_their_middle():
+    """So that the interval of their number does not depend on which axis is called x."""
+    nodes = np.zeros((40, 60), bool)
+    nodes[3:6, 5:9] = True  # in the first part of either axis
+    nodes[9:24, 14:30] = True  # from there to the third part along y, its middle at 16.5 of 40
+    nodes[29:35, [30, 33]] = True
+    expected = np.zeros((4, 4), int)
+    expected[[0, 1, 3], [0, 1, 2]] = 1, 1, 2
+    for domain, turned in ((nodes, expected), (nodes.T, expected.T)):
+        box = dimension_of_domain(domain, 0.1)
+        counted = CountedDomain(domain, box, limits=(0.0, np.inf), whole_cells=False)
+        np.testing.assert_array_equal(counted.cluster_parts[0], turned)
 
 
 def test_cut_holds_the_highest_nodes():

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy import fft
+from symmetries import LENGTH, STRESS, differences, grown
 
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.mechanics import area, theory
@@ -341,6 +342,20 @@ def test_theories_of_a_surface(statistics):
     )
     np.testing.assert_allclose(growth, 2 / 1.8)
     np.testing.assert_allclose(found["archard_exponent"], [2 / 3, 8 / 9, 26 / 27])
+
+
+def test_theories_are_in_the_units_that_they_state(solved):
+    specimen, joint, curves, _ = solved
+    statistics = joint_statistics(specimen, joint)
+    first = area_laws(curves, statistics, 1e4, 2.2)
+    spacing = {name: LENGTH * value for name, value in statistics.attrs.items()}
+    other = area_laws(grown(curves), grown(statistics).assign_attrs(spacing), STRESS * 1e4, 2.2)
+    at_one_newton = [name for name in first if "unit_area" in name]
+    found = differences(
+        other.drop_vars(at_one_newton), grown(first).drop_vars(at_one_newton), rtol=1e-9
+    )
+    assert not found
+    assert np.isfinite(first["majumdar_bhushan_share"]).any()
 
 
 def test_a_profile_dimension_outside_the_fractal_law_leaves_only_that_out(statistics):

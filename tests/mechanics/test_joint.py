@@ -6,6 +6,7 @@ import xarray as xr
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.mean_plane import without_mean_plane
+from fractalcontact.mechanics import rigid_slide
 from fractalcontact.mechanics.joint import (
     choose_offsets,
     composite_topography,
@@ -21,12 +22,12 @@ from fractalcontact.surface.synthesis import self_affine
 SPACING = 0.1
 
 
-def specimen(heights, **options):
+def specimen(heights, *, window=2.0, **options):
     ny, nx = heights.shape
     coords = {"y": np.arange(ny) * SPACING, "x": np.arange(nx) * SPACING}
     attrs = {"spacing_x": SPACING, "spacing_y": SPACING}
     scan = xr.DataArray(heights, dims=("y", "x"), coords=coords, attrs=attrs)
-    return make_specimen(scan, window=2.0, name="test", **options)
+    return make_specimen(scan, window=window, name="test", **options)
 
 
 @pytest.fixture
@@ -147,9 +148,10 @@ def test_faces_that_stay_alike_have_no_such_range():
 
 
 @pytest.mark.parametrize("direction", ["E", "N", "W", "S"])
-@pytest.mark.parametrize("level", [0.0, 1e5])
-def test_a_slide_in_one_pass_is_that_of_whole_arrays(rough, direction, level):
-    joint = specimen(rough)
+@pytest.mark.parametrize(("window", "level"), [(2.0, 0.0), (2.0, 1e5), ((2.6, 1.1), 0.0)])
+def test_a_slide_in_one_pass_is_that_of_whole_arrays(monkeypatch, rough, direction, window, level):
+    monkeypatch.setattr(rigid_slide, "_BLOCK", 256)  # the rows of several blocks
+    joint = specimen(rough, window=window)
     joint["lower"] = joint["lower"] + level
     cells = np.arange(6)
     opened, spread = rigid_dilatancy(joint, direction, cells)

@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from samples import scan_of
 
+from fractalcontact.core.resolved import RESOLVED_NODES
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.overlap import (
     fits_undetermined,
@@ -31,6 +34,7 @@ STUDY = {
     },
 }
 SETTINGS = resolve_settings(STUDY, "rock", {}, "tiny")
+NEAR_RESOLVED = st.sampled_from([0, 1, *range(RESOLVED_NODES - 1, RESOLVED_NODES + 2)])
 SPIKE = (21, 20)  # within the window, and away from its neighbours one cell East
 
 
@@ -109,9 +113,9 @@ def curves(share, nodes=20):
     share = np.array(share, float)[np.newaxis, :, np.newaxis]
     dims = ("direction", "offset", "resolution", "normal_force")
     offsets = 0.5 * np.arange(share.shape[1])
-    forces = 256.0 * np.array([0.1, 5.0, 25.0])
+    forces = 256.0 * np.geomspace(0.1, 25.0, share.shape[-1])
     return xr.Dataset(
-        {"suspect_load_share": (dims, share), "nodes": (dims, np.full(share.shape, nodes))},
+        {"suspect_load_share": (dims, share), "nodes": (dims, np.zeros(share.shape) + nodes)},
         coords={"direction": ["E"], "offset": offsets, "resolution": [1], "normal_force": forces},
     )
 
@@ -125,6 +129,16 @@ def test_a_warning_stands_where_more_than_half_of_a_deciding_load_rests_on_error
     words = load_warning(curves([[0.9, 0.9, 0.1], [0, 0, 0]]), specimen, SETTINGS)
     assert "map load" not in words
     assert "states fitted" in words
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.tuples(st.sampled_from([0.0, 0.4, 0.6, 1.0]), NEAR_RESOLVED), min_size=1))
+def test_a_fit_is_undetermined_where_half_of_its_states_or_more_rest_on_errors(states):
+    share, nodes = map(list, zip(*states, strict=True))
+    found = fits_undetermined(curves([share], nodes=nodes)).item()
+    fitted = [s for s, n in states if n >= RESOLVED_NODES] or [s for s, n in states if n > 0]
+    on_errors = sum(s > 0.5 for s in fitted)
+    assert found == (bool(fitted) and 2 * on_errors >= len(fitted))
 
 
 def test_states_without_the_nodes_to_be_fitted_do_not_count():

@@ -106,6 +106,18 @@ def test_errors_cover_the_exact_solution_of_a_sphere(place):
         assert of_name.error <= 0.25 * abs(true), name
 
 
+@pytest.mark.parametrize("factor", [1, 2, 3])
+def test_finer_cells_cover_the_same_window_whichever_side_is_longer(rough, factor):
+    found = []
+    for heights, spacing in ((rough[:20], (0.3, 0.1)), (rough[:20].T, (0.1, 0.3))):
+        space = HalfSpace(heights.shape, spacing, MODULUS)
+        ((state, highest),) = subgrid_states(heights, space, factor, [300.0], {"rtol": 1e-8}, "")
+        sides = np.multiply(state.space.shape, state.space.spacing)
+        np.testing.assert_allclose(sides, np.multiply(space.shape, space.spacing))
+        found.append(state_quantities(state, highest))
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
+
+
 def test_separation_knows_nothing_of_the_highest_node(rough):
     """A spike too thin to carry the load moves the closure, and not the separation."""
     spiked = rough.copy()

@@ -71,6 +71,23 @@ def test_an_irregular_x3p_grid_is_read_as_points_in_global_coordinates(tmp_path)
     assert float(heights.x[0]) == pytest.approx(2.0)
 
 
+def test_a_regular_x3p_grid_has_the_heights_of_its_points(tmp_path):
+    """Its placement raises it, as it raises the points that the same file would be as a cloud."""
+    import x3pio
+
+    grid = x3pio.Surface.from_array(
+        surface() * 1e-3,
+        x_scale=1e-4,
+        y_scale=2e-4,
+        placement=x3pio.Placement(offset=[0, 0, 5e-3]),
+        coordinate_system=x3pio.CoordinateSystem.VIEW,
+    )
+    points = 1e3 * grid.layers[0].points()
+    heights = read_scan(x3p(tmp_path / "rock.x3p", grid))
+    np.testing.assert_allclose(heights, points[..., 2], rtol=1e-12)
+    np.testing.assert_allclose(heights, surface() + 5, rtol=1e-12)
+
+
 def rewritten(path, name, change):
     """The same archive with one member changed."""
     with zipfile.ZipFile(path) as archive:

@@ -138,6 +138,25 @@ def test_repeats_of_equal_and_of_other_heights_are_counted_apart():
 # --- an independent method: the whole triangulation by scipy -----------------------------------
 
 
+@pytest.mark.parametrize("share", [1.0, 0.5, 0.25])
+@pytest.mark.parametrize("pitch", [(0.5, 0.2), (0.2, 0.5)])
+def test_points_on_a_quarter_of_the_nodes_still_lie_on_their_lattice(pitch, share):
+    cells = np.argwhere(np.random.default_rng(0).random((40, 50)) < share)[:, ::-1]
+    cloud = np.column_stack([np.array([3.0, -1.0]) + cells * pitch, np.arange(len(cells))])
+    distance = density.neighbour_distance(cloud, density.plane_tree(cloud))
+    found = points.find_lattice(cloud, distance)
+    assert (found.dx, found.dy) == pytest.approx(pitch)
+    heights = points.place_on_lattice(cloud, found)
+    np.testing.assert_array_equal(heights[np.isfinite(heights)], np.arange(len(cells)))
+
+
+def test_points_that_were_rounded_to_few_digits_lie_on_no_lattice():
+    cloud = np.unique(np.random.default_rng(0).uniform(0, SIDE, (2000, 2)).round(1), axis=0)
+    cloud = np.column_stack([cloud, np.zeros(len(cloud))])
+    distance = density.neighbour_distance(cloud, density.plane_tree(cloud))
+    assert points.find_lattice(cloud, distance) is None
+
+
 def whole_triangulation(cloud, lattice, circle):
     triangles = Delaunay(cloud[:, :2])
     x = lattice.x0 + lattice.dx * np.arange(lattice.nx)

@@ -165,6 +165,17 @@ def test_rectangular_cells():
     assert_found(find_motion(lower, upper)[0], moved)
 
 
+def test_with_x_for_y_the_motion_is_the_same():
+    faces = joint(motion((0.23, -0.41), 0.6, (0.004, -0.002)), spacing=(0.1, 0.15))
+    turned = [
+        labelled(face.values.T, float(face.y[0]), float(face.x[0]), (0.15, 0.1)) for face in faces
+    ]
+    (found, _), (other, _) = find_motion(*faces), find_motion(*turned)
+    np.testing.assert_allclose(other.shift[::-1], found.shift, rtol=1e-6)
+    np.testing.assert_allclose(other.slope[::-1], found.slope, rtol=1e-4)
+    assert other.rotation == pytest.approx(-found.rotation, rel=1e-4)
+
+
 def test_translation_neither_turns_nor_tilts():
     found, _ = find_motion(*joint(motion((0.3, 0.2), 1.0, (0.01, 0.0))), "translation")
     assert found.rotation == 0.0

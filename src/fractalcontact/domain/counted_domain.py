@@ -108,12 +108,16 @@ class CountedDomain:
 
     @cached_property
     def cluster_parts(self) -> np.ndarray:
-        """Clusters by the part of their first node, (1, blocks, blocks)."""
-        first = np.unique(self.clusters[0], return_index=True)[1]
-        first = first[self.clusters[0].ravel()[first] > 0]
-        ny, nx = self.nodes.shape
-        y, x = np.unravel_index(first, (ny, nx))
-        part = y * BLOCKS // ny * BLOCKS + x * BLOCKS // nx
+        """Clusters by the part that holds their middle, (1, blocks, blocks)."""
+        label, number = self.clusters
+        y, x = np.nonzero(label)
+        of_node = label[y, x] - 1
+        nodes = np.bincount(of_node, minlength=number)
+        row, column = (
+            (2 * np.bincount(of_node, at, number) + nodes) * BLOCKS // (2 * n * nodes)
+            for at, n in zip((y, x), label.shape, strict=True)
+        )
+        part = (row * BLOCKS + column).astype(int)
         return np.bincount(part, minlength=BLOCKS**2).reshape(1, BLOCKS, BLOCKS)
 
     @cached_property

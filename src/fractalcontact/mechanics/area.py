@@ -308,9 +308,12 @@ def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.D
         result.update(mean.variables(f"{prefix}mean_kappa", at_light.dims[:-1], "1", text))
         n = light.sum("normal_force")
         result[f"{prefix}mean_kappa_n"] = n.assign_attrs(cf_attrs("1", "loads in the mean"))
-        reason = xr.where(
-            np.isnan(slope), "the faces are flush and have no slope", f"no load with {condition}"
+        # xr.where would drop the labels of the offsets.
+        reason = np.where(
+            np.isnan(slope.transpose(*n.dims)),
+            "the faces are flush and have no slope",
+            f"no load with {condition}",
         )
-        result[f"no_{prefix}mean_kappa"] = xr.where(n > 0, "", reason).assign_attrs(
+        result[f"no_{prefix}mean_kappa"] = n.copy(data=np.where(n > 0, "", reason)).assign_attrs(
             cf_attrs("1", f"why there is no mean of {words.split(' = ')[0]}")
         )

@@ -1,0 +1,103 @@
+"""Symmetries of every result: other units of length and stress, and x and y exchanged.
+
+What a result is multiplied by in other units follows from the units that it states itself.
+"""
+
+import re
+
+import numpy as np
+import xarray as xr
+
+#: New units of length and stress in the old ones: powers of two, which cost no digit.
+LENGTH, STRESS = 64.0, 1 / 8
+#: Powers of both in each unit.
+_POWERS = {"mm": (1, 0), "MPa": (0, 1), "N": (2, 1), "1": (0, 0), "%": (0, 0), "degree": (0, 0)}
+_UNIT = rf"(/?) ?({'|'.join(_POWERS)})(-?\d+)?"
+#: Units that depend on Delta_sigma.
+_FRACTAL = r"(?:(N) )?mm\^(-?)delta_sigma"
+#: Units that another variable states.
+_STATED_BY = {"unit of the quantity": "unit", "see measure_units": "measure_units"}
+_EXCHANGED = dict(zip("xyENWS", "yxNESW", strict=True))
+
+
+def scale_of(units: str) -> float:
+    """Factor of numbers in some units where lengths and stresses grow."""
+    assert re.fullmatch(f"({_UNIT})+", units), f"unknown units {units!r}"
+    scale = 1.0
+    for over, unit, power in re.findall(_UNIT, units):
+        lengths, stresses = _POWERS[unit]
+        times = int(power or 1) * (-1 if over else 1)
+        scale *= (LENGTH**lengths * STRESS**stresses) ** times
+    return scale
+
+
+def grown(dataset: xr.Dataset) -> xr.Dataset:
+    """A result whose lengths and stresses have grown, by the units that its variables state."""
+    return dataset.map(lambda one: _grown(one, dataset)).assign_coords(
+        {name: _grown(one, dataset) for name, one in dataset.coords.items()}
+    )
+
+
+def _grown(one, dataset):
+    units = one.attrs.get("units", "1")
+    if one.dtype.kind not in "fi" or units == "1":
+        return one
+    if units in _STATED_BY:
+        stated = dataset[_STATED_BY[units]]
+        scale = stated.copy(data=[scale_of(unit) for unit in stated.values])
+    elif fractal := re.fullmatch(_FRACTAL, units):
+        dimension = -dataset["delta_sigma"] if fractal[2] else dataset["delta_sigma"]
+        scale = scale_of(fractal[1] or "1") * LENGTH**dimension
+    else:
+        scale = scale_of(units)
+    return one.copy(data=(one * scale).transpose(*one.dims))
+
+
+def exchanged(text: str) -> str:
+    """A name or words with x and y, and the directions along them, exchanged."""
+    return re.sub(r"(?<![A-Za-z])[xyENWS](?![A-Za-z*])", lambda found: _EXCHANGED[found[0]], text)
+
+
+def with_axes_exchanged(dataset: xr.Dataset) -> xr.Dataset:
+    """A result with x for y: its dimensions, variables, directions and words."""
+    named = dataset.rename({name: exchanged(name) for name in {*dataset.variables, *dataset.dims}})
+    words = {
+        name: one.copy(data=np.vectorize(exchanged, otypes=[object])(one.values))
+        for name, one in named.variables.items()
+        if one.dtype.kind in "OU"
+    }
+    return named.assign(words)
+
+
+def differences(found, expected, *, rtol, atol=0.0, unordered=""):
+    """Variables that differ, by name: how many of their values, and one pair.
+
+    Parameters
+    ----------
+    found, expected : xr.Dataset
+        In any order along directions.
+    rtol : float
+    atol : float, optional
+        A fraction of the largest value of a variable.
+    unordered : str, optional
+        A dimension along which the order does not count either.
+    """
+    assert set(found.variables) == set(expected.variables)
+    for dim in set(expected.dims) & set(expected.coords):
+        if expected[dim].dtype.kind in "OU":
+            found = found.sel({dim: expected[dim].values})
+    different = {}
+    for name, one in expected.variables.items():
+        wanted, values = one.values, found[name].transpose(*one.dims).values
+        if one.dtype.kind in "OU":
+            same = values == wanted
+        else:
+            wanted, values = wanted.astype(float), values.astype(float)
+            if unordered in one.dims:
+                wanted, values = (np.sort(v, one.dims.index(unordered)) for v in (wanted, values))
+            largest = np.abs(wanted[np.isfinite(wanted)]).max(initial=0.0)
+            same = np.isclose(values, wanted, rtol, atol * largest, equal_nan=True)
+        if not np.all(same):
+            at = tuple(np.argwhere(~same)[0])
+            different[name] = f"{np.sum(~same)} values, {values[at]} for {wanted[at]}"
+    return different
