@@ -56,6 +56,7 @@ __getattr__, __dir__, __all__ = exports(
         "load_kept": ".kernel_cache",
         "mean_interval": ".intervals",
         "modules_of": ".modules",
+        "natural_key": ".labels",
         "njit": ".kernel_cache",
         "number": ".arguments",
         "on_one_line": ".labels",
