@@ -150,6 +150,7 @@ def test_a_map_shows_its_area_and_pressure_and_its_coordinates_are_no_scans(fold
     (folder / "film.yaml").write_text(f"{sidecar}outline: {{disc: {{diameter: 12 mm}}}}\n")
     _, out = check()
     assert "1 ok, 0 with warnings" in out
+    assert "(outline: disc of diameter 12 mm)" in " ".join(out.split())
     (folder / "film.yaml").write_text(sidecar.replace("film_x.csv", "nothing.csv"))
     code, out = check()
     assert code == 1

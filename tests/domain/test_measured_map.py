@@ -5,6 +5,7 @@ import pytest
 import yaml
 
 from fractalcontact.core.errors import InputError
+from fractalcontact.domain.map_outline import outline_words
 from fractalcontact.domain.measured_map import CELLS, read_contact_map
 from fractalcontact.study.sidecar import is_contact_map
 
@@ -95,6 +96,20 @@ def test_points_are_no_map(tmp_path):
 def test_the_sidecar_says_what_is_a_map():
     assert is_contact_map(yaml.safe_load("kind: contact-map"))
     assert not is_contact_map(yaml.safe_load("unit: mm"))
+
+
+@pytest.mark.parametrize(
+    ("outline", "words"),
+    [
+        ("rectangle", "rectangle"),
+        ({"disc": {}}, "disc"),
+        ({"disc": {"centre": [4, "1 cm"]}}, "disc about x = 4 mm, y = 1 cm"),
+        ({"polygon": [[2, 2], [40, 3], [42, 44], [3, 40]]}, "polygon of 4 corners"),
+        ({"mask": -1}, "all but cells of -1"),
+    ],
+)
+def test_an_outline_is_put_into_words(outline, words):
+    assert outline_words(outline) == words
 
 
 # -- outline, thresholds, coordinates --------------------------------------------------------------

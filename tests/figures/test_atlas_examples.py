@@ -5,6 +5,7 @@ import runpy
 
 import numpy as np
 import pytest
+from markup import MARKUP
 from places import ROOT
 
 from fractalcontact.mechanics.joint import composite_topography
@@ -31,6 +32,13 @@ def test_examples_find_what_they_name(names):
     assert len(names["table"].dropna()) > 1
     assert set(names["plateau"]["plateau_trend"]) <= {"level", "rising", "falling"}
     assert {"delta_sigma_box", "delta_sigma_area"} <= set(names["both"])
+
+
+def test_no_word_of_the_atlas_is_markup_of_docstrings(atlas):
+    for node in atlas.subtree:
+        words = [node.attrs, *(values.attrs for values in node.to_dataset().variables.values())]
+        words += [v.values for v in node.to_dataset().variables.values() if v.dtype.kind in "UO"]
+        assert not [said for said in map(str, words) if MARKUP.search(said)], node.path
 
 
 def test_the_gallery_draws_the_states_of_the_atlas(names, atlas_file, tmp_path):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from cases import representative
+from markup import MARKUP
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
@@ -73,7 +74,9 @@ def caption_of(atlas, marked):
                 if stage in needed.children:
                     del needed[stage]
             with print_style():
-                known[key] = drawer_of(figure)(needed, subject).caption
+                drawing = drawer_of(figure)(needed, subject)
+            assert not MARKUP.search(drawing.data.to_csv())
+            known[key] = drawing.caption
         return known[key]
 
     return draw
@@ -87,6 +90,7 @@ def test_caption_is_short_and_quotes_its_verdicts(caption_of, figure, subject):
     assert not re.search(PRIVATE, caption), caption
     assert "WARNING" not in caption  # the page states it once
     assert "  " not in caption
+    assert not MARKUP.search(caption)
     if figure not in TABLES:
         said = {found[0] for found in re.finditer(VERDICT, caption)}
         assert said <= DECIDED.get(figure, set()), caption

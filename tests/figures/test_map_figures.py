@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
+from print_size import faults
 
 from fractalcontact.domain.measured_map import read_contact_map
-from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.draw import draw_figure, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.figures.kit.measured import measured_series, threshold_words
 from fractalcontact.study.figure_list import all_figures, study_figures_of
@@ -85,6 +86,28 @@ def test_a_map_stands_at_its_own_pressure_and_its_own_load_is_in_the_table(with_
     assert sum(text.startswith("measured: ") for text in legend) == 3
     assert len(set(legend)) == len(legend)
     assert "Measured (thresholds 0.35 to 0.95)" in drawing.caption
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_words_of_many_maps_are_apart_where_nothing_is_determined(maps, figure):
+    """Five maps side by side, each with a name and an interval as long as they get."""
+    wide = {}
+    for n in range(10):
+        one = maps["film_0"].copy()
+        one["delta_sigma_low"], one["delta_sigma_high"] = (
+            one["delta_sigma"] - 0.9,
+            xr.Variable((), 2),
+        )
+        wide[f"ROCK_OF_THE_LOWER_MINE_{n}"] = one
+    assert faults(draw_figure(only_maps(wide), figure, []).figure) == []
+
+
+def test_maps_of_unknown_load_are_in_the_order_of_the_numbers_in_their_names(maps):
+    cast = maps["lost_0"]
+    for alone in (cast, cast.assign_attrs(series="")):
+        series = measured_series(only_maps({f"film {n}": alone for n in (12, 120, 24, 3)}))
+        names = [name for each in series for name in each.names]
+        assert names == ["film 3", "film 12", "film 24", "film 120"]
 
 
 @pytest.mark.parametrize("figure", FIGURES)

@@ -1,5 +1,6 @@
 """The result page of a study: its numbers are the atlas's, its links lead to files, it is HTML."""
 
+import inspect
 import json
 import re
 import shutil
@@ -12,6 +13,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 import yaml
+from markup import MARKUP
 from page_study import HOSTILE, STUDY
 from spreadsheets import FORMULA, formulas_in
 
@@ -235,6 +237,16 @@ def test_verdicts_are_counted_as_the_figure_of_the_study_counts_them(results, at
     words = ", ".join(f"{verdict} {count}" for verdict, count in counts.items())
     assert f": {words}" in caption
     assert words in "".join(pages[results / "index.html"].texts)
+
+
+def test_no_page_and_no_table_shows_markup_of_docstrings(results, pages):
+    assert len(pages) > 2
+    for page, parsed in pages.items():
+        assert not MARKUP.search("".join(parsed.texts)), page
+    for path in results.glob("*.csv"):
+        assert not MARKUP.search(path.read_text(encoding="utf-8")), path
+    for statement in all_statements():
+        assert not MARKUP.search(inspect.getdoc(statement.check)), statement.check.__name__
 
 
 def test_every_statement_leads_to_a_figure_that_its_specimen_has():

@@ -1,6 +1,7 @@
 """A study of measured contact maps alone, from end to end."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import yaml
 from projects import copy_project, jobs_of, made, run
@@ -40,6 +41,8 @@ def test_maps_alone_are_a_study_and_get_their_figures(project):
     for name in ("contact_maps", "map_trend"):
         for ending in ("png", "svg", "csv", "txt"):
             assert (project / f"results/maps/figures/{name}.{ending}").is_file()
+    summary = pd.read_csv(project / "results/maps/summary.csv")
+    assert list(summary["map"]) == names
     assert jobs_of(run(project, STUDY, "--dry-run")) == {}
     # The files of the coordinates count as the map does.
     np.savetxt(project / "scans/film_x.csv", [0.4 * np.arange(24)], delimiter=",")

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..core.errors import InputError
-from ..core.labels import percent, plain, printable
+from ..core.labels import natural_key, percent, plain, printable
+from ..domain.map_outline import outline_words
 from ..domain.measured_map import read_contact_map
 from ..mechanics.joint import choose_offsets
 from ..mechanics.states import hardness_of
@@ -96,12 +97,13 @@ def check_scans(
     Yields
     ------
     Checked
-        Sorted by name; what is wrong with one does not keep the others from being read.
+        By name, numbers in names as numbers; what is wrong with one does not keep the others from
+        being read.
     """
     scans, refused = list_grouped(folder, study.get("groups"))
     shared: dict[Path, tuple[dict, dict]] = {}
     scans = _with_coordinates(scans, refused, schema, shared)
-    for name in sorted(scans.keys() | refused.keys()):
+    for name in sorted(scans.keys() | refused.keys(), key=natural_key):
         if name in refused:
             yield Checked(name, refusal=str(refused[name]))
             continue
@@ -216,7 +218,7 @@ def _map_row(scan, contact):
     series = f", series {attrs['series']}" if attrs["series"] else ""
     stated = (
         f"contact map: {attrs['reader']}, A_0 = {nominal:.4g} mm2 (outline: "
-        f"{json.loads(attrs['outline'])}), {percent(share)} in contact above "
+        f"{outline_words(json.loads(attrs['outline']))}), {percent(share)} in contact above "
         f"{attrs['threshold']:g}{series}"
     )
     load = f"F = {force:.4g} N, F/A_0 = {pressure:.4g} MPa"

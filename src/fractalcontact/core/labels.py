@@ -1,6 +1,7 @@
 """What every variable of the atlas says about itself, and how untrusted text is shown."""
 
 import math
+import re
 from collections.abc import Iterable
 
 
@@ -45,6 +46,12 @@ def on_one_line(text: object, longest: int = 200) -> str:
         return text
     end = text.rfind(" ", longest // 2, longest)
     return f"{text[: end if end > 0 else longest]} …"
+
+
+def natural_key(name: str) -> list[tuple[int, int, str]]:
+    """Key by which names are sorted with the numbers in them as numbers: 3, 12, 24, 120."""
+    parts = re.findall(r"[0-9]+|[^0-9]+", name)
+    return [(0, int(part), "") if part[0] in "0123456789" else (1, 0, part) for part in parts]
 
 
 def listed(names: Iterable[object], most: int = 15) -> str:

@@ -72,6 +72,29 @@ def outline_mask(
     return inside
 
 
+def outline_words(outline: str | Mapping[str, Any]) -> str:
+    """Outline of a map in words, as :func:`outline_mask` takes it."""
+    if isinstance(outline, str):
+        return outline
+    kind, stated = next(iter(outline.items()))
+    if kind == "mask":
+        return f"all but cells of {stated:g}"
+    if kind == "polygon":
+        return f"polygon of {len(stated)} corners"
+    words = []
+    if "diameter" in stated:
+        words.append(f"of diameter {_as_stated(stated['diameter'])}")
+    if "centre" in stated:
+        x, y = map(_as_stated, stated["centre"])
+        words.append(f"about x = {x}, y = {y}")
+    return " ".join(["disc", *words])
+
+
+def _as_stated(stated: float | str) -> str:
+    """A length as a sidecar states it: in mm unless it has a unit."""
+    return stated if isinstance(stated, str) else f"{stated:g} mm"
+
+
 def _ends(centres: np.ndarray) -> str:
     half = (centres[1] - centres[0]) / 2
     return f"{centres[0] - half:.4g} to {centres[-1] + half:.4g}"

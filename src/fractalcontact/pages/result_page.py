@@ -21,6 +21,7 @@ import yaml
 from ..core.atomic import atomic_write
 from ..core.labels import printable
 from ..core.tables import write_table
+from ..domain.map_series import series_of_maps
 from ..study.atlas import group_names, read_atlas
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import JOINT, SPECIMEN
@@ -92,7 +93,7 @@ def write_result_page(place: Place) -> list[str]:
     specimens = [summarised(one, loads) for one in chosen]
     study = str(atlas.attrs["study"])
     curves = curves_table(study, chosen)
-    write_table(place.folder / SUMMARY, summary_table(study, specimens))
+    write_table(place.folder / SUMMARY, summary_table(study, specimens, _maps(atlas)))
     write_table(place.folder / CURVES, curves)
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
@@ -224,7 +225,7 @@ def _index_values(
         "matrix": rows,
         "verdicts": counted([*rows, *together]),
         "together": together,
-        "maps": _maps(atlas),
+        "maps": [printable(one.attrs["label"], _LONGEST) for one in _maps(atlas).values()],
         "cards": cards_of(
             own,
             place.figures,
@@ -238,13 +239,11 @@ def _index_values(
 
 
 def _maps(atlas):
-    """Labels of the measured contact maps."""
+    """Names and datasets of the measured contact maps, series by series."""
     if "contact_maps" not in atlas.children:
-        return []
-    return [
-        printable(group.attrs.get("label", name), _LONGEST)
-        for name, group in sorted(atlas["contact_maps"].children.items())
-    ]
+        return {}
+    maps = {name: node.to_dataset() for name, node in atlas["contact_maps"].children.items()}
+    return {name: maps[name] for series in series_of_maps(maps) for name in series.names}
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:

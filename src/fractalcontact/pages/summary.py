@@ -1,6 +1,6 @@
 """The summary of a study: what each specimen is and does, one row a specimen and pressure."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ import xarray as xr
 from ..core import estimate
 from ..core.determined import determined
 from ..domain.box_dimension import WIDEST
+from ..domain.map_series import map_table
 from ..mechanics.model_validity import NO_PRESSURE, Validity
 from ..mechanics.overlap import decided_by_scan
 from ..surface.grid import spacing_of
@@ -318,14 +319,23 @@ def dilatancy_of(chosen: Chosen) -> Dilatancy:
     return Dilatancy(kind or "none", level, slope)
 
 
-def summary_table(study: str, specimens: list[Specimen]) -> pd.DataFrame:
-    """The summary as a table, one row a specimen and pressure; units end the names of its columns.
+def summary_table(
+    study: str, specimens: Sequence[Specimen], maps: Mapping[str, xr.Dataset]
+) -> pd.DataFrame:
+    """The summary as a table; units end the names of its columns.
+
+    One row a specimen and pressure; of a study of measured contact maps alone, one row a map.
 
     Parameters
     ----------
     study : str
-    specimens : list of Specimen
+    specimens : sequence of Specimen
+    maps : mapping of str to xr.Dataset
+        Measured contact maps by name.
     """
+    if maps and not specimens:
+        table = map_table(list(maps), list(maps.values()))
+        return table.assign(study=study).set_index("study").reset_index()
     rows = []
     for one in specimens:
         start = {"study": study} | _of_specimen(one)

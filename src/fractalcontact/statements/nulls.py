@@ -79,8 +79,7 @@ def domains_differ_from_cuts(joint: Joint) -> Finding:
     """Elastic contact domain against the cut of the composite topography, over the loads.
 
     Not coincident where box-counting and correlation dimension both differ by more than their
-    intervals (as :func:`domain.departure.departure_of` has it); not related where the interval of
-    the difference of either lies beyond a quarter.
+    intervals; not related where the interval of the difference of either lies beyond a quarter.
     """
     states = joint.map_states("domains")
     less = {

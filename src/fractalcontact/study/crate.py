@@ -49,7 +49,7 @@ _FILES = {
     "specimens.txt": "names of the specimens",
     "index.html": "result page",
     "explorer.html": "explorer of all contact states",
-    "summary.csv": "one row a specimen",
+    "summary.csv": "one row a specimen and pressure, or a measured contact map",
     "curves.csv": "curves against pressure",
     "tables.zip": "numbers drawn in all figures",
     "study.yaml": "configuration of the study",

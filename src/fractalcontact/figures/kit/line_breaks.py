@@ -18,6 +18,8 @@ from matplotlib.transforms import BboxBase
 _EDGE, _GAP = 1, 4
 #: Points between the columns of a legend that has no room for more, and that a title has at least.
 _LEAST_SPACING, _LEAST_ROOM = 6, 36
+#: A blank where a line may end: not within "95 %" or "[0.20, 2.00]".
+_BLANK = re.compile(r" (?!%)(?![^\[\]]*\])")
 #: A dollar sign that begins or ends a formula.
 _DOLLAR = re.compile(r"(?<!\\)\$")
 
@@ -152,7 +154,7 @@ def _lines(text: Text, line: str, room: float) -> Iterator[str]:
 def _words(line: str) -> Iterator[str]:
     """Words of a line; a formula with the words it touches is one."""
     begun: list[str] = []
-    for word in re.split(" (?!%)", line):  # "95 %" is one
+    for word in _BLANK.split(line):
         begun.append(word)
         if len(_DOLLAR.findall(" ".join(begun))) % 2 == 0:
             yield " ".join(begun)

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from xarray import DataTree
 
 from ...core.estimate import names_of
+from ...domain.map_series import map_table, series_of_maps
 from ...domain.pressure_trend import Trend, pressure_trend
 from .drawing import COLOURS, MARKERS, group
 from .points import reach
@@ -74,17 +75,10 @@ def measured_series(atlas: DataTree) -> list[Series]:
     if "contact_maps" not in atlas.children:
         return []
     maps = {name: group(atlas, "contact_maps", name) for name in atlas["contact_maps"].children}
-    members: dict[tuple, list[str]] = {}
-    for name, one in maps.items():
-        series = one.attrs["series"]
-        members.setdefault((0, series) if series else (1, name), []).append(name)
-    found = []
-    for number, ((alone, label), names) in enumerate(sorted(members.items())):
-        pressure = [float(maps[name]["nominal_pressure"]) for name in names]
-        names = [names[i] for i in np.argsort(pressure, kind="stable")]
-        words = maps[names[0]].attrs["label"] if alone else label
-        found.append(Series(words, tuple(names), tuple(maps[name] for name in names), number))
-    return found
+    return [
+        Series(one.label, one.names, tuple(maps[name] for name in one.names), number)
+        for number, one in enumerate(series_of_maps(maps))
+    ]
 
 
 def draw_series(
@@ -141,30 +135,7 @@ def threshold_words(series: Sequence[Series]) -> str:
     return f"threshold{'s' if len(ends) > 1 else ''} {' to '.join(ends)}"
 
 
-def map_table(series: Sequence[Series]) -> pd.DataFrame:
-    """One row a map: its load, area and dimension, with the nulls."""
-    columns = {
-        "load_N": "force",
-        "nominal_pressure_MPa": "nominal_pressure",
-        "nominal_area_mm2": "nominal_area",
-        "area_mm2": "area",
-        "area_share": "area_share",
-        **{name: name for name in names_of("delta_sigma")},
-        "least_over_thresholds": "delta_sigma_least",
-        "most_over_thresholds": "delta_sigma_most",
-        **dict(zip(names_of("random_cells"), names_of("delta_sigma_random"), strict=True)),
-        "verdict": "null_verdict",
-        "reason": "reason",
-    }
-    rows = [
-        {
-            "map": name,
-            "series": one.attrs["series"],
-            "label": one.attrs["label"],
-            "threshold": one.attrs["threshold"],
-            **{column: one[variable].item() for column, variable in columns.items()},
-        }
-        for each in series
-        for name, one in zip(each.names, each.maps, strict=True)
-    ]
-    return pd.DataFrame(rows)
+def table_of(series: Sequence[Series]) -> pd.DataFrame:
+    """One row a map, series by series."""
+    names = [name for each in series for name in each.names]
+    return map_table(names, [one for each in series for one in each.maps])

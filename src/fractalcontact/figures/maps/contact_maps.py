@@ -9,7 +9,7 @@ from ...core.estimate import DIMENSION, Estimate
 from ...domain.departure import is_fractal
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
-from ..kit.measured import map_table, measured_series, threshold_words
+from ..kit.measured import measured_series, table_of, threshold_words
 from ..kit.words import SUPPLEMENTARY, percent, short
 
 TITLE = "Measured contact maps"
@@ -49,7 +49,7 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
     figure.legend(handles=_key(one for _, one in chosen), loc="outside lower center", ncols=3)
     shown = f"{len(chosen)} of {len(maps)} maps" if len(chosen) < len(maps) else f"{len(maps)} maps"
     headline(figure, f"{shown}, each with its nominal pressure; in brackets 95 % intervals")
-    return Drawing(figure, map_table(series), _caption(series, maps))
+    return Drawing(figure, table_of(series), _caption(series, maps))
 
 
 def _key(maps):

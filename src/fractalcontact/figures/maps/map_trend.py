@@ -11,7 +11,7 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION
 from ..kit.drawing import WIDTH, Drawing, entries, headline, label_short_span, legends_below, letter
 from ..kit.empty import say_empty
-from ..kit.measured import draw_series, map_table, measured_series, threshold_words
+from ..kit.measured import draw_series, measured_series, table_of, threshold_words
 from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Dimension of measured contact maps against pressure"
@@ -50,7 +50,7 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
     panels[0].set_ylim(-0.05, 2.05)
     legends_below(figure, entries(panels[1]), _marks(series))
     headline(figure, "bars: 95 % intervals; after each name the number of its maps")
-    return Drawing(figure, map_table(series), _caption(series))
+    return Drawing(figure, table_of(series), _caption(series))
 
 
 def _marks(series):

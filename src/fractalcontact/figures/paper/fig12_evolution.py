@@ -14,7 +14,7 @@ from ..kit.domains import RISES, Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
 from ..kit.empty import say_empty
 from ..kit.maps import ENLARGED, draw_domain, ring_entry
-from ..kit.measured import draw_series, map_table, measured_series, threshold_words
+from ..kit.measured import draw_series, measured_series, table_of, threshold_words
 from ..kit.points import reach
 from ..kit.verdicts import sentences, verdict_words
 from ..kit.words import force_label, opening, percent, wrapped
@@ -111,7 +111,7 @@ def _measured_rows(series):
     """Rows of the table for the maps: their own load and area, not those of the window."""
     if not series:
         return []
-    table = map_table(series)
+    table = table_of(series)
     table["estimator"] = "box counting, measured: " + table.pop("label").astype(str)
     return [table[[name for name in table if not name.startswith(("random", "verdict"))]]]
 
