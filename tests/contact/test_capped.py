@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from ensembles import ensemble
+from random_problems import random_problem
 
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.accuracy.random_problems import random_problem, violation
+from fractalcontact.accuracy.violation import violation
 from fractalcontact.contact.active_set import ActiveSetMethod
 from fractalcontact.contact.candidates import LEAST_WINDOW, LoadCase
 from fractalcontact.contact.kkt import Problem

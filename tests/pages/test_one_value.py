@@ -67,9 +67,6 @@ def specimens(atlas):
 
 # -- tables ----------------------------------------------------------------------------------------
 
-#: Columns that compliance.csv has from a seat of its own, and fig04_05_closure.csv from another.
-SEATED = ("seated_closure_mm", "seating_pressure_MPa")
-
 
 @pytest.fixture(scope="module")
 def compared(published, atlas, specimens):
@@ -87,17 +84,8 @@ def compared(published, atlas, specimens):
 def test_a_column_has_one_value_at_one_state_in_all_tables_and_in_the_atlas(compared):
     counts, faults = compared
     assert sum(count > 0 for count in counts.values()) > 60
-    wrong = [words for column in sorted(faults) if column not in SEATED for words in faults[column]]
+    wrong = [words for column in sorted(faults) for words in faults[column]]
     assert wrong == []
-
-
-@pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="compliance.csv seats the closures of all offsets alike",
-)
-def test_seated_closures_have_one_value(compared):
-    assert [words for column in SEATED for words in compared[1].get(column, [])] == []
 
 
 # -- pages and explorer ----------------------------------------------------------------------------

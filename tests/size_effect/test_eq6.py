@@ -7,6 +7,7 @@ from ensembles import ensemble
 from places import SCANS
 
 from fractalcontact.contact.solve import solve_contact
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.domain.renormalisation import hausdorff_measure
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.joint import composite_topography
@@ -67,7 +68,7 @@ def pressed_apart(heights, opposite, cells, upper=None, window=9.6, **material):
 
 def found_of(specimen, direction, cells, chosen, solver=SOLVER):
     """The test, with the strength of the parts as the stage before it has it."""
-    no_dimension = (np.nan,) * 3
+    no_dimension = Estimate()
     loading = JointLoading(specimen, direction, cells, chosen, solver)
     laws = joint_by_size(window_states(loading), specimen, no_dimension, None, chosen["material"])
     test = size_test(loading)

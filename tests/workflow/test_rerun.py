@@ -55,7 +55,10 @@ def append(project, name):
 
 def test_the_atlas_has_all_stages_of_the_table_and_a_second_run_nothing_to_do(project):
     atlas = read_atlas(project / ATLAS)
-    assert set(atlas.children) == {*paths_of("specimen", "joint"), "statements", "comparison"}
+    assert set(atlas.children) == {
+        *paths_of("specimen", "joint"),
+        *("statements", "comparison", "elastic_model"),
+    }
     for name, group in atlas.children.items():
         assert group.attrs["description"] == STAGES[name].title
         assert list(group.children) == ([] if STAGES[name].grain == "joint" else ["rock"])

@@ -80,7 +80,7 @@ def _trend_words(series):
     line, departure = trend.line, trend.departure
     slope = replace(line.slope, scale=DIMENSION).text()
     words = f"{label}: {slope} a decade of pressure ({trend.verdict})"
-    if np.isfinite(departure.slope):
+    if departure.slope.known:
         less = replace(departure.slope, scale=DIMENSION).text()
         words += f"; less that of random cells {less} ({trend.beyond_random})"
     return f"{words}."
