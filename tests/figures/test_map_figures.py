@@ -135,7 +135,7 @@ def test_every_map_is_drawn_with_its_cells(maps):
 def test_a_caption_states_the_trend_of_a_series(maps):
     trend = measured_series(only_maps(maps))[0].trend
     caption = drawn(only_maps(maps), "map_trend").caption
-    assert f"films (4): {trend.line.slope:.2f} [" in caption
+    assert f"films (4): {trend.line.slope:.2f}" in caption
     assert f"({trend.verdict})" in caption
     assert f"({trend.beyond_random})" in caption
     alone = {name: one for name, one in maps.items() if name.startswith("lost")}
