@@ -1,4 +1,4 @@
-"""Sets of known dimension: Sierpinski's carpet, Cantor dust, percolation clusters."""
+"""Sets of known dimension: Sierpinski's carpet, Cantor dust, percolation; and parts of them."""
 
 import numpy as np
 from scipy import ndimage
@@ -29,3 +29,19 @@ def percolation_cluster(n, seed):
     label, _ = ndimage.label(np.random.default_rng(seed).random((n, n)) < 0.592746)
     sizes = np.bincount(label.ravel())
     return label == 1 + np.argmax(sizes[1:])
+
+
+def fractal_percolation(levels, kept, seed):
+    """Mandelbrot's percolation on 2^levels cells a side, of dimension 2 + log2(kept)."""
+    rng, cells = np.random.default_rng(seed), np.ones((1, 1), bool)
+    for _ in range(levels):
+        cells = np.kron(cells, np.ones((2, 2), bool))
+        cells &= rng.random(cells.shape) < kept
+    return cells
+
+
+def thinned(domain, nodes, seed):
+    """Some nodes of a domain, drawn at random."""
+    part = np.zeros(domain.size, bool)
+    part[np.random.default_rng(seed).choice(np.flatnonzero(domain), nodes, replace=False)] = True
+    return part.reshape(domain.shape)
