@@ -35,6 +35,30 @@ SETTINGS = {
 CONCRETE = {**SETTINGS, "material": {**ROCK, "name": "concrete"}}
 
 
+def local_slopes(values, over_boxes):
+    """Curves of local slopes over one octave after another, the same under every load."""
+    slopes, sides = np.asarray(values["local_slopes"]), np.asarray(values["box_sides"])
+    curves = {
+        "": slopes,
+        "_low": slopes - values["local_slope_half"],
+        "_high": slopes + values["local_slope_half"],
+        "_random": np.linspace(0, 2, slopes.size),
+        "_cut": slopes + 0.2,
+    }
+    ends = {"": np.sqrt(sides[1:] * sides[:-1]), "_min": sides[:-1], "_max": sides[1:]}
+    return {
+        **{
+            f"local_slope{name}": (("normal_force", "null_octave"), np.tile(curve, (len(LOADS), 1)))
+            for name, curve in curves.items()
+        },
+        **{f"local_slope_side{end}": ("null_octave", side) for end, side in ends.items()},
+        "local_slope_random_p": over_boxes(values["random_p"]),
+        "local_slope_random_side": over_boxes(ends[""][0]),
+        "local_slope_cut_p": over_boxes(values["cut_p"]),
+        "local_slope_cut_side": over_boxes(ends[""][-1]),
+    }
+
+
 def stages(**changes):
     """A joint of which everything the paper says holds, but for what is changed."""
     values = {
@@ -42,11 +66,14 @@ def stages(**changes):
         "nodes": np.full(7, 100.0),
         "spacing_change": 0.05,
         "law": ["", *["hyperbola"] * 6],
-        "null": "beyond both nulls",
+        "null": "different from random nodes and from the bearing-area cut",
+        "local_slopes": [1.06, 1.1, 1.0, 1.08, 1.15],
+        "local_slope_half": 0.1,
+        "box_sides": 0.1 * 2.0 ** np.arange(6),
+        "random_p": 0.005,
+        "cut_p": 0.01,
         "cut_less": 0.1,
         "random": np.array([0.1, 0.5, 0.9, 1.2]),
-        "random_less": 0.0,
-        "random_half": 0.1,
         "along": 0.2,
         "across": 0.2,
         "lag_half": 0.03,
@@ -169,14 +196,15 @@ def stages(**changes):
                 "reason": (dims, np.full((1, len(V), 1, len(LOADS)), "too few")),
                 "delta_sigma_cut": over_boxes(box - values["cut_less"]),
                 **{
-                    f"{name}_{null}_difference{end}": over_boxes(
-                        np.full(4, values[f"{null}_less"]) + np.sign(by) * values[f"{null}_half"]
+                    f"{name}_cut_difference{end}": over_boxes(
+                        np.full(4, values["cut_less"]) + np.sign(by) * values["cut_half"]
                     )
                     for name in ("delta_sigma", "correlation_dimension")
-                    for null in ("random", "cut")
                     for end, by in ends.items()
                 },
                 "null_verdict": (dims, np.full((1, len(V), 1, len(LOADS)), values["null"])),
+                "null_reason": (dims, np.full((1, len(V), 1, len(LOADS)), "too few")),
+                **local_slopes(values, over_boxes),
                 "delta_sigma_random": over_boxes(values["random"]),
             },
             coords,
@@ -308,10 +336,11 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         # It falls, but its exponent is not determined.
         ("area_is_lacunar", {"half": 0.55}, PARTLY),
         ("area_is_lacunar", {"delta_sigma_area": np.full(4, np.nan)}, UNDETERMINED),
-        ("boxes_follow_one_law", {"half": 0.2}, PARTLY),
-        ("boxes_follow_one_law", {"half": 0.4}, FAILS),
-        ("boxes_follow_one_law", {"half": 0.6}, UNDETERMINED),
-        ("boxes_follow_one_law", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
+        ("boxes_follow_one_law", {"local_slopes": [1.0, 1.1, 1.2, 1.3, 1.3]}, PARTLY),
+        ("boxes_follow_one_law", {"local_slopes": [0.5, 0.5, 0.7, 1.2, 1.8]}, FAILS),
+        # A wide interval of the dimension is no curvature of the counts.
+        ("boxes_follow_one_law", {"half": 0.6}, HOLDS),
+        ("boxes_follow_one_law", {"random_p": np.nan}, UNDETERMINED),
         ("estimates_agree", {"disagree": np.array([0, 1, 1, 0], bool)}, PARTLY),
         ("estimates_agree", {"disagree": np.ones(4, bool)}, FAILS),
         ("estimates_agree", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
@@ -363,19 +392,32 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), np.nan)}, UNDETERMINED),
         ("no_correlation_is_left", {"limit": -0.1}, FAILS),
         ("no_correlation_is_left", {"limit": np.nan}, UNDETERMINED),
-        ("domains_are_fractal", {"null": "not distinguishable from random"}, FAILS),
+        ("domains_are_fractal", {"null": "not separated from random nodes"}, FAILS),
         (
             "domains_are_fractal",
-            {"null": "not distinguishable from random", "random_half": 0.3},
+            {"null": "different from random nodes, not separated from the bearing-area cut"},
+            PARTLY,
+        ),
+        ("domains_are_fractal", {"null": "undetermined"}, UNDETERMINED),
+        # Different from both nulls is no fractal yet: nor is what runs from points to full boxes.
+        ("domains_are_fractal", {"local_slopes": [0.5, 0.5, 0.7, 1.2, 1.8]}, FAILS),
+        ("domains_are_fractal", {"local_slopes": [1.0, 1.1, 1.2, 1.3, 1.3]}, PARTLY),
+        (
+            "domains_are_fractal",
+            {"local_slopes": [1.0, 1.1, 1.3, 1.5, 1.7], "local_slope_half": 0.4},
             UNDETERMINED,
         ),
-        ("domains_are_fractal", {"null": "not distinguishable from the bearing-area cut"}, PARTLY),
-        ("domains_are_fractal", {"null": "undetermined"}, UNDETERMINED),
-        ("domains_are_fractal", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
+        # A factor of 8 between box sides shows no fractal.
+        (
+            "domains_are_fractal",
+            {"local_slopes": [1.0, 1.0, 1.0], "box_sides": [0.1, 0.2, 0.4, 0.8]},
+            UNDETERMINED,
+        ),
         ("domains_differ_from_cuts", {"cut_less": 0.4}, FAILS),
-        ("domains_differ_from_cuts", {"cut_less": np.array([0.1, 0.0, 0.1, 0.1])}, PARTLY),
-        ("domains_differ_from_cuts", {"cut_half": 0.2}, UNDETERMINED),
-        ("domains_differ_from_cuts", {"cut_less": np.nan}, UNDETERMINED),
+        ("domains_differ_from_cuts", {"cut_p": np.array([0.01, 0.2, 0.01, 0.01])}, PARTLY),
+        ("domains_differ_from_cuts", {"cut_p": np.array([0.01, np.nan, 0.01, 0.01])}, HOLDS),
+        ("domains_differ_from_cuts", {"cut_p": 0.2}, UNDETERMINED),
+        ("domains_differ_from_cuts", {"cut_p": np.nan}, UNDETERMINED),
         ("domains_are_isotropic", {"along": 0.13}, PARTLY),
         ("domains_are_isotropic", {"along": 0.13, "lag_half": 0.1}, UNDETERMINED),
         ("domains_are_isotropic", {"along": 0.05, "across": 0.17}, FAILS),

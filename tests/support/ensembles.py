@@ -53,9 +53,17 @@ ENSEMBLES: dict[str, tuple] = {
     "pair percolation clusters": ((256, 6), (512, 6)),
     "random domains": (60, 200),
     "thinned domains": (25, 100),
-    "random domains and nulls": (
-        ((128, 40, 20),),
-        ((128, 40, 200), (128, 300, 200), (200, 30, 200), (200, 305, 200)),
+    "random domains compared": (200, 1000),
+    "pairs of cuts": (200, 600),
+    "worlds of cuts": (
+        (((64, 64), 0.8, 16, 0.2, 100),),
+        (
+            ((64, 64), 0.8, 16, 0.2, 100),
+            ((128, 128), 0.8, 32, 0.5, 500),
+            ((128, 128), 0.5, None, 0.3, 400),
+            ((192, 96), 0.5, None, 0.2, 300),
+            ((200, 200), 0.8, 50, 0.2, 300),
+        ),
     ),
     "fractals beside nulls": (1, 6),
     "sets of power-law sizes": (60, 200),

@@ -1,4 +1,4 @@
-"""Sets of known dimension: Sierpinski's carpet, Cantor dust, percolation clusters."""
+"""Sets of known dimension: Sierpinski's carpet, Cantor dust, percolation; and parts of them."""
 
 import numpy as np
 from scipy import ndimage
@@ -38,3 +38,19 @@ def punch_dimensions(parts=2, narrowing=1.5, lowering=1.3):
     """
     ratio = np.log(parts * narrowing)
     return 1 + max(np.log(parts / lowering) / ratio, 0.0), np.log(parts) / ratio
+
+
+def fractal_percolation(levels, kept, seed):
+    """Mandelbrot's percolation on 2^levels cells a side, of dimension 2 + log2(kept)."""
+    rng, cells = np.random.default_rng(seed), np.ones((1, 1), bool)
+    for _ in range(levels):
+        cells = np.kron(cells, np.ones((2, 2), bool))
+        cells &= rng.random(cells.shape) < kept
+    return cells
+
+
+def thinned(domain, nodes, seed):
+    """Some nodes of a domain, drawn at random."""
+    part = np.zeros(domain.size, bool)
+    part[np.random.default_rng(seed).choice(np.flatnonzero(domain), nodes, replace=False)] = True
+    return part.reshape(domain.shape)

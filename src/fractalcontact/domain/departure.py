@@ -1,49 +1,35 @@
 """Departure of a contact domain from its null models: the one rule that decides it.
 
-Captions, statements and measured maps quote these words. A domain is called fractal only where
-:func:`is_fractal` says so.
+Captions, statements and measured maps quote these words.
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
+import math
 
-import numpy as np
+from ..core.intervals import CONFIDENCE
 
-BEYOND_BOTH = "beyond both nulls"
+BEYOND_BOTH = "different from random nodes and from the bearing-area cut"
 #: Of a set without a surface: only the random null can be asked.
-BEYOND_RANDOM = "beyond random nodes, no surface to cut"
-LIKE_RANDOM = "not distinguishable from random"
-LIKE_CUT = "not distinguishable from the bearing-area cut"
+BEYOND_RANDOM = "different from random nodes"
+LIKE_RANDOM = "not separated from random nodes"
+LIKE_CUT = "different from random nodes, not separated from the bearing-area cut"
 UNDETERMINED = "undetermined"
 
 #: Every departure there is.
 DEPARTURES = (BEYOND_BOTH, BEYOND_RANDOM, LIKE_RANDOM, LIKE_CUT, UNDETERMINED)
 
 
-class Comparison(NamedTuple):
-    """A quantity of a domain less that of its null models: 95 % intervals; NaN where there is none.
+def departure_of(random: float, cut: float = math.nan, *, surface: bool) -> str:
+    """Departure of a domain from its null models, by its curve of local slopes.
 
-    They hold what other parts of the window would change of the domain's, and the scatter of the
-    random nodes: that one domain lies outside a narrow band shows nothing of domains like it.
-    """
-
-    random_low: float
-    """Less that of as many random nodes."""
-    random_high: float
-    cut_low: float = float("nan")
-    """Less that of the bearing-area cut."""
-    cut_high: float = float("nan")
-
-
-def departure_of(comparisons: Sequence[Comparison], *, surface: bool) -> str:
-    """How a domain departs from its null models, by one quantity or several together.
+    The curve decides alone. It holds all box sides; the correlation dimension, one slope over the
+    smaller of them, has to follow where it differs, and asked for as well it only hid what the
+    curves show.
 
     Parameters
     ----------
-    comparisons : sequence of Comparison
-        Of one domain. Several estimates of one dimension have to depart together: what one of them
-        shows alone is the estimator's. (They may depart to different sides. Where points alone
-        cross over to full boxes, slopes over different ranges of sizes do.)
+    random, cut : float
+        Probability of so large a departure from random nodes, and from the bearing-area cut, where
+        there is no difference; NaN where it is not known.
     surface : bool
         Whether there is a composite topography, and so a bearing-area cut.
 
@@ -52,47 +38,36 @@ def departure_of(comparisons: Sequence[Comparison], *, surface: bool) -> str:
     str
         One of :data:`DEPARTURES`.
     """
-    random, cut = (
-        np.array(
-            [(getattr(one, f"{null}_low"), getattr(one, f"{null}_high")) for one in comparisons]
-        )
-        for null in ("random", "cut")
-    )
-    if np.isnan(random).any():
+    if math.isnan(random):
         return UNDETERMINED
-    if not leave_zero_out(random):
+    if not differs(random):
         return LIKE_RANDOM
     if not surface:
         return BEYOND_RANDOM
-    if np.isnan(cut).any():
+    if math.isnan(cut):
         return UNDETERMINED
-    return BEYOND_BOTH if leave_zero_out(cut) else LIKE_CUT
+    return BEYOND_BOTH if differs(cut) else LIKE_CUT
 
 
-def leave_zero_out(intervals: np.ndarray) -> bool:
-    """Whether every one of the intervals, (n, 2), does."""
-    return bool(((intervals[:, 0] > 0) | (intervals[:, 1] < 0)).all())
-
-
-def verdict_of(departure: str, determined: bool) -> str:
-    """A departure, or undetermined where the dimension itself is.
+def differs(p: float) -> bool:
+    """Whether a departure of this probability is a difference; not where it is not known.
 
     Parameters
     ----------
-    departure : str
-        From :func:`departure_of`.
-    determined : bool
-        Whether the interval of the dimension says something.
+    p : float
+        NaN where it is not known.
     """
-    return departure if determined else UNDETERMINED
+    # The small number keeps 10 of 200 at 5 %.
+    return p <= 1 - CONFIDENCE + 1e-9
 
 
-def is_fractal(verdict: str) -> bool:
-    """Whether a domain may be called fractal: determined, and beyond every null model there is.
+def loads_of(some: int, total: int) -> str:
+    """Number of loads at which something is so, in words: "no load", "3 of 7 loads", "every load".
 
     Parameters
     ----------
-    verdict : str
-        From :func:`verdict_of`.
+    some, total : int
     """
-    return verdict in (BEYOND_BOTH, BEYOND_RANDOM)
+    if some in (0, total):
+        return "every load" if some else "no load"
+    return f"{some} of {total} loads"

@@ -52,7 +52,7 @@ _VARIABLES = {
     "delta_sigma_random": ((), "1", "mean Delta_sigma of as many cells at random"),
     "delta_sigma_random_low": ((), "1", "Delta_sigma of as many cells at random, 95 % band, low"),
     "delta_sigma_random_high": ((), "1", "Delta_sigma of as many cells at random, 95 % band, high"),
-    "null_verdict": ((), "1", "whether Delta_sigma lies beyond that of random cells"),
+    "null_verdict": ((), "1", "null models from which the local slopes differ"),
 }
 #: Of them, what :func:`domain.null_models.null_models` finds.
 _OF_NULLS = (

@@ -10,11 +10,12 @@ from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.estimate import Estimate, rows_of
 from ..core.labels import cf_attrs
-from .box_counts import box_count, window_sizes
+from .box_counts import cover_and_mean, window_sizes
 from .box_dimension import dimension_of_domain, local_slopes
 from .correlation import correlation_dimension
 from .isotropy import LAG_FIELDS, contact_at_lag
 from .multifractal import ORDERS, SizeCurve, generalised_dimensions, lacunarity
+from .slope_curves import window_counts
 
 #: Measures of a domain that are slopes, with their long names.
 SLOPES = {
@@ -178,7 +179,7 @@ _CURVES = {
     "local_slope": (
         ("normal_force", "slope_side"),
         "1",
-        "local slope of log N(r) over a doubling of the box side",
+        "local slope of the mean box counts over a doubling of the box side",
     ),
     **{
         name: (("normal_force", "gliding_side"), *words)
@@ -210,12 +211,15 @@ def _slope_variables(dims, name, long_name, rows, keys):
 
 
 def _local_slopes(domains, spacing):
-    """Local slopes of all domains' box counts at the window's box sizes; NaN without a node."""
+    """Local slopes of all domains' mean box counts at the window's box sizes; NaN without a node.
+
+    As :mod:`domain.slope_curves` takes them, over every doubling of these sizes.
+    """
     sizes = window_sizes(domains.shape[1:])
-    r = sizes * float(spacing)
+    r, whole = sizes * float(spacing), window_counts(domains.shape[1:], sizes)
     rows = []
     for domain in domains:
-        count = box_count(domain, sizes).astype(float)
-        middle, slope = local_slopes(r, np.where(count > 0, count, np.nan))
-        rows.append(slope)
+        count = cover_and_mean(domain, np.empty(0, np.int64), sizes)[1]
+        middle, slope = local_slopes(r, np.where(count > 0, count / whole, np.nan))
+        rows.append(2 + slope)
     return middle, padded(rows)

@@ -13,12 +13,22 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from .box_dimension import dimension_of_domain, is_determined
+from ..core.estimate import names_of
+from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
-from .departure import Comparison, departure_of, verdict_of
+from .departure import departure_of
 from .mean_law import mean_sizes
 from .ordinary_slope import dyadic_sizes
-from .random_nodes import expected_mean_counts, random_bands
+from .random_nodes import band_of, expected_mean_counts, random_bands
+from .slope_curves import (
+    MIN_NODES,
+    NOT_COMPARED,
+    SlopeCurve,
+    curve_sizes,
+    departure_from_draws,
+    paired_departure,
+    random_curves,
+)
 
 #: What is stored of each quantity, by the ending of its name.
 _ENDINGS = {
@@ -35,6 +45,18 @@ _ENDINGS = {
 }
 
 _BY_SIDE = ("normal_force", "null_scale")
+_BY_OCTAVE = ("normal_force", "null_octave")
+#: Curves of local slopes that are stored, by the ending of their name.
+_CURVES = {
+    "": "of the domain",
+    "_low": "of the domain, lower end of the 95 % interval",
+    "_high": "of the domain, upper end of the 95 % interval",
+    **{
+        ending: words
+        for ending, words in _ENDINGS.items()
+        if not ending.startswith("_random_difference")
+    },
+}
 _TABLE: dict[str, tuple] = {
     **{
         f"{name}{ending}": ("normal_force", "1", f"{words}: {what}")
@@ -42,15 +64,22 @@ _TABLE: dict[str, tuple] = {
         for ending, what in _ENDINGS.items()
     },
     **{
-        f"{name}_departure": ("normal_force", "1", f"{words}: departure from the null models")
-        for name, words in QUANTITIES.items()
+        f"local_slope{ending}": (_BY_OCTAVE, "1", f"local slope of the mean box counts: {what}")
+        for ending, what in _CURVES.items()
     },
-    "null_departure": (
-        "normal_force",
-        "1",
-        "departure of box-counting and correlation dimension from the null models",
-    ),
-    "null_verdict": ("normal_force", "1", "that departure where the dimension is determined"),
+    "local_slope_side": ("null_octave", "mm", "geometric middle of two box sides r"),
+    "local_slope_side_min": ("null_octave", "mm", "smaller of the two box sides r"),
+    "local_slope_side_max": ("null_octave", "mm", "larger of the two box sides r"),
+    **{
+        f"local_slope_{null}_{name}": ("normal_force", units, f"{words} {of}")
+        for null, of in (("random", "as many random nodes"), ("cut", "the bearing-area cut"))
+        for name, units, words in (
+            ("p", "1", "probability of local slopes so far, without a difference, from those of"),
+            ("side", "mm", "box side r where local slopes depart most from those of"),
+        )
+    },
+    "null_verdict": ("normal_force", "1", "null models from which the local slopes differ"),
+    "null_reason": ("normal_force", "1", "why the local slopes are not compared; empty else"),
     "null_count_random": (_BY_SIDE, "1", "minimal cover N(r) of as many random nodes, mean"),
     "null_count_random_low": (_BY_SIDE, "1", "minimal cover of random nodes, lower end of 95 %"),
     "null_count_random_high": (_BY_SIDE, "1", "minimal cover of random nodes, upper end of 95 %"),
@@ -97,10 +126,11 @@ def null_models(
     xr.Dataset
         Over ``normal_force`` (without coordinate): each of :data:`QUANTITIES` with ``_random``,
         ``_random_low``, ``_random_high``, ``_random_difference`` with its ends, ``_cut``,
-        ``_cut_difference`` with its ends and ``_departure`` in words; ``null_departure`` and
-        ``null_verdict`` of the domain, by :func:`domain.departure.departure_of` and
-        :func:`domain.departure.verdict_of`. The counts of the null models over the box sides
-        ``null_side`` and ``null_mean_side`` (mm).
+        and ``_cut_difference`` with its ends; the counts of the null models over the box sides
+        ``null_side`` and ``null_mean_side`` (mm). The ``local_slope`` of :mod:`domain.slope_curves`
+        over ``local_slope_side`` (mm), likewise; ``local_slope_random_p`` and ``_side``, the
+        probability of its largest departure from random nodes and the box side of that, and those
+        of the cut; ``null_verdict``, by :func:`domain.departure.departure_of`, and ``null_reason``.
 
     Notes
     -----
@@ -118,6 +148,7 @@ def null_models(
     values: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
     values["null_side"] = dyadic_sizes(shape) * float(spacing)
     values["null_mean_side"] = mean_sizes(shape) * float(spacing)
+    values |= _octaves(shape, spacing)
     return labelled_dataset(_TABLE, values)
 
 
@@ -207,29 +238,71 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
         dict.fromkeys(QUANTITIES, (np.nan,) * 4),
         np.full(dyadic_sizes(domain.shape).size, np.nan),
     )
+    highest_nodes = None
     if composite is not None and nodes > 1:
-        highest = counted(bearing_area_cut(composite, nodes))
+        highest_nodes = bearing_area_cut(composite, nodes)
+        highest = counted(highest_nodes)
         cut = _less_cut(ours, highest)
         if highest.box.ordinary is not None:
             count = highest.box.ordinary.counts
     row: dict[str, Any] = {}
-    surface = composite is not None
-    compared = {}
     for name in QUANTITIES:
         beside = (*bands[name], *random[name], *cut[name])
         row |= {f"{name}{end}": value for end, value in zip(_ENDINGS, beside, strict=True)}
-        (_, *less_random), (_, _, *less_cut) = random[name], cut[name]
-        compared[name] = Comparison(*less_random, *less_cut)
-        row[f"{name}_departure"] = departure_of([compared[name]], surface=surface)
-    # The ordinary slope would say the same thing twice, less well: it counts the same boxes.
-    both = [compared["delta_sigma"], compared["correlation_dimension"]]
-    row["null_departure"] = departure_of(both, surface=surface)
-    row["null_verdict"] = verdict_of(row["null_departure"], is_determined(box.low, box.high))
+    row |= _compared_slopes(domain, highest_nodes, mask, spacing)
     for name, value in zip(("", "_low", "_high"), counts, strict=True):
         row[f"null_count_random{name}"] = value
     row["null_count_cut"] = count
     row["null_mean_count"] = expected_mean_counts(domain.shape, nodes, mean_sizes(domain.shape))
     return row
+
+
+def _octaves(shape, spacing):
+    """Box sides of the local slopes, mm; a missing one in a window too small for any."""
+    sides = np.append(curve_sizes(shape), np.full(2, np.nan))[: max(curve_sizes(shape).size, 2)]
+    low, high = sides[:-1] * float(spacing), sides[1:] * float(spacing)
+    return {
+        "local_slope_side": np.sqrt(low * high),
+        "local_slope_side_min": low,
+        "local_slope_side_max": high,
+    }
+
+
+def _compared_slopes(domain, cut, mask, spacing):
+    """Local slopes of one domain and its null models, and what :func:`null_models` says of them."""
+    sides = _octaves(domain.shape, spacing)["local_slope_side"]
+    nodes = int(np.count_nonzero(domain))
+    curve = SlopeCurve(domain, mask)
+    curves, departures = {"": curve.interval}, dict.fromkeys(("random", "cut"), NOT_COMPARED)
+    reason = _why_not_compared(nodes, curve.values.size)
+    if nodes > 1:
+        draws = random_curves(domain.shape, nodes, mask)
+        curves["_random"] = band_of(draws)
+        departures["random"] = departure_from_draws(curve.values, draws)
+    if cut is not None:
+        highest = SlopeCurve(cut, mask)
+        curves["_cut"] = (highest.values,)
+        curves["_cut_difference"], departures["cut"] = paired_departure(curve, highest)
+        if not (reason or np.isfinite(departures["cut"].p)):
+            reason = "contact in too few parts of the window to compare with the bearing-area cut"
+    row = dict.fromkeys((f"local_slope{ending}" for ending in _CURVES), np.full(sides.size, np.nan))
+    for name, band in curves.items():
+        for of, values in zip(names_of(f"local_slope{name}"), band, strict=False):
+            row[of] = values if values.size else np.full(1, np.nan)
+    for null, (p, place) in departures.items():
+        known = np.isfinite(p) and nodes >= MIN_NODES
+        row[f"local_slope_{null}_p"] = p if known else np.nan
+        row[f"local_slope_{null}_side"] = sides[place] if known else np.nan
+    random, cut_p = (row[f"local_slope_{null}_p"] for null in departures)
+    verdict = departure_of(random, cut_p, surface=cut is not None)
+    return row | {"null_verdict": verdict, "null_reason": reason}
+
+
+def _why_not_compared(nodes, slopes):
+    """Why local slopes are compared with no null model; empty where they are."""
+    if nodes < MIN_NODES:
+        return f"fewer than {MIN_NODES} nodes in contact ({nodes})"
+    return "" if slopes else "the window is too small for local slopes"
 
 
 def _less_random(domain, bands):

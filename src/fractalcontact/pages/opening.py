@@ -29,6 +29,7 @@ _VERDICTS = {
     FAILS: "does not hold",
     UNDETERMINED: "is undetermined",
 }
+_ANSWERS = {HOLDS: "Yes", IN_PART: "Partly", FAILS: "No", UNDETERMINED: "Unknown"}
 _MODEL = {GOOD: "good", PARTLY: "good in part", POOR: "poor"}
 _KINDS = {"level": "levels off", "rising": "keeps rising", "falling": "falls"}
 
@@ -217,10 +218,11 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     by_areas = _determined([at.delta_sigma_areas for _, at in asked])
     text = f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s)"
     beside = list(verdicts.get(_FRACTAL, {}).values())
+    question = ""
     if beside:
-        counted = _counted(beside, _VERDICTS)
-        text += f"; that the domains are fractal sets, under the load of their maps, {counted}"
-    return symbols(f"{text}.")
+        answer = _counted(beside, _ANSWERS)
+        question = f" Is the contact a fractal set under its reference load? {answer}."
+    return symbols(f"{text}.{question}")
 
 
 def _determined(estimates):

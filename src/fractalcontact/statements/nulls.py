@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..domain import departure
-from ..domain.departure import LIKE_CUT, LIKE_RANDOM, is_fractal
+from ..domain.departure import LIKE_CUT, LIKE_RANDOM, loads_of
 from ..mechanics.closure_laws import HYPERBOLA, UNDECIDED
 from .findings import (
     FAILS,
@@ -17,14 +17,15 @@ from .findings import (
     Statement,
     share,
 )
+from .local_slopes import one_slope
 
 _OF_SLIDING = ("along sliding", "across")
 
-#: What is compared with the bearing-area cut.
-_BESIDE_CUT = ("delta_sigma", "correlation_dimension")
+#: Dimensions whose difference from the bearing-area cut's shows whether the two are related.
+_DIMENSIONS = ("delta_sigma", "correlation_dimension")
 
-#: What a departure that is not fractal leaves of "lacunar fractal sets".
-_LEFT = {LIKE_RANDOM: FAILS, LIKE_CUT: PARTLY}
+#: Null models of a contact domain, in words.
+_NULLS = {"random": "random nodes", "cut": "bearing-area cut"}
 
 
 def closure_is_hyperbolic(joint: Joint) -> Finding:
@@ -49,56 +50,65 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
 
 
 def domains_are_fractal(joint: Joint) -> Finding:
-    """Box-counting dimension beside as many random nodes and the bearing-area cut."""
+    """Local slopes of the box counts, compared with random nodes, the cut and each other.
+
+    A fractal set differs from random nodes, and has one slope over a decade of box sides or more.
+    One that differs from the bearing-area cut as well is no mere cut at one height.
+    """
     state = joint.map_state("domains")
     verdict = str(state["null_verdict"].item())
-    value, cut = (float(state[f"delta_sigma{end}"]) for end in ("", "_cut"))
-    if not np.isfinite(value):
-        return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
     if verdict == departure.UNDETERMINED:
-        low, high = (float(state[f"delta_sigma_{end}"]) for end in ("low", "high"))
-        return Finding(UNDETERMINED, f"interval of Delta_sigma {high - low:.1f} wide")
-    less, low, high = (
-        float(state[f"delta_sigma_random_difference{end}"]) for end in ("", "_low", "_high")
-    )
-    pairs = float(state["correlation_dimension_random_difference"])
-    found = HOLDS if is_fractal(verdict) else _LEFT[verdict]
-    if found == FAILS and max(-low, high) > LOOSELY:
-        # Not distinguished by a difference that is not known well enough.
-        found = UNDETERMINED
+        return Finding(UNDETERMINED, str(state["null_reason"].item()))
+    found, slopes, _ = one_slope(state)
+    if verdict == LIKE_RANDOM:
+        found = FAILS
+    elif found == HOLDS and verdict == LIKE_CUT:
+        found = PARTLY
     return Finding(
         found,
-        f"{verdict}, Delta_sigma less that of random {less:+.2f} [{low:+.2f}, {high:+.2f}]",
-        f"Delta_sigma = {value:.2f}, less that of as many random nodes {less:+.2f} [{low:+.2f}, "
-        f"{high:+.2f}], of the cut {cut:.2f}; correlation dimension less that of random nodes "
-        f"{pairs:+.2f}: contact is clustered, which alone is no fractal",
+        f"{slopes}; {verdict}",
+        "; ".join(_departure_words(state, null, words) for null, words in _NULLS.items()),
+    )
+
+
+def _departure_words(state, null, words):
+    """Where local slopes depart most from those of a null model, in words."""
+    side, p = (float(state[f"local_slope_{null}_{name}"]) for name in ("side", "p"))
+    if not np.isfinite(p):
+        return f"{words}: not compared"
+    place = int(np.argmin(np.abs(state["local_slope_side"].values - side)))
+    slope, other = (float(state[name][place]) for name in ("local_slope", f"local_slope_{null}"))
+    return (
+        f"{words}: largest departure at r = {side:.2g} mm, local slope {slope:.2f} against "
+        f"{other:.2f}, p = {p:.2g}"
     )
 
 
 def domains_differ_from_cuts(joint: Joint) -> Finding:
-    """Elastic contact domain against the cut of the composite topography, over the loads.
+    """Elastic contact domain compared with the cut of the composite topography, over the loads.
 
-    Not coincident where box-counting and correlation dimension both differ by more than their
-    intervals; not related where the interval of the difference of either lies beyond a quarter.
+    Not coincident where local slopes of the box counts differ; not related where the interval of
+    the difference of the box-counting or correlation dimension lies beyond a quarter.
     """
     states = joint.map_states("domains")
-    less = {
-        end: np.array([states[f"{name}_cut_difference{end}"].values for name in _BESIDE_CUT])
-        for end in ("", "_low", "_high")
-    }
-    known = np.isfinite([*less.values()]).all(axis=(0, 1))
-    if not known.any():
-        return Finding(UNDETERMINED, "no load at which domain and cut have their dimensions")
-    value, low, high = (less[end][:, known] for end in ("", "_low", "_high"))
-    apart = sum(map(departure.leave_zero_out, np.stack([low, high], axis=-1).swapaxes(0, 1)))
-    unrelated = bool(((low > LOOSELY) | (high < -LOOSELY)).any())
-    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in (value[0].min(), value[0].max())))
-    total = value.shape[1]
-    verdict = FAILS if unrelated else share(apart, total) if apart else UNDETERMINED
+    p = states["local_slope_cut_p"].values
+    compared = np.isfinite(p)
+    if not compared.any():
+        return Finding(UNDETERMINED, "no load at which domain and cut have local slopes to compare")
+    low, high = (
+        np.array([states[f"{name}_cut_difference_{end}"].values for name in _DIMENSIONS])
+        for end in ("low", "high")
+    )
+    unrelated = bool(((low > LOOSELY) | (high < -LOOSELY))[:, compared].any())
+    different, total = sum(map(departure.differs, p[compared])), int(compared.sum())
+    verdict = FAILS if unrelated else share(different, total) if different else UNDETERMINED
+    less = states["delta_sigma_cut_difference"].values[compared]
+    less = less[np.isfinite(less)]
+    ends = dict.fromkeys(f"{end:+.2f}" for end in (less.min(), less.max())) if less.size else "-"
     return Finding(
         verdict,
-        f"domain less cut {ends}",
-        f"apart beyond the interval, by boxes and by pairs, at {apart} of {total} loads",
+        f"local slopes differ from those of the cut at {loads_of(different, total)}",
+        f"{total} loads compared; Delta_sigma less that of the cut {' to '.join(ends)}",
     )
 
 

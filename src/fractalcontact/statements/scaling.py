@@ -11,8 +11,6 @@ from ..domain.pressure_trend import pressure_trend
 from .findings import (
     FAILS,
     HOLDS,
-    LOOSELY,
-    NEARLY,
     PARTLY,
     UNDETERMINED,
     Finding,
@@ -22,6 +20,7 @@ from .findings import (
     of_the_area,
     share,
 )
+from .local_slopes import one_slope
 
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.
 NEAR_POINTS, NEAR_FULL = 0.25, 1.75
@@ -57,17 +56,11 @@ def area_is_lacunar(joint: Joint) -> Finding:
 
 
 def boxes_follow_one_law(joint: Joint) -> Finding:
-    """Interval of the box-counting dimension at the load of the maps."""
-    state = joint.map_state("domains")
-    delta = Estimate.read(state, "delta_sigma")
-    if not delta.known:
-        return Finding(UNDETERMINED, f"no dimension: {state['reason'].item()}")
-    lengths = f"boxes of {float(state['fit_min']):.3g} to {float(state['fit_max']):.3g} mm"
-    width = delta.width
-    if width > WIDEST:
-        return Finding(UNDETERMINED, f"interval of Delta_sigma {width:.1f} wide, {lengths}")
-    verdict = HOLDS if width <= 2 * NEARLY else PARTLY if width <= 2 * LOOSELY else FAILS
-    return Finding(verdict, f"Delta_sigma = {delta:.2f}, {lengths}")
+    """Local slopes of the box counts at the load of the maps.
+
+    They show the curvature of the counts; how well one slope is known says nothing of it.
+    """
+    return one_slope(joint.map_state("domains"))
 
 
 @of_the_area

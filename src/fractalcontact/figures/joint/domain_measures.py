@@ -26,11 +26,11 @@ from ..kit.drawing import (
     settings_of,
     spread,
 )
-from ..kit.words import force_label, opening, place
+from ..kit.words import force_label, opening, place, short
 
 TITLE = "Is the contact domain fractal: local slopes, lacunarity, dimensions of the pressure"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "domain_measures")
+NEEDS = ("specimens", "domains", "domain_measures")
 ORDER = 150
 
 #: Loads drawn, the map load among them.
@@ -67,8 +67,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, handles, mapped_entries[:3], mapped_entries[3:])
     where = place(str(measures["direction"].item()), float(measures["offset"]))
     headline(figure, settings["label"], where)
-    start = opening("section 6")
-    return Drawing(figure, table, f"{start} {_caption(measures.isel(normal_force=mapped), table)}")
+    slopes = group(atlas, "domains", name).sel(normal_force=forces[mapped], method="nearest")
+    caption = _caption(measures.isel(normal_force=mapped), slopes)
+    return Drawing(figure, table, f"{opening('section 6')} {caption}")
 
 
 def _shown(measures, mapped):
@@ -177,7 +178,7 @@ def _key(state, table):
     ]
 
 
-def _caption(state, table):
+def _caption(state, slopes):
     force = force_label(float(state["normal_force"]))
     words = (
         "Local slopes of box counts, gliding-box lacunarity and dimensions of the pressure at F = "
@@ -197,7 +198,7 @@ def _caption(state, table):
         high = Estimate.read(state.sel(order=4.0), "generalised_dimension").high
         apart = "separate" if high < low else "overlap"
         spectrum = f"; intervals of D_0 = {span[0]:.2f} and D_4 = {span[1]:.2f} {apart}"
-    return f"{words} {_law(state, table)} Delta_sigma is {', '.join(dimensions)}{spectrum}."
+    return f"{words} {_law(slopes)} Delta_sigma is {', '.join(dimensions)}{spectrum}."
 
 
 def _interval(state, key):
@@ -205,14 +206,15 @@ def _interval(state, key):
     return Estimate.read(state, key, scale=DIMENSION).text()
 
 
-def _law(state, table):
+def _law(slopes):
     """Whether local slopes under the map load are those of one power law."""
-    points = table[(table["kind"] == "slope") & (table["force_N"] == float(state["normal_force"]))]
-    low, high = state["delta_sigma_r_min"].item(), state["delta_sigma_r_max"].item()
-    inside = points[(points["box_side_mm"] >= low) & (points["box_side_mm"] <= high)]["value"]
-    if inside.size < 2:
+    curve = slopes["local_slope"].values
+    if not np.isfinite(curve).all() or curve.size < 2:
         return "Too few local slopes to test for one power law."
+    first, last = (
+        slopes[f"local_slope_side_{end}"].values[place] for end, place in (("min", 0), ("max", -1))
+    )
     return (
-        f"Slopes of one contact domain range from {inside.min():.2f} to {inside.max():.2f} over "
-        "the box side; a fractal's would all be equal."
+        f"Slopes of one contact domain range from {curve.min():.2f} to {curve.max():.2f} for boxes "
+        f"of {short(first)} to {short(last)} mm; a fractal's would all be equal."
     )

@@ -9,8 +9,9 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, Estimate
 from ...core.fitting import FEWEST_POINTS
 from ...domain.box_dimension import WIDEST, is_determined
-from ...domain.departure import BEYOND_BOTH, UNDETERMINED
+from ...domain.departure import UNDETERMINED, differs, loads_of
 from ...domain.renormalisation import RESOLUTION
+from ...domain.slope_curves import MIN_NODES
 from ...mechanics.states import chosen_offset
 from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
@@ -200,25 +201,21 @@ class Loading:
         return np.unique(chosen)
 
 
-def departures(counts: xr.Dataset, determined: np.ndarray) -> str:
-    """Words on the loads at which domains depart from both null models.
+def departures(counts: xr.Dataset) -> str:
+    """Words on the loads at which domains differ from their null models.
 
     Parameters
     ----------
     counts : xr.Dataset
         Of the stage ``domains``, over load, of domains that are looked at closely.
-    determined : (n_load,) bool ndarray
-        Loads whose Delta_sigma by box counting is drawn in full colour.
     """
-    found = counts["null_verdict"].values.astype(str)
-    decided = found[found != UNDETERMINED]
-    if not decided.size:
-        return "Nulls: undetermined."
-    departing = int((decided == BEYOND_BOTH).sum())
-    same = ((found != UNDETERMINED) == determined).all()
-    which = "in full colour" if same else "that decide it"
-    at = f"{departing} of {decided.size} loads {which}"
-    return f"By boxes and pairs domains depart from both nulls at {at}."
+    p = {null: counts[f"local_slope_{null}_p"].values for null in ("random", "cut")}
+    compared = {null: values[np.isfinite(values)] for null, values in p.items()}
+    if not compared["random"].size:
+        return f"No domain has the {MIN_NODES} nodes that a comparison with null models needs."
+    random, cut = (loads_of(sum(map(differs, p)), p.size) for p in compared.values())
+    beside = f", from bearing-area cuts at {cut}" if compared["cut"].size else ""
+    return f"Domains of {MIN_NODES} nodes or more differ from random nodes at {random}{beside}."
 
 
 def rise_words(atlas: DataTree, name: str, loading: Loading, *, numbers: bool = True) -> str:

@@ -6,7 +6,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
-from ...domain.departure import is_fractal
+from ...domain.departure import BEYOND_RANDOM
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import measured_series, table_of, threshold_words
@@ -82,15 +82,14 @@ def _title(name, one):
 
 def _caption(series, maps):
     shares = [float(one["area_share"]) for _, one in maps]
-    verdicts = [one["null_verdict"].item() for _, one in maps]
-    beyond = sum(is_fractal(verdict) for verdict in verdicts)
+    different = sum(one["null_verdict"].item() == BEYOND_RANDOM for _, one in maps)
     warned = sum(bool(one.attrs["warning"]) for _, one in maps)
     words = (
         f"{SUPPLEMENTARY} Cells in contact (black), "
         f"{threshold_words(series)}; above each its nominal pressure, A_r/A_0 "
-        f"({percent(min(shares))} to {percent(max(shares))} in all) and Delta_sigma. By box "
-        f"counting it lies beyond as many random cells in {beyond} of {len(maps)} maps; the "
-        "bearing-area cut needs heights."
+        f"({percent(min(shares))} to {percent(max(shares))} in all) and Delta_sigma. The local "
+        f"slopes of the box counts differ from those of random cells in {different} of "
+        f"{len(maps)} maps; a bearing-area cut needs heights."
     )
     if warned:
         words += f" {warned} have no contact all round and no outline stated: A_0 may be too large."

@@ -9,14 +9,14 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.estimate import DIMENSION, Estimate
+from ...core.estimate import DIMENSION, Estimate, names_of
 from ...core.ranges import within
-from ...domain.box_dimension import WIDEST, is_determined, local_slopes, spans
+from ...domain.box_dimension import is_determined
 from ...domain.count_law import LawTerms, law_count
-from ...statements.findings import LOOSELY, NEARLY
 from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, heading, headline, label_short_span, letter
 from ..kit.maps import draw_domain
+from ..kit.points import reach
 from ..kit.verdicts import claim, sentences
 from ..kit.words import force_label, opening, short
 
@@ -33,10 +33,19 @@ NULLS = {
     "cut_count": "null_count_cut",
 }
 
+#: Columns of the local slopes, their variables and the ends of their intervals.
+SLOPES = {
+    "slope_to_mm": "local_slope_side_max",
+    **{name: name for name in names_of("local_slope")},
+    **dict(zip(names_of("random_slope"), names_of("local_slope_random"), strict=True)),
+    "cut_slope": "local_slope_cut",
+}
+
 #: Grey of random nodes; lines over markers, which would hide them; markers that hide no line.
 _RANDOM = "0.7"
 _SEEN: dict[str, Any] = {"zorder": 4, "linewidth": 1.4}
 _CROSS = {"ms": 3.5, "mew": 0.7, "alpha": 0.7}
+_SLOPE_LABEL = "(c) mean of origins, 95 %"
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -56,16 +65,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles, _ = middle.get_legend_handles_labels()
     if np.isfinite(table["law_count"]).any():
         handles.append(heading(_law_form(counts)))
-    why = _width_words(counts)
-    wide = why.replace("interval of Delta_sigma", ":", 1)
-    handles.append(Patch(**_band(COLOURS[2]), label=f"(c) 95 % of the count law{wide}"))
+    handles.append(Patch(**_band(COLOURS[2]), label="(c) 95 % of the count law"))
     handles.append(Patch(**_band(COLOURS[0]), label="(c) 95 % of the ordinary slope"))
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     caption = sentences(
         _caption(loading, i, counts),
-        claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=not why, why=why),
+        claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=False),
         claim(atlas, name, "fractal set", "domains_are_fractal"),
     )
     return Drawing(figure, table, caption)
@@ -100,11 +107,10 @@ def _table(counts):
     table["random_mean_count"] = _at(
         r, counts["null_mean_side"].values, counts["null_mean_count"].values
     )
-    to_side, slope = np.full((2, r.size), np.nan)
-    start, end = spans(r)
-    to_side[start] = r[end]
-    _, slope[start] = local_slopes(r, n)
-    return table.assign(slope_to_mm=to_side, local_slope=slope)
+    sides = counts["local_slope_side_min"].values
+    for column, name in SLOPES.items():
+        table[column] = _at(r, sides, counts[name].values)
+    return table
 
 
 def _at(r, side, count):
@@ -124,7 +130,7 @@ def _draw_counts(axes, table, counts):
         null["random_count_high"],
         color=_RANDOM,
         lw=1.5,
-        label="random nodes: (b) 95 %, (c) mean",
+        label="random nodes: 95 %",
         zorder=0,
     )
     axes.loglog(
@@ -135,7 +141,7 @@ def _draw_counts(axes, table, counts):
         label="bearing-area cut: highest nodes",
     )
     for used, face in ((table["ordinary_used"], COLOURS[0]), (~table["ordinary_used"], "white")):
-        words = "boxes, fewest" + (", fitted" if face != "white" else ", not fitted; (c) all")
+        words = "boxes, fewest" + (", fitted" if face != "white" else ", not fitted")
         axes.loglog(
             r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
         )
@@ -145,6 +151,7 @@ def _draw_counts(axes, table, counts):
         axes.loglog(r, table["ordinary_count"], "--", color=COLOURS[0], label=label, **_SEEN | weak)
     label = "boxes, mean of origins"
     axes.loglog(r, table["mean_count"], "x", color=COLOURS[2], label=label, **_CROSS)
+    axes.errorbar([], [], yerr=[], fmt="D", ms=4, color=COLOURS[2], lw=0.8, label=_SLOPE_LABEL)
     if np.isfinite(table["law_count"]).any():
         weak = {} if _law_determined(counts) else WEAK
         label = rf"count law: $\Delta_\sigma$ {_by_law(counts)}"
@@ -161,15 +168,17 @@ def _law_determined(counts):
 
 
 def _draw_slopes(axes, table, counts):
-    middle = np.sqrt(table["box_side_mm"] * table["slope_to_mm"])
-    axes.semilogx(middle, table["local_slope"], "o", ms=4, mfc="white", mec=COLOURS[0])
-    null = table[np.isfinite(table["random_count"])]
-    for column, style in (
-        ("random_count", {"color": _RANDOM, "ls": "-", "lw": 2}),
-        ("cut_count", {"color": COLOURS[4], "ls": "-."}),
-    ):
-        if np.isfinite(null[column]).all() and len(null) > 1:
-            axes.plot(*local_slopes(null["box_side_mm"], null[column]), **{"lw": 1} | style)
+    slopes = table[np.isfinite(table["local_slope"])]
+    middle = np.sqrt(slopes["box_side_mm"] * slopes["slope_to_mm"])
+    random, low, high = Estimate.read(slopes, "random_slope").ends
+    axes.fill_between(middle, low, high, color=_RANDOM, lw=1.5, zorder=0)
+    axes.plot(middle, random, color=_RANDOM, lw=1)
+    axes.plot(middle, slopes["cut_slope"], "-.", color=COLOURS[4], lw=1)
+    ends = Estimate.read(slopes, "local_slope").ends
+    axes.errorbar(
+        middle, slopes["local_slope"], yerr=reach(*ends), fmt="D", ms=4, color=COLOURS[2], lw=0.8
+    )
+    axes.set_xscale("log")
     for name, fit, colour, style, sure in (
         ("delta_sigma", "fit", COLOURS[2], "-", _law_determined(counts)),
         (
@@ -186,12 +195,11 @@ def _draw_slopes(axes, table, counts):
             axes.plot(ends, [counts[name].item()] * 2, color=colour, ls=style, **weak)
             low, high = (counts[f"{name}_{end}"].item() for end in ("low", "high"))
             axes.fill_between(ends, low, high, **_band(colour))
-    axes.set_ylim(-0.1, max(2.2, 1.1 * table["local_slope"].max()))
+    axes.set_ylim(-0.1, 2.3)
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    slopes = table["local_slope"].dropna()
-    ends = f": {slopes.min():.1f} to {slopes.max():.1f}" if len(slopes) > 1 else ""
-    letter(axes, "c", f"local slopes{ends}")
+    ends = dict.fromkeys(f"{slope:.2f}" for slope in slopes["local_slope"].agg(["min", "max"]))
+    letter(axes, "c", f"local slopes: {' to '.join(ends)}" if len(slopes) else "no local slopes")
 
 
 def _band(colour):
@@ -208,17 +216,6 @@ def _caption(loading, i, counts):
     if reason:
         return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
     return f"{start}Delta_sigma is {loading.estimates[1].at(i)}, the ordinary slope {ordinary}."
-
-
-def _width_words(counts):
-    """How wide the interval of Delta_sigma is, and beside which limit: it decides on one law."""
-    low, high = (counts[f"delta_sigma_{end}"].item() for end in ("low", "high"))
-    if str(counts["reason"].item()) or not np.isfinite(high - low):
-        return ""
-    limits = (2 * NEARLY, 2 * LOOSELY, WIDEST)
-    # The widest that is exceeded decides; else the narrowest, which is kept to.
-    limit = max((one for one in limits if high - low > one), default=limits[0])
-    return f"interval of Delta_sigma {high - low:.2g} wide, limit {limit:g}"
 
 
 def _law_form(counts):

@@ -238,7 +238,7 @@ def _draw_dimensions(axes, loading, rises):
 
 
 def _caption(loading, rises):
-    departing = departures(loading.counts, loading.estimates[1].determined)
+    departing = departures(loading.counts)
     return (
         f"{opening('Fig. 12')} Contact domains with A_r/A_0, and Delta_sigma over load. The "
         f"paper's rise with F: {rises}. {departing}"

@@ -1,0 +1,253 @@
+"""Curves of local slopes of box counts: a contact domain compared with its null models.
+
+A slope fitted over a range agrees by accident: nodes at random, whose local slopes cross over from
+0 to 2, can have the mean slope of a set of dimension 1. Two domains differ where the curves do.
+
+The local slope of mean counts N(r) over a doubling of the box side r is
+
+    2 - ln[n(2 r) / n(r)] / ln 2,    n(r) = N(r) / N_w(r),
+
+with N_w(r) the mean count of the whole window, whose boxes hang over its edge as those of the
+domain do: a filled window has slope 2 at every side.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+from ..core.intervals import t_quantile
+from ..core.resolved import CORRECTED_NODES
+from ..core.slope_of_sums import BLOCKS
+from .box_counts import cover_and_mean, mean_count
+from .count_law import SMALLEST
+from .mean_law import LARGEST_BOX
+from .random_nodes import Band, random_nodes
+
+#: Draws of random nodes: with the domain they are 200, of which 5 % are ten.
+DRAWS = 199
+
+#: Fewer nodes are not compared: whatever their pattern, one node more or less would change it.
+MIN_NODES = CORRECTED_NODES
+
+#: Fewer occupied parts of the window give no scatter.
+MIN_PARTS = 4
+
+#: Local slopes that scatter by less are the same in all draws: of boxes that are all occupied.
+_NO_SCATTER = 1e-9
+
+
+class Departure(NamedTuple):
+    """Largest departure of a curve of local slopes from that of a null model."""
+
+    p: float
+    """Probability of so large a departure where there is no difference; NaN where not known."""
+    place: int
+    """Index of the local slope that departs by most of its scatter."""
+
+
+NOT_COMPARED = Departure(np.nan, 0)
+
+
+@dataclass(frozen=True, eq=False)
+class SlopeCurve:
+    """Local slopes of the box counts of a contact domain.
+
+    Attributes
+    ----------
+    nodes : (ny, nx) bool ndarray
+        In contact.
+    mask : (ny, nx) bool ndarray, optional
+        Cells that nodes may lie in; all by default.
+    """
+
+    nodes: np.ndarray
+    mask: np.ndarray | None = None
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Doubling box sides, (k,) int64, cells."""
+        return curve_sizes(self.nodes.shape)
+
+    @cached_property
+    def parts(self) -> np.ndarray:
+        """Mean counts by part of the window over those of the whole window, (k, parts)."""
+        counts = mean_count(self.nodes, self.sizes, blocks=BLOCKS).reshape(self.sizes.size, -1)
+        return counts / window_counts(self.nodes.shape, self.sizes, self.mask)[:, np.newaxis]
+
+    @cached_property
+    def values(self) -> np.ndarray:
+        """Local slopes, (k - 1,); NaN without a node."""
+        return slope_curve(self.parts.sum(axis=1), self.sizes)
+
+    @cached_property
+    def interval(self) -> Band:
+        """Local slopes with the 95 % interval of each, by the jackknife over parts."""
+        half = _jackknife(self.without(self.occupied))[0]
+        return Band(self.values, self.values - half, self.values + half)
+
+    @property
+    def occupied(self) -> np.ndarray:
+        """Parts of the window with a box of the smallest size; none where there is no size."""
+        return np.flatnonzero(self.parts[:1].sum(axis=0))
+
+    def without(self, parts: np.ndarray) -> np.ndarray:
+        """Local slopes with one part of the window after another left out, (m, k - 1)."""
+        left = self.parts.sum(axis=1) - self.parts.T[parts]
+        # What is left of a sum by rounding is no count.
+        return slope_curve(np.where(left > _NO_SCATTER * left.max(initial=1), left, 0), self.sizes)
+
+    @cached_property
+    def nodes_by_part(self) -> np.ndarray:
+        """Nodes in contact by part of the window, (parts,)."""
+        return mean_count(self.nodes, np.array([1]), blocks=BLOCKS).ravel()
+
+
+def curve_sizes(shape: tuple[int, ...]) -> np.ndarray:
+    """Doubling box sides in cells, from `SMALLEST` to `LARGEST_BOX` of a window, (k,) int64."""
+    sizes = SMALLEST * 2 ** np.arange(max(shape).bit_length())
+    return sizes[sizes <= LARGEST_BOX * min(shape)]
+
+
+def window_counts(
+    shape: tuple[int, ...], sizes: np.ndarray, mask: np.ndarray | None = None
+) -> np.ndarray:
+    """Mean box counts N_w(r) of a whole window, or of the cells of a mask, (k,)."""
+    window = np.ones(shape, bool) if mask is None else mask
+    return cover_and_mean(window, np.empty(0, np.int64), sizes)[1]
+
+
+def slope_curve(relative: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Local slopes between neighbouring box sides.
+
+    Parameters
+    ----------
+    relative : (..., k) ndarray
+        Mean counts N(r) / N_w(r).
+    sizes : (k,) ndarray
+
+    Returns
+    -------
+    (..., k - 1) float64
+        NaN where a count is 0.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        curve = 2 - np.diff(np.log(relative), axis=-1) / np.diff(np.log(sizes))
+    return np.where(np.isfinite(curve), curve, np.nan)
+
+
+def random_curves(
+    shape: tuple[int, int], nodes: int, mask: np.ndarray | None = None, draws: int = DRAWS
+) -> np.ndarray:
+    """Local slopes of as many nodes drawn at random, (draws, k - 1); the same ones on every run.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Cells of the window.
+    nodes : int
+        At least 1.
+    mask : (ny, nx) bool ndarray, optional
+        Cells that nodes may lie in; all by default.
+    draws : int
+    """
+    sizes = curve_sizes(shape)
+    cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
+    counts = [
+        cover_and_mean(random_nodes(shape, nodes, cells, seed), np.empty(0, np.int64), sizes)[1]
+        for seed in range(draws)
+    ]
+    return slope_curve(np.array(counts) / window_counts(shape, sizes, mask), sizes)
+
+
+def departure_from_draws(curve: np.ndarray, draws: np.ndarray) -> Departure:
+    """Departure of a curve of local slopes from draws of a null model: a Monte Carlo test.
+
+    The statistic is the largest standardised deviation over the box sides. Mean and scatter are
+    those of the curve and the draws together: all of them being alike, a further draw is among the
+    k that depart most of n + 1 with probability k / (n + 1), however slopes are distributed.
+
+    Parameters
+    ----------
+    curve : (j,) ndarray
+    draws : (n, j) ndarray
+
+    References
+    ----------
+    Besag, J. & Diggle, P. J. 1977: Simple Monte Carlo tests for spatial pattern. Applied
+    Statistics 26, 327-333.
+    """
+    curves = np.vstack([curve, draws])
+    if not curves.size or not np.isfinite(curves).all():
+        return NOT_COMPARED
+    deviation = _in_scatters(curves - curves.mean(axis=0), curves.std(axis=0))
+    largest = deviation.max(axis=1)
+    # The small number counts draws that equal the curve.
+    p = np.mean(largest >= largest[0] * (1 - 1e-9))
+    return Departure(float(p), int(deviation[0].argmax()))
+
+
+def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Band, Departure]:
+    """Local slopes of a domain less those of another one of as many nodes in the same window.
+
+    Parameters
+    ----------
+    domain, other : SlopeCurve
+
+    Returns
+    -------
+    difference : Band
+        (k - 1,) each, with the 95 % interval of each local slope.
+    departure : Departure
+        By Student's t of the largest standardised difference, times the number of local slopes
+        (Bonferroni).
+
+    Notes
+    -----
+    The scatter is that of the jackknife: the same part of the window is left out of both. Both have
+    as many nodes in the window, though not in its parts: what goes with the difference in number is
+    no scatter of the whole, and is taken off by regression.
+    """
+    difference = domain.values - other.values
+    if np.array_equal(domain.nodes, other.nodes):
+        return Band(difference, difference, difference), Departure(1.0, 0)
+    parts = np.union1d(domain.occupied, other.occupied)
+    more = (domain.nodes_by_part - other.nodes_by_part)[parts]
+    half, freedom = _jackknife(domain.without(parts) - other.without(parts), more)
+    band = Band(difference, difference - half, difference + half)
+    if not difference.size or not np.isfinite(half).all():
+        return band, NOT_COMPARED
+    deviation = _in_scatters(difference, half / t_quantile(freedom))
+    p = min(1.0, difference.size * 2 * special.stdtr(freedom, -deviation.max()))
+    return band, Departure(float(p), int(deviation.argmax()))
+
+
+def _jackknife(left: np.ndarray, covariate: np.ndarray | None = None) -> tuple[np.ndarray, int]:
+    """Half the 95 % t-interval of each column by parts left out, (j,), and degrees of freedom.
+
+    Parameters
+    ----------
+    left : (m, j) ndarray
+        Values without each part.
+    covariate : (m,) ndarray, optional
+        What the parts have more of than the mean part; the whole is known to have no more.
+    """
+    n, columns = left.shape
+    freedom = n - 1
+    if n < MIN_PARTS or not np.isfinite(left).all():
+        return np.full(columns, np.nan), freedom
+    residual = left - left.mean(axis=0)
+    if covariate is not None and np.ptp(covariate) > 0:
+        v = covariate - covariate.mean()
+        residual = residual - np.outer(v, v @ residual / (v @ v))
+        freedom -= 1
+    variance = (n - 1) ** 2 / n * (residual**2).sum(axis=0) / freedom
+    return t_quantile(freedom) * np.sqrt(variance), freedom
+
+
+def _in_scatters(deviation: np.ndarray, scatter: np.ndarray) -> np.ndarray:
+    """Size of deviations in units of their scatter; 0 where nothing scatters."""
+    some = scatter > _NO_SCATTER
+    return np.abs(deviation) * some / np.where(some, scatter, 1)
