@@ -95,7 +95,7 @@ def test_states_lie_within_their_errors_of_exact_ones(hardness):
                 for name, right in within.items():
                     slack = 1e-9 * abs(true[name])
                     off = abs(numbers[name] - true[name])
-                    # Single cells beside yielded ones have no stiffness, in either.
+                    # Single cells beside yielded ones have no stiffness: in neither state, then.
                     missing = np.isnan(numbers[name]) and np.isnan(true[name])
                     right.append(missing or off <= numbers[f"{name}_error"] + slack)
                 share = found.ambiguous / np.count_nonzero(found.in_contact)
