@@ -190,10 +190,12 @@ class Trials:
             os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
     def kinds(self):
-        """A file of every kind that jobs make."""
+        """A file of every kind that jobs make; an empty one cannot be truncated."""
         found = {}
         for line in self.found().splitlines():
             name = Path(line[66:])
+            if not (self.results / name).stat().st_size:
+                continue
             kind = (name.parts[0], name.suffix, len(name.parts))
             found.setdefault(kind, []).append(self.results / name)
         return [self.chance.choice(paths) for _, paths in sorted(found.items())]
