@@ -1,9 +1,12 @@
 """The error budget of a specimen: sources, totals, reasons and what is interpolated."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.accuracy import refinement
 from fractalcontact.accuracy.error_budget import OF_SURFACE, error_budget, over_loads
 from fractalcontact.accuracy.other_windows import (
     MOST_OVERLAP,
@@ -188,6 +191,22 @@ def test_all_states_are_refined_where_the_study_asks_for_all():
     assert "one face was scanned" in reason_of(budget, "registration")
     # From the mean plane of the face.
     assert float(budget["published"].sel(quantity="separation")[0]) > 0
+
+
+@pytest.mark.parametrize(
+    ("most_cheap", "most", "solved"), [(2304, 2304, [1, 2, 4]), (2303, 2304, [2]), (2303, 2303, [])]
+)
+def test_grids_at_a_quarter_of_the_spacing_have_16_times_the_cells(
+    monkeypatch, most_cheap, most, solved
+):
+    """Few cells are solved at all loads, more only where the closure changed, too many nowhere."""
+    monkeypatch.setattr(refinement, "CHEAP_CELLS", most_cheap)
+    monkeypatch.setattr(refinement, "MOST_CELLS", most)
+    curve = SimpleNamespace(composite=np.zeros((9, 16)))
+    levels = np.ones((3, 5, 6))
+    levels[1, 0] = [1.5, 1.005, 1.2, 1.3, 1.0, 1.0]
+    places = refinement._needing_more(curve, levels, np.array([1, 2, 4]), 0.01)
+    assert places.tolist() == solved
 
 
 def test_what_is_not_known_has_its_reason(one):

@@ -144,6 +144,7 @@ def test_coarser_cells_are_the_same_half_space(shape):
     coarse = space.coarser(4)
     alone = HalfSpace(coarse.shape, (0.4, 1.2), 5.0)
     assert coarse.shape == tuple(-(-n // 4) for n in shape)
+    assert coarse.spacing == pytest.approx(alone.spacing, rel=1e-15)
     np.testing.assert_allclose(coarse.influence(), alone.influence(), rtol=1e-12)
 
 

@@ -67,6 +67,15 @@ def test_seeds_that_disagree_show_no_trend(effect):
     assert (made["slope_low"] < 0).all()
 
 
+def test_slopes_are_those_of_the_second_half_of_the_offsets(effect):
+    v = effect["rigid_offset"].values
+    second = v >= v[-1] / 2
+    opened = effect["rigid_dilatancy"].mean("direction").transpose("rigid_offset", ...).values
+    for i in range(effect.sizes["surface"]):
+        slopes = np.polyfit(v[second], opened[second][:, i], 1)[0]
+        assert effect["slope"][i].item() == pytest.approx(slopes.mean(), rel=1e-9)
+
+
 def test_the_spread_is_what_heights_and_correlation_make_it(effect):
     joints = effect.sel(surface="with_roll_off")
     expected = joints["face_rms"] * np.sqrt(2 - 2 * joints["face_correlation"].clip(max=1))

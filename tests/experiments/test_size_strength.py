@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.core.errors import InputError
 from fractalcontact.experiments.mated_faces import (
     face_class,
@@ -31,6 +32,8 @@ from fractalcontact.experiments.strength_exponents import (
     equal_fractions,
     strength_exponents,
 )
+from fractalcontact.experiments.units import E_STAR, SPACING
+from fractalcontact.mechanics.area import corrected_area
 from fractalcontact.mechanics.strength import dilatancy_angle, from_flush, shear_strength
 
 RECIPE = {
@@ -81,6 +84,38 @@ def test_height_difference_has_both_limits():
     above = (high**power - low**power) / power
     square = faces.prefactor * (low ** (power - 2) * low**2 / 2 + above) / (2 * np.pi)
     assert height_difference(np.array(4000.0), faces) == pytest.approx(2 * square, rel=0.01)
+
+
+def test_a_face_slides_towards_x():
+    """The hill of the lower face meets the window where it has come to, its copy where it was."""
+    face = np.zeros((16, 22))
+    face[5, 9] = 1.0
+    composite = mated_composite(face, 6)
+    assert np.unravel_index(composite.argmax(), composite.shape) == (5, 3)
+    assert np.unravel_index(composite.argmin(), composite.shape) == (5, 9)
+    assert composite.mean() == pytest.approx(0, abs=1e-15)
+
+
+def test_loads_are_counted_in_the_slope_of_faces_that_do_not_match():
+    """Beyond the roll-off that of the composite is sqrt(2) times a face's."""
+    recipe = {
+        **RECIPE,
+        "cut_off": 8,
+        "roll_off": 16,
+        "sizes": [128],
+        "offsets": [32],
+        "loads": [0.02],
+    }
+    del recipe["hardness"]
+    face = sliding_face(face_class(0.8, recipe), 128, 32, 0)
+    joint = sliding_joint(face, recipe, 1e-5, "faces")
+    composite = mated_composite(face, 32)
+    slope = np.sqrt(sum(np.mean(np.diff(composite, axis=axis) ** 2) for axis in (0, 1)))
+    space = HalfSpace(composite.shape, (SPACING, SPACING), E_STAR)
+    area = space.cell_area * composite.size
+    state = solve_contact(composite, space, force=0.02 * E_STAR * slope / SPACING * area)
+    share = corrected_area(state.in_contact, SPACING) / area
+    assert joint["corrected_share"].item() == pytest.approx(float(share), rel=0.1)
 
 
 def test_faces_that_have_not_slid_are_flush():

@@ -7,6 +7,7 @@ import zlib
 
 import numpy as np
 import pytest
+import xarray as xr
 from made_stages import scan, stages_of
 
 from fractalcontact.mechanics.overlap import overlapping_nodes, suspect_nodes
@@ -173,6 +174,21 @@ def test_marks_are_where_the_faces_overlap_or_are_suspicious(atlas):
                 found += expected.sum()
     assert found > 10
     assert packed_states(atlas, "flat")["marks"] is None
+
+
+def test_nodes_of_oblong_cells_stand_at_their_places(atlas):
+    """Numbers along y come first: the first node and a spacing a node lead to the last one."""
+    tree = atlas.copy()
+    tree["specimens/pair"].attrs["spacing_y"] *= 2
+    contact = tree["contact/pair"].to_dataset()
+    contact = contact.assign_coords({f"y_{k}": 2 * contact[f"y_{k}"] for k in (1, 2)})
+    tree["contact/pair"] = xr.DataTree(contact)
+    window = packed_states(tree, "pair")["window"]
+    for axis, first, spacing, n in zip(
+        "yx", window["first"], window["spacing"], window["shape"], strict=True
+    ):
+        np.testing.assert_allclose(first + spacing * np.arange(n), contact[f"{axis}_1"])
+    assert window["cell_side"] ** 2 == pytest.approx(np.prod(window["spacing"]))
 
 
 def test_the_page_is_one_file_that_runs_nothing_of_a_label(atlas_file, tmp_path):

@@ -43,6 +43,15 @@ def test_alternating_columns_of_a_rough_surface_are_measured(hurst, times):
     assert beside == pytest.approx(noise, rel=1e-9)  # it has no part in what stands beside it
 
 
+def test_noise_has_no_part_in_the_difference_of_alternate_lines():
+    """On independent heights their squares add, whichever of the two is larger."""
+    z = np.random.default_rng(0).normal(scale=0.3, size=(400, 400))
+    for difference in (0.3, 1.0):
+        found, noise = line_alternation(z + difference / 2 * (-1.0) ** np.arange(400))
+        assert found == pytest.approx(difference, rel=0.03)
+        assert noise == pytest.approx(0.3, rel=0.02)
+
+
 def test_lines_sheared_to_and_fro_are_found():
     """Every other row shifted along itself: its heights differ by the slope times the shift."""
     z = rough(hurst=0.9)

@@ -5,12 +5,13 @@ import pytest
 import xarray as xr
 from ensembles import ensemble
 from places import SCANS
+from symmetries import LENGTH, STRESS, differences, grown, with_axes_exchanged
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.states import combine
+from fractalcontact.mechanics.states import SOLVER_ERROR, combine
 from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.mechanics.theory import scaled_joint
@@ -25,14 +26,14 @@ from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen, window_sides
 from fractalcontact.surface.synthesis import self_affine
 
-SOLVER = {"rtol": 1e-6, "kernel": "love"}
+SOLVER, EXACT = ({"rtol": rtol, "kernel": "love"} for rtol in (1e-6, 1e-9))
 DIMENSION = Estimate(2.2, 2.15, 2.25)
 ROCK = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0}
 
 
-def scan(heights, spacing=0.1):
-    coordinates = [spacing * (np.arange(n) + 0.5) for n in heights.shape]
-    attrs = {"spacing_x": spacing, "spacing_y": spacing, "source": "made", "sha256": "0" * 64}
+def scan(heights, spacing=(0.1, 0.1)):
+    coordinates = [s * (np.arange(n) + 0.5) for n, s in zip(heights.shape, spacing, strict=True)]
+    attrs = {"spacing_y": spacing[0], "spacing_x": spacing[1], "source": "made", "sha256": "0" * 64}
     return xr.DataArray(heights, dims=("y", "x"), coords=coordinates, attrs=attrs)
 
 
@@ -69,6 +70,42 @@ def states(rock):
 @pytest.fixture(scope="module")
 def laws(states):
     return size_laws(states, ROCK, 12.0, DIMENSION)
+
+
+# In other units, and with x for y
+
+
+@pytest.fixture(scope="module")
+def oblong():
+    """States of sub-windows on oblong cells: first, in other units, with x and y exchanged."""
+    heights = self_affine((96, 96), 0.1, 0.8, rms=0.05, seed=4)[:56]
+    found = []
+    for z, length, stress, way in (
+        (heights, 1.0, 1.0, "E"),
+        (heights, LENGTH, STRESS, "E"),
+        (heights.T, 1.0, 1.0, "N"),
+    ):
+        spacing = (0.15 * length, 0.1 * length)[:: -1 if way == "N" else 1]
+        window = (4.8 * length, 6.4 * length)[:: -1 if way == "N" else 1]
+        loads = [f"{2 * stress} MPa", f"{20 * stress} MPa"]
+        chosen = settings(loads)
+        chosen["material"]["e_star"] *= stress
+        specimen = make_specimen(scan(length * z, spacing), window=window, name="oblong")
+        found.append(states_of(specimen, way, [3, 6], chosen, (1, 2), solver=EXACT))
+    return found
+
+
+def test_states_of_sub_windows_are_in_the_units_that_they_state(oblong):
+    first, other, _ = oblong
+    assert not differences(other, grown(first), rtol=1e-4)
+
+
+def test_states_of_sub_windows_do_not_depend_on_which_axis_is_called_x(oblong):
+    first, _, turned = oblong
+    found = differences(
+        with_axes_exchanged(turned), first, rtol=1e-5, atol=1e-5, unordered="window"
+    )
+    assert not [name for name in found if SOLVER_ERROR not in first[name].attrs["long_name"]]
 
 
 # Exact

@@ -8,6 +8,7 @@ from scipy import stats
 from fractalcontact.statements.comparison import (
     QUANTITIES,
     UNDER_LOAD,
+    _dilatancy,
     compare_specimens,
     compared_pressures,
     rounded_pressures,
@@ -72,6 +73,24 @@ def test_missing_values_count_nowhere():
     assert float(one["delta_g_mean"]) == 1.5
     assert int(one["delta_g_n"]) == 2
     assert float(one["delta_g_error"]) == pytest.approx(0.1)
+
+
+def test_dilatancy_is_that_at_the_largest_offset_and_of_nothing_that_does_not_slide():
+    opened = np.array([[[0.0, 0.0], [0.1, 0.05], [0.3, 0.2]]])
+    dims = ("contact_direction", "offset", "normal_force")
+    dilatancy = xr.Dataset(
+        {
+            "elastic_dilatancy": (dims, opened),
+            "elastic_dilatancy_error": (dims, opened / 10),
+            "left_out_error": (dims, np.where(opened > 0.25, np.nan, 0.1)),
+        },
+        coords={"contact_direction": ["E"], "offset": [0.0, 0.5, 2.0]},
+    )
+    found = _dilatancy(dilatancy, "E", 2)
+    np.testing.assert_allclose(found["dilatancy"], [0.3, 0.2])
+    np.testing.assert_allclose(found["dilatancy_high"], [0.33, 0.32])
+    np.testing.assert_allclose(found["dilatancy_low"], [0.27, 0.08])
+    assert np.isnan(_dilatancy(dilatancy, "none", 2)["dilatancy"]).all()
 
 
 def test_order_of_the_specimens_changes_nothing():

@@ -86,6 +86,72 @@ def test_automatic_window_is_found_as_brute_force_finds_it(seed):
     assert specimen.valid.values[window_slices(specimen)].all()
 
 
+def oblong(z, spacing):
+    """A scan on cells (dy, dx)."""
+    coords = {a: d * (np.arange(n) + 0.5) for a, d, n in zip("yx", spacing, z.shape, strict=True)}
+    attrs = {"spacing_y": spacing[0], "spacing_x": spacing[1], "source": "rock.npy"}
+    return xr.DataArray(z, coords, ("y", "x"), attrs=attrs)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("spacing", [(0.5, 0.2), (0.2, 0.5), (0.3, 0.7)])
+def test_automatic_window_is_square_but_for_a_part_of_the_smaller_cell_side(seed, spacing):
+    rng = np.random.default_rng(seed)
+    z = rough((45, 51), seed)
+    z[rng.integers(0, 45, 9), rng.integers(0, 51, 9)] = np.nan
+    specimen = make_specimen(oblong(z, spacing), opposite="flat")
+    sides = specimen.attrs["window_mm"]
+    assert abs(sides[0] - sides[1]) < min(spacing) * (1 + 1e-9)
+    assert specimen.valid.values[window_slices(specimen)].all()
+
+
+REACH = {"E": 1.1, "N": 2.3, "W": 0.0, "S": 0.4}
+EXCHANGED = {"N": "E", "E": "N", "S": "W", "W": "S"}
+
+
+def with_holes(seed):
+    """Heights with holes that the window meets in the middle, or on its way."""
+    rng = np.random.default_rng(seed)
+    z = rough((41, 63), seed)
+    z[rng.integers(0, 41, 8), rng.integers(0, 63, 8)] = np.nan
+    return z
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_with_x_for_y_a_window_finds_the_same_place(seed):
+    z = with_holes(seed)
+    here = make_specimen(oblong(z, (0.31, 0.2)), window=(3.1, 4.0), reach=REACH)
+    reach = {EXCHANGED[way]: distance for way, distance in REACH.items()}
+    there = make_specimen(oblong(z.T, (0.2, 0.31)), window=(4.0, 3.1), reach=reach)
+    assert window_slices(here) == window_slices(there)[::-1]
+    for way, distance in REACH.items():
+        slides = largest_offset(here, way)
+        assert slides == largest_offset(there, EXCHANGED[way])
+        assert slides * (0.2 if way in "EW" else 0.31) >= distance
+
+
+@pytest.mark.parametrize("spacing", [(0.3, 0.1), (0.1, 0.3)])
+@pytest.mark.parametrize("seed", range(5))
+def test_a_window_goes_to_the_place_that_is_nearest_in_mm(seed, spacing):
+    z = with_holes(seed)
+    z[20, 31] = np.nan  # in the middle
+    cells = (8, 12)
+    window = tuple(n * s for n, s in zip(cells, spacing, strict=True))
+    rows, columns = window_slices(make_specimen(oblong(z, spacing), window=window))
+
+    def away(y, x):
+        off = (y + cells[0] / 2 - 41 / 2, x + cells[1] / 2 - 63 / 2)
+        return np.hypot(*np.multiply(off, spacing))
+
+    free = [
+        away(y, x)
+        for y in range(41 - cells[0] + 1)
+        for x in range(63 - cells[1] + 1)
+        if np.isfinite(z[y : y + cells[0], x : x + cells[1]]).all()
+    ]
+    assert away(rows.start, columns.start) == pytest.approx(min(free))
+
+
 def test_window_of_a_given_side_is_central_and_rounded_down():
     specimen = make_specimen(scan_of(rough((40, 60))), window=10.3, multiple=8)
     rows, columns = window_slices(specimen)

@@ -103,7 +103,7 @@ def _half_of_largest_square(specimen) -> _Wanted:
     """Half the largest hole-free square, about its middle; all of it against a plane."""
     valid, spacing = specimen["valid"].values, spacing_of(specimen)
     square = _largest_square(valid, spacing)
-    corner = _nearest(_free_places(valid, square), square, _middle(valid.shape))
+    corner = _nearest(_free_places(valid, square), square, _middle(valid.shape), spacing)
     middle = tuple(c + (n - 1) / 2 for c, n in zip(corner, square, strict=True))
     part = 1 if specimen.attrs["opposite"] == "flat" else 2
     cells = tuple(n // part for n in square)
@@ -188,7 +188,7 @@ def _find_place(specimen, shape, wanted: _Wanted, centre_given: bool):
     if free[first] and (centre_given or sliding[first] or not sliding.any()):
         corner, why = first, "the edge of the scan"
     else:
-        corner = _nearest(sliding if sliding.any() else free, shape, wanted.middle)
+        corner = _nearest(sliding if sliding.any() else free, shape, wanted.middle, spacing)
         why = "a hole" if not free[first] else "the offsets asked for"
     if not centre_given:
         asked = first  # half a cell of rounding is no move
@@ -235,11 +235,14 @@ def _free_places(valid: np.ndarray, shape) -> np.ndarray:
     return (holes[ny:, nx:] - holes[:-ny, nx:] - holes[ny:, :-nx] + holes[:-ny, :-nx]) == 0
 
 
-def _nearest(places: np.ndarray, shape, middle) -> tuple[int, int]:
-    """The place whose rectangle has its centre nearest to ``middle`` (all in cells)."""
+def _nearest(places: np.ndarray, shape, middle, spacing) -> tuple[int, int]:
+    """The place whose rectangle has its centre nearest to ``middle``: both in cells, near in mm."""
     y, x = np.nonzero(places)
-    distance = (y + (shape[0] - 1) / 2 - middle[0]) ** 2 + (x + (shape[1] - 1) / 2 - middle[1]) ** 2
-    nearest = np.argmin(distance)
+    away = (
+        (first + (n - 1) / 2 - m) * s
+        for first, n, m, s in zip((y, x), shape, middle, spacing, strict=True)
+    )
+    nearest = np.argmin(sum(distance**2 for distance in away))
     return int(y[nearest]), int(x[nearest])
 
 
@@ -273,7 +276,7 @@ def hole_free_square(valid: np.ndarray, spacing: tuple[float, float]) -> tuple[s
         (dy, dx), mm: it is square in mm.
     """
     shape = _largest_square(valid, spacing)
-    corner = _nearest(_free_places(valid, shape), shape, _middle(valid.shape))
+    corner = _nearest(_free_places(valid, shape), shape, _middle(valid.shape), spacing)
     rows, columns = (slice(start, start + n) for start, n in zip(corner, shape, strict=True))
     return rows, columns
 
@@ -284,7 +287,7 @@ def _no_place(specimen, shape) -> InputError:
     rows, columns = np.nonzero(~valid)
     y, x = specimen.y.values, specimen.x.values
     square = _largest_square(valid, spacing)
-    corner = _nearest(_free_places(valid, square), square, _middle(valid.shape))
+    corner = _nearest(_free_places(valid, square), square, _middle(valid.shape), spacing)
     centre = [
         c + (n - 1) / 2 * s
         for c, n, s in zip((y[corner[0]], x[corner[1]]), square, spacing, strict=True)
