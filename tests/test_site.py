@@ -7,40 +7,87 @@ import subprocess
 import sys
 from importlib.util import find_spec
 
+import code_blocks
 import numpy as np
 import pytest
+from code_blocks import DOCUMENTS, NOT_RUN, blocks, run_code, runs
 from places import ROOT
 
 import fractalcontact
+from fractalcontact.surface.synthesis import self_affine
 
 DOCS = ROOT / "docs"
 GALLERY = DOCS / "gallery"
 
 
-def examples(page):
-    """Python blocks of a page, as one program."""
-    blocks = re.findall(
-        r"^```python\n(.+?)^```$", (DOCS / page).read_text(), re.MULTILINE | re.DOTALL
+def test_every_code_block_is_run_or_says_why_not():
+    run = runs()
+    every = [block for path in DOCUMENTS for block in blocks(path.relative_to(ROOT).as_posix())]
+    assert len(every) > 60
+    left = [
+        f"{block.document}, {block.heading}: {block.text[:50]!r}"
+        for block in every
+        if not block.why_not_run
+        and not {(block.document, block.heading), (block.document, None)} & run
+    ]
+    assert left == []
+    for document, words in NOT_RUN:
+        named = [b for b in every if b.document == document and b.text.startswith(words)]
+        assert named, f"{document} has no block that begins with {words!r}"
+
+
+def test_a_block_that_no_test_runs_is_found(tmp_path, monkeypatch):
+    (tmp_path / "page.md").write_text(
+        "# One\n\n    x = 1\n\n\n    y = 2\n\n```python\nz = 3\n```\n"
     )
-    assert blocks
-    return "\n".join(blocks)
+    monkeypatch.setattr(code_blocks, "ROOT", tmp_path)
+    assert [(b.heading, b.text) for b in blocks("page.md")] == [
+        ("One", "x = 1\n\n\ny = 2\n"),
+        ("One", "z = 3\n"),
+    ]
+    assert not any(block.why_not_run for block in blocks("page.md"))
 
 
 def test_examples_of_the_library_run_and_find_what_was_put_in(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    names = {}
-    exec(compile(examples("library.md"), "library.md", "exec"), names)
+    names = run_code("docs/library.md")
     assert names["face"].shape == (96, 96)
     np.testing.assert_allclose(names["face"].values, names["heights"], atol=1e-12)
     assert names["low"] < 2.2 < names["high"]
     law = names["law"]
     assert 0 < law.k_ni.low < law.k_ni.value < law.k_ni.high
     assert law.n == 6
-    assert names["state"].force == pytest.approx(40 * 9.6**2, rel=1e-6)
+    state, composite = names["state"], names["composite"]
+    assert state.force == pytest.approx(40 * np.prod(names["sides"]), rel=1e-6)
+    # Of two scanned faces: the gap is upper less lower, and the composite is that upside down.
+    gap = names["upper"] - names["lower"]
+    assert float(gap.mean()) == pytest.approx(0.3, abs=1e-6)
+    np.testing.assert_array_equal(composite, -gap)
+    # The mean gap is that of first touch, less the closure, and what the bulk gives way.
+    touch = composite.max() - composite.mean()
+    assert state.gap.mean() == pytest.approx(
+        touch - state.closure + state.displacement.mean(), rel=1e-6
+    )
     assert names["dimension"].low <= names["dimension"].dimension <= names["dimension"].high
     used = set(re.findall(r"\b\w+\b", (DOCS / "library.md").read_text()))
     functions = [name for name in fractalcontact.__all__ if name[0].islower()]
     assert set(functions) <= used
+
+
+def test_the_library_in_the_readme_presses_a_surface():
+    heights = self_affine((32, 40), 0.1, 0.8, rms=0.05, seed=1)
+    names = run_code(
+        "README.md",
+        "As a library",
+        ny=32,
+        nx=40,
+        dy=0.1,
+        dx=0.1,
+        e_star=20e3,
+        composite=heights,
+    )
+    assert names["state"].force == pytest.approx(11e3)
+    assert names["state"].pressure.max() <= 2e3 * (1 + 1e-9)
 
 
 def test_hertz_of_the_gallery_is_close_and_the_rough_faces_close():

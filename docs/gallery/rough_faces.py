@@ -24,16 +24,17 @@ PRESSURES = np.geomspace(0.5, 50, 8)  # nominal, MPa
 
 def main() -> tuple[Hyperbola, BoxDimension]:
     """The hyperbola of the closure curve, and the box dimension under the last load."""
-    # Two faces that have nothing to do with each other: their heights add up in the composite.
-    faces = [
+    # Two faces that have nothing to do with each other; the highest point of the composite
+    # topography, lower less upper, touches first.
+    lower, upper = (
         self_affine((NODES, NODES), SPACING, hurst=0.8, rms=0.02, seed=seed, roll_off=3.0)
         for seed in (1, 2)
-    ]
+    )
     space = HalfSpace((NODES, NODES), SPACING, E_STAR)
     side = NODES * SPACING
     closures, state = [], None
     for pressure in PRESSURES:
-        state = solve_contact(sum(faces), space, force=pressure * side**2, start=state)
+        state = solve_contact(lower - upper, space, force=pressure * side**2, start=state)
         settled = bulk_settlement(state.force, E_STAR, side, side)
         closures.append(float(interface_closure(state.closure, settled)))
         print(f"{pressure:6.2f} MPa: {closures[-1]:.4f} mm, {state.area / side**2:.1%} in contact")

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from ensembles import ensemble
+from print_size import faults
 
 from fractalcontact.accuracy.convergence import (
     hertz_convergence,
@@ -16,7 +17,7 @@ from fractalcontact.accuracy.growth import growth
 from fractalcontact.accuracy.reference import problems_of
 from fractalcontact.accuracy.speed import OURS, error_against_time
 from fractalcontact.accuracy.stability import HONEST, SILENT, stability
-from fractalcontact.figures.draw import draw_study_figures, drawer_of
+from fractalcontact.figures.draw import draw_figure, draw_study_figures, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.figure_list import accuracy_figures_of
@@ -74,6 +75,7 @@ def test_axes_have_units_and_captions_no_gaps(atlas, name):
     assert drawing.caption.startswith(("Supplementary figure. ", "After section 4 of "))
     assert len([word for word in drawing.caption.split() if re.search(r"\w", word)]) < 70
     assert len(drawing.data)
+    assert faults(draw_figure(atlas, name, []).figure) == []
 
 
 @pytest.mark.full

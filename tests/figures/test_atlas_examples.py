@@ -1,28 +1,67 @@
 """What the documentation reads of an atlas is there, and the script of the gallery draws it."""
 
-import re
+import json
 import runpy
+import shutil
 
+import netCDF4
 import numpy as np
 import pytest
+from code_blocks import code, run_code
 from markup import MARKUP
 from places import ROOT
+from print_size import faults
 
+from fractalcontact.core import checksums
+from fractalcontact.figures.kit.drawing import finest_curves, print_style
 from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.study.crate import Workflow, write_crate
+from fractalcontact.study.figure_list import read_figure
 
 DOCS = ROOT / "docs"
+WORKFLOW = Workflow(
+    folder=ROOT,
+    main="Snakefile",
+    parts=("LICENSE",),
+    language="Snakemake",
+    url="https://snakemake.github.io",
+    version="9.0",
+)
+
+
+#: Names of the documents, and what the small atlas has in their place.
+JOINT = ("concrete_twin", "sliding")
 
 
 @pytest.fixture(scope="module")
-def names(atlas_file):
+def project(atlas_file, tmp_path_factory):
+    """A project with the results of a study, and of a campaign of one group."""
+    folder = tmp_path_factory.mktemp("project")
+    for study in ("paper", "campaign"):
+        results = folder / "results" / study
+        results.mkdir(parents=True)
+        shutil.copy(atlas_file, results / "atlas.nc")
+        checksums.record(results, [results / "atlas.nc"])
+        write_crate(results, WORKFLOW, study, {})
+    with netCDF4.Dataset(folder / "results/campaign/atlas.nc", "a") as file:
+        configuration = json.loads(file.configuration)
+        configuration["settings"]["sliding"]["group"] = "basalt"
+        file.configuration = json.dumps(configuration)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def within(project, monkeypatch):
+    monkeypatch.chdir(project)
+
+
+@pytest.fixture(scope="module")
+def names(project):
     """What the examples leave behind, of the sliding joint of the small atlas."""
-    text = (DOCS / "atlas_examples.md").read_text()
-    blocks = re.findall(r"^```python\n(.+?)^```$", text, re.MULTILINE | re.DOTALL)
-    program = "\n".join(blocks)
-    program = program.replace("results/paper/atlas.nc", str(atlas_file))
-    left = {}
-    exec(compile(program.replace("/concrete_twin", "/sliding"), "atlas_examples.md", "exec"), left)
-    yield left
+    with pytest.MonkeyPatch.context() as patched:
+        patched.chdir(project)
+        left = run_code("docs/atlas_examples.md", replaced=[JOINT])
+        yield left
     left["atlas"].close()
 
 
@@ -32,6 +71,41 @@ def test_examples_find_what_they_name(names):
     assert len(names["table"].dropna()) > 1
     assert set(names["plateau"]["plateau_trend"]) <= {"level", "rising", "falling"}
     assert {"delta_sigma_box", "delta_sigma_area"} <= set(names["both"])
+
+
+def test_the_atlas_opens_in_every_way_that_is_documented(capsys):
+    replaced = [JOINT, ("offset=0.24", "offset=0.4"), ("basalt_s01", "sliding")]
+    left = run_code("docs/atlas.md", replaced=replaced)
+    assert left["touching"].sum() > 0
+    assert capsys.readouterr().out.startswith("sliding ")  # the one specimen of the group
+    assert "ro-crate-metadata.json" in {entity["@id"] for entity in left["crate"]["@graph"]}
+
+
+def test_the_first_lines_read_an_atlas():
+    left = run_code("README.md", "The first ten minutes", replaced=[JOINT])
+    assert "closure" in left["atlas"].children
+    left["atlas"].close()
+    left = run_code("docs/first_hour.md", replaced=[JOINT])
+    assert np.isfinite(left["curves"]["interface_closure"]).any()
+    left["atlas"].close()
+
+
+def test_the_figure_of_the_recipe_is_drawn(atlas, tmp_path):
+    """Its constants are read from its text, its words stand apart, its data are the atlas's."""
+    (tmp_path / "joint").mkdir()
+    path = tmp_path / "joint/stiffness.py"
+    path.write_text(code("docs/extending.md", "A figure"), encoding="utf-8")
+    stated = read_figure(path)
+    for stage in stated.needs:
+        assert stage in atlas.children
+    module = run_code("docs/extending.md", "A figure", package="fractalcontact.figures.joint")
+    for name in ("sliding", "flat"):
+        with print_style():
+            drawing = module["draw"](atlas, name)
+            assert faults(drawing.figure) == []
+        curve = finest_curves(atlas, name).isel(offset=0)
+        np.testing.assert_array_equal(drawing.data["stiffness"], curve["stiffness"])
+        assert drawing.caption.startswith("Supplementary figure.")
 
 
 def test_no_word_of_the_atlas_is_markup_of_docstrings(atlas):

@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 import yaml
+from code_blocks import run_code
 from markup import MARKUP
 from page_study import HOSTILE, STUDY
 from spreadsheets import FORMULA, formulas_in
@@ -237,6 +238,18 @@ def test_verdicts_are_counted_as_the_figure_of_the_study_counts_them(results, at
     words = ", ".join(f"{verdict} {count}" for verdict, count in counts.items())
     assert f": {words}" in caption
     assert words in "".join(pages[results / "index.html"].texts)
+
+
+def test_curves_of_two_studies_are_laid_over_each_other_as_documented(
+    results, tmp_path, monkeypatch
+):
+    (tmp_path / "results").mkdir()
+    for study in ("paper", "mine"):
+        (tmp_path / "results" / study).symlink_to(results)
+    monkeypatch.chdir(tmp_path)
+    closure = run_code("docs/result_page.md")["closure"]
+    own = pd.read_csv(results / "curves.csv")
+    assert len(closure) == 2 * (own["quantity"] == "interface closure").sum() > 0
 
 
 def test_no_page_and_no_table_shows_markup_of_docstrings(results, pages):

@@ -64,13 +64,14 @@ def shown_texts(figure):
 
 
 def _tick_labels(axis):
-    low, high = sorted(axis.get_view_interval())
+    along = axis.get_transform().transform
+    low, high = sorted(along(axis.get_view_interval()))
     slack = 1e-6 * (high - low)
     return [
         label
         for tick in (*axis.get_major_ticks(), *axis.get_minor_ticks())
         for label in (tick.label1, tick.label2)
-        if low - slack <= tick.get_loc() <= high + slack
+        if low - slack <= along(tick.get_loc()) <= high + slack
     ]
 
 
@@ -94,8 +95,10 @@ def faults(figure):
         if not _inside(box, figure):
             found.append(f"cut off: {words!r}")
     # Lines and markers of a legend stand beside its words.
-    legends = [one.get_window_extent(renderer) for one in figure.findobj(Legend)]
-    found += ["a legend is cut off" for box in legends if not _inside(box, figure)]
+    for legend in figure.findobj(Legend):
+        empty = renderer.points_to_pixels(legend.borderpad * legend.prop.get_size_in_points())
+        if not _inside(legend.get_window_extent(renderer).padded(-empty), figure):
+            found.append("a legend is cut off")
     for (one, a), (other, b) in combinations(boxes.items(), 2):
         width = min(a.x1, b.x1) - max(a.x0, b.x0)
         height = min(a.y1, b.y1) - max(a.y0, b.y0)

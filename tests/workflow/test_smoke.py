@@ -11,6 +11,7 @@ import time
 import numpy as np
 import pytest
 import yaml
+from print_size import faults_of_study
 from projects import ROOT, command, project, run, small_study, write_scan
 
 from fractalcontact.study.atlas import read_atlas
@@ -34,6 +35,7 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
         assert drawn == set(figures_of(opposite))
     drawn = {path.stem for path in (results / "figures").glob("*.svg")}
     assert drawn == set(study_figures_of([*paths_of(EXPERIMENT), "defaults", "comparison"]))
+    assert faults_of_study(results / "atlas.nc") == {}
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
 

@@ -35,7 +35,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     _draw_trials(panels[2], trials)
     letter(panels[2], "c", "Richardson's extrapolation")
     for axes in panels:
-        label_short_span(axes.xaxis)
+        label_short_span(axes.xaxis, within=10)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
     return Drawing(figure, _table(found, trials), _caption(found, trials))
 

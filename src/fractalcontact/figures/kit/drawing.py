@@ -224,16 +224,16 @@ def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
     axes.set_xlabel("offset $v$ (mm)")
 
 
-def label_short_span(axis: Axis) -> None:
-    """Plain labels at 1, 2 and 5 on a logarithmic axis that spans less than two decades.
+def label_short_span(axis: Axis, within: float = 100) -> None:
+    """Plain labels at 1, 2 and 5 on a logarithmic axis whose ends are less than ``within`` apart.
 
     Powers of ten would be one there, or none. Labels between those lie over each other on any axis
-    and are left out.
+    and are left out; on a short one so do these over more than a decade.
     To be called once everything is drawn.
     """
     low, high = axis.get_view_interval()
     axis.set_minor_formatter(NullFormatter())
-    if high < 100 * low:
+    if high < within * low:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
 
