@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fractalcontact.core.errors import InputError
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.closure_laws import fit_hyperbola
 from fractalcontact.mechanics.first_contact import highest_node_scatter
@@ -111,7 +112,7 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
     hyperbolas = {k: fitted_hyperbola(curves.sel(resolution=k), loading.area) for k in (1, 2)}
     values, coarser = (
         {
-            "k_ni": hyperbolas[k].k_ni,
+            "k_ni": hyperbolas[k].k_ni.value,
             "stiffness": float(state["interface_stiffness"]),
             "closure": float(state["interface_closure"]),
             "separation": spans[k] - float(state["closure"]),
@@ -126,7 +127,7 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
         "area_corrected": counting * values["area_corrected"],
         "closure": highest,
         "k_ni": np.hypot(
-            (hyperbolas[1].k_ni_high - hyperbolas[1].k_ni_low) / 2,
+            hyperbolas[1].k_ni.width / 2,
             values["k_ni"] * highest / hyperbolas[1].lowest,
         ),
     }
@@ -156,9 +157,7 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
 class Fit(NamedTuple):
     """k_ni with its interval, and the closure at the lightest load fitted."""
 
-    k_ni: float
-    k_ni_low: float
-    k_ni_high: float
+    k_ni: Estimate
     lowest: float
 
 
@@ -168,7 +167,7 @@ def fitted_hyperbola(curve, area: float) -> Fit:
     closures = curve["interface_closure"].values[fitted]
     pressure = curve["normal_force"].values[fitted] / area
     found = fit_hyperbola(pressure, closures)
-    return Fit(found.k_ni, found.k_ni_low, found.k_ni_high, closures.min(initial=np.inf))
+    return Fit(found.k_ni, closures.min(initial=np.inf))
 
 
 def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dict]:
