@@ -10,10 +10,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from ensembles import ensemble
+from plain_twins import operator_on
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.contact import active_set, projected_cg
-from fractalcontact.contact.reference import operator_on
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.surface.synthesis import self_affine
 

@@ -167,7 +167,9 @@ def test_similarity_holds_for_a_joint_enlarged_in_all_its_lengths():
     # Sect. 3: b -> 2b with sigma_z -> 2 sigma_z gives 2 w_int at one nominal pressure.
     heights = self_affine((96, 96), 0.1, 0.8, rms=0.1, seed=7)
     rocks = (
-        make_specimen(scan(k * heights, k * 0.1), window=k * 4.8, reach=k * 1.6, name="rock")
+        make_specimen(
+            scan(k * heights, (k * 0.1, k * 0.1)), window=k * 4.8, reach=k * 1.6, name="rock"
+        )
         for k in (1, 2)
     )
     small, large = (states_of(rock, "E", [2, 8], settings(), (1, 2)) for rock in rocks)
