@@ -274,7 +274,7 @@ def test_bartons_law_ends_with_his_scale_of_roughness(states):
     assert not on_scale.all()
     np.testing.assert_array_equal(np.isfinite(found["barton_roughness"]), on_scale)
     np.testing.assert_array_equal(
-        np.isfinite(found["barton_strength"]).all("normal_force"), on_scale
+        np.isfinite(found["barton_scaled_strength"]).all("normal_force"), on_scale
     )
 
 
@@ -448,7 +448,7 @@ def test_a_surface_against_a_plane_has_no_strength():
 def test_what_the_study_does_not_state_is_missing(states):
     unstated = {"basic_friction_angle": np.nan, "joint_wall_strength": np.nan}
     found = size_laws(states, unstated, 12.0, DIMENSION)
-    for name in ("peak_strength", "similar_strength", "held_share", "barton_strength"):
+    for name in ("peak_strength", "similar_strength", "held_share", "barton_scaled_strength"):
         assert np.isnan(found[name]).all()
     assert np.isfinite(found["peak_dilatancy_angle"]).all()
     assert np.isfinite(found["similar_slope"][-1]).all()

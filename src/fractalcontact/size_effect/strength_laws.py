@@ -44,7 +44,7 @@ def strength_by_size(
         (part, normal_force) and ``shear_strength`` (interval, part, normal_force); ``held_share``
         (part, normal_force), the fraction of sub-windows whose peak was held;
         ``strength_exponent``, ``residual_exponent`` (normal_force) and ``shear_exponent``
-        (interval, normal_force); ``barton_strength`` (part, normal_force) with the JRC and JCS of
+        (interval, normal_force); ``barton_scaled_strength`` (part, normal_force) with the JRC and JCS of
         that size by Barton and Bandis' law (which was measured on joints of 50 mm and more); none
         where that JRC is beyond Barton's scale of 0 to 20.
 
@@ -145,7 +145,7 @@ _HELD = {
 
 _BARTON = {
     "barton_roughness": ("part", "1", "JRC_n by Barton and Bandis' scale law; none above 20"),
-    "barton_strength": (
+    "barton_scaled_strength": (
         ("part", "normal_force"),
         "MPa",
         "peak strength by Barton's law with JRC_n and JCS_n of each size",
@@ -181,7 +181,7 @@ def _by_barton(
         material["basic_friction_angle"],
         *(np.asarray(of_size)[:, np.newaxis] for of_size in (on_scale, scaled[1])),
     )
-    return {"barton_roughness": on_scale, "barton_strength": np.asarray(strength)}
+    return {"barton_roughness": on_scale, "barton_scaled_strength": np.asarray(strength)}
 
 
 def _at_fractions(offset: np.ndarray, side: np.ndarray, values: np.ndarray) -> np.ndarray:

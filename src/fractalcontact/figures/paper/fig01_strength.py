@@ -78,7 +78,7 @@ def _draw_strength(axes, laws, share):
         beside = apart(b, j, loads)
         draw_means(axes, beside, mean, laws["similar_held"].values[share, :, j], colour, marker)
         draw_bars(axes, beside, mean, low, high, colour)
-        barton = laws["barton_strength"].values[:, j]
+        barton = laws["barton_scaled_strength"].values[:, j]
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
         if drawn:
             style = {"color": colour, "marker": marker, "ls": "none"}
@@ -95,7 +95,7 @@ def _draw_strength(axes, laws, share):
             axes.plot([], [], " ", label=cases)
     else:
         say_empty(axes, NO_STRENGTH, ticks=False)
-    if np.isfinite(laws["barton_strength"]).any():
+    if np.isfinite(laws["barton_scaled_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis (50 to 400 mm)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     letter(axes, "a", f"strength at $v$ = {share_words(laws, share)} of $b$")
@@ -142,7 +142,7 @@ def _table(laws):
             "nominal_pressure_MPa": pressure,
             "b_mm": laws["side"].values,
             "windows": laws["windows"].values,
-            "barton_strength_MPa": laws["barton_strength"].values[:, j],
+            "barton_scaled_strength_MPa": laws["barton_scaled_strength"].values[:, j],
         }
         for i, share in enumerate(laws["share"].values):
             strength, slope = (

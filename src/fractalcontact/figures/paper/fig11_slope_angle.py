@@ -100,11 +100,11 @@ def _draw_angle(axes, laws, share, drawn, beyond):
         beside = apart(b, j, len(pressures))
         draw_means(axes, beside, mean, laws["similar_held"].values[share, :, j], colour, marker)
         draw_bars(axes, beside, mean, np.maximum(low, 0), high, colour)
-        barton = slope_angle(laws["barton_strength"].values[:, j], pressure)
+        barton = slope_angle(laws["barton_scaled_strength"].values[:, j], pressure)
         axes.plot(b, barton, color=colour, lw=0.8, ls="--")
     if (laws["similar_held"].values[share] > MOSTLY).any():
         hollow_entry(axes, HELD)
-    if np.isfinite(laws["barton_strength"]).any():
+    if np.isfinite(laws["barton_scaled_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
     axes.plot([], [], " ", label=SHIFTED)
     for words in filter(None, (drawn and cases_words(laws, share), beyond)):
@@ -168,7 +168,7 @@ def _table(laws):
                         .columns("angle_deg"),
                         "held_share": laws["similar_held"].values[i, :, j],
                         "barton_angle_deg": slope_angle(
-                            laws["barton_strength"].values[:, j], pressure
+                            laws["barton_scaled_strength"].values[:, j], pressure
                         ),
                         **Estimate.read(laws, "similar_strength_exponent")[i, j].columns(
                             "similar_strength_exponent"
