@@ -25,12 +25,14 @@ import numpy as np
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.limits import DECISIVE
+from fractalcontact.core.window import cell_side, window_sides
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.closure_laws import fit_hyperbola
 from fractalcontact.mechanics.first_contact import highest_node_scatter
 from fractalcontact.mechanics.joint import describe_joint, prefractal
 from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.overlap import DECISIVE, fits_undetermined
+from fractalcontact.mechanics.overlap import fits_undetermined
 from fractalcontact.mechanics.registration_spread import registration_spread
 from fractalcontact.mechanics.states import combine, forces_of
 from fractalcontact.mechanics.sweep import contact_states
@@ -46,7 +48,7 @@ from fractalcontact.study.configuration import (
 )
 from fractalcontact.study.documents import read_study
 from fractalcontact.study.scan_files import list_scans
-from fractalcontact.surface.specimen import cell_side, make_specimen, window_sides
+from fractalcontact.surface.specimen import make_specimen
 
 #: Of the smaller window, to the automatic one; and how far the other window lies from it.
 SMALLER, ASIDE = 0.56, 0.35

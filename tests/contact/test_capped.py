@@ -11,7 +11,7 @@ from fractalcontact.contact.active_set import ActiveSetMethod
 from fractalcontact.contact.candidates import LEAST_WINDOW, LoadCase
 from fractalcontact.contact.kkt import Problem
 from fractalcontact.contact.topography import Topography
-from fractalcontact.core.resolved import RESOLVED_NODES
+from fractalcontact.core.limits import RESOLVED_NODES
 from fractalcontact.elastic.influence import love_displacement
 from fractalcontact.surface.synthesis import self_affine
 

@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.estimate import DIMENSION, EXPONENT, SIZE, Estimate, names_of, rows_of
-from fractalcontact.core.intervals import CONFIDENCE
+from fractalcontact.core.limits import CONFIDENCE
 
 SEVERAL = Estimate(
     np.array([[1.0, 2.0], [3.0, np.nan]]), np.array([[0.5, 1.0], [2.0, np.nan]]), np.full((2, 2), 9)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from fractalcontact.core.intervals import CONFIDENCE, mean_interval, t_quantile
+from fractalcontact.core.intervals import mean_interval, t_quantile
+from fractalcontact.core.limits import CONFIDENCE
 
 
 def test_the_quantile_is_student_s():

@@ -7,11 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from fractalcontact.core.determined import follows_law
 from fractalcontact.domain.clusters import (
     CLUSTER_FIELDS,
     cluster_sizes,
     cluster_statistics,
-    follows_law,
     half_share,
     morisita_index,
     octave_counts,

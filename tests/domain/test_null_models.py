@@ -5,18 +5,19 @@ import pytest
 from ensembles import ensemble
 from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 
-from fractalcontact.domain.box_counts import mean_count, whole_sizes
-from fractalcontact.domain.box_dimension import dimension_of_domain, is_determined
-from fractalcontact.domain.correlation import pair_counts, pair_distances, pairs_slope
-from fractalcontact.domain.counted_domain import QUANTITIES, CountedDomain
-from fractalcontact.domain.departure import (
+from fractalcontact.core.determined import is_determined
+from fractalcontact.core.verdicts import (
     BEYOND_BOTH,
     BEYOND_RANDOM,
     LIKE_CUT,
     LIKE_RANDOM,
     UNDETERMINED,
-    departure_of,
 )
+from fractalcontact.domain.box_counts import mean_count, whole_sizes
+from fractalcontact.domain.box_dimension import dimension_of_domain
+from fractalcontact.domain.correlation import pair_counts, pair_distances, pairs_slope
+from fractalcontact.domain.counted_domain import QUANTITIES, CountedDomain
+from fractalcontact.domain.departure import departure_of
 from fractalcontact.domain.null_models import bearing_area_cut, null_models
 from fractalcontact.domain.random_nodes import (
     band_of,

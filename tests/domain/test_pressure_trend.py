@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact.domain.departure import BEYOND_RANDOM, LIKE_RANDOM, UNDETERMINED
+from fractalcontact.core.verdicts import BEYOND_RANDOM, LIKE_RANDOM, UNDETERMINED
 from fractalcontact.domain.pressure_trend import FALLS, RISES, pressure_trend
 
 

@@ -5,12 +5,12 @@ import pytest
 from ensembles import ensemble
 from known_sets import cantor_dust, fractal_percolation, sierpinski_carpet, thinned
 
-from fractalcontact.domain.departure import differs
+from fractalcontact.core.determined import differs
+from fractalcontact.core.limits import MIN_NODES
 from fractalcontact.domain.null_models import bearing_area_cut, null_models
 from fractalcontact.domain.random_nodes import expected_mean_counts
 from fractalcontact.domain.slope_curves import (
     DRAWS,
-    MIN_NODES,
     MIN_PARTS,
     SlopeCurve,
     curve_sizes,

@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 from cases import representative
 
+from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.figures.kit.sizes import apart, plain_decades, roughness_words
-from fractalcontact.mechanics.theory import LARGEST_FRICTION_ANGLE
 
 DRAWN = [
     ("sliding", "strength"),

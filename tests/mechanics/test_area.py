@@ -5,6 +5,7 @@ from scipy import fft
 from symmetries import LENGTH, STRESS, differences, grown
 
 from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics import area, theory
 from fractalcontact.mechanics.area import (
     FULL_CONTACT,
@@ -20,7 +21,7 @@ from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen, window_sides
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 E_STAR = 1e4  # MPa

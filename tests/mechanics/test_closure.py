@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics.closure import (
     bulk_settlement,
     closure_curves,
@@ -18,7 +19,7 @@ from fractalcontact.mechanics.separation import prefractal_openings
 from fractalcontact.mechanics.states import OF_STATES, OFFSETS, combine
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings
-from fractalcontact.surface.specimen import make_specimen, window_sides
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 

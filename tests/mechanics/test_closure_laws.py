@@ -6,11 +6,8 @@ import xarray as xr
 from ensembles import ensemble
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
 from fractalcontact.mechanics.closure_laws import (
-    HYPERBOLA,
-    NEITHER,
-    SEMI_LOGARITHMIC,
-    UNDECIDED,
     add_closure_laws,
     better_law,
     fit_hyperbola,

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core import netcdf
+from fractalcontact.core.window import nominal_area
 from fractalcontact.mechanics.contact_fields import NOT_SOLVED, contact_fields
 from fractalcontact.mechanics.joint import composite_topography, describe_joint, offsets_of
 from fractalcontact.mechanics.loading import JointLoading
@@ -12,7 +13,7 @@ from fractalcontact.mechanics.states import combine, domains_of
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.configuration import solver_settings
-from fractalcontact.surface.specimen import make_specimen, nominal_area
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SETTINGS = {

@@ -6,6 +6,7 @@ import xarray as xr
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.mean_plane import without_mean_plane
+from fractalcontact.core.window import faces, window_slices
 from fractalcontact.mechanics import rigid_slide
 from fractalcontact.mechanics.joint import (
     choose_offsets,
@@ -16,7 +17,7 @@ from fractalcontact.mechanics.joint import (
     rigid_dilatancy,
 )
 from fractalcontact.mechanics.rigid_slide import slide
-from fractalcontact.surface.specimen import faces, largest_offset, make_specimen, window_slices
+from fractalcontact.surface.specimen import largest_offset, make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1

@@ -4,15 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.mechanics.model_validity import (
-    GOOD,
-    NOT_ASKED,
-    PARTLY,
-    POOR,
-    Validity,
-    elastic_model_validity,
-    model_validity,
-)
+from fractalcontact.core.verdicts import GOOD, IN_PART, NOT_ASKED, POOR
+from fractalcontact.mechanics.model_validity import Validity, elastic_model_validity, model_validity
 
 NOTHING = {"modulus": 20e3, "hardness": np.inf, "joint_wall_strength": np.nan}
 STRENGTH = NOTHING | {"joint_wall_strength": 80.0}
@@ -23,9 +16,9 @@ HARDNESS = STRENGTH | {"hardness": 1000.0}
     ("material", "pressure", "slope", "verdict"),
     [
         (STRENGTH, 80.0, 0.3, GOOD),
-        (STRENGTH, 81.0, 0.3, PARTLY),
+        (STRENGTH, 81.0, 0.3, IN_PART),
         (STRENGTH, 241.0, 0.1, POOR),
-        (STRENGTH, 10.0, 0.31, PARTLY),
+        (STRENGTH, 10.0, 0.31, IN_PART),
         (STRENGTH, 10.0, 0.76, POOR),
         (STRENGTH, 10.0, np.nan, GOOD),
         # Yielded all over, its mean pressure is the hardness, but for rounding.
@@ -33,7 +26,7 @@ HARDNESS = STRENGTH | {"hardness": 1000.0}
         (HARDNESS, 1001.0, 0.1, POOR),
         # E/1000 and three times E/200 where nothing is stated.
         (NOTHING, 20.0, 0.1, GOOD),
-        (NOTHING, 21.0, 0.1, PARTLY),
+        (NOTHING, 21.0, 0.1, IN_PART),
         (NOTHING, 301.0, 0.1, POOR),
         (STRENGTH, np.nan, 0.1, NOT_ASKED),
     ],
@@ -43,7 +36,7 @@ def test_the_worse_of_pressure_and_slope_counts(material, pressure, slope, verdi
 
 
 def test_no_larger_pressure_or_slope_makes_it_better():
-    order = (GOOD, PARTLY, POOR).index
+    order = (GOOD, IN_PART, POOR).index
     for material in (NOTHING, STRENGTH, HARDNESS):
         pressures, slopes = np.geomspace(1, 1e5, 30), np.linspace(0, 2, 30)
         by_pressure = [elastic_model_validity(p, 0.1, material).verdict for p in pressures]
@@ -57,12 +50,12 @@ def test_no_larger_pressure_or_slope_makes_it_better():
 
 def test_a_stated_strength_within_the_assumed_range_is_judged_no_better_at_its_ends():
     """An assumed verdict of good, or of poor, holds for every usual strength."""
-    order = (GOOD, PARTLY, POOR).index
+    order = (GOOD, IN_PART, POOR).index
     for strength in np.geomspace(20e3 / 1000, 20e3 / 200, 9):
         stated = NOTHING | {"joint_wall_strength": strength}
         for pressure in np.geomspace(1, 1e4, 50):
             assumed = elastic_model_validity(pressure, 0.1, NOTHING).verdict
-            if assumed != PARTLY:
+            if assumed != IN_PART:
                 found = elastic_model_validity(pressure, 0.1, stated).verdict
                 assert order(found) == order(assumed)
 

@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from samples import scan_of
 
-from fractalcontact.core.resolved import RESOLVED_NODES
+from fractalcontact.core.limits import RESOLVED_NODES
+from fractalcontact.core.window import window_slices
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.overlap import (
     fits_undetermined,
@@ -17,7 +18,7 @@ from fractalcontact.mechanics.overlap import (
 )
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen, window_slices
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 STUDY = {

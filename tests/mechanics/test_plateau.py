@@ -4,14 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.mechanics.plateau import (
-    FALLING,
-    LEVEL,
-    RISING,
-    relative_change,
-    rigid_plateaus,
-    second_half,
-)
+from fractalcontact.core.verdicts import FALLING, LEVEL, RISING
+from fractalcontact.mechanics.plateau import relative_change, rigid_plateaus, second_half
 
 V = np.linspace(0, 8, 41)
 

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
+from fractalcontact.core.window import nominal_area, window_sides
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import describe_joint
-from fractalcontact.mechanics.jrc import JRC_RANGE, profile_roughness
+from fractalcontact.mechanics.jrc import profile_roughness
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import (
@@ -22,9 +24,9 @@ from fractalcontact.mechanics.strength import (
     shear_strength,
 )
 from fractalcontact.mechanics.sweep import contact_states
-from fractalcontact.mechanics.theory import LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
+from fractalcontact.mechanics.theory import barton_strength, scaled_joint
 from fractalcontact.study.configuration import resolve_settings
-from fractalcontact.surface.specimen import make_specimen, nominal_area, window_sides
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.window import window_sides
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import MAP_PRESSURE, OFFSETS, combine, domains_of, map_states
 from fractalcontact.mechanics.sweep import contact_states, joint_states, load_steps
-from fractalcontact.surface.specimen import make_specimen, window_sides
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING_Y, SPACING_X = 0.12, 0.1

@@ -10,7 +10,7 @@ from chain import atlas_of_scan
 from extremes import Extreme, rough, write_extreme
 from materials import ROCK
 
-from fractalcontact.core.resolved import RESOLVED_NODES
+from fractalcontact.core.limits import RESOLVED_NODES
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.mechanics.closure import SINGLE_CELLS

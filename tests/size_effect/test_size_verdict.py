@@ -5,22 +5,17 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UNDECIDED
 from fractalcontact.size_effect.load_ladder import OF_WINDOWS
 from fractalcontact.size_effect.size_law import size_law
 from fractalcontact.size_effect.size_verdict import (
-    AGREES,
-    AMBIGUOUS,
-    FLATTER,
     ILL_CONDITIONED,
     NEITHER,
-    NOT_TESTED,
     NOTHING_PREDICTED,
     SEVERAL,
     SLOPE_TOO_WIDE,
-    STEEPER,
     TOO_WIDE,
     TOO_WIDE_MISSED,
-    UNDECIDED,
     both_forms,
     judge_exponent,
     judge_own_form,

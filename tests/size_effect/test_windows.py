@@ -9,6 +9,7 @@ from symmetries import LENGTH, STRESS, differences, grown, with_axes_exchanged
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.mean_plane import without_mean_plane
+from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import SOLVER_ERROR, combine
@@ -23,7 +24,7 @@ from fractalcontact.size_effect.local_roughness import local_roughness, tilt_fra
 from fractalcontact.size_effect.strength_laws import OFFSET_FRACTIONS
 from fractalcontact.size_effect.windows import window_states
 from fractalcontact.study.configuration import resolve_settings
-from fractalcontact.surface.specimen import make_specimen, window_sides
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SOLVER, EXACT = ({"rtol": rtol, "kernel": "love"} for rtol in (1e-6, 1e-9))

@@ -5,20 +5,10 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED, VERDICTS
 from fractalcontact.mechanics.plateau import rigid_plateaus
 from fractalcontact.statements import closure, nulls, scaling
-from fractalcontact.statements.judge import (
-    FAILS,
-    HOLDS,
-    ILL_POSED,
-    PARTLY,
-    UNDETERMINED,
-    VERDICTS,
-    Joint,
-    all_statements,
-    judge,
-    statements_for,
-)
+from fractalcontact.statements.judge import Joint, all_statements, judge, statements_for
 from fractalcontact.statements.study import judge_study
 
 V = np.array([0.1, 0.2, 0.4, 1.2, 1.4, 1.6, 10.0])

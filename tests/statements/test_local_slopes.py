@@ -11,8 +11,8 @@ from known_sets import (
     thinned,
 )
 
+from fractalcontact.core.verdicts import FAILS, HOLDS, UNDETERMINED
 from fractalcontact.domain.null_models import null_models
-from fractalcontact.statements.findings import FAILS, HOLDS, UNDETERMINED
 from fractalcontact.statements.local_slopes import one_slope
 
 

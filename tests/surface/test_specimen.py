@@ -6,7 +6,8 @@ import xarray as xr
 from samples import scan_of
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.surface.specimen import faces, largest_offset, make_specimen, window_slices
+from fractalcontact.core.window import faces, window_slices
+from fractalcontact.surface.specimen import largest_offset, make_specimen
 
 
 def rough(shape=(40, 60), seed=1):

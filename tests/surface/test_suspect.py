@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from samples import scan_of
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.surface.specimen import make_specimen, window_slices
+from fractalcontact.core.window import window_slices
+from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.suspect import find_suspects, overlap_statistics, typical_deviation
 from fractalcontact.surface.synthesis import self_affine
 

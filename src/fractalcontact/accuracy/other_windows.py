@@ -4,9 +4,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import t_quantile
+from ..core.window import faces, window_slices
 from ..mechanics.joint import DIRECTION_STEPS
 from ..mechanics.loading import JointLoading
-from ..surface.specimen import faces, window_slices
 
 #: Windows compared, the specimen's own among them, and the largest overlap of any two.
 MOST_WINDOWS, MOST_OVERLAP = 5, 0.5

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ..core.errors import InputError
 from ..core.labels import natural_key, percent, plain, printable
+from ..core.window import spacing_of, window_sides
 from ..domain.map_outline import outline_words
 from ..domain.measured_map import read_contact_map
 from ..mechanics.joint import choose_offsets
@@ -28,8 +29,6 @@ from ..study.documents import read_study
 from ..study.preparation import prepare_specimen
 from ..study.scan_groups import grouped_notes, list_grouped
 from ..study.sidecar import is_contact_map
-from ..surface.grid import spacing_of
-from ..surface.specimen import window_sides
 from .scan_words import gap_words, warnings_of_specimen
 
 #: Columns of the table: heading and width.

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import xarray as xr
 
+from ..core.limits import STEEP_TILT
 from ..roughness.quality_words import length_words, overlap_words
-from ..surface.specimen import STEEP_TILT
 
 #: Outliers this many reliefs away are hardly spikes of an instrument.
 FAR_OUT = 3.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.errors import NotConverged
-from ..core.resolved import RESOLVED_NODES
+from ..core.limits import RESOLVED_NODES
 from ..core.threads import computed_once
 from ..elastic.halfspace import HalfSpace
 from .effort import SOLVING

@@ -1,8 +1,13 @@
 """Whether an estimate is known well enough that its number means anything."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+import xarray as xr
+
+from ..core.limits import CONFIDENCE
+from .limits import DECISIVE, LARGEST_DISTANCE, WIDEST
 
 #: An interval whose ends are farther apart than this factor says not even the order of magnitude.
 DECADE = 10.0
@@ -52,3 +57,52 @@ def determined(
     if low * high > 0:
         return size <= DECADE * min(abs(low), abs(high))
     return span == 0 and width <= DECADE * abs(value)
+
+
+def differs(p: float) -> bool:
+    """Whether a departure of this probability is a difference; not where it is not known.
+
+    Parameters
+    ----------
+    p : float
+        NaN where it is not known.
+    """
+    # The small number keeps 10 of 200 at 5 %.
+    return p <= 1 - CONFIDENCE + 1e-9
+
+
+def decided_by_scan(share: float | np.ndarray | xr.DataArray) -> Any:
+    """States whose numbers errors of the scans decide: suspicious cells carry most of the load.
+
+    Parameters
+    ----------
+    share : float, ndarray or xr.DataArray
+        Fraction of the force on suspicious cells; NaN where it is not known.
+
+    Returns
+    -------
+    bool, or array of bool
+    """
+    return share > DECISIVE
+
+
+def is_determined(low: float, high: float) -> bool:
+    """Whether an interval of a dimension says something: no wider than `WIDEST`.
+
+    Parameters
+    ----------
+    low, high : float
+        NaN where there is no dimension.
+    """
+    return bool(high - low <= WIDEST)
+
+
+def follows_law(clusters: float, distance: float) -> bool:
+    """Whether sizes are as near to their power law as chance would have them.
+
+    Parameters
+    ----------
+    clusters, distance : float
+        ``cluster_fit_n`` and ``cluster_fit_distance``.
+    """
+    return bool(distance * np.sqrt(clusters) <= LARGEST_DISTANCE)

@@ -13,6 +13,7 @@ import numpy as np
 
 from .determined import NO_WIDTH, determined
 from .labels import cf_attrs, plain
+from .verdicts import UNDETERMINED
 
 #: Ends of an interval by the ending of their names, and what follows the long name there.
 _ENDS = {
@@ -21,9 +22,6 @@ _ENDS = {
     "_high": ", upper end of the 95 % interval",
 }
 
-
-#: Stands before a number whose interval leaves nearly everything open.
-UNDETERMINED = "undetermined"
 #: Ends of an interval that differ from even ones by less than this part of it are called even.
 _EVEN = 0.02
 

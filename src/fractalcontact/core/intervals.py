@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
+from ..core.limits import CONFIDENCE
 from .estimate import Estimate
-
-#: Probability covered by every interval the package states.
-CONFIDENCE = 0.95
 
 
 def t_quantile(freedom: ArrayLike) -> Any:

@@ -91,3 +91,15 @@ def plain(
     decimals = max(digits - 1 - math.floor(math.log10(size)), 0)
     text = f"{rounded:{sign}.{decimals}f}"
     return text.rstrip("0").rstrip(".") if decimals and not zeros else text
+
+
+def loads_of(some: int, total: int) -> str:
+    """Number of loads at which something is so, in words: "no load", "3 of 7 loads", "every load".
+
+    Parameters
+    ----------
+    some, total : int
+    """
+    if some in (0, total):
+        return "every load" if some else "no load"
+    return f"{some} of {total} loads"

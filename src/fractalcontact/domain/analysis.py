@@ -7,12 +7,13 @@ import xarray as xr
 
 from ..core.arrays import padded
 from ..core.datasets import labelled_dataset
+from ..core.determined import is_determined
 from ..core.estimate import names_of, rows_of
 from ..core.labels import cf_attrs
+from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
-from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from .box_counts import window_sizes
-from .box_dimension import ESTIMATORS, dimension_of_domain, is_determined
+from .box_dimension import ESTIMATORS, dimension_of_domain
 from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .isotropy import LAG_FIELDS, contact_at_lag
 from .mean_law import mean_sizes

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..core.determined import is_determined
 from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
 from ..core.ranges import within
@@ -22,9 +23,6 @@ from .ordinary_slope import OrdinarySlope, dyadic_sizes, ordinary_slope
 #: No set in the plane has another dimension, whatever a regression says.
 DIMENSIONS = (0.0, 2.0)
 
-#: A dimension whose 95 % interval is wider than this is undetermined: half of all that sets in the
-#: plane can have.
-WIDEST = 1.0
 
 #: The estimators of the dimension by their names in results.
 ESTIMATORS = {
@@ -82,17 +80,6 @@ class BoxDimension(Estimate):
     def determined(self) -> bool:
         """Whether the dimension is determined: its interval is no wider than `WIDEST`."""
         return is_determined(self.low, self.high)
-
-
-def is_determined(low: float, high: float) -> bool:
-    """Whether an interval of a dimension says something: no wider than `WIDEST`.
-
-    Parameters
-    ----------
-    low, high : float
-        NaN where there is no dimension.
-    """
-    return bool(high - low <= WIDEST)
 
 
 def box_dimension(

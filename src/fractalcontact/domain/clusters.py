@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from ..core.estimate import Estimate, rows_of
-from ..core.intervals import CONFIDENCE
+from ..core.limits import CONFIDENCE
 
 #: Numbers kept of the clusters of a domain: name, unit, long name.
 CLUSTER_FIELDS = {
@@ -38,9 +38,6 @@ QUADRATS = 8
 FEWEST_OCTAVES = 4
 FEWEST_CLUSTERS = 50
 
-#: Sizes drawn from an exact law (beta 0.4 to 2, 60 clusters or more) lie within this, over the root
-#: of the number fitted, of the law fitted to them in at least 95 of 100 draws.
-LARGEST_DISTANCE = 0.85
 
 #: Nodes that touch over a side or a corner belong together.
 NEIGHBOURS = np.ones((3, 3), int)
@@ -152,17 +149,6 @@ def size_exponent(octaves: np.ndarray, sizes: np.ndarray, cell: float) -> dict[s
         "cluster_fit_n": float(len(fitted)),
         "cluster_fit_distance": distance,
     }
-
-
-def follows_law(clusters: float, distance: float) -> bool:
-    """Whether sizes are as near to their power law as chance would have them.
-
-    Parameters
-    ----------
-    clusters, distance : float
-        ``cluster_fit_n`` and ``cluster_fit_distance``.
-    """
-    return bool(distance * np.sqrt(clusters) <= LARGEST_DISTANCE)
 
 
 def _geometric(counts):

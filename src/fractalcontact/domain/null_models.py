@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
 from ..core.estimate import names_of
+from ..core.limits import MIN_NODES
 from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
 from .departure import departure_of
@@ -21,7 +22,6 @@ from .mean_law import mean_sizes
 from .ordinary_slope import dyadic_sizes
 from .random_nodes import band_of, expected_mean_counts, random_bands
 from .slope_curves import (
-    MIN_NODES,
     NOT_COMPARED,
     SlopeCurve,
     curve_sizes,

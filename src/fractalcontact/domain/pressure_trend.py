@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.fitting import LineFit, fit_line
-from .departure import BEYOND_RANDOM, LIKE_RANDOM, UNDETERMINED
+from ..core.verdicts import BEYOND_RANDOM, LIKE_RANDOM, UNDETERMINED
 
 #: How a dimension goes with load.
 RISES, FALLS = "rises", "falls"

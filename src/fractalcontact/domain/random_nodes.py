@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.ndimage
 
-from ..core.intervals import CONFIDENCE, t_quantile
+from ..core.intervals import t_quantile
+from ..core.limits import CONFIDENCE
 from .box_counts import cover_and_mean
 from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
 from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope

@@ -8,8 +8,8 @@ from scipy import special
 
 from ..core.estimate import Estimate, names_of, rows_of
 from ..core.fitting import fit_line
-from ..core.intervals import CONFIDENCE
 from ..core.labels import cf_attrs
+from ..core.limits import CONFIDENCE
 
 #: The dimension along which resolutions s, 2s, 4s ... are stored.
 RESOLUTION = "resolution"

@@ -19,7 +19,6 @@ import numpy as np
 from scipy import special
 
 from ..core.intervals import t_quantile
-from ..core.resolved import CORRECTED_NODES
 from ..core.slope_of_sums import BLOCKS
 from .box_counts import cover_and_mean, mean_count
 from .count_law import SMALLEST
@@ -29,8 +28,6 @@ from .random_nodes import Band, random_nodes
 #: Draws of random nodes: with the domain they are 200, of which 5 % are ten.
 DRAWS = 199
 
-#: Fewer nodes are not compared: whatever their pattern, one node more or less would change it.
-MIN_NODES = CORRECTED_NODES
 
 #: Fewer occupied parts of the window give no scatter.
 MIN_PARTS = 4

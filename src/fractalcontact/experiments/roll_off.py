@@ -15,17 +15,20 @@ from ..core.directions import DIRECTIONS
 from ..core.fitting import fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
+from ..core.limits import LEVEL_CHANGE
 from ..core.mean_plane import without_mean_plane
+from ..core.verdicts import FALLING, LEVEL, RISING
+from ..core.window import faces, window_slices
 from ..mechanics.joint import (
     RIGID_SLIDE,
     direction_spacing,
     face_correlation,
     rigid_dilatancy,
 )
-from ..mechanics.plateau import FALLING, LEVEL, LEVEL_CHANGE, RISING, relative_change, second_half
+from ..mechanics.plateau import relative_change, second_half
 from ..roughness.dimension import slope_statistics
 from ..study.embedded import embedded_surface
-from ..surface.specimen import faces, largest_offset, make_specimen, window_slices
+from ..surface.specimen import largest_offset, make_specimen
 from .units import SURFACES
 
 #: Number of offsets, from zero to the largest.

@@ -10,7 +10,7 @@ import xarray as xr
 
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
-from ..mechanics.theory import LARGEST_FRICTION_ANGLE
+from ..core.limits import LARGEST_FRICTION_ANGLE
 from .size_decision import (
     FEWEST_ROLL_OFFS,
     NO_EFFECT,

@@ -8,7 +8,7 @@ from ..core.estimate import Estimate, rows_of
 from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, LIGHT_LOAD, RESOLVED_NODES
 from ..roughness.dimension import slope_statistics
 from .area_theories import FLUSH, add_theories
 from .joint import composite_topography, direction_spacing, offsets_of
@@ -18,8 +18,6 @@ from .states import error_attrs
 #: staircase perimeter. Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161.
 EDGE_EXCESS = (np.pi - 1 + np.log(2)) / 24
 
-#: Light load, on which the theories' straight lines are compared: largest p / (E* h'_rms).
-LIGHT_LOAD = 0.02
 
 #: What is kept of a composite topography, by its name in :func:`slope_statistics`.
 STATISTICS = ("rms_height", "rms_slope", "m0", "m2", "m4")

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
-from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..elastic.halfspace import rectangle_mean_displacement
 from .closure_laws import add_closure_laws
 from .load_curve import left_out_misses

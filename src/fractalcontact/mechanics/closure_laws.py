@@ -15,25 +15,16 @@ from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs, percent
+from ..core.limits import GOOD_FIT, RESOLVED_NODES
 from ..core.ranges import within
-from ..core.resolved import RESOLVED_NODES
+from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
 
 #: States a law of two parameters needs before its interval means anything.
 FEWEST_CLOSURE_POINTS = 4
 
-#: Rms misfit up to which a curve is said to follow a law, as a fraction of its largest closure.
-GOOD_FIT = 0.02
 
 #: Misfits this near to each other, as a fraction of the larger one, separate no laws.
 EQUAL_MISFIT = 0.1
-
-#: What :func:`better_law` may call a curve, besides nothing.
-HYPERBOLA, SEMI_LOGARITHMIC, UNDECIDED, NEITHER = LAWS = (
-    "hyperbola",
-    "semi-logarithmic",
-    "undecided",
-    "neither",
-)
 
 
 class Hyperbola(NamedTuple):

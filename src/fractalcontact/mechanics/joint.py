@@ -15,7 +15,8 @@ from ..core.datasets import labelled, labelled_dataset
 from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
-from ..surface.specimen import faces, largest_offset, nominal_area, window_slices
+from ..core.window import faces, nominal_area, window_slices
+from ..surface.specimen import largest_offset
 from .composite_dimension import composite_dimensions
 from .plateau import rigid_plateaus
 from .rigid_slide import Slide, slide

@@ -4,8 +4,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.limits import JRC_RANGE, JRC_SAMPLING
 from ..core.mean_plane import without_mean_plane
-from ..surface.specimen import faces, window_slices
+from ..core.window import faces, window_slices
 from .joint import direction_spacing, sliding_axis
 from .theory import joint_roughness
 
@@ -15,13 +16,8 @@ JRC_STEP = 1.27
 #: Cruden (1979) state 1.27 mm. Their profiles of 100 mm had 200 such steps, so that they must have
 #: been enlarged 2.5 times: a step of 0.508 mm on the rock, kept beside it.
 JRC_SAMPLINGS = {"scan": None, "0.508 mm": 0.508, "1.27 mm": JRC_STEP}
-#: The one that JRC is taken from.
-JRC_SAMPLING = "1.27 mm"
 #: A window with fewer steps than this along it is called small for its sampling.
 FEWEST_STEPS = 10
-
-#: Barton's profiles go from 0 to 20 and his law was measured on them.
-JRC_RANGE = (0.0, 20.0)
 
 
 def _range_words() -> str:

@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from ..core.window import nominal_area
 from ..elastic.halfspace import HalfSpace
-from ..surface.specimen import nominal_area
 from .joint import composite_topography, direction_spacing, offsets_of
 from .overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of

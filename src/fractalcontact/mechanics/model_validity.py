@@ -12,10 +12,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..core.resolved import CORRECTED_NODES
-
-#: Verdicts, best first; the last where there is no state to judge.
-GOOD, PARTLY, POOR, NOT_ASKED = "good", "in part", "poor", "not asked"
+from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_ASKED, POOR, STRENGTH, USUAL
 
 #: Rms slope of the composite topography up to which half-spaces are a fair model of its faces, and
 #: up to which they are one in part: chosen bounds, not measured ones. A surface of that rms slope
@@ -30,14 +27,9 @@ CONFINED = 3.0
 #: 1966: most rocks 200 to 500; concrete up to 1000): bounds of a strength that is not stated.
 LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
-#: Why there is no real mean pressure: the areas of fewer nodes are not corrected for their edge.
-NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a real mean pressure"
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
-
-#: What the pressure is judged by.
-HARDNESS, STRENGTH, USUAL = "hardness", "joint wall strength", "usual strengths"
 
 
 class Limits(NamedTuple):
@@ -74,7 +66,7 @@ class Validity(NamedTuple):
     Attributes
     ----------
     verdict : str
-        :data:`GOOD`, :data:`PARTLY`, :data:`POOR` or :data:`NOT_ASKED`.
+        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_ASKED`.
     pressure : float
         Real mean pressure that is judged, MPa; NaN where there is none.
     reason : str
@@ -107,13 +99,13 @@ class Validity(NamedTuple):
     @property
     def sentence(self) -> str:
         """Reason and verdict, for a caption."""
-        verdict = "good in part" if self.verdict == PARTLY else self.verdict
+        verdict = "good in part" if self.verdict == IN_PART else self.verdict
         return f"{self.reason}: elastic model {verdict}."
 
 
 #: Verdicts of the states, over (direction, offset, load): unit and long name.
 _OF_STATES = {
-    "verdict": ("1", f"verdict on the elastic model: {GOOD}, {PARTLY}, {POOR} or {NOT_ASKED}"),
+    "verdict": ("1", f"verdict on the elastic model: {GOOD}, {IN_PART}, {POOR} or {NOT_ASKED}"),
     "pressure": ("MPa", "real mean pressure sigma_n that is judged"),
     "reason": ("1", "what decides the verdict"),
 }
@@ -191,7 +183,7 @@ def elastic_model_validity(
     by_slope = GOOD
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
-    verdict = max(by_pressure, by_slope, key=(GOOD, PARTLY, POOR).index)
+    verdict = max(by_pressure, by_slope, key=(GOOD, IN_PART, POOR).index)
     place = _place(pressure, by_pressure, limits)
     reason = f"sigma_n = {_pressure(pressure)}, {place} the {limits.words}"
     if limits.criterion == HARDNESS:
@@ -203,7 +195,7 @@ def elastic_model_validity(
 
 
 def _graded(value, good_to, poor_from):
-    return GOOD if value <= good_to else PARTLY if value <= poor_from else POOR
+    return GOOD if value <= good_to else IN_PART if value <= poor_from else POOR
 
 
 def _place(pressure, verdict, limits):

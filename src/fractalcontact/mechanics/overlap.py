@@ -10,14 +10,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..core.determined import decided_by_scan
 from ..core.directions import axis_and_sign
-from ..core.resolved import RESOLVED_NODES
-from ..surface.specimen import nominal_area, window_slices
+from ..core.limits import RESOLVED_NODES
+from ..core.window import nominal_area, window_slices
 from .states import chosen_offset, forces_of
-from .theory import Numbers
-
-#: Above this fraction of the load on suspicious cells, errors of the scans decide a number.
-DECISIVE = 0.5
 
 
 def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
@@ -106,21 +103,6 @@ def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:
         return 0.0
     total = float(pressure.sum())
     return float(pressure[suspicious].sum()) / total if total > 0 else 0.0
-
-
-def decided_by_scan(share: Numbers) -> Any:
-    """States whose numbers errors of the scans decide: suspicious cells carry most of the load.
-
-    Parameters
-    ----------
-    share : float, ndarray or xr.DataArray
-        Fraction of the force on suspicious cells; NaN where it is not known.
-
-    Returns
-    -------
-    bool, or array of bool
-    """
-    return share > DECISIVE
 
 
 def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:

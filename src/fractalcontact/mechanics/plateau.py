@@ -9,12 +9,8 @@ from numpy.typing import ArrayLike
 from ..core.datasets import labelled
 from ..core.estimate import rows_of
 from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
-
-#: Change over the second half of the offsets, a fraction of the mean there, that is called level.
-LEVEL_CHANGE = 0.1
-
-#: Trends of the dilatancy.
-LEVEL, RISING, FALLING = "level", "rising", "falling"
+from ..core.limits import LEVEL_CHANGE
+from ..core.verdicts import FALLING, LEVEL, RISING
 
 _HALF = "rigid dilatancy over the second half of the offsets"
 #: Quantities of every direction: unit and long name. Intervals take the offsets as independent.

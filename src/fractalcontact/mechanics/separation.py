@@ -12,7 +12,7 @@ import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.labels import cf_attrs
-from ..core.resolved import RESOLVED_NODES
+from ..core.limits import RESOLVED_NODES
 from .joint import composite_topography, prefractal
 from .states import error_attrs
 

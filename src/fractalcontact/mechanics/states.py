@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
-from ..surface.specimen import nominal_area
+from ..core.window import nominal_area
 
 #: Scalars kept of every state: name, unit, long name.
 SCALARS = {

@@ -3,7 +3,7 @@
 The effective friction angle is the basic one plus the dilatancy angle (Goodman 1989, as the paper
 has it). Nothing breaks in this model: at small offsets, where the faces climb their steepest
 asperities, the sum can pass the vertical, and what is stated as strength is held at
-:data:`mechanics.theory.LARGEST_FRICTION_ANGLE` as in Barton's law. What was held is counted.
+:data:`core.limits.LARGEST_FRICTION_ANGLE` as in Barton's law. What was held is counted.
 """
 
 from collections.abc import Mapping
@@ -17,11 +17,12 @@ from ..core.datasets import labelled
 from ..core.estimate import Estimate, rows_of
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..surface.specimen import nominal_area, window_sides
+from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
+from ..core.window import nominal_area, window_sides
 from .joint import rigid_dilatancy, sliding_axis
-from .jrc import JRC_RANGE, profile_roughness
+from .jrc import profile_roughness
 from .states import SOLVER_ERROR
-from .theory import LABORATORY_LENGTH, LARGEST_FRICTION_ANGLE, barton_strength, scaled_joint
+from .theory import LABORATORY_LENGTH, barton_strength, scaled_joint
 
 #: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
 RESIDUAL_FROM = 0.5

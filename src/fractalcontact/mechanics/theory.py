@@ -9,6 +9,8 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
+from ..core.limits import LARGEST_FRICTION_ANGLE
+
 #: What the functions take and return.
 Numbers = float | np.ndarray | xr.DataArray
 
@@ -39,9 +41,6 @@ PERIODIC_SCATTER = 0.06
 #: take it.
 FREQUENCY_RATIO = 1.5
 
-#: Barton's total friction angle is not used above this, degrees (Barton & Choubey, Rock Mech. 10
-#: (1977) 1): at low stress the logarithm would take it past the vertical.
-LARGEST_FRICTION_ANGLE = 70.0
 
 #: Length of the joints that JRC and JCS are tabulated for, mm.
 LABORATORY_LENGTH = 100.0

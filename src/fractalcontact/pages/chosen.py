@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..core.window import nominal_area
 from ..mechanics.states import chosen_offset, forces_of
-from ..surface.specimen import nominal_area
 
 #: Stages that the pages read; the fields of contact, the largest, are not among them.
 STAGES = (

@@ -6,16 +6,16 @@ Each repeats what a stage of the atlas says; the limits are those that the stage
 import math
 from dataclasses import dataclass
 
-from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.units import share
-from ..mechanics.model_validity import GOOD, NOT_ASKED, PARTLY, POOR, Validity
+from ..core.verdicts import GOOD, IN_PART, NOT_ASKED, POOR
+from ..mechanics.model_validity import Validity
 from ..roughness.quality_words import overlap_words
-from ..statements.findings import NEARLY
 from ..study.configuration import ACCURACY, solver_settings
 from .chosen import Chosen, configuration_of
 
 #: A sign for each, so that no colour is needed.
-SIGNS = {GOOD: "●", PARTLY: "◐", POOR: "○", NOT_ASKED: "–"}
+SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_ASKED: "–"}
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Light:
     key, title : str
         Its name in the summary, and on the page.
     word : str
-        :data:`GOOD`, :data:`PARTLY`, :data:`POOR` or :data:`NOT_ASKED`.
+        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_ASKED`.
     reason : str
         What decided it.
     """
@@ -74,7 +74,7 @@ def _scan(chosen):
         return Light("scan", "Scan", GOOD, reason)
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
     below = chosen.stage("quality")["below_range"].values
-    word = POOR if below.all() or (load and not _is_pair(chosen)) else PARTLY
+    word = POOR if below.all() or (load and not _is_pair(chosen)) else IN_PART
     return Light("scan", "Scan", word, "; ".join(found))
 
 
@@ -87,13 +87,13 @@ def _faces(chosen):
     if load:
         return Light(key, title, POOR, f"{load}; {overlap}")
     touching = chosen.stage("quality").sel(region="window")["overlap_cells"].item()
-    return Light(key, title, PARTLY if touching else GOOD, overlap)
+    return Light(key, title, IN_PART if touching else GOOD, overlap)
 
 
 def _nodes(chosen):
     nodes = chosen.values("closure", "nodes")["nodes"].isel(normal_force=chosen.map_load).item()
     # A state that was not solved has none: the comparison is then false, as it should be.
-    word = GOOD if nodes >= CORRECTED_NODES else PARTLY if nodes >= RESOLVED_NODES else POOR
+    word = GOOD if nodes >= CORRECTED_NODES else IN_PART if nodes >= RESOLVED_NODES else POOR
     reason = (
         f"{nodes:.0f} nodes in contact under the load of the maps; from {RESOLVED_NODES} on a "
         f"state is fitted, from {CORRECTED_NODES} on its area is corrected"
@@ -113,7 +113,7 @@ def _grid(chosen):
     if math.isnan(error):
         why = str(here["reason"].sel(source="numerical").item()) or "no finer grid was solved"
         return Light(key, title, NOT_ASKED, why)
-    word = GOOD if error <= asked else PARTLY if error <= NEARLY else POOR
+    word = GOOD if error <= asked else IN_PART if error <= NEARLY else POOR
     reason = (
         f"numerical error of the closure {100 * error:.2g} % under the load of the maps, asked "
         f"{100 * asked:.2g} %, of use up to {100 * NEARLY:.0f} %"

@@ -12,15 +12,8 @@ from pathlib import Path
 
 import xarray as xr
 
-from ..statements.judge import (
-    FAILS,
-    HOLDS,
-    ILL_POSED,
-    PARTLY,
-    UNDETERMINED,
-    Statement,
-    all_statements,
-)
+from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
+from ..statements.judge import Statement, all_statements
 from ..statements.study import STATEMENTS as OF_STUDY
 from ..study.figure_list import FOLDER, all_figures
 

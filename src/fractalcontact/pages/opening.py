@@ -8,9 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from markupsafe import Markup, escape
 
-from ..mechanics.model_validity import GOOD, PARTLY, POOR
-from ..statements.judge import FAILS, HOLDS, ILL_POSED, UNDETERMINED, all_statements
-from ..statements.judge import PARTLY as IN_PART
+from ..core.verdicts import FAILS, GOOD, HOLDS, ILL_POSED, IN_PART, PARTLY, POOR, UNDETERMINED
+from ..statements.judge import all_statements
 from .captions import symbols
 from .common_loads import CommonLoad
 from .matrix import Row
@@ -25,12 +24,12 @@ _FRACTAL, _LACUNAR = "domains_are_fractal", "area_is_lacunar"
 _PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 _VERDICTS = {
     HOLDS: "holds",
-    IN_PART: "holds in part",
+    PARTLY: "holds in part",
     FAILS: "does not hold",
     UNDETERMINED: "is undetermined",
 }
-_ANSWERS = {HOLDS: "Yes", IN_PART: "Partly", FAILS: "No", UNDETERMINED: "Unknown"}
-_MODEL = {GOOD: "good", PARTLY: "good in part", POOR: "poor"}
+_ANSWERS = {HOLDS: "Yes", PARTLY: "Partly", FAILS: "No", UNDETERMINED: "Unknown"}
+_MODEL = {GOOD: "good", IN_PART: "good in part", POOR: "poor"}
 _KINDS = {"level": "levels off", "rising": "keeps rising", "falling": "falls"}
 
 _At = Sequence[tuple[Specimen, AtLoad]]

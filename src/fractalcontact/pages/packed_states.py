@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.determined import determined
+from ..core.determined import decided_by_scan, determined
 from ..core.labels import cf_attrs
+from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
+from ..core.window import cell_side
 from ..domain.count_law import LawTerms, law_count
-from ..mechanics.model_validity import NO_PRESSURE
-from ..mechanics.overlap import decided_by_scan, overlapping_nodes, suspect_nodes
-from ..surface.specimen import cell_side
-from .summary import DIMENSION, TOO_FEW_RESOLUTIONS
+from ..mechanics.overlap import overlapping_nodes, suspect_nodes
+from .summary import DIMENSION
 
 #: Order of the dimensions of all that is packed; one-dimensional coordinates stand apart.
 ORDER = (

@@ -9,13 +9,12 @@ import pandas as pd
 import xarray as xr
 
 from ..core import estimate
-from ..core.determined import determined
-from ..domain.box_dimension import WIDEST
+from ..core.determined import decided_by_scan, determined
+from ..core.limits import WIDEST
+from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
+from ..core.window import spacing_of, window_sides
 from ..domain.map_series import map_table
-from ..mechanics.model_validity import NO_PRESSURE, Validity
-from ..mechanics.overlap import decided_by_scan
-from ..surface.grid import spacing_of
-from ..surface.specimen import window_sides
+from ..mechanics.model_validity import Validity
 from .chosen import Chosen, finite
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
@@ -30,8 +29,6 @@ DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
 #: Columns of the summary that are not called as the error budget calls their quantity.
 _COLUMNS = {"closure": "interface_closure"}
 
-#: Why there is no Delta_sigma from the area where its stage gives no reason.
-TOO_FEW_RESOLUTIONS = "too few resolutions were solved under this load with nodes enough in contact"
 #: Why a number is undetermined where its stage gives no other reason.
 _WIDE = "its 95 % interval leaves nearly everything open"
 

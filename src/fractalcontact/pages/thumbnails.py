@@ -8,8 +8,7 @@ import zlib
 import numpy as np
 import xarray as xr
 
-from ..surface.grid import spacing_of
-from ..surface.specimen import window_slices
+from ..core.window import spacing_of, window_slices
 
 #: Pixels of the longer side.
 SIDE = 96

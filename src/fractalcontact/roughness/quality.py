@@ -14,8 +14,7 @@ import xarray as xr
 from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.estimate import NO_ESTIMATE, Estimate
-from ..surface.grid import spacing_of
-from ..surface.specimen import cell_side, window_slices
+from ..core.window import cell_side, spacing_of, window_slices
 from ..surface.suspect import overlap_statistics
 from .fractal_range import FractalRange, find_fractal_range
 from .quality_words import AXES, file_warnings, interval_words

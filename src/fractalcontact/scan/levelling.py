@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..surface.specimen import STEEP_TILT
+from ..core.limits import STEEP_TILT
 
 #: Points this many quartile distances beyond the quartiles do not decide where the plane lies
 #: (Tukey's far-out fence): spikes and unmarked missing heights.

@@ -30,18 +30,18 @@ from scipy import special
 from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line
-from ..core.intervals import CONFIDENCE
+from ..core.limits import CONFIDENCE, CORRECTED_NODES
 from ..core.ranges import within
-from ..core.resolved import CORRECTED_NODES
+from ..core.verdicts import NOT_TESTED
+from ..core.window import cell_side
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.renormalisation import FEWEST_NODES, renormalisation
 from ..mechanics.loading import JointLoading
-from ..surface.specimen import cell_side
 from .division import PARTS, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
 from .prediction import predict_whole
 from .size_law import size_law
-from .size_verdict import NOT_TESTED, VERDICTS, size_verdicts
+from .size_verdict import VERDICTS, size_verdicts
 from .slope import real_pressures, slopes_at_equal_star
 
 #: Estimators of Delta_sigma in the whole window under each load: its area over resolutions, boxes

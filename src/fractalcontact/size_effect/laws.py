@@ -7,8 +7,8 @@ import xarray as xr
 
 from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
+from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
-from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
 from ..mechanics.jrc import profile_roughness
 from .division import spread_windows
 from .size_exponents import add_size_exponents, usable_sizes

@@ -8,8 +8,8 @@ import xarray as xr
 from ..contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
+from ..core.limits import RESOLVED_NODES
 from ..core.ranges import within
-from ..core.resolved import RESOLVED_NODES
 from ..domain.renormalisation import FEWEST_NODES
 from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure

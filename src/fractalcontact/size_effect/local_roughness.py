@@ -10,8 +10,8 @@ from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import mean_interval
 from ..core.mean_plane import without_mean_planes
+from ..core.window import cell_side, faces, window_slices
 from ..mechanics.loading import JointLoading
-from ..surface.specimen import cell_side, faces, window_slices
 from .division import split
 
 #: A sub-window whose sigma_z is measured has at least this many cells per side.

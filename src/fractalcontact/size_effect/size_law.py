@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..core.datasets import labelled_dataset
 from ..core.intervals import mean_interval
-from ..core.resolved import CORRECTED_NODES, RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from .size_exponents import add_size_exponents, usable_sizes
 
 #: Quantities of sub-windows: name, exponent, fewest nodes of every window of a size, what it is.

@@ -14,6 +14,7 @@ import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
+from ..core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UNDECIDED
 
 #: Exponents that differ by no more than this differ by rounding alone.
 ROUNDING = 1e-9
@@ -27,8 +28,6 @@ WIDEST_SLOPE = 1.0
 #: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
-AGREES, FLATTER, STEEPER = "agrees", "measured flatter", "measured steeper"
-UNDECIDED, AMBIGUOUS, NOT_TESTED = "undecided", "ambiguous", "not tested"
 #: What may come of one estimator of Delta_sigma under one load.
 VERDICTS = (AGREES, STEEPER, FLATTER, UNDECIDED, AMBIGUOUS, NOT_TESTED)
 

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import xarray as xr
 
+from ..core.window import spacing_of
 from ..mechanics.joint import describe_joint
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
-from ..surface.grid import spacing_of
 
 
 def specimen_stages(specimen: xr.Dataset, settings: Mapping) -> dict[str, xr.Dataset]:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import xarray as xr
 
 from ..core.reported import Reported
+from ..core.window import cell_side, nominal_area, window_sides
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
@@ -23,7 +24,6 @@ from ..mechanics.states import (
     with_pressure,
 )
 from ..roughness.recommended import best_dimension
-from ..surface.specimen import cell_side, nominal_area, window_sides
 from .errors import error_stages
 
 

@@ -5,13 +5,13 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from ..core.window import cell_side, nominal_area
 from ..mechanics.states import with_pressure
 from ..mechanics.strength import joint_strength
 from ..roughness.fit_range import FEWEST_CELLS
 from ..roughness.recommended import best_dimension
 from ..size_effect.laws import joint_by_size
 from ..size_effect.prediction import predict_whole_strength
-from ..surface.specimen import cell_side, nominal_area
 
 
 def strength_stages(

@@ -3,13 +3,9 @@
 import numpy as np
 
 from ..core.estimate import Estimate
+from ..core.limits import NEARLY
+from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from .findings import (
-    FAILS,
-    HOLDS,
-    ILL_POSED,
-    NEARLY,
-    PARTLY,
-    UNDETERMINED,
     Finding,
     Joint,
     Statement,

@@ -13,8 +13,8 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate, names_of, rows_of
 from ..core.intervals import t_quantile
+from ..core.window import nominal_area
 from ..mechanics.states import chosen_offset
-from ..surface.specimen import nominal_area
 
 #: What is compared, each with its 95 % interval: unit and long name; the first once a specimen,
 #: the others under every load.

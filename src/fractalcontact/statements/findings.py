@@ -10,20 +10,13 @@ import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS, fit_line
-from ..core.resolved import RESOLVED_NODES
+from ..core.limits import LOOSELY, NEARLY, RESOLVED_NODES
+from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
+from ..core.window import nominal_area
 from ..mechanics.states import chosen_offset, forces_of
-from ..surface.specimen import nominal_area
-
-HOLDS, PARTLY, FAILS = "holds", "holds in part", "does not hold"
-#: The data cannot decide; the question has no meaning as it is put.
-UNDETERMINED, ILL_POSED = "undetermined", "ill-posed"
-VERDICTS = (HOLDS, PARTLY, FAILS, UNDETERMINED, ILL_POSED)
 
 #: Why a joint under a hardness may be asked nothing of its contact area.
 BY_CONSTRUCTION = "A_r = F/H by construction: all that touches yields"
-
-#: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
-NEARLY, LOOSELY = 0.1, 0.25
 
 
 class Finding(NamedTuple):

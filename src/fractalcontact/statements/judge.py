@@ -13,34 +13,7 @@ import xarray as xr
 
 from ..core.labels import cf_attrs
 from . import closure, nulls, scaling, sliding
-from .findings import (
-    FAILS,
-    HOLDS,
-    ILL_POSED,
-    PARTLY,
-    UNDETERMINED,
-    VERDICTS,
-    Finding,
-    Joint,
-    Statement,
-)
-
-__all__ = [
-    "FAILS",
-    "HOLDS",
-    "ILL_POSED",
-    "PARTLY",
-    "UNDETERMINED",
-    "VERDICTS",
-    "Finding",
-    "Joint",
-    "Statement",
-    "all_statements",
-    "judge",
-    "material_of",
-    "statements_for",
-    "table_of",
-]
+from .findings import Finding, Joint, Statement
 
 #: Which of its two materials the paper would take a study's for, by words in its name.
 MATERIALS = {"sandstone": "rock", "rock": "rock", "concrete": "concrete"}

@@ -4,7 +4,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.estimate import Estimate
-from .findings import FAILS, HOLDS, LOOSELY, NEARLY, PARTLY, UNDETERMINED, Finding
+from ..core.limits import LOOSELY, NEARLY
+from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
+from .findings import Finding
 
 #: Box sides whose ends have a smaller ratio show no power law.
 MIN_RATIO = 10.0

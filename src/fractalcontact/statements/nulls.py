@@ -2,21 +2,20 @@
 
 import numpy as np
 
-from ..domain import departure
-from ..domain.departure import LIKE_CUT, LIKE_RANDOM, loads_of
-from ..mechanics.closure_laws import HYPERBOLA, UNDECIDED
-from .findings import (
+from ..core.labels import loads_of
+from ..core.limits import LOOSELY, NEARLY
+from ..core.verdicts import (
     FAILS,
     HOLDS,
-    LOOSELY,
-    NEARLY,
+    HYPERBOLA,
+    LIKE_CUT,
+    LIKE_RANDOM,
     PARTLY,
+    UNDECIDED,
     UNDETERMINED,
-    Finding,
-    Joint,
-    Statement,
-    share,
 )
+from ..domain import departure
+from .findings import Finding, Joint, Statement, share
 from .local_slopes import one_slope
 
 _OF_SLIDING = ("along sliding", "across")

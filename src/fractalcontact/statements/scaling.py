@@ -6,20 +6,10 @@ import numpy as np
 
 from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS
-from ..domain.box_dimension import WIDEST
+from ..core.limits import WIDEST
+from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.pressure_trend import pressure_trend
-from .findings import (
-    FAILS,
-    HOLDS,
-    PARTLY,
-    UNDETERMINED,
-    Finding,
-    Joint,
-    Statement,
-    by_sign,
-    of_the_area,
-    share,
-)
+from .findings import Finding, Joint, Statement, by_sign, of_the_area, share
 from .local_slopes import one_slope
 
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.

@@ -5,21 +5,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..mechanics.plateau import LEVEL, LEVEL_CHANGE, RISING
-from .findings import (
-    FAILS,
-    HOLDS,
-    LOOSELY,
-    NEARLY,
-    PARTLY,
-    UNDETERMINED,
-    Finding,
-    Joint,
-    Statement,
-    no_offsets,
-    share,
-    trend,
-)
+from ..core.limits import LEVEL_CHANGE, LOOSELY, NEARLY
+from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
+from .findings import Finding, Joint, Statement, no_offsets, share, trend
 
 #: Directions in which the paper's concrete has a plateau, of those it slid in.
 PLATEAUS, DIRECTIONS = 2, 4
@@ -32,7 +20,7 @@ class Plateaus(NamedTuple):
     ----------
     directions : list of str
     trend : (n,) ndarray of str
-        :data:`mechanics.plateau.LEVEL`, ``RISING`` or ``FALLING``.
+        :data:`core.verdicts.LEVEL`, ``RISING`` or ``FALLING``.
     change : (n,) ndarray
         Of the fitted line, a fraction of the mean.
     """

@@ -6,8 +6,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.fitting import LineFit, fit_line
+from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
 from ..roughness.recommended import best_dimension
-from .findings import FAILS, HOLDS, UNDETERMINED, Finding, Joint, Statement, by_sign
+from .findings import Finding, Joint, Statement, by_sign
 from .judge import material_of, table_of
 
 __all__ = ["STATEMENTS", "judge_study"]

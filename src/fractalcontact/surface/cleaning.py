@@ -7,7 +7,7 @@ from scipy import ndimage
 from ..core.errors import InputError
 from ..core.mean_plane import without_mean_plane
 from ..core.strips import strips
-from .grid import spacing_of
+from ..core.window import spacing_of
 from .suspect import Suspects, find_suspects
 
 OUTLIERS = ("keep", "mask", "fill")

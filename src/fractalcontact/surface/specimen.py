@@ -10,13 +10,12 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.directions import axis_and_sign
 from ..core.errors import InputError
+from ..core.limits import STEEP_TILT
+from ..core.window import spacing_of, window_slices
 from .cleaning import clean_faces
-from .grid import spacing_of
 from .window import WindowRequest, place_window
 
 OPPOSITES = ("match", "flat")
-#: Above this, subtracting the mean plane (a shear) departs from turning the specimen by 0.4 %.
-STEEP_TILT = 5.0  # degrees
 
 
 #: Variables of a specimen: dimensions, unit, long name.
@@ -119,44 +118,6 @@ def _provenance(scans) -> dict:
             provenance["registration"] = attrs.pop("registration")
         provenance[f"{face}_scan"] = json.dumps(attrs, sort_keys=True)
     return provenance
-
-
-def faces(specimen: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Heights of the lower and upper face (ny, nx) in mm, NaN where missing.
-
-    A face that was not scanned is the lower face itself ("match") or the plane z = 0 ("flat").
-    """
-    z_l = specimen["lower"].values.astype(np.float64)
-    if specimen.attrs["opposite"] == "scanned":
-        return z_l, specimen["upper"].values.astype(np.float64)
-    if specimen.attrs["opposite"] == "flat":
-        return z_l, np.zeros_like(z_l)
-    return z_l, z_l
-
-
-def window_slices(specimen: xr.Dataset) -> tuple[slice, slice]:
-    """Rows and columns of the window at zero offset."""
-    y0, x0, ny, nx = (int(specimen.attrs[f"window_{key}"]) for key in ("y0", "x0", "ny", "nx"))
-    return slice(y0, y0 + ny), slice(x0, x0 + nx)
-
-
-def window_sides(specimen: xr.Dataset) -> tuple[float, float]:
-    """Sides (y, x) of the window, mm."""
-    cells = (specimen.attrs[f"window_n{axis}"] for axis in "yx")
-    side_y, side_x = (n * s for n, s in zip(cells, spacing_of(specimen), strict=True))
-    return side_y, side_x
-
-
-def cell_side(specimen: xr.Dataset) -> float:
-    """s, mm: side of the square as large as a cell, so that N nodes cover N s^2."""
-    spacing_y, spacing_x = spacing_of(specimen)
-    return float(np.sqrt(spacing_y * spacing_x))
-
-
-def nominal_area(specimen: xr.Dataset) -> float:
-    """A_0 of the window, mm2."""
-    side_y, side_x = window_sides(specimen)
-    return side_y * side_x
 
 
 def largest_offset(specimen: xr.Dataset, direction: str) -> int:

@@ -12,7 +12,7 @@ import xarray as xr
 from ..core.directions import DIRECTIONS, axis_and_sign
 from ..core.errors import InputError
 from ..core.labels import percent
-from .grid import spacing_of
+from ..core.window import spacing_of
 
 #: A side given in mm holds a whole number of cells within this fraction of one.
 _ROUNDING = 1e-6

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import Estimate, names_of
-from ...domain.box_dimension import WIDEST
+from ...core.limits import WIDEST
 from ...experiments.size_decision import PROBABILITY
 from ..kit.drawing import (
     WIDTH,

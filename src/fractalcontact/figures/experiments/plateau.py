@@ -14,9 +14,10 @@ from ...core.estimate import EXPONENT, Estimate
 from ...core.labels import printable
 from ...core.mean_plane import without_mean_plane
 from ...core.units import quantity
+from ...core.verdicts import FALLING, LEVEL, RISING
+from ...core.window import faces, window_slices
 from ...experiments.roll_off import SURFACES
-from ...mechanics.plateau import FALLING, LEVEL, RISING, second_half
-from ...surface.specimen import faces, window_slices
+from ...mechanics.plateau import second_half
 from ..kit.drawing import (
     LINE,
     LINES,

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 import xarray as xr
 
 from ...core.labels import printable
-from ...surface.specimen import STEEP_TILT, window_sides
+from ...core.limits import STEEP_TILT
+from ...core.window import window_sides
 
 #: Longest file name and note that stand in a figure whole; of longer ones both ends are shown.
 LONGEST_NAME, LONGEST_NOTE = 60, 400

@@ -11,7 +11,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import FigureBase
 from matplotlib.lines import Line2D
 
-from ...mechanics.overlap import DECISIVE
+from ...core.limits import DECISIVE
 from ..kit.drawing import COLOURS, colour_of
 from ..kit.maps import draw_map, node_position, window_outline
 from ..kit.words import length_unit

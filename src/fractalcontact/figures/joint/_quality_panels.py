@@ -11,8 +11,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ...core.window import window_slices
 from ...roughness.quality_words import AXES, length_words
-from ...surface.specimen import window_slices
 from ..kit.drawing import COLOURS, label_short_span
 from ..kit.empty import say_empty
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline

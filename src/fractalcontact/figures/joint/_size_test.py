@@ -11,9 +11,9 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from xarray import DataTree
 
+from ...core.determined import is_determined
 from ...core.estimate import Estimate
-from ...domain.box_dimension import is_determined
-from ...size_effect.size_verdict import AGREES, FLATTER, NOT_TESTED, STEEPER
+from ...core.verdicts import AGREES, FLATTER, NOT_TESTED, STEEPER
 from ..kit.drawing import COLOURS, entries, group, label_short_span
 from ..kit.words import place, pressure_label
 

@@ -6,8 +6,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import EXPONENT, UNDETERMINED, Estimate
-from ...mechanics.area import LIGHT_LOAD
+from ...core.estimate import EXPONENT, Estimate
+from ...core.limits import LIGHT_LOAD
+from ...core.verdicts import UNDETERMINED
 from ...mechanics.states import chosen_offset
 from ..experiments.area_slope import kappa_lines
 from ..kit.drawing import (

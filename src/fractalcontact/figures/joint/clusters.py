@@ -9,11 +9,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.determined import follows_law
 from ...core.estimate import EXPONENT, Estimate, names_of
 from ...core.fitting import fit_line
-from ...core.resolved import RESOLVED_NODES
-from ...domain.clusters import LARGEST_DISTANCE, follows_law
-from ...surface.specimen import cell_side
+from ...core.limits import LARGEST_DISTANCE, RESOLVED_NODES
+from ...core.window import cell_side
 from ..kit.drawing import (
     COLOURS,
     MARKERS,

@@ -7,9 +7,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.resolved import RESOLVED_NODES
-from ...statements.findings import LOOSELY, NEARLY
-from ...statements.judge import UNDETERMINED
+from ...core.limits import LOOSELY, NEARLY, RESOLVED_NODES
+from ...core.verdicts import UNDETERMINED
 from ..kit.drawing import (
     MARKERS,
     WIDTH,

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
+from ...core.limits import RESOLVED_NODES
 from ...core.ranges import within
-from ...core.resolved import RESOLVED_NODES
 from ..kit.drawing import (
     MARKERS,
     WIDTH,

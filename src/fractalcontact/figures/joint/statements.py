@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...statements.judge import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
+from ...core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, group, label_in_lines, settings_of
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
 from ..kit.verdicts import CIRCULAR_SHORT

@@ -6,8 +6,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.estimate import ANGLE, Estimate, names_of
-from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
-from ...mechanics.theory import LARGEST_FRICTION_ANGLE
+from ...core.limits import JRC_RANGE, JRC_SAMPLING, LARGEST_FRICTION_ANGLE
 from ..kit.drawing import (
     COLOURS,
     LINES,

@@ -6,14 +6,15 @@ import numpy as np
 import xarray as xr
 from xarray import DataTree
 
+from ...core.determined import differs, is_determined
 from ...core.estimate import DIMENSION, Estimate
 from ...core.fitting import FEWEST_POINTS
-from ...domain.box_dimension import WIDEST, is_determined
-from ...domain.departure import UNDETERMINED, differs, loads_of
+from ...core.labels import loads_of
+from ...core.limits import MIN_NODES, WIDEST
+from ...core.verdicts import UNDETERMINED
+from ...core.window import window_sides
 from ...domain.renormalisation import RESOLUTION
-from ...domain.slope_curves import MIN_NODES
 from ...mechanics.states import chosen_offset
-from ...surface.specimen import window_sides
 from .drawing import COLOURS, MARKERS, group, nearest_load, settings_of, spread
 from .verdicts import verdict_words
 from .words import place

@@ -28,8 +28,8 @@ from xarray import DataTree
 from ...core.atomic import atomic_write
 from ...core.labels import printable
 from ...core.tables import write_table
+from ...core.window import nominal_area
 from ...mechanics.states import forces_of
-from ...surface.specimen import nominal_area
 from .layout import lay_out
 from .line_breaks import in_lines
 from .remembered import layouts_remembered

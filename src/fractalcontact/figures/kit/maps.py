@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 from scipy.ndimage import maximum_filter
 
-from ...surface.specimen import window_slices
+from ...core.window import window_slices
 from .drawing import COLOURS
 from .words import length_unit
 

@@ -9,8 +9,7 @@ from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.fitting import FEWEST_POINTS
-from ...mechanics.jrc import JRC_RANGE, JRC_SAMPLING
-from ...mechanics.theory import LARGEST_FRICTION_ANGLE
+from ...core.limits import JRC_RANGE, JRC_SAMPLING, LARGEST_FRICTION_ANGLE
 from .points import draw_points
 from .verdicts import claim
 from .words import length_unit, short

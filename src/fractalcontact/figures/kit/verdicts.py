@@ -3,7 +3,8 @@
 import xarray as xr
 from xarray import DataTree
 
-from ...statements.judge import ILL_POSED, all_statements
+from ...core.verdicts import ILL_POSED
+from ...statements.judge import all_statements
 from ...statements.study import STATEMENTS as OF_STUDY
 
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.

@@ -14,11 +14,6 @@ REAL_PRESSURE = r"real mean pressure $\sigma_n$"
 
 TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
 
-#: Stands before a number whose interval leaves nearly everything open.
-UNDETERMINED = "undetermined"
-#: Ends of an interval that differ from even ones by less than this part of it are called even.
-_EVEN = 0.02
-
 #: Below and above these a number has an exponent.
 _PLAIN = (1e-4, 1e6)
 

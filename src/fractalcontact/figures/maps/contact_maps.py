@@ -6,7 +6,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
-from ...domain.departure import BEYOND_RANDOM
+from ...core.verdicts import BEYOND_RANDOM
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import measured_series, table_of, threshold_words

@@ -5,14 +5,8 @@ import xarray as xr
 from matplotlib.lines import Line2D
 
 from ...core.estimate import Estimate
-from ...mechanics.closure_laws import (
-    GOOD_FIT,
-    HYPERBOLA,
-    NEITHER,
-    SEMI_LOGARITHMIC,
-    UNDECIDED,
-)
-from ...statements.findings import NEARLY
+from ...core.limits import GOOD_FIT, NEARLY
+from ...core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
 from ..kit.drawing import heading
 from ..kit.words import percent
 

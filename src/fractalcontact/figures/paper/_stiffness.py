@@ -9,12 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
 from ...core.estimate import Estimate
+from ...core.verdicts import UNDETERMINED
+from ...core.window import cell_side
 from ...mechanics.states import chosen_offset
-from ...surface.specimen import cell_side
 from ..kit.drawing import MARKERS, dilatancy_loads, label_short_span, nearest_load
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.points import draw_points, reach
-from ..kit.words import UNDETERMINED, force_label, percent, short
+from ..kit.words import force_label, percent, short
 
 #: Greys and markers of the loads: colours and the other markers stand for offsets in this figure.
 _GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), MARKERS[5:]

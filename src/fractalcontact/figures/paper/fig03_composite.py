@@ -8,8 +8,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.window import faces, window_sides, window_slices
 from ...mechanics.joint import DIRECTION_STEPS, composite_topography
-from ...surface.specimen import faces, window_sides, window_slices
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group, headline, letter, settings_of
 from ..kit.maps import HALO, draw_map, missing_patch, node_position, scan_extent, window_outline
 from ..kit.verdicts import claim, sentences

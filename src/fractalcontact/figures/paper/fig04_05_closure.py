@@ -7,12 +7,9 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
-from ...core.resolved import CORRECTED_NODES, RESOLVED_NODES
-from ...mechanics.closure_laws import (
-    HYPERBOLA,
-    SEMI_LOGARITHMIC,
-)
-from ...surface.specimen import nominal_area
+from ...core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ...core.verdicts import HYPERBOLA, SEMI_LOGARITHMIC
+from ...core.window import nominal_area
 from ..kit.drawing import (
     MARKERS,
     WIDTH,

@@ -7,9 +7,9 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...core.resolved import RESOLVED_NODES
-from ...mechanics.plateau import FALLING, LEVEL, LEVEL_CHANGE, RISING
-from ...surface.specimen import window_sides
+from ...core.limits import LEVEL_CHANGE, RESOLVED_NODES
+from ...core.verdicts import FALLING, LEVEL, RISING
+from ...core.window import window_sides
 from ..kit.drawing import (
     LINES,
     MARKERS,

@@ -6,9 +6,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
-from ...core.resolved import CORRECTED_NODES
+from ...core.limits import CORRECTED_NODES
+from ...core.verdicts import USUAL
 from ...domain.renormalisation import RESOLUTION
-from ...mechanics.model_validity import USUAL, Validity
+from ...mechanics.model_validity import Validity
 from ..kit.domains import Loading, fall_reason
 from ..kit.drawing import (
     COLOURS,

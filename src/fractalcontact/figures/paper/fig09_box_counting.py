@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
+from ...core.determined import is_determined
 from ...core.estimate import DIMENSION, Estimate, names_of
 from ...core.ranges import within
-from ...domain.box_dimension import is_determined
 from ...domain.count_law import LawTerms, law_count
 from ..kit.domains import Loading
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, heading, headline, label_short_span, letter

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...core.resolved import CORRECTED_NODES
+from ...core.limits import CORRECTED_NODES
 from ..kit.domains import RISES, Loading, departures, rise_words
 from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
 from ..kit.empty import say_empty

@@ -1,0 +1,50 @@
+"""Fixed limits behind verdicts, each once: rules apply them, figures and pages quote them."""
+
+#: Contact of fewer nodes is not resolved, and not fitted: one node more or less is 10 % of it.
+RESOLVED_NODES = 10
+
+#: The area of fewer nodes is not corrected for their edges: at 14 nodes the corrected one was a
+#: third too large beside finer grids, from 30 on within some per cent.
+CORRECTED_NODES = 30
+
+#: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
+NEARLY, LOOSELY = 0.1, 0.25
+
+#: The one that JRC is taken from.
+JRC_SAMPLING = "1.27 mm"
+
+#: Barton's profiles go from 0 to 20 and his law was measured on them.
+JRC_RANGE = (0.0, 20.0)
+
+#: Barton's total friction angle is not used above this, degrees (Barton & Choubey, Rock Mech. 10
+#: (1977) 1): at low stress the logarithm would take it past the vertical.
+LARGEST_FRICTION_ANGLE = 70.0
+
+#: A dimension whose 95 % interval is wider than this is undetermined: half of all that sets in the
+#: plane can have.
+WIDEST = 1.0
+
+#: Fewer nodes are not compared: whatever their pattern, one node more or less would change it.
+MIN_NODES = CORRECTED_NODES
+
+#: Above this fraction of the load on suspicious cells, errors of the scans decide a number.
+DECISIVE = 0.5
+
+#: Light load, on which the theories' straight lines are compared: largest p / (E* h'_rms).
+LIGHT_LOAD = 0.02
+
+#: Sizes drawn from an exact law (beta 0.4 to 2, 60 clusters or more) lie within this, over the root
+#: of the number fitted, of the law fitted to them in at least 95 of 100 draws.
+LARGEST_DISTANCE = 0.85
+
+#: Above this, subtracting the mean plane (a shear) departs from turning the specimen by 0.4 %.
+STEEP_TILT = 5.0  # degrees
+
+#: Change over the second half of the offsets, a fraction of the mean there, that is called level.
+LEVEL_CHANGE = 0.1
+
+#: Rms misfit up to which a curve is said to follow a law, as a fraction of its largest closure.
+GOOD_FIT = 0.02
+
+#: Probability covered by every interval the package states.
+CONFIDENCE = 0.95
