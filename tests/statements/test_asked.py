@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fractalcontact.statements.judge import all_statements
+from fractalcontact.core.claims import claims_of
 from fractalcontact.study.configuration import resolve_embedded, resolve_settings
 from fractalcontact.study.selection import chosen_for, is_capped_variant
 
 ROOT = Path(__file__).parents[2]
-NAMES = {s.check.__name__ for s in all_statements()}
+NAMES = set(claims_of("one"))
 
 
 @pytest.fixture

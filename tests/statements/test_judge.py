@@ -8,7 +8,7 @@ from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED, VERDICTS
 from fractalcontact.mechanics.plateau import rigid_plateaus
 from fractalcontact.statements import closure, nulls, scaling
-from fractalcontact.statements.judge import Joint, all_statements, judge, statements_for
+from fractalcontact.statements.judge import Joint, judge, rule_of, statements_for
 from fractalcontact.statements.study import judge_study
 
 V = np.array([0.1, 0.2, 0.4, 1.2, 1.4, 1.6, 10.0])
@@ -245,12 +245,7 @@ def stages(**changes):
 
 
 def found_by(name, settings=SETTINGS, **changes):
-    check = next(s.check for s in EVERY if s.check.__name__ == name)
-    return check(Joint(stages(**changes), settings))
-
-
-#: Asked or not: the statements beside a rival are judged here by themselves.
-EVERY = all_statements()
+    return rule_of(name)(Joint(stages(**changes), settings))
 
 
 def test_a_joint_as_the_paper_has_it():
@@ -261,7 +256,13 @@ def test_a_joint_as_the_paper_has_it():
         ("composite_dimension_rises", "compliance_goes_with_dimension"), ILL_POSED
     )
     assert found.attrs == {"direction": "W", "force": 1000.0}
-    assert {s.check(Joint(stages(), SETTINGS)).verdict for s in nulls.STATEMENTS} == {HOLDS}
+    beside_a_rival = (
+        nulls.closure_is_hyperbolic,
+        nulls.domains_are_fractal,
+        nulls.domains_differ_from_cuts,
+        nulls.domains_are_isotropic,
+    )
+    assert {rule(Joint(stages(), SETTINGS)).verdict for rule in beside_a_rival} == {HOLDS}
 
 
 def verdicts_of(found):
@@ -481,7 +482,7 @@ def test_a_variable_that_is_missing_is_an_error():
 
 
 def names_of(settings, **options):
-    return {statement.check.__name__ for statement in statements_for(settings, **options)}
+    return set(statements_for(settings, **options))
 
 
 def test_what_is_said_of_one_material_is_asked_of_that_one():

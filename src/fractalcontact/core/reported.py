@@ -6,7 +6,6 @@ pages, statements and comparisons read them there.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -116,13 +115,14 @@ class Reported:
         """Reference load, N."""
         return float(self.forces[self.reference])
 
+    def along(self, stage: xr.Dataset) -> xr.Dataset:
+        """A stage in the reported direction."""
+        return stage.sel({name: self.direction for name in _DIRECTIONS if name in stage.dims})
+
     def curves(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage in the reported direction, at the reported resolution."""
-        of_joint = [name for name in _DIRECTIONS if name in stage.dims]
-        chosen: dict[str, Any] = dict.fromkeys(of_joint, self.direction)
-        if "resolution" in stage.dims:
-            chosen["resolution"] = self.resolution
-        return stage.sel(chosen)
+        along = self.along(stage)
+        return along.sel(resolution=self.resolution) if "resolution" in along.dims else along
 
     def states(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage in the reported direction, at the reported offset and resolution."""

@@ -3,19 +3,14 @@
 Verdicts are those of the stages ``statements`` and ``study_statements``; nothing is judged here.
 """
 
-import inspect
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 
 import xarray as xr
 
+from ..core.claims import claims_of
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
-from ..statements.judge import Statement, all_statements
-from ..statements.study import STATEMENTS as OF_STUDY
-from ..study.figure_list import FOLDER, all_figures
+from ..study.figure_list import all_figures
 
 #: A sign for each verdict, and the class of its colour.
 SIGNS = {
@@ -73,7 +68,7 @@ def matrix_of(atlas: xr.DataTree, specimens: Sequence[str]) -> list[Row]:
     specimens : sequence of str
     """
     tables = {name: atlas[f"statements/{name}"].to_dataset() for name in specimens}
-    return [row for one in all_statements() if (row := _row(one, tables)).cells]
+    return [row for one in claims_of("one").values() if (row := _row(one, tables)).cells]
 
 
 def counted(rows: Iterable[Row]) -> dict[str, int]:
@@ -87,89 +82,36 @@ def of_study(atlas: xr.DataTree) -> list[Row]:
     if "study_statements" not in atlas.children:
         return []
     table = atlas["study_statements/study"].to_dataset()
-    return [row for one in OF_STUDY if (row := _row(one, {"": table})).cells]
+    return [_row(one, {"": table}) for one in claims_of("several").values()]
 
 
-def _row(statement, tables):
-    name = statement.check.__name__
-    cells = {
-        specimen: _cell(table.sel(statement=name), statement, sliding=_slides(table))
+def _row(claim, tables):
+    asked = {
+        specimen: table.sel(statement=claim.name)
         for specimen, table in tables.items()
-        if name in table["statement"].values
+        if claim.name in table["statement"].values
     }
-    rule = inspect.getdoc(statement.check) or ""
-    return Row(name, statement.figure, statement.claim, rule, cells)
+    cells = {specimen: _cell(found, _figure_of(claim, found)) for specimen, found in asked.items()}
+    rule = next((str(found["rule"].item()) for found in asked.values()), "")
+    return Row(claim.name, claim.figure, claim.claim, rule, cells)
 
 
-def _slides(table):
-    return table.attrs.get("direction", "") != "none"
+def _figure_of(claim, found):
+    """The figure that shows a statement: of a surface against a plane one that is drawn of it."""
+    drawn = all_figures()[claim.shown_in].subject
+    slides = found.attrs.get("direction", "") != "none"
+    return claim.shown_in if slides or drawn == "specimen" else "statements"
 
 
-def _cell(found, statement, *, sliding):
+def _cell(found, figure):
     verdict = str(found["verdict"].item())
     sign, kind = SIGNS[verdict]
-    circular = str(found["circular_reason"].item()) if bool(found["circular"]) else ""
-    subjects = ("specimen", "joint") if sliding else ("specimen",)
     return Cell(
         verdict=verdict,
         sign=sign,
         kind=kind,
         numbers=str(found["numbers"].item()),
         note=str(found["note"].item()),
-        circular=circular,
-        figure=figure_of_statement(statement, subjects),
+        circular=str(found["circular_reason"].item()) if bool(found["circular"]) else "",
+        figure=figure,
     )
-
-
-def figure_of_statement(statement: Statement, subjects: tuple[str, ...]) -> str:
-    """Name of the figure that shows what a statement speaks of; the table of statements if none.
-
-    It is one that quotes the verdict, best one of a number that the statement has; else one of that
-    number.
-
-    Parameters
-    ----------
-    statement : Statement
-    subjects : tuple of str
-        Of figures that may be chosen: those of a joint are not drawn of a surface against a plane.
-    """
-    quoting, numbered = [], []
-    for name, figure in all_figures().items():
-        if figure.subject not in subjects:
-            continue
-        common = bool(numbers_of(statement.figure) & _numbers_of_title(figure.title))
-        if statement.check.__name__ in _names_in(figure.module):
-            quoting.append((not common, name))
-        elif common:
-            numbered.append(name)
-    if quoting:
-        return min(quoting, key=lambda found: found[0])[1]
-    return numbered[0] if numbered else "statements"
-
-
-def numbers_of(figures: str) -> set[int]:
-    """Numbers of the paper's figures in words: "4-7" or "1b, 11"; of sections none."""
-    if "sect" in figures:
-        return set()
-    found: set[int] = set()
-    for part in figures.split(","):
-        ends = [int(number) for number in re.findall(r"\d+", part)]
-        if ends:
-            found |= set(range(ends[0], ends[-1] + 1))
-    return found
-
-
-def _numbers_of_title(title):
-    """Numbers of the paper's figures that a title begins with: "Figs. 4 and 5: ..."."""
-    start = re.match(r"Figs?\. ([\d, andb]+):", title)
-    return {int(number) for number in re.findall(r"\d+", start[1])} if start else set()
-
-
-@cache
-def _names_in(module: str) -> frozenset[str]:
-    """Words in quotation marks in a figure's module and in helpers beside it that it imports."""
-    path = FOLDER.parent / f"{module}.py"
-    text = path.read_text(encoding="utf-8")
-    helpers = re.findall(r"^from \.(_\w+) import", text, re.MULTILINE)
-    texts = [text, *((Path(path.parent) / f"{name}.py").read_text("utf-8") for name in helpers)]
-    return frozenset(re.findall(r"[\"'](\w+)[\"']", "\n".join(texts)))

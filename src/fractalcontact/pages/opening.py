@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from markupsafe import Markup, escape
 
+from ..core.claims import claims_of
 from ..core.verdicts import FAILS, GOOD, HOLDS, ILL_POSED, IN_PART, PARTLY, POOR, UNDETERMINED
-from ..statements.judge import all_statements
 from .captions import symbols
 from .common_loads import CommonLoad
 from .matrix import Row
@@ -190,7 +190,7 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
 
 def _of_the_surface():
     """Names of the statements that a hardness cannot change."""
-    return {one.check.__name__ for one in all_statements() if not one.plastic}
+    return {name for name, claim in claims_of().items() if not claim.plastic}
 
 
 def _level(dilatancy):

@@ -8,7 +8,6 @@ from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from .findings import (
     Finding,
     Joint,
-    Statement,
     by_sign,
     level,
     no_offsets,
@@ -164,49 +163,3 @@ def refinement_changes_little(joint: Joint) -> Finding:
         f"closure changes by {100 * change.min():.0f} to {100 * change.max():.0f} % from 2 s to s",
         f"{change.size} states; it counts from the highest point, which moves",
     )
-
-
-#: All of them, in the order of the paper.
-STATEMENTS = (
-    Statement(
-        "sect. 4",
-        "Further refinement of the scan would not alter the contact significantly",
-        refinement_changes_little,
-    ),
-    Statement(
-        "4, 5",
-        "In the first stages of sliding the joint becomes more compliant with v",
-        compliance_rises_at_first,
-    ),
-    Statement("4, 5", "Beyond a certain v the closure curves overlap", curves_overlap),
-    Statement(
-        "4, 5",
-        "At very large v, with no correlation left, compliance increases again",
-        compliance_rises_again,
-    ),
-    Statement(
-        "4, 5", "The dimension of the composite topography rises with v", composite_dimension_rises
-    ),
-    Statement(
-        "sect. 7",
-        "The higher that dimension, the more compliant the joint",
-        compliance_goes_with_dimension,
-    ),
-    Statement(
-        "4, 5", "Larger samples of a joint close more", larger_samples_close_more, slides=False
-    ),
-    Statement(
-        "4, 5",
-        "The real contact area is nearly proportional to F",
-        area_is_linear,
-        slides=False,
-        plastic=True,
-    ),
-    Statement("4-7", "At fixed F the real contact area falls as v rises", area_falls),
-    Statement(
-        "5, 7",
-        "Beyond a certain v the real contact area stays the same",
-        area_settles,
-        material="concrete",
-    ),
-)

@@ -30,34 +30,6 @@ class Finding(NamedTuple):
     note: str = ""
 
 
-class Statement(NamedTuple):
-    """A statement of the paper, what judges it, and of which specimens it is asked.
-
-    Attributes
-    ----------
-    figure : str
-        Figures or section of the paper.
-    claim : str
-        In our words.
-    check : callable
-        Its name is that of the statement.
-    material : str
-        "rock" or "concrete" where the paper says it of one of them, else empty.
-    slides : bool
-        Whether only a joint that slides is asked.
-    plastic : bool
-        Whether a hardness can change the answer: these alone are asked of a specimen that stands
-        in its study once more without one.
-    """
-
-    figure: str
-    claim: str
-    check: Callable[..., Finding]
-    material: str = ""
-    slides: bool = True
-    plastic: bool = False
-
-
 @dataclass(frozen=True)
 class Joint:
     """A joint's stages, and what several statements ask of them.

@@ -6,22 +6,34 @@ direction whose contact was solved, at the scan's own resolution, and where one 
 load (and offset) of the contact maps.
 """
 
-from collections.abc import Iterable, Mapping
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from ..core.claims import all_claims, claims_of
 from ..core.labels import cf_attrs
 from . import closure, nulls, scaling, sliding
-from .findings import Finding, Joint, Statement
+from .findings import Finding, Joint
 
 #: Which of its two materials the paper would take a study's for, by words in its name.
 MATERIALS = {"sandstone": "rock", "rock": "rock", "concrete": "concrete"}
 
 
-def all_statements() -> tuple[Statement, ...]:
-    """Every statement that a joint can be asked, in the order of the paper."""
-    return closure.STATEMENTS + sliding.STATEMENTS + scaling.STATEMENTS + nulls.STATEMENTS
+def rule_of(name: str) -> Callable[..., Finding]:
+    """Function that judges a statement about one joint: the one of its name.
+
+    Raises
+    ------
+    KeyError
+        If no rule has this name.
+    """
+    for room in (closure, sliding, scaling, nulls):
+        if hasattr(room, name):
+            return getattr(room, name)
+    raise KeyError(f"no rule is called {name!r}")
 
 
 def material_of(settings: Mapping) -> str:
@@ -30,8 +42,8 @@ def material_of(settings: Mapping) -> str:
     return next((MATERIALS[word] for word in words if word in MATERIALS), "")
 
 
-def statements_for(settings: Mapping, *, capped_variant: bool = False) -> tuple[Statement, ...]:
-    """Statements that are asked of a specimen.
+def statements_for(settings: Mapping, *, capped_variant: bool = False) -> tuple[str, ...]:
+    """Names of the statements that are asked of a specimen.
 
     Parameters
     ----------
@@ -45,11 +57,11 @@ def statements_for(settings: Mapping, *, capped_variant: bool = False) -> tuple[
     material = material_of(settings)
     slides = settings["opposite"] != "flat"
     return tuple(
-        statement
-        for statement in all_statements()
-        if statement.material in ("", material)
-        and (slides or not statement.slides)
-        and (statement.plastic or not capped_variant)
+        name
+        for name, claim in claims_of("one").items()
+        if claim.material in ("", material)
+        and (slides or not claim.slides)
+        and (claim.plastic or not capped_variant)
     )
 
 
@@ -80,42 +92,48 @@ def judge(
     """
     joint = Joint(dict(stages), dict(settings))
     asked = statements_for(settings, capped_variant=capped_variant)
-    found = [(statement, statement.check(joint)) for statement in asked]
-    return table_of(found, circular or {}).assign_attrs(
+    rules = {name: rule_of(name) for name in asked}
+    return table_of(rules, joint, circular or {}).assign_attrs(
         direction=joint.direction, force=joint.force
     )
 
 
-def table_of(found: Iterable[tuple[Statement, Finding]], circular: Mapping[str, str]) -> xr.Dataset:
-    """Findings as a dataset.
+def table_of(
+    rules: Mapping[str, Callable[..., Finding]], subject: Any, circular: Mapping[str, str]
+) -> xr.Dataset:
+    """Statements judged, as a dataset.
 
     Parameters
     ----------
-    found : iterable of (Statement, Finding)
+    rules : mapping of str to callable
+        From what is judged to a finding, by the statement's name.
+    subject : findings.Joint, or several by their names
+        What is judged.
     circular : mapping of str to str
         How the specimen was chosen for a statement, by the statement's name.
 
     Returns
     -------
     xr.Dataset
-        ``figure``, ``claim``, ``verdict``, ``numbers``, ``note``, ``circular`` and
-        ``circular_reason`` over (statement,); a statement is named after the function that judges
-        it.
+        ``figure``, ``claim``, ``short``, ``rule``, ``verdict``, ``numbers``, ``note``,
+        ``circular`` and ``circular_reason`` over (statement,).
     """
-    found = list(found)
-    names = [statement.check.__name__ for statement, _ in found]
+    found = [rule(subject) for rule in rules.values()]
+    claims = [all_claims()[name] for name in rules]
     columns = {
-        "figure": ([statement.figure for statement, _ in found], "figures of the paper"),
-        "claim": ([statement.claim for statement, _ in found], "what the paper says"),
-        "verdict": ([finding.verdict for _, finding in found], "whether it holds here"),
-        "numbers": ([finding.numbers for _, finding in found], "the numbers that decide it"),
-        "note": ([finding.note for _, finding in found], "what to know of these numbers"),
+        "figure": ([claim.figure for claim in claims], "figures of the paper"),
+        "claim": ([claim.claim for claim in claims], "what the paper says"),
+        "short": ([claim.short for claim in claims], "how captions call it"),
+        "rule": ([inspect.getdoc(rule) or "" for rule in rules.values()], "the rule that judges"),
+        "verdict": ([finding.verdict for finding in found], "whether it holds here"),
+        "numbers": ([finding.numbers for finding in found], "the numbers that decide it"),
+        "note": ([finding.note for finding in found], "what to know of these numbers"),
         "circular": (
-            np.array([name in circular for name in names], bool),
+            np.array([name in circular for name in rules], bool),
             "whether the specimen was chosen for it",
         ),
         "circular_reason": (
-            [circular.get(name, "") for name in names],
+            [circular.get(name, "") for name in rules],
             "how the specimen was chosen for it",
         ),
     }
@@ -124,5 +142,5 @@ def table_of(found: Iterable[tuple[Statement, Finding]], circular: Mapping[str, 
             name: ("statement", values, cf_attrs("1", words))
             for name, (values, words) in columns.items()
         },
-        coords={"statement": names},
+        coords={"statement": list(rules)},
     )

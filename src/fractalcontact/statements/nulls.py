@@ -15,7 +15,7 @@ from ..core.verdicts import (
     UNDETERMINED,
 )
 from ..domain import departure
-from .findings import Finding, Joint, Statement, share
+from .findings import Finding, Joint, share
 from .local_slopes import one_slope
 
 _OF_SLIDING = ("along sliding", "across")
@@ -133,25 +133,3 @@ def domains_are_isotropic(joint: Joint) -> Finding:
     if apart:
         return Finding(FAILS if difference > LOOSELY else PARTLY, numbers)
     return Finding(HOLDS if difference <= NEARLY else UNDETERMINED, numbers)
-
-
-#: All of them.
-STATEMENTS = (
-    Statement("4, 5", "The closure curves are hyperbolas with an asymptote", closure_is_hyperbolic),
-    Statement(
-        "sect. 6",
-        "Contact domains are lacunar fractal sets",
-        domains_are_fractal,
-        slides=False,
-        plastic=True,
-    ),
-    Statement(
-        "sect. 6",
-        "Contact domains are related, but not coincident, to cuts at one height",
-        domains_differ_from_cuts,
-        slides=False,
-    ),
-    Statement(
-        "sect. 6", "Contact domains scale isotropically", domains_are_isotropic, slides=False
-    ),
-)

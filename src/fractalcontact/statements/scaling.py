@@ -9,7 +9,7 @@ from ..core.fitting import FEWEST_POINTS
 from ..core.limits import WIDEST
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.pressure_trend import pressure_trend
-from .findings import Finding, Joint, Statement, by_sign, of_the_area, share
+from .findings import Finding, Joint, by_sign, of_the_area, share
 from .local_slopes import one_slope
 
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.
@@ -239,66 +239,6 @@ def _exponents(value, low, high, known):
         f"tau ~ b^x at equal v/b, x = {ends}, falls beyond its interval in {falls} of "
         f"{known.sum()} cases, rises in {rises}"
     )
-
-
-#: All of them, in the order of the paper.
-STATEMENTS = (
-    Statement(
-        "8, 10",
-        "The contact area falls with finer resolution, as a power law",
-        area_is_lacunar,
-        slides=False,
-        plastic=True,
-    ),
-    Statement(
-        "9",
-        "Contact domains are self-similar: one power law of box counts",
-        boxes_follow_one_law,
-        slides=False,
-        plastic=True,
-    ),
-    Statement(
-        "8-10",
-        "One Delta_sigma governs box counts and the area over resolutions",
-        estimates_agree,
-        slides=False,
-        plastic=True,
-    ),
-    Statement(
-        "12, 13",
-        "Delta_sigma rises with F, judged by A_r(s)",
-        dimension_rises_by_area,
-        slides=False,
-        plastic=True,
-    ),
-    Statement(
-        "12, 13",
-        "Delta_sigma rises with F, judged by box counts",
-        dimension_rises_by_boxes,
-        slides=False,
-        plastic=True,
-    ),
-    Statement(
-        "12",
-        "Delta_sigma goes from 0 to 2 as the load grows",
-        dimension_spans_all,
-        slides=False,
-        plastic=True,
-    ),
-    Statement(
-        "10, 13",
-        "Eq. 6: A_r/A_0 at one sigma_0, and sigma_0 at one sigma*, go as b^(Delta_sigma - 2)",
-        size_effect_follows,
-        slides=False,
-    ),
-    Statement(
-        "sect. 7",
-        "Domains of larger joints are less dense",
-        larger_domains_are_less_dense,
-        slides=False,
-    ),
-    Statement("1b, 11", "Apparent shear strength falls with size", strength_falls_with_size),
-)
 
 
 def _over_load(states, random=np.nan):

@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..core.limits import LEVEL_CHANGE, LOOSELY, NEARLY
 from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
-from .findings import Finding, Joint, Statement, no_offsets, share, trend
+from .findings import Finding, Joint, no_offsets, share, trend
 
 #: Directions in which the paper's concrete has a plateau, of those it slid in.
 PLATEAUS, DIRECTIONS = 2, 4
@@ -111,31 +111,3 @@ def no_correlation_is_left(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")
     verdict = HOLDS if correlation <= limit else FAILS
     return Finding(verdict, f"{numbers}, by chance up to {limit:.2f}", where)
-
-
-#: All of them, in the order of the paper.
-STATEMENTS = (
-    Statement(
-        "6",
-        "Rigid dilatancy reaches a plateau in every direction (rock)",
-        dilatancy_flattens,
-        material="rock",
-    ),
-    Statement(
-        "7",
-        "Rigid dilatancy reaches a plateau in two of four directions and rises on in the others "
-        "(concrete)",
-        dilatancy_flattens_in_two,
-        material="concrete",
-    ),
-    Statement(
-        "7",
-        "The slope of the rigid dilatancy is markedly anisotropic (concrete)",
-        dilatancy_is_anisotropic,
-        material="concrete",
-    ),
-    Statement(
-        "6, 7", "Contact domains become less homogeneous with v and cluster", domains_cluster
-    ),
-    Statement("6", "At the largest v no correlation of the faces is left", no_correlation_is_left),
-)

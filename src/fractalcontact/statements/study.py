@@ -5,13 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from ..core.claims import claims_of
 from ..core.fitting import LineFit, fit_line
 from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
 from ..roughness.recommended import best_dimension
-from .findings import Finding, Joint, Statement, by_sign
+from .findings import Finding, Joint, by_sign
 from .judge import material_of, table_of
-
-__all__ = ["STATEMENTS", "judge_study"]
 
 
 def judge_study(
@@ -34,7 +33,7 @@ def judge_study(
         As :func:`judge.table_of` makes it.
     """
     joints = {name: Joint(dict(parts), dict(settings[name])) for name, parts in stages.items()}
-    return table_of([(asked, asked.check(joints)) for asked in STATEMENTS], {})
+    return table_of({name: _RULES[name] for name in claims_of("several")}, joints, {})
 
 
 def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
@@ -104,22 +103,12 @@ def _compared(lines, law, steeper):
     return Finding(verdict, f"{law}, x = {words}")
 
 
-#: All of them, in the order of the paper.
-STATEMENTS = (
-    Statement(
-        "5",
-        "The real contact area falls with v especially in concrete",
+#: Rules by the names of their statements.
+_RULES = {
+    rule.__name__: rule
+    for rule in (
         area_falls_more_in_concrete,
-    ),
-    Statement(
-        "7",
-        "Contact localises more in concrete than in rock",
         contact_localises_more_in_concrete,
-    ),
-    Statement(
-        "sect. 7",
-        "The exponent 2 - Delta_sigma (not the strength itself) grows with Delta_g of the "
-        "composite topography",
         size_exponent_grows_with_dimension,
-    ),
-)
+    )
+}

@@ -6,8 +6,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.claims import claims_of
 from ...core.labels import printable
-from ...statements.judge import all_statements
 from ..joint.statements import DATA, SIGNS
 from ..kit.drawing import WIDTH, Drawing, group, settings_of
 from ..kit.line_breaks import in_lines, width_of
@@ -40,9 +40,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         return Drawing(Figure(figsize=(WIDTH, 1)), pd.DataFrame(), _caption({}, _whole(atlas)))
     tables = {name: _table(atlas, "statements", name) for name in names}
     rows = {
-        statement.check.__name__: {"figure": statement.figure, "claim": statement.claim}
-        for statement in all_statements()
-        if any(statement.check.__name__ in table.index for table in tables.values())
+        name: {"figure": claim.figure, "claim": claim.claim}
+        for name, claim in claims_of("one").items()
+        if any(name in table.index for table in tables.values())
     }
     whole = _whole(atlas)
     shown = [*rows.values(), *whole[["figure", "claim"]].to_dict("records")]

@@ -69,7 +69,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, settings["label"], where)
     many = "over all offsets" if laws.sizes["offset"] > 1 else ""
     many = "at other offsets" if many and str(law["no_corrected_law"].values) else many
-    linear = claim(atlas, name, "A_r ~ F", "area_is_linear", why=many)
+    linear = claim(atlas, name, "area_is_linear", why=many)
     caption = sentences(_caption(law), linear)
     return Drawing(figure, _table(curve, law), caption)
 

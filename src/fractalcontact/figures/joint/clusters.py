@@ -108,7 +108,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     clustered = claim(
         atlas,
         name,
-        "growing clustering with v",
         "domains_cluster",
         why=f"I ~ v^x over all v at {force_label(loads[mapped])}",
     )

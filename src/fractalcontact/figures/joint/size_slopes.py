@@ -66,7 +66,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         claim(
             atlas,
             name,
-            "eq. 6",
             "size_effect_follows",
             numbers=False,
             why=judged or "no load decides by A_r/A_0 at equal sigma_0",

@@ -65,7 +65,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = sentences(
         f"{SUPPLEMENTARY} Contact area of parts of the window over side b at equal sigma_0; its "
         "exponent.",
-        claim(atlas, name, "eq. 6", "size_effect_follows", why=verdict_reason(test)),
+        claim(atlas, name, "size_effect_follows", why=verdict_reason(test)),
         _few_words(test),
     )
     return Drawing(figure, _table(test), caption)

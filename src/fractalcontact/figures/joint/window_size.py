@@ -115,7 +115,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     larger = claim(
         atlas,
         name,
-        "more compliant larger samples",
         "larger_samples_close_more",
         why=f"at {pressure_label(float(judged))}, filled sizes alone" if exponents else "",
     )

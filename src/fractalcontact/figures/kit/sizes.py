@@ -88,7 +88,7 @@ def draw_means(
     draw_points(axes, b, mean, ~(held > MOSTLY), color=colour, marker=marker)
 
 
-def strength_verdict(atlas: DataTree, name: str, laws: xr.Dataset, share: int, says: str) -> str:
+def strength_verdict(atlas: DataTree, name: str, laws: xr.Dataset, share: int) -> str:
     """A sentence on the fall of strength with size, with the numbers that can be counted.
 
     Parameters
@@ -101,14 +101,12 @@ def strength_verdict(atlas: DataTree, name: str, laws: xr.Dataset, share: int, s
         Stage ``windows``.
     share : int
         Index of the v/b drawn.
-    says : str
-        What the paper says, short.
     """
     held, drawn = points_held(laws, share)
     bound = f"friction angle held at {LARGEST_FRICTION_ANGLE:g} degrees at {held} of {drawn} points"
     mostly = 2 * held > drawn
     why = bound if mostly else ""
-    return claim(atlas, name, says, "strength_falls_with_size", numbers=not mostly, why=why)
+    return claim(atlas, name, "strength_falls_with_size", numbers=not mostly, why=why)
 
 
 def points_held(laws: xr.Dataset, share: int) -> tuple[int, int]:

@@ -3,9 +3,8 @@
 import xarray as xr
 from xarray import DataTree
 
+from ...core.claims import all_claims
 from ...core.verdicts import ILL_POSED
-from ...statements.judge import all_statements
-from ...statements.study import STATEMENTS as OF_STUDY
 
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
 CIRCULAR, CIRCULAR_SHORT = "circular: the specimen was chosen for it", "circular"
@@ -52,7 +51,6 @@ def verdict_words(
 def claim(
     atlas: DataTree,
     name: str,
-    says: str,
     statement: str,
     *,
     numbers: bool = True,
@@ -64,11 +62,9 @@ def claim(
     ----------
     atlas, name, statement, numbers, why
         As for :func:`verdict_words`.
-    says : str
-        What the paper says, short: "A_r ~ F".
     """
     words = verdict_words(atlas, name, statement, numbers=numbers, why=why)
-    return f"The paper's {says}: {words}." if words else ""
+    return f"The paper's {all_claims()[statement].short}: {words}." if words else ""
 
 
 def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset | None:
@@ -80,8 +76,7 @@ def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset
         If there is no such statement, or the specimen has no table: a verdict is never left out in
         silence.
     """
-    every = (*all_statements(), *OF_STUDY)
-    if statement not in {known.check.__name__ for known in every}:
+    if statement not in all_claims():
         raise KeyError(f"no statement is called {statement!r}")
     table = atlas[f"{stage}/{name}"].to_dataset()
     asked = statement in table["statement"].values

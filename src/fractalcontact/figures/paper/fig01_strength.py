@@ -64,7 +64,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(strength), entries(slope))
     direction = str(laws["direction"].values)
     headline(figure, settings["label"], place(direction))
-    falls = strength_verdict(atlas, name, laws, share, "fall of strength with size")
+    falls = strength_verdict(atlas, name, laws, share)
     return Drawing(figure, _table(laws), _caption(laws, share, falls))
 
 

@@ -138,9 +138,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(profile, "c", "profile through the point of first touch")
     letter(composite, "b", f"composite topography $h$\n{_correlation_words(slid)}")
     headline(figure, label, place(slid.direction, slid.offset))
-    says = "loss of all correlation"
-    says += "" if np.isfinite(slid.chance) else f" ({_TOO_SMALL})"
-    left = claim(atlas, name, says, "no_correlation_is_left")
+    why = "" if np.isfinite(slid.chance) else _TOO_SMALL
+    left = claim(atlas, name, "no_correlation_is_left", why=why)
     return Drawing(figure, profiles, _caption(slid, left))
 
 

@@ -92,8 +92,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, settings["label"], place(direction))
     caption = sentences(
         _caption(curves, stiffness),
-        claim(atlas, name, "hyperbola", "closure_is_hyperbolic"),
-        claim(atlas, name, "A_r ~ F", "area_is_linear", why=linear_words(laws)),
+        claim(atlas, name, "closure_is_hyperbolic"),
+        claim(atlas, name, "area_is_linear", why=linear_words(laws)),
     )
     table = [_table(curves, drawn, laws), stiffness.assign(panel="d")]
     return Drawing(figure, pd.concat(table, ignore_index=True), caption)

@@ -47,10 +47,7 @@ _FIT_WIDTH = 2.2
 _WITHIN = f"{LEVEL_CHANGE:.0%}".replace("%", " %")
 
 #: What the paper says of rock and of concrete, and the statements that judge it.
-_PLATEAUS = (
-    (f"plateau (changes within {_WITHIN}) in every direction", "dilatancy_flattens"),
-    (f"plateau (changes within {_WITHIN}) in two of four", "dilatancy_flattens_in_two"),
-)
+_PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -90,8 +87,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     table = _table(dilatancy, direction, shown, curves)
     caption = sentences(
         _caption(float(at_map["normal_force"])),
-        sentences(*(claim(atlas, name, *said) for said in _PLATEAUS)) or _plateau_words(plateaus),
-        claim(atlas, name, "fall of A_r as v^x", "area_falls"),
+        sentences(*(claim(atlas, name, said) for said in _PLATEAUS)) or _plateau_words(plateaus),
+        claim(atlas, name, "area_falls"),
     )
     return Drawing(figure, table, caption)
 

@@ -76,7 +76,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     caption = sentences(
         f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}.",
         model.sentence,
-        claim(atlas, name, "fall of A_r", "area_is_lacunar", numbers=not why, why=why),
+        claim(atlas, name, "area_is_lacunar", numbers=not why, why=why),
     )
     return Drawing(figure, table.assign(rms_slope=slope), caption)
 

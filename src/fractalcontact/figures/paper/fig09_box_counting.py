@@ -72,8 +72,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
     caption = sentences(
         _caption(loading, i, counts),
-        claim(atlas, name, "one power law", "boxes_follow_one_law", numbers=False),
-        claim(atlas, name, "fractal set", "domains_are_fractal"),
+        claim(atlas, name, "boxes_follow_one_law", numbers=False),
+        claim(atlas, name, "domains_are_fractal"),
     )
     return Drawing(figure, table, caption)
 

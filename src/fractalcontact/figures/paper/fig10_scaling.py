@@ -50,8 +50,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, *loading.title)
     table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
     why = fall_reason(loading.estimates[0], i)
-    paper = "fall of A_r", "area_is_lacunar"
-    falls = claim(atlas, name, *paper, numbers=not why, why=why)
+    falls = claim(atlas, name, "area_is_lacunar", numbers=not why, why=why)
     return Drawing(figure, table, _caption(loading, i, falls))
 
 

@@ -75,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, settings["label"], place(str(laws["direction"].values)))
     if drawn:
         legends_below(figure, entries(angle), entries(ratio), columnspacing=2)
-    falls = strength_verdict(atlas, name, laws, share, "fall with size")
+    falls = strength_verdict(atlas, name, laws, share)
     caption = _caption(laws, share, drawn, falls, beyond)
     return Drawing(figure, _table(laws), caption)
 

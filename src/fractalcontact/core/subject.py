@@ -1,0 +1,107 @@
+"""One specimen of an atlas, as figures, pages and statements read it."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .reported import Reported
+from .window import nominal_area
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A specimen: its stages, what the study states of it, and which states are reported.
+
+    Attributes
+    ----------
+    stages : mapping of str to xr.Dataset
+        By name; those that it has.
+    settings : mapping
+        As the study states them, numbers in mm, N and MPa.
+    name : str
+    """
+
+    stages: Mapping[str, xr.Dataset]
+    settings: Mapping[str, Any]
+    name: str = ""
+
+    @classmethod
+    def of(cls, atlas: xr.DataTree, name: str) -> "Subject":
+        """A specimen of an atlas.
+
+        Raises
+        ------
+        KeyError
+            If the atlas has no specimen of this name.
+        """
+        stages = {
+            stage: group[name].to_dataset()
+            for stage, group in atlas.children.items()
+            if name in group.children
+        }
+        return cls(stages, configuration_of(atlas)["settings"][name], name)
+
+    def __getitem__(self, stage: str) -> xr.Dataset:
+        """Dataset of a stage."""
+        return self.stages[stage]
+
+    @cached_property
+    def reported(self) -> Reported:
+        """States that are published."""
+        return Reported.read(self["closure"])
+
+    @property
+    def label(self) -> str:
+        """As its user wrote it: untrusted text."""
+        return str(self.settings["label"])
+
+    @property
+    def direction(self) -> str:
+        """Direction of sliding that is reported."""
+        return self.reported.direction
+
+    @property
+    def offset(self) -> float:
+        """Offset whose states are reported, mm."""
+        return self.reported.offset
+
+    @property
+    def forces(self) -> np.ndarray:
+        """Loads of the study (n,), N, ascending."""
+        return self.reported.forces
+
+    @cached_property
+    def area(self) -> float:
+        """A_0 of the window, mm2."""
+        return nominal_area(self["specimens"])
+
+    def along(self, stage: str) -> xr.Dataset:
+        """A stage in the reported direction, at every resolution."""
+        return self.reported.along(self[stage])
+
+    def curves(self, stage: str = "closure") -> xr.Dataset:
+        """A stage in the reported direction, at the reported resolution, over offsets and loads."""
+        return self.reported.curves(self[stage])
+
+    def states(self, stage: str) -> xr.Dataset:
+        """A stage at the reported direction, offset and resolution, over loads."""
+        return self.reported.states(self[stage])
+
+    def state(self, stage: str) -> xr.Dataset:
+        """A stage at the reported state under the reference load."""
+        return self.reported.state(self[stage])
+
+
+def configuration_of(atlas: xr.DataTree) -> dict[str, Any]:
+    """Study and settings, as an atlas keeps them."""
+    return json.loads(atlas.attrs["configuration"])
+
+
+def specimens_of(atlas: xr.DataTree) -> list[str]:
+    """Names of the specimens, sorted; measured contact maps are none."""
+    return sorted(atlas["specimens"].children) if "specimens" in atlas.children else []
