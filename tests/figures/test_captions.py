@@ -161,13 +161,13 @@ def test_a_claim_is_quoted_with_its_numbers_and_what_makes_it_circular(atlas):
     table["circular"] = table["statement"] == "area_falls"
     changed["statements/sliding"] = xr.DataTree(table)
     verdict, numbers = judged["verdict"].item(), judged["numbers"].item()
-    said = claim(atlas, "sliding", "fall", "area_falls")
-    assert said == f"The paper's fall: {verdict} ({numbers})."
-    assert claim(atlas, "sliding", "fall", "area_falls", numbers=False).endswith(f": {verdict}.")
-    circular = claim(changed, "sliding", "fall", "area_falls")
-    assert circular == f"The paper's fall: {verdict} ({numbers}; {CIRCULAR})."
-    assert claim(atlas, "flat", "fall", "area_falls") == ""
+    said = claim(atlas, "sliding", "area_falls")
+    assert said == f"The paper's fall of A_r as v^x: {verdict} ({numbers})."
+    assert claim(atlas, "sliding", "area_falls", numbers=False).endswith(f": {verdict}.")
+    circular = claim(changed, "sliding", "area_falls")
+    assert circular == f"The paper's fall of A_r as v^x: {verdict} ({numbers}; {CIRCULAR})."
+    assert claim(atlas, "flat", "area_falls") == ""
     with pytest.raises(KeyError):
-        claim(atlas, "nobody", "fall", "area_falls")
+        claim(atlas, "nobody", "area_falls")
     with pytest.raises(KeyError, match="no statement is called 'area_flows'"):
-        claim(atlas, "sliding", "fall", "area_flows")
+        claim(atlas, "sliding", "area_flows")

@@ -162,7 +162,7 @@ def stages(**changes):
         "joints": slid,
         "closure": xr.Dataset(
             {
-                "interface_stiffness": (dims, 1 / states("compliance")[1]),
+                "interface_compliance": (dims, states("compliance")[1]),
                 "area_corrected": states("area"),
                 "nodes": states("nodes"),
                 "composite_spread": (("direction", "offset"), [np.linspace(1, 2, 7)]),
@@ -434,9 +434,9 @@ def test_numbers_stand_with_every_verdict():
 
 def test_a_rule_with_a_limit_is_asked_at_every_load():
     found = stages()
-    stiffness = found["closure"]["interface_stiffness"].copy()
-    stiffness.loc[{"offset": 1.6, "normal_force": 10.0}] /= 1.5
-    found["closure"]["interface_stiffness"] = stiffness
+    compliance = found["closure"]["interface_compliance"].copy()
+    compliance.loc[{"offset": 1.6, "normal_force": 10.0}] *= 1.5
+    found["closure"]["interface_compliance"] = compliance
     overlap = closure.curves_overlap(Joint(found, SETTINGS))
     assert overlap.verdict == PARTLY
     assert overlap.numbers.endswith("at 10 MPa; so at 3 of 4 loads")

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.estimate import Estimate
+from ..core.estimate import Estimate, names_of
 from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
@@ -143,6 +143,7 @@ def closure_curves(
         ``bulk_settlement`` and ``nominal_pressure`` (normal_force); ``interface_closure``,
         ``separation``, ``seated_closure``, ``closure_from_common_seat``, ``interface_stiffness``,
         ``conductance``, ``area_share``, ``area_corrected_share``, each with an ``_error``,
+        ``interface_compliance`` with the bounds that its error leaves,
         ``interface_stiffness_reason``, ``resolved``, ``area_corrected_resolved``,
         ``closure_spacing_error`` and the numbers of the
         states over (direction, offset, resolution, load); ``seating_pressure``,
@@ -235,6 +236,26 @@ def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
         curves[f"{name}_error"] = error.transpose(*curves["closure"].dims)
         curves[f"{name}_error"].attrs = error_attrs(curves[name].attrs)
     curves["closure_spacing_error"] = _spacing_error(curves["closure"])
+    _add_compliance(curves)
+
+
+def _add_compliance(curves: xr.Dataset) -> None:
+    """Compliance of the interface with what the solver leaves open, into ``curves``.
+
+    A stiffness whose error is as large as itself leaves the compliance unbounded.
+    """
+    name = "interface_stiffness"
+    stiffness, error = curves[name].values, curves[f"{name}_error"].values
+    softest = np.where(stiffness > error, stiffness - error, 0.0)
+    softest = np.where(np.isnan(stiffness), np.nan, softest)
+    with np.errstate(divide="ignore"):
+        compliance = Estimate(stiffness, softest, stiffness + error).mapped(
+            np.reciprocal, falling=True
+        )
+    for end, value in zip(names_of("interface_compliance"), compliance.ends, strict=True):
+        words = "compliance d w_int / d sigma_0 of the interface"
+        bound = "" if end == "interface_compliance" else f", {end[21:]} bound by the solver's error"
+        curves[end] = (curves[name].dims, value, cf_attrs("mm/MPa", f"{words}{bound}"))
 
 
 def _spacing_error(closure: xr.DataArray) -> xr.DataArray:

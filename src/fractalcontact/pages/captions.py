@@ -79,6 +79,10 @@ def take_apart(caption: str, label: str = "", warnings: Sequence[str] = ()) -> C
     -------
     Caption
     """
+    heading, parts, lines = caption.rstrip("\n").partition("\n\n")
+    if parts:
+        shown, *found = lines.splitlines()
+        return Caption(heading, [shown], found)
     text = caption.strip()
     for warning in ("; ".join(warnings), *warnings):
         if warning:

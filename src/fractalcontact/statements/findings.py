@@ -109,7 +109,7 @@ class Joint:
 
     def compliance_under(self, force: float) -> np.ndarray:
         """Compliance d w_int / d sigma_0 of the interface over offsets, mm/MPa; NaN where flush."""
-        return 1 / self.at_load("closure", "interface_stiffness", force)
+        return self.at_load("closure", "interface_compliance", force)
 
     @cached_property
     def area_fraction(self) -> np.ndarray:

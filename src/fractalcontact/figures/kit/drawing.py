@@ -30,6 +30,7 @@ from ...core.labels import printable
 from ...core.tables import write_table
 from ...core.window import nominal_area
 from ...mechanics.states import forces_of
+from .caption import Caption
 from .layout import lay_out
 from .line_breaks import in_lines
 from .remembered import layouts_remembered
@@ -93,7 +94,7 @@ class Drawing:
 
     figure: Figure
     data: pd.DataFrame
-    caption: str
+    caption: Caption | str
 
 
 @contextlib.contextmanager
@@ -144,7 +145,8 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
         with atomic_write(folder / f"{name}.svg") as path:
             FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
     with atomic_write(folder / f"{name}.txt") as path:
-        path.write_text(drawing.caption + "\n", encoding="utf-8")
+        words = drawing.caption
+        path.write_text((words.text if isinstance(words, Caption) else words) + "\n", "utf-8")
     write_table(folder / f"{name}.csv", drawing.data)
 
 

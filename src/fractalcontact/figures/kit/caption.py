@@ -1,0 +1,101 @@
+"""Captions: sentences of ``captions.yaml``, filled in with the numbers that a figure hands over.
+
+An entry of ``figures/GROUP/captions.yaml`` has the name of a figure and up to three parts:
+
+``shows``
+    What is drawn.
+``finds``
+    Sentences on what is found, in order; one that comes out empty is left out.
+``heading``
+    What the figure finds, without numbers in brackets, for the card of the result page; without it
+    the card has the figure's title.
+
+They are Jinja templates: names stand for values, and filters put numbers into words.
+"""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+from jinja2 import Environment, StrictUndefined
+
+from .words import PAPER, force_label, number, percent, pressure_label, short
+
+_GROUPS = Path(__file__).parents[1]
+
+
+class Caption(str):
+    """A caption in one line, and its parts, each whole sentences.
+
+    Attributes
+    ----------
+    heading : str
+        What the card of the page has above it; empty where that is the figure's title.
+    shows : str
+        What is drawn.
+    finds : tuple of str
+        What is found.
+    """
+
+    heading: str
+    shows: str
+    finds: tuple[str, ...]
+
+    def __new__(cls, heading: str, shows: str, finds: tuple[str, ...]) -> "Caption":
+        """Caption of these parts."""
+        made = super().__new__(cls, " ".join((shows, *finds)))
+        made.heading, made.shows, made.finds = heading, shows, finds
+        return made
+
+    @property
+    def text(self) -> str:
+        """As the caption's file has it: the heading, an empty line, each part in its own line."""
+        return "\n".join((self.heading, "", self.shows, *self.finds))
+
+
+def caption(module: str, **values: Any) -> Caption:
+    """Caption of a figure.
+
+    Parameters
+    ----------
+    module : str
+        ``__name__`` of the figure's module.
+    **values
+        By the names that its templates use.
+
+    Raises
+    ------
+    jinja2.UndefinedError
+        If a template uses a name that is not handed over.
+    """
+    group, name = module.split(".")[-2:]
+    entry = _templates(group)[name]
+
+    def filled(template: str) -> str:
+        return " ".join(_environment().from_string(template).render(values).split())
+
+    finds = (filled(template) for template in entry.get("finds", ()))
+    return Caption(
+        filled(entry.get("heading", "")), filled(entry["shows"]), tuple(filter(None, finds))
+    )
+
+
+@cache
+def _templates(group: str) -> dict[str, dict[str, Any]]:
+    return yaml.safe_load((_GROUPS / group / "captions.yaml").read_text(encoding="utf-8"))
+
+
+@cache
+def _environment() -> Environment:
+    made = Environment(undefined=StrictUndefined, autoescape=False)  # plain text
+    made.globals["paper"] = PAPER
+    made.filters |= {
+        "short": short,
+        "number": number,
+        "percent": percent,
+        "force": force_label,
+        "pressure": pressure_label,
+        "text": lambda estimate, unit="": estimate.text(unit),
+    }
+    return made
