@@ -27,7 +27,7 @@ def _world(exponent, seed, scatter=0.05):
 
 
 def _known(value, error=0.01):
-    return Exponent(value, error, value - 3 * error, value + 3 * error)
+    return Exponent.about(value, error, 3 * error)
 
 
 @pytest.mark.parametrize("delta", DELTA)

@@ -273,7 +273,7 @@ def test_equal_weights_give_the_ordinary_line():
 
 
 def _exponent(value, half):
-    return Exponent(value, half / 3, value - half, value + half)
+    return Exponent.about(value, half / 3, half)
 
 
 @pytest.mark.parametrize(

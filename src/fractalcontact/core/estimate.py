@@ -7,7 +7,7 @@ In memory it is an :class:`Estimate`. On disk it is the variables, or columns, `
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -18,9 +18,11 @@ from .verdicts import UNDETERMINED
 #: Ends of an interval by the ending of their names, and what follows the long name there.
 _ENDS = {
     "": "",
-    "_low": ", lower end of the 95 % interval",
-    "_high": ", upper end of the 95 % interval",
+    "_low": ", lower end of the {} interval",
+    "_high": ", upper end of the {} interval",
 }
+#: Probability of intervals, in words.
+_LEVEL = "95 %"
 
 #: Ends of an interval that differ from even ones by less than this part of it are called even.
 _EVEN = 0.02
@@ -78,7 +80,7 @@ class Estimate:
     @classmethod
     def read(
         cls, table: Any, name: str, *, unit: str = "", reason: Any = "", scale: Scale = SIZE
-    ) -> "Estimate":
+    ) -> Self:
         """Estimate of this name in a dataset, a table or one row of a table.
 
         Parameters
@@ -182,7 +184,7 @@ class Estimate:
             words = f"{shown} ± {error}" if even else f"{shown} [{least}, {most}]"
         return f"{UNDETERMINED} ({words}{f' {unit}' if unit else ''})"
 
-    def mapped(self, function: Callable[[Any], Any], *, falling: bool = False) -> "Estimate":
+    def mapped(self, function: Callable[[Any], Any], *, falling: bool = False) -> Self:
         """Estimate of a monotone function of the quantity; a falling one exchanges the ends."""
         value, low, high = (function(end) for end in self.ends)
         return (
@@ -207,9 +209,10 @@ class Estimate:
             Of the arrays; () for a number.
         units, long_name : str
         """
+        rows = rows_of(name, units, long_name)
         return {
-            f"{name}{end}": (dims, value, cf_attrs(units, f"{long_name}{words}"))
-            for (end, words), value in zip(_ENDS.items(), self.ends, strict=True)
+            of: (dims, value, cf_attrs(*row))
+            for (of, row), value in zip(rows.items(), self.ends, strict=True)
         }
 
 
@@ -228,6 +231,10 @@ def names_of(name: str, unit: str = "") -> list[str]:
     return [f"{name}{end}{suffix}" for end in _ENDS]
 
 
-def rows_of(name: str, units: str, long_name: str) -> dict[str, tuple[str, str]]:
+def rows_of(
+    name: str, units: str, long_name: str, level: str = _LEVEL
+) -> dict[str, tuple[str, str]]:
     """Unit and long name of an estimate's variables, by their names, for a table of variables."""
-    return {f"{name}{end}": (units, f"{long_name}{words}") for end, words in _ENDS.items()}
+    return {
+        f"{name}{end}": (units, f"{long_name}{words.format(level)}") for end, words in _ENDS.items()
+    }

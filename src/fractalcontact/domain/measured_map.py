@@ -15,6 +15,7 @@ import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.errors import InputError
+from ..core.estimate import names_of, rows_of
 from ..core.labels import cf_attrs
 from ..core.units import load as read_load
 from ..scan.coordinates import read_coordinates
@@ -49,18 +50,16 @@ _VARIABLES = {
     ),
     "delta_sigma_least": ((), "1", f"least Delta_sigma {_OVER_THRESHOLDS}"),
     "delta_sigma_most": ((), "1", f"largest Delta_sigma {_OVER_THRESHOLDS}"),
-    "delta_sigma_random": ((), "1", "mean Delta_sigma of as many cells at random"),
-    "delta_sigma_random_low": ((), "1", "Delta_sigma of as many cells at random, 95 % band, low"),
-    "delta_sigma_random_high": ((), "1", "Delta_sigma of as many cells at random, 95 % band, high"),
+    **{
+        of: ((), *row)
+        for of, row in rows_of(
+            "delta_sigma_random", "1", "Delta_sigma of as many cells at random, mean and 95 % band"
+        ).items()
+    },
     "null_verdict": ((), "1", "null models from which the local slopes differ"),
 }
 #: Of them, what :func:`domain.null_models.null_models` finds.
-_OF_NULLS = (
-    "delta_sigma_random",
-    "delta_sigma_random_low",
-    "delta_sigma_random_high",
-    "null_verdict",
-)
+_OF_NULLS = (*names_of("delta_sigma_random"), "null_verdict")
 #: How it was loaded.
 _LOADS = {
     "force": ((), "N", "normal force F on the map"),

@@ -6,6 +6,7 @@ drawn at random in the same window; and what elastic interaction adds, the depar
 bearing-area cut: as many nodes, the highest of the composite topography.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from ..core.estimate import names_of
+from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.limits import MIN_NODES
 from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
@@ -30,43 +31,37 @@ from .slope_curves import (
     random_curves,
 )
 
-#: What is stored of each quantity, by the ending of its name.
-_ENDINGS = {
-    "_random": "mean of as many random nodes",
-    "_random_low": "lower end of the 95 % band of as many random nodes",
-    "_random_high": "upper end of the 95 % band of as many random nodes",
+#: What is stored of each quantity, by the ending of its name: estimates, and single numbers.
+_ESTIMATES = {
+    "_random": "as many random nodes, mean and 95 % band",
     "_random_difference": "less that of as many random nodes",
-    "_random_difference_low": "less that of random nodes, lower end of the 95 % interval",
-    "_random_difference_high": "less that of random nodes, upper end of the 95 % interval",
-    "_cut": "that of the bearing-area cut of as many nodes",
     "_cut_difference": "less that of the bearing-area cut",
-    "_cut_difference_low": "less that of the bearing-area cut, lower end of the 95 % interval",
-    "_cut_difference_high": "less that of the bearing-area cut, upper end of the 95 % interval",
 }
+_CUT = "that of the bearing-area cut of as many nodes"
 
 _BY_SIDE = ("normal_force", "null_scale")
 _BY_OCTAVE = ("normal_force", "null_octave")
+
+
+def _rows(name: str, words: str, dims: Any, endings: Mapping[str, str]) -> dict[str, tuple]:
+    """Variables of a quantity beside its null models."""
+    rows = {f"{name}_cut": ("1", f"{words}: {_CUT}")}
+    for ending, what in endings.items():
+        rows |= rows_of(f"{name}{ending}", "1", f"{words}: {what}")
+    return {of: (dims, *units_and_words) for of, units_and_words in rows.items()}
+
+
 #: Curves of local slopes that are stored, by the ending of their name.
-_CURVES = {
-    "": "of the domain",
-    "_low": "of the domain, lower end of the 95 % interval",
-    "_high": "of the domain, upper end of the 95 % interval",
-    **{
-        ending: words
-        for ending, words in _ENDINGS.items()
-        if not ending.startswith("_random_difference")
-    },
+_CURVES = {"": "of the domain"} | {
+    ending: words for ending, words in _ESTIMATES.items() if ending != "_random_difference"
 }
 _TABLE: dict[str, tuple] = {
     **{
-        f"{name}{ending}": ("normal_force", "1", f"{words}: {what}")
+        of: row
         for name, words in QUANTITIES.items()
-        for ending, what in _ENDINGS.items()
+        for of, row in _rows(name, words, "normal_force", _ESTIMATES).items()
     },
-    **{
-        f"local_slope{ending}": (_BY_OCTAVE, "1", f"local slope of the mean box counts: {what}")
-        for ending, what in _CURVES.items()
-    },
+    **_rows("local_slope", "local slope of the mean box counts", _BY_OCTAVE, _CURVES),
     "local_slope_side": ("null_octave", "mm", "geometric middle of two box sides r"),
     "local_slope_side_min": ("null_octave", "mm", "smaller of the two box sides r"),
     "local_slope_side_max": ("null_octave", "mm", "larger of the two box sides r"),
@@ -80,9 +75,14 @@ _TABLE: dict[str, tuple] = {
     },
     "null_verdict": ("normal_force", "1", "null models from which the local slopes differ"),
     "null_reason": ("normal_force", "1", "why the local slopes are not compared; empty else"),
-    "null_count_random": (_BY_SIDE, "1", "minimal cover N(r) of as many random nodes, mean"),
-    "null_count_random_low": (_BY_SIDE, "1", "minimal cover of random nodes, lower end of 95 %"),
-    "null_count_random_high": (_BY_SIDE, "1", "minimal cover of random nodes, upper end of 95 %"),
+    **{
+        of: (_BY_SIDE, *row)
+        for of, row in rows_of(
+            "null_count_random",
+            "1",
+            "minimal cover N(r) of as many random nodes, mean and band",
+        ).items()
+    },
     "null_count_cut": (_BY_SIDE, "1", "minimal cover N(r) of the bearing-area cut"),
     "null_side": ("null_scale", "mm", "side of the boxes r of the null models"),
     "null_mean_count": (
@@ -234,24 +234,22 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
     law = ours.law if box.estimator == "mean" else None
     bands, counts = random_bands(domain.shape, nodes, mask=mask, law=law, used=used, **how)
     random = _less_random(ours, bands)
-    cut, count = (
-        dict.fromkeys(QUANTITIES, (np.nan,) * 4),
-        np.full(dyadic_sizes(domain.shape).size, np.nan),
-    )
+    of_cut, beyond_cut = dict.fromkeys(QUANTITIES, np.nan), dict.fromkeys(QUANTITIES, NO_ESTIMATE)
+    count = np.full(dyadic_sizes(domain.shape).size, np.nan)
     highest_nodes = None
     if composite is not None and nodes > 1:
         highest_nodes = bearing_area_cut(composite, nodes)
         highest = counted(highest_nodes)
-        cut = _less_cut(ours, highest)
+        of_cut, beyond_cut = highest.values, _less_cut(ours, highest)
         if highest.box.ordinary is not None:
             count = highest.box.ordinary.counts
     row: dict[str, Any] = {}
     for name in QUANTITIES:
-        beside = (*bands[name], *random[name], *cut[name])
-        row |= {f"{name}{end}": value for end, value in zip(_ENDINGS, beside, strict=True)}
+        row[f"{name}_cut"] = of_cut[name]
+        for ending, of in zip(_ESTIMATES, (bands, random, beyond_cut), strict=True):
+            row |= of[name].columns(f"{name}{ending}")
     row |= _compared_slopes(domain, highest_nodes, mask, spacing)
-    for name, value in zip(("", "_low", "_high"), counts, strict=True):
-        row[f"null_count_random{name}"] = value
+    row |= counts.columns("null_count_random")
     row["null_count_cut"] = count
     row["null_mean_count"] = expected_mean_counts(domain.shape, nodes, mean_sizes(domain.shape))
     return row
@@ -273,7 +271,9 @@ def _compared_slopes(domain, cut, mask, spacing):
     sides = _octaves(domain.shape, spacing)["local_slope_side"]
     nodes = int(np.count_nonzero(domain))
     curve = SlopeCurve(domain, mask)
-    curves, departures = {"": curve.interval}, dict.fromkeys(("random", "cut"), NOT_COMPARED)
+    none = np.full(sides.size, np.nan)
+    curves = dict.fromkeys(_CURVES, Estimate(none, none, none)) | {"": curve.interval}
+    cut_values, departures = none, dict.fromkeys(("random", "cut"), NOT_COMPARED)
     reason = _why_not_compared(nodes, curve.values.size)
     if nodes > 1:
         draws = random_curves(domain.shape, nodes, mask)
@@ -281,14 +281,15 @@ def _compared_slopes(domain, cut, mask, spacing):
         departures["random"] = departure_from_draws(curve.values, draws)
     if cut is not None:
         highest = SlopeCurve(cut, mask)
-        curves["_cut"] = (highest.values,)
+        cut_values = highest.values
         curves["_cut_difference"], departures["cut"] = paired_departure(curve, highest)
         if not (reason or np.isfinite(departures["cut"].p)):
             reason = "contact in too few parts of the window to compare with the bearing-area cut"
-    row = dict.fromkeys((f"local_slope{ending}" for ending in _CURVES), np.full(sides.size, np.nan))
-    for name, band in curves.items():
-        for of, values in zip(names_of(f"local_slope{name}"), band, strict=False):
-            row[of] = values if values.size else np.full(1, np.nan)
+    row = {"local_slope_cut": cut_values}
+    for ending, of in curves.items():
+        row |= of.columns(f"local_slope{ending}")
+    # A window too small for any slope has one that is missing.
+    row = {name: values if np.size(values) else none for name, values in row.items()}
     for null, (p, place) in departures.items():
         known = np.isfinite(p) and nodes >= MIN_NODES
         row[f"local_slope_{null}_p"] = p if known else np.nan
@@ -305,26 +306,23 @@ def _why_not_compared(nodes, slopes):
     return "" if slopes else "the window is too small for local slopes"
 
 
-def _less_random(domain, bands):
-    """What each quantity of a domain is less that of random nodes, and its interval."""
+def _less_random(domain, bands) -> dict[str, Estimate]:
+    """What each quantity of a domain is less that of random nodes."""
     less = {}
     for name, error in errors_of([domain]).items():
         band, difference = bands[name], domain.values[name] - bands[name].value
-        less[name] = (
-            difference,
-            difference - np.hypot(error, band.high - band.value),
-            difference + np.hypot(error, band.value - band.low),
-        )
+        low = difference - np.hypot(error, band.high - band.value)
+        less[name] = Estimate(difference, low, difference + np.hypot(error, band.value - band.low))
     return less
 
 
-def _less_cut(domain, cut):
-    """Each quantity of the cut, what that of the domain is less it, and its interval."""
+def _less_cut(domain, cut) -> dict[str, Estimate]:
+    """What each quantity of a domain is less that of the cut."""
     less = {}
     same = np.array_equal(domain.nodes, cut.nodes)
     for name, error in errors_of([domain, cut]).items():
         difference, half = domain.values[name] - cut.values[name], 0.0 if same else error
-        less[name] = cut.values[name], difference, difference - half, difference + half
+        less[name] = Estimate(difference, difference - half, difference + half)
     return less
 
 

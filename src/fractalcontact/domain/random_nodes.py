@@ -1,10 +1,9 @@
 """Random nodes, the first null model of a contact domain: bands of draws, exact expectations."""
 
-from typing import Any, NamedTuple
-
 import numpy as np
 import scipy.ndimage
 
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.intervals import t_quantile
 from ..core.limits import CONFIDENCE
 from .box_counts import cover_and_mean
@@ -20,15 +19,7 @@ DRAWS = 20
 CHEAP_DRAWS = 200
 
 
-class Band(NamedTuple):
-    """Mean of random draws and the band in which 95 % of further draws lie; NaN without any."""
-
-    value: Any
-    low: Any
-    high: Any
-
-
-def band_of(draws: np.ndarray) -> Band:
+def band_of(draws: np.ndarray) -> Estimate:
     """Mean of draws and the band in which one more lies with 95 % probability (normal draws).
 
     Parameters
@@ -38,7 +29,7 @@ def band_of(draws: np.ndarray) -> Band:
 
     Returns
     -------
-    Band
+    Estimate
         NaN where fewer than half of the draws have a value.
     """
     draws = np.asarray(draws, float)
@@ -49,16 +40,17 @@ def band_of(draws: np.ndarray) -> Band:
     mean = np.where(known, draws, 0).sum(axis=0) / count
     variance = np.where(known, (draws - mean) ** 2, 0).sum(axis=0) / (count - 1)
     half = t_quantile(count - 1) * np.sqrt(variance * (1 + 1 / count))
-    return Band(*(np.where(enough, end, np.nan) for end in (mean, mean - half, mean + half)))
+    mean = np.where(enough, mean, np.nan)
+    return Estimate(mean, mean - half, mean + half)
 
 
-def _quantiles(draws: np.ndarray) -> Band:
+def _quantiles(draws: np.ndarray) -> Estimate:
     """Mean of many draws and the band that holds 95 % of them; NaN where half have no value."""
     known = draws[np.isfinite(draws)]
     if known.size < max(draws.size / 2, 2):
-        return Band(*(np.nan,) * 3)
+        return NO_ESTIMATE
     low, high = np.quantile(known, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
-    return Band(float(known.mean()), float(low), float(high))
+    return Estimate(float(known.mean()), float(low), float(high))
 
 
 def random_bands(
@@ -71,7 +63,7 @@ def random_bands(
     law: FoundLaw | None = None,
     used: np.ndarray | None = None,
     draws: int = DRAWS,
-) -> tuple[dict[str, Band], Band]:
+) -> tuple[dict[str, Estimate], Estimate]:
     """Bands of what as many nodes drawn at random in a window have, by the same estimators.
 
     Parameters
@@ -95,10 +87,10 @@ def random_bands(
 
     Returns
     -------
-    bands : dict of str to Band
+    bands : dict of str to Estimate
         ``delta_sigma``, ``delta_sigma_ordinary``, ``correlation_dimension``, ``clusters`` and
         ``morisita``.
-    counts : Band
+    counts : Estimate
         Of the minimal cover, each (k,) over :func:`domain.ordinary_slope.dyadic_sizes`.
 
     Notes
@@ -130,8 +122,8 @@ def random_bands(
         rows["clusters"].append(scipy.ndimage.label(domain, NEIGHBOURS)[1])
     if not covers:
         names = (*rows, "correlation_dimension", "morisita")
-        nothing = dict.fromkeys(names, Band(*(np.nan,) * 3))
-        return nothing, Band(*np.full((3, sizes.size), np.nan))
+        missing = np.full(sizes.size, np.nan)
+        return dict.fromkeys(names, NO_ESTIMATE), Estimate(missing, missing, missing)
     bands = {name: band_of(np.array(values)) for name, values in rows.items()}
     bands["correlation_dimension"] = _quantiles(_pair_draws(shape, nodes, mask))
     bands["morisita"] = _quantiles(_index_draws(shape, nodes, mask))

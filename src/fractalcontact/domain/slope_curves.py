@@ -18,12 +18,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.slope_of_sums import BLOCKS
 from .box_counts import cover_and_mean, mean_count
 from .count_law import SMALLEST
 from .mean_law import LARGEST_BOX
-from .random_nodes import Band, random_nodes
+from .random_nodes import random_nodes
 
 #: Draws of random nodes: with the domain they are 200, of which 5 % are ten.
 DRAWS = 199
@@ -80,10 +81,10 @@ class SlopeCurve:
         return slope_curve(self.parts.sum(axis=1), self.sizes)
 
     @cached_property
-    def interval(self) -> Band:
+    def interval(self) -> Estimate:
         """Local slopes with the 95 % interval of each, by the jackknife over parts."""
         half = _jackknife(self.without(self.occupied))[0]
-        return Band(self.values, self.values - half, self.values + half)
+        return Estimate(self.values, self.values - half, self.values + half)
 
     @property
     def occupied(self) -> np.ndarray:
@@ -186,7 +187,7 @@ def departure_from_draws(curve: np.ndarray, draws: np.ndarray) -> Departure:
     return Departure(float(p), int(deviation[0].argmax()))
 
 
-def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Band, Departure]:
+def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Estimate, Departure]:
     """Local slopes of a domain less those of another one of as many nodes in the same window.
 
     Parameters
@@ -195,7 +196,7 @@ def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Band, Depar
 
     Returns
     -------
-    difference : Band
+    difference : Estimate
         (k - 1,) each, with the 95 % interval of each local slope.
     departure : Departure
         By Student's t of the largest standardised difference, times the number of local slopes
@@ -209,11 +210,11 @@ def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Band, Depar
     """
     difference = domain.values - other.values
     if np.array_equal(domain.nodes, other.nodes):
-        return Band(difference, difference, difference), Departure(1.0, 0)
+        return Estimate(difference, difference, difference), Departure(1.0, 0)
     parts = np.union1d(domain.occupied, other.occupied)
     more = (domain.nodes_by_part - other.nodes_by_part)[parts]
     half, freedom = _jackknife(domain.without(parts) - other.without(parts), more)
-    band = Band(difference, difference - half, difference + half)
+    band = Estimate(difference, difference - half, difference + half)
     if not difference.size or not np.isfinite(half).all():
         return band, NOT_COMPARED
     deviation = _in_scatters(difference, half / t_quantile(freedom))

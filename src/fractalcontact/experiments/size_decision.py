@@ -6,10 +6,14 @@ measured. Here the exponent alpha of A_r/A_0 over b is compared with that, class
 are over surfaces, not over a regression.
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import special
+
+from ..core.estimate import Estimate, rows_of
 
 #: Probability covered by the intervals of this experiment.
 PROBABILITY = 0.99
@@ -31,16 +35,38 @@ REFUTED, SUPPORTED, OPEN = "eq. 6 refuted", "eq. 6 agrees", "undetermined"
 UPHELD = "eq. 6 supported"
 
 
-class Exponent(NamedTuple):
-    """An exponent with its standard error and its interval over surfaces."""
+@dataclass(frozen=True)
+class Exponent(Estimate):
+    """An exponent with its interval over surfaces, of :data:`PROBABILITY`, and standard error."""
 
-    value: float
-    error: float
-    low: float
-    high: float
+    error: Any = np.nan
+
+    @classmethod
+    def about(cls, value: float, error: float, half: float) -> "Exponent":
+        """From half the width of the interval."""
+        return cls(value, value - half, value + half, error=error)
+
+    def columns(self, name: str, unit: str = "") -> dict[str, Any]:
+        """As those of an estimate, and ``NAME_error``."""
+        return {f"{name}_error": self.error} | super().columns(name, unit)
 
 
-UNKNOWN = Exponent(np.nan, np.nan, np.nan, np.nan)
+UNKNOWN = Exponent()
+
+
+def columns_of(
+    name: str, found: Sequence[Exponent], shape: Sequence[int] = (-1,)
+) -> dict[str, np.ndarray]:
+    """Variables of exponents, in C order over ``shape``."""
+    columns = [one.columns(name) for one in found]
+    return {of: np.reshape([one[of] for one in columns], shape) for of in UNKNOWN.columns(name)}
+
+
+def exponent_rows(name: str, words: str) -> dict[str, tuple[str, str]]:
+    """Unit and long name of the variables of an exponent, by their names."""
+    level = f"{100 * PROBABILITY:g} %"
+    error = {f"{name}_error": ("1", f"{words}, standard error")}
+    return error | rows_of(name, "1", words, level)
 
 
 def quantile(freedom: float) -> float:
@@ -63,7 +89,7 @@ def mean_exponent(values: np.ndarray) -> Exponent:
     error = float(np.std(values, ddof=1) / np.sqrt(values.size))
     half = quantile(values.size - 1) * error
     mean = float(values.mean())
-    return Exponent(mean, error, mean - half, mean + half)
+    return Exponent.about(mean, error, half)
 
 
 def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
@@ -105,7 +131,7 @@ def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
     error = float(np.sqrt(of_sides.sum()))
     freedom = of_sides.sum() ** 2 / np.sum(of_sides**2 / [group.size - 1 for group in groups])
     half = quantile(float(freedom)) * error
-    return Exponent(value, error, value - half, value + half)
+    return Exponent.about(value, error, half)
 
 
 def paired_exponent(sides: np.ndarray, values: np.ndarray, surfaces: np.ndarray) -> Exponent:

@@ -7,6 +7,7 @@ beside it, from the spectrum that the surfaces of a class have in the mean.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,10 @@ from .size_decision import (
     UNKNOWN,
     Decision,
     Exponent,
+    columns_of,
     decide,
     differ,
+    exponent_rows,
     mean_exponent,
     overall,
     paired_exponent,
@@ -52,7 +55,6 @@ GEOMETRY = {
     "geometry_delta": "correlation dimension of the contact domain, other constructions",
     "geometry_cut": "the same of the bearing-area cut",
 }
-_ENDS = {"": "", "_error": ", standard error", "_low": ", lower 99 %", "_high": ", upper 99 %"}
 
 
 def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> xr.Dataset:
@@ -84,13 +86,13 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     values: dict[str, np.ndarray] = {}
     shape = len(hursts), len(loads)
     for name, found in _dimensions(samples, hursts).items():
-        values |= _columns(name, found, shape)
+        values |= columns_of(name, found, shape)
     by_class = _over_side(samples, arms, hursts, smallest)
     for name, found in by_class.items():
-        values |= _columns(name, found, (len(arms), *shape))
+        values |= columns_of(name, found, (len(arms), *shape))
     constructions = np.unique(samples["of_construction"].values[samples["of_arm"] == "G"])
     for name, found in _geometry(samples, constructions, hursts).items():
-        values |= _columns(name, found, (len(constructions), *shape))
+        values |= columns_of(name, found, (len(constructions), *shape))
     decisions = _decisions(by_class["alpha"], values, (len(arms), *shape))
     values |= {
         "verdict": _texts(decisions, lambda one: one.verdict, (len(arms), *shape)),
@@ -126,7 +128,7 @@ def _table() -> dict[str, tuple]:
         (GEOMETRY, of_geometry),
     ):
         for name, long_name in words.items():
-            table |= {f"{name}{end}": (dims, "1", long_name + of) for end, of in _ENDS.items()}
+            table |= {of: (dims, *row) for of, row in exponent_rows(name, long_name).items()}
     return table | {
         "verdict": (of_class, "1", "what alpha says of eq. 6"),
         "reason": (of_class, "1", "why"),
@@ -245,14 +247,6 @@ def _cut_off_slopes(fine: xr.Dataset, name: str) -> np.ndarray:
     return np.tensordot(x, logs, axes=(0, 0)) / np.sum(x**2)
 
 
-def _columns(name: str, found: list[Exponent], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
-    fields = zip(_ENDS, Exponent._fields, strict=True)
-    return {
-        f"{name}{end}": np.reshape([getattr(one, field) for one in found], shape)
-        for end, field in fields
-    }
-
-
 def _texts(
     decisions: list[Decision], text: Callable[[Decision], str], shape: tuple[int, ...]
 ) -> np.ndarray:
@@ -261,8 +255,15 @@ def _texts(
 
 def _prediction(values: Mapping[str, np.ndarray], name: str, at: tuple[int, int]) -> Exponent:
     """-(2 - Delta_sigma) of an estimator, at (hurst, load)."""
-    value, error, low, high = (float(values[f"{name}{end}"][at]) for end in _ENDS)
-    return Exponent(value - 2, error, low - 2, high - 2) if np.isfinite(value) else UNKNOWN
+    delta = _read(values, name, at)
+    return delta.mapped(lambda value: value - 2) if delta.known else UNKNOWN
+
+
+def _read(values: Mapping[str, np.ndarray], name: str, at: tuple[int, ...]) -> Exponent:
+    """An exponent of the table."""
+    here = {of: float(values[of][at]) for of in UNKNOWN.columns(name)}
+    found = Exponent.read(here, name)
+    return replace(found, error=here[f"{name}_error"])
 
 
 def _decisions(alphas: list[Exponent], values: Mapping[str, np.ndarray], shape) -> list[Decision]:
@@ -289,10 +290,7 @@ def _follows(values: Mapping[str, np.ndarray], arm: int, shape) -> bool:
     if shape[1] < 2:
         return False
     for load in range(shape[2]):
-        ends = [
-            Exponent(*(float(values[f"alpha{end}"][arm, j, load]) for end in _ENDS))
-            for j in (0, -1)
-        ]
+        ends = [_read(values, "alpha", (arm, j, load)) for j in (0, -1)]
         wanted = [_prediction(values, "area_delta", (j, load)) for j in (0, -1)]
         if not all(np.isfinite(one.error) for one in (*ends, *wanted)):
             return False
@@ -305,7 +303,7 @@ def _change(first: Exponent, second: Exponent) -> Exponent:
     """Difference of two exponents with its joint interval."""
     value = second.value - first.value
     half = float(np.hypot(first.high - first.value, second.high - second.value))
-    return Exponent(value, float(np.hypot(first.error, second.error)), value - half, value + half)
+    return Exponent.about(value, float(np.hypot(first.error, second.error)), half)
 
 
 def summary(result: xr.Dataset) -> str:

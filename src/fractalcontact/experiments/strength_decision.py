@@ -59,9 +59,8 @@ def mean_strength(rates: np.ndarray, basic_angle: float) -> Exponent:
     """
     mean = mean_exponent(rates)
     value, low, high = friction_ratio(np.array([mean.value, mean.low, mean.high]), basic_angle)
-    return Exponent(
-        float(value), float(abs(_slope(mean.value, basic_angle)) * mean.error), low, high
-    )
+    error = float(abs(_slope(mean.value, basic_angle)) * mean.error)
+    return Exponent(float(value), low, high, error=error)
 
 
 def _slope(rate: float, basic_angle: float) -> float:
@@ -137,7 +136,7 @@ def equal_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
     # Welch and Satterthwaite; surfaces that are all alike have no scatter and any freedom.
     joint = variance**2 / np.sum(of_sides**2 / freedom) if variance > 0 else freedom.sum()
     half = quantile(float(joint)) * float(np.sqrt(variance))
-    return Exponent(value, float(np.sqrt(variance)), value - half, value + half)
+    return Exponent.about(value, float(np.sqrt(variance)), half)
 
 
 def beyond(found: Exponent, predicted: Exponent) -> Exponent:
@@ -145,7 +144,7 @@ def beyond(found: Exponent, predicted: Exponent) -> Exponent:
     value = found.value - predicted.value
     half = float(np.hypot(found.high - found.value, predicted.high - predicted.value))
     error = float(np.hypot(found.error, predicted.error))
-    return Exponent(value, error, value - half, value + half)
+    return Exponent.about(value, error, half)
 
 
 def size_verdict(exponent: Exponent, bound: float = NO_EFFECT) -> str:

@@ -16,6 +16,8 @@ from .size_decision import (
     NO_EFFECT,
     UNKNOWN,
     Exponent,
+    columns_of,
+    exponent_rows,
     paired_exponent,
     size_exponent,
 )
@@ -31,7 +33,6 @@ from .strength_decision import (
 )
 from .units import SPACING
 
-_ENDS = {"": "", "_error": ", standard error", "_low": ", lower 99 %", "_high": ", upper 99 %"}
 _CLASS = ("hurst", "law")
 _AT_V = (*_CLASS, "interval", "reduced_pressure")
 _AT_FRACTION = (*_CLASS, "fraction", "reduced_pressure")
@@ -203,9 +204,9 @@ def equal_fractions(
 
 def _table() -> dict[str, tuple]:
     table: dict[str, tuple] = {
-        f"{name}{end}": (dims, "1", words + of)
+        of: (dims, *row)
         for name, (dims, words) in EXPONENTS.items()
-        for end, of in _ENDS.items()
+        for of, row in exponent_rows(name, words).items()
     }
     table |= {
         f"{name}_verdict": (EXPONENTS[name][0], "1", words) for name, words in VERDICTS.items()
@@ -262,8 +263,8 @@ def _fill(
             values[name][where] = one
             continue
         shape = values[name][where].shape
-        for end, field in zip(_ENDS, Exponent._fields, strict=True):
-            values[f"{name}{end}"][where] = np.reshape([getattr(e, field) for e in one], shape)
+        for of, column in columns_of(name, one, shape).items():
+            values[of][where] = column
         if name in VERDICTS:
             verdicts = np.array([size_verdict(e) for e in one], object)
             values[f"{name}_verdict"][where] = verdicts.reshape(shape)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..core.estimate import Estimate
 from ..core.labels import loads_of
 from ..core.limits import LOOSELY, NEARLY
 from ..core.verdicts import (
@@ -94,11 +95,8 @@ def domains_differ_from_cuts(joint: Joint) -> Finding:
     compared = np.isfinite(p)
     if not compared.any():
         return Finding(UNDETERMINED, "no load at which domain and cut have local slopes to compare")
-    low, high = (
-        np.array([states[f"{name}_cut_difference_{end}"].values for name in _DIMENSIONS])
-        for end in ("low", "high")
-    )
-    unrelated = bool(((low > LOOSELY) | (high < -LOOSELY))[:, compared].any())
+    beyond = [Estimate.read(states, f"{name}_cut_difference")[compared] for name in _DIMENSIONS]
+    unrelated = any(((one.low > LOOSELY) | (one.high < -LOOSELY)).any() for one in beyond)
     different, total = sum(map(departure.differs, p[compared])), int(compared.sum())
     verdict = FAILS if unrelated else share(different, total) if different else UNDETERMINED
     less = states["delta_sigma_cut_difference"].values[compared]
@@ -117,19 +115,15 @@ def domains_are_isotropic(joint: Joint) -> Finding:
     What scales alike along both axes has the same probability along both.
     """
     measures = joint.stages["domain_measures"].sel(normal_force=joint.force, method="nearest")
-    (along, low, high), (across, *other) = (
-        [float(measures[f"contact_at_lag_{way}{end}"]) for end in ("", "_low", "_high")]
-        for way in ("along", "across")
+    along, across = (
+        Estimate.read(measures, f"contact_at_lag_{way}") for way in ("along", "across")
     )
-    if not np.isfinite([along, across]).all() or along + across == 0:
+    if not (along.known and across.known) or along.value + across.value == 0:
         return Finding(UNDETERMINED, "no contact at that lag from another")
     ways = ("along x", "along y") if joint.settings["opposite"] == "flat" else _OF_SLIDING
-    numbers = (
-        f"contact at a lag {along:.2f} [{low:.2f}, {high:.2f}] {ways[0]}, {across:.2f} "
-        f"[{other[0]:.2f}, {other[1]:.2f}] {ways[1]}"
-    )
-    apart = max(low, other[0]) > min(high, other[1])
-    difference = abs(across - along) / (across + along)
+    numbers = f"contact at a lag {along:.2f} {ways[0]}, {across:.2f} {ways[1]}"
+    apart = max(along.low, across.low) > min(along.high, across.high)
+    difference = abs(across.value - along.value) / (across.value + along.value)
     if apart:
         return Finding(FAILS if difference > LOOSELY else PARTLY, numbers)
     return Finding(HOLDS if difference <= NEARLY else UNDETERMINED, numbers)
