@@ -44,9 +44,9 @@ def strength_by_size(
         (part, normal_force) and ``shear_strength`` (interval, part, normal_force); ``held_share``
         (part, normal_force), the fraction of sub-windows whose peak was held;
         ``strength_exponent``, ``residual_exponent`` (normal_force) and ``shear_exponent``
-        (interval, normal_force); ``barton_scaled_strength`` (part, normal_force) with the JRC and JCS of
-        that size by Barton and Bandis' law (which was measured on joints of 50 mm and more); none
-        where that JRC is beyond Barton's scale of 0 to 20.
+        (interval, normal_force); ``barton_scaled_strength`` (part, normal_force) with the JRC and
+        JCS of that size by Barton and Bandis' law (which was measured on joints of 50 mm and more);
+        none where that JRC is beyond Barton's scale of 0 to 20.
 
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
         ``similar_strength`` and ``similar_slope`` (d delta/dv, not held), ``similar_held`` (the
