@@ -475,6 +475,15 @@ def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():
     assert not Joint(yielding, SETTINGS).yields_everywhere
 
 
+@pytest.mark.parametrize("length", [0.05, 0.4, 1.3])
+@pytest.mark.parametrize("uncorrelated", [1.4, 1.5, np.nan])
+def test_every_offset_belongs_to_one_part_of_the_sliding(length, uncorrelated):
+    """Also one that is the correlation length, or at which no correlation is left, exactly."""
+    joint = Joint(stages(length=length, uncorrelated=uncorrelated), SETTINGS)
+    times = sum(part.astype(int) for part in (joint.initial, joint.between, joint.unrelated))
+    np.testing.assert_array_equal(times, joint.offset > 0)
+
+
 def test_flush_faces_are_left_out():
     joint = Joint(stages(), SETTINGS)
     assert not joint.initial[joint.offset == 0].any()
