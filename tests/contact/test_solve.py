@@ -564,3 +564,15 @@ def test_a_node_is_ambiguous_whose_pressure_closes_no_more_than_the_tolerance(sp
     assert np.count_nonzero(state.in_contact) == 1
     assert replace(state, residual=1.3).ambiguous == 1
     assert replace(state, residual=0.7).ambiguous == 0
+
+
+@pytest.mark.parametrize("closure", [0.02, 0.2])
+def test_the_energy_error_is_a_fraction_of_the_energy_of_displacing_and_closing(closure):
+    height, space = rough((32, 32))
+    state = solve_contact(height, space, closure=closure, rtol=1e-3)
+    clearance = height.max() - height
+    energy = np.sum((state.displacement / 2 + clearance) * state.pressure)
+    # To carry the same force where the gap is least would gain no more than this.
+    bound = np.sum((state.gap - state.gap.min()) * state.pressure)
+    assert state.energy_error == pytest.approx(bound / energy, rel=1e-9)
+    assert bound > 0

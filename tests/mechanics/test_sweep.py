@@ -10,7 +10,12 @@ from fractalcontact.contact.solve import solve_contact
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.area import contact_perimeter, corrected_area
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
-from fractalcontact.mechanics.joint import composite_topography, describe_joint
+from fractalcontact.mechanics.joint import (
+    composite_topography,
+    describe_joint,
+    face_correlation,
+    rigid_dilatancy,
+)
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.state_scalars import numbers_of, state_errors
 from fractalcontact.mechanics.states import MAP_PRESSURE, OFFSETS, combine, domains_of, map_states
@@ -94,6 +99,18 @@ def test_errors_of_a_domain_are_those_of_an_undecided_node(made, spacing):
         off = abs(found[name] - value)
         # No less; and no more than the three times that a corrected area may differ by.
         assert off * (1 - 1e-12) <= errors[f"{name}_error"] <= 3 * off, name
+
+
+def test_rigid_offsets_are_the_nearest_cells_of_each_direction(specimen, joint):
+    spacing = dict(zip("ENWS", (SPACING_X, SPACING_Y) * 2, strict=True))
+    for direction in joint["direction"].values:
+        cells = np.rint(joint["rigid_offset"].values / spacing[direction]).astype(int)
+        found = joint.sel(direction=direction)
+        opened, spread = rigid_dilatancy(specimen, direction, cells)
+        np.testing.assert_allclose(found["rigid_dilatancy"], opened, rtol=1e-12)
+        np.testing.assert_allclose(found["composite_rms"], spread, rtol=1e-9)
+        correlation = face_correlation(specimen, direction, cells)
+        np.testing.assert_allclose(found["face_correlation"], correlation, rtol=1e-9)
 
 
 def test_directions_keep_the_order_of_the_study(parts, joint):

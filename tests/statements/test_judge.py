@@ -32,6 +32,8 @@ SETTINGS = {
     "material": ROCK,
     "opposite": "match",
 }
+#: Faces that are uncorrelated at the first offset beyond the correlation length.
+WITHIN = {"length": 1.3, "uncorrelated": 1.4}
 CONCRETE = {**SETTINGS, "material": {**ROCK, "name": "concrete"}}
 
 
@@ -301,6 +303,9 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 3, 3]}, FAILS),
         ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 4, 4.5]}, HOLDS),
         ("compliance_rises_again", {"uncorrelated": np.nan}, UNDETERMINED),
+        # None between: the last offset within the correlation length, not a first one, is before.
+        ("compliance_rises_again", WITHIN | {"compliance": [1, 1.8, 3.2, 4, 4, 4, 4]}, FAILS),
+        ("compliance_rises_again", WITHIN | {"compliance": [9, 8, 7, 4, 5, 5, 5]}, HOLDS),
         ("closure_is_hyperbolic", {"law": ["", *["hyperbola"] * 3, *["undecided"] * 3]}, HOLDS),
         ("closure_is_hyperbolic", {"law": ["", "hyperbola", *["semi-logarithmic"] * 5]}, PARTLY),
         ("closure_is_hyperbolic", {"law": ["semi-logarithmic"] * 7}, FAILS),
