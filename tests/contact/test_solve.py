@@ -538,3 +538,41 @@ def test_loads_up_to_where_the_whole_window_yields(seed):
         applications += state.iterations
     # Through closures one after the other, a single load would take as many.
     assert applications < 200
+
+
+@pytest.mark.parametrize("residual", [0.01, 0.1])
+def test_nodes_are_ambiguous_whatever_the_unit_of_length(residual):
+    height, space = rough()
+    found = []
+    for unit in (1.0, 64.0):  # a power of two costs no digit
+        grown = HalfSpace(space.shape, tuple(unit * s for s in space.spacing), MODULUS)
+        state = replace(solve_contact(unit * height, grown, closure=unit * 0.05), residual=residual)
+        gap = state.gap <= residual * state.closure
+        assert state.ambiguous > np.count_nonzero(gap & ~state.in_contact)  # weak ones among them
+        found.append(state.ambiguous)
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("spacing", [(0.1, 0.1), (0.2, 0.05)])
+def test_a_node_is_ambiguous_whose_pressure_closes_no_more_than_the_tolerance(spacing):
+    """On one cell: of a pressure p it goes down by 1.0 to 1.2 p/E* times its side."""
+    height = np.zeros((9, 9))
+    height[4, 4] = 1.0
+    space = HalfSpace(height.shape, spacing, MODULUS)
+    state = solve_contact(height, space, closure=1e-3)
+    # All of the closure is the displacement of that node by its own pressure.
+    assert np.count_nonzero(state.in_contact) == 1
+    assert replace(state, residual=1.3).ambiguous == 1
+    assert replace(state, residual=0.7).ambiguous == 0
+
+
+@pytest.mark.parametrize("closure", [0.02, 0.2])
+def test_the_energy_error_is_a_fraction_of_the_energy_of_displacing_and_closing(closure):
+    height, space = rough((32, 32))
+    state = solve_contact(height, space, closure=closure, rtol=1e-3)
+    clearance = height.max() - height
+    energy = np.sum((state.displacement / 2 + clearance) * state.pressure)
+    # To carry the same force where the gap is least would gain no more than this.
+    bound = np.sum((state.gap - state.gap.min()) * state.pressure)
+    assert state.energy_error == pytest.approx(bound / energy, rel=1e-9)
+    assert bound > 0

@@ -35,6 +35,14 @@ def test_nodes_below_are_found_in_coarse_cells_too(shape):
         np.testing.assert_array_equal(at, (height.max() - height).ravel()[expected])
 
 
+@pytest.mark.parametrize("shape", [(1, 7), (6, 5)])
+def test_the_clearance_of_a_bearing_area_is_that_of_its_lowest_node(shape):
+    height = np.random.default_rng(2).random(shape)
+    topography = Topography(height, shape)
+    for count, clearance in enumerate(np.sort(height.max() - height, axis=None), start=1):
+        assert topography.bearing_clearance(count) == clearance
+
+
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_a_missing_cell_is_refused(value, dtype):

@@ -26,6 +26,7 @@ from fractalcontact.core.determined import determined
         ((0.07, -0.06, 0.20), {}, True),
         ((0.01, -0.06, 0.20), {}, False),
         ((1.0, 1.0, 1.0), {"span": 1.0}, False),  # three counts on a line
+        ((1e-9, 9e-10, 1.1e-9), {"span": 1.0}, False),  # a line that is level but for rounding
         ((2.0, 2.0, 2.0), {"span": 1.0, "exact": (0.0, 2.0)}, True),
         ((0.0, 0.0, 0.0), {"span": 1.0, "exact": (0.0, 2.0)}, True),
         ((1.0, np.nan, np.nan), {"span": 1.0}, False),

@@ -9,6 +9,7 @@ from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 
 from fractalcontact.domain.box_counts import box_count, box_sizes
 from fractalcontact.domain.box_dimension import box_dimension, local_slopes
+from fractalcontact.domain.mean_law import law_of_means
 from fractalcontact.surface.synthesis import self_affine
 
 #: Of flights, cells: with a quarter, boxes of one and two cells that a flight meets are missed.
@@ -445,3 +446,14 @@ def test_bad_arguments_are_refused():
         box_count(np.ones((4, 4), dtype=bool), [0])
     with pytest.raises(ValueError, match="grid"):
         box_count(np.ones(4, dtype=bool), [1])
+
+
+@pytest.mark.parametrize("side", [24, 48])
+def test_no_law_is_fitted_where_every_box_is_occupied_wherever_the_grid_begins(side):
+    domain = np.random.default_rng(1).random((side, side + 8)) > 0.1
+    domain[[0, -1]] = domain[:, [0, -1]] = True  # so that no box at the rim is empty
+    law, means = law_of_means(domain, (0, np.inf), 2.0, None)
+    assert law is None
+    # A length of n cells meets (n - 1) / r + 1 boxes of r in the mean.
+    boxes = np.prod([(n - 1) / means.sizes + 1 for n in domain.shape], axis=0)
+    np.testing.assert_allclose(means.counts[2:], boxes[2:])

@@ -9,7 +9,7 @@ from fractalcontact.elastic.halfspace import (
     HalfSpace,
     rectangle_mean_displacement,
 )
-from fractalcontact.elastic.influence import love_displacement
+from fractalcontact.elastic.influence import influence_table, love_displacement
 
 # shape, (dy, dx): square, odd, prime, strips, not square cells, one row, one node
 GRIDS = [
@@ -20,6 +20,15 @@ GRIDS = [
     ((1, 23), (1.0, 1.5)),
     ((1, 1), (0.3, 0.7)),
 ]
+
+
+@pytest.mark.parametrize("sides", [(2.0, 0.5), (0.5, 2.0)])
+@pytest.mark.parametrize("shape", [(3, 300), (300, 3)])
+def test_the_influence_is_loves_near_and_far_of_stretched_cells(sides, shape):
+    dy, dx = sides
+    y, x = (np.arange(n) * d for n, d in zip(shape, sides, strict=True))
+    exact = love_displacement(x, y[:, np.newaxis], dx, dy)
+    np.testing.assert_allclose(influence_table(shape, sides, None), exact, rtol=1e-11)
 
 
 def love_by_logarithms(x, y, dx, dy):

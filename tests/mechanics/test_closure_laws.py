@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from ensembles import ensemble
+from scipy import stats
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
@@ -33,6 +34,22 @@ def test_a_hyperbola_is_found_again_exactly():
     assert (fit.k_ni.value, fit.w_m.value) == pytest.approx((30, 0.4), rel=1e-6)
     assert fit.misfit < 1e-6
     assert fit.reason == ""
+
+
+@pytest.mark.parametrize("n", [4, 5, 9])
+def test_the_interval_of_a_hyperbola_is_that_of_its_linear_part(n):
+    """Student's t, of points less the two parameters, in the logarithms of these."""
+    sigma = np.geomspace(2, 100, n)
+    w = hyperbola(sigma) * (1 + 1e-3 * np.random.default_rng(n).normal(size=n))
+    fit = fit_hyperbola(sigma, w)
+    k, w_m = fit.k_ni.value, fit.w_m.value
+    found = hyperbola(sigma, k, w_m)
+    # d w / d ln k and d w / d ln w_m.
+    slopes = np.column_stack([-k * found**2 / sigma, found - k * found**2 / sigma])
+    variance = np.sum((w - found) ** 2) / (n - 2) * np.diag(np.linalg.inv(slopes.T @ slopes))
+    half = stats.t.ppf(0.975, n - 2) * np.sqrt(variance)
+    for one, by in zip((fit.k_ni, fit.w_m), half, strict=True):
+        assert np.log([one.high / one.value, one.value / one.low]) == pytest.approx(by, rel=0.01)
 
 
 def test_a_semi_logarithmic_curve_is_found_again_exactly():

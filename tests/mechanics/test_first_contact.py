@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from fractalcontact.mechanics.first_contact import highest_node_scatter
 from fractalcontact.surface.synthesis import self_affine
@@ -14,6 +15,14 @@ def test_the_highest_of_exponential_heights_scatters_as_stated():
     low, high = np.quantile(highest, [0.025, 0.975])
     stated = [highest_node_scatter(h) for h in heights]
     assert np.median(stated) == pytest.approx((high - low) / 2, rel=0.25)
+
+
+def test_the_scale_of_exponential_block_maxima_comes_back_in_the_mean():
+    """Of exponential values the mean excess over any of them has the mean of their scale."""
+    rng = np.random.default_rng(2)
+    stated = [highest_node_scatter(h) for h in rng.exponential(0.3, size=(2000, 8, 8))]
+    half_of_gumbel = np.diff(stats.gumbel_r.ppf([0.025, 0.975], scale=0.3)).item() / 2
+    assert np.mean(stated) == pytest.approx(half_of_gumbel, rel=0.03)
 
 
 def test_it_covers_the_highest_node_of_other_surfaces():

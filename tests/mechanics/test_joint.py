@@ -169,6 +169,8 @@ def test_a_slide_in_one_pass_is_that_of_whole_arrays(monkeypatch, rough, directi
         assert spread[n] == pytest.approx(composite.std(), **accuracy)
         assert found[n] == pytest.approx(rho, rel=1e-9 if level == 0 else 1e-7)
     assert opened[0] == spread[0] == 0
+    # Also where the slide is far shorter than either side of the window.
+    assert face_correlation(joint, direction, cells[:2]) == pytest.approx(found[:2], rel=1e-7)
 
 
 def test_a_plane_is_correlated_with_nothing(rough):

@@ -33,10 +33,10 @@ SETTINGS = resolve_settings(STUDY, "rock", {}, "tiny")
 MIDDLE = (12.0, 12.0)
 
 
-def loading(motions):
+def loading(motions, level=0.0):
     z = self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=1)
     upper = z + 0.1 * self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=2)
-    faces = scan_of(z), scan_of(upper + 0.5)
+    faces = scan_of(z), scan_of(upper + 0.5 + level)
     specimen = make_specimen(*faces, name="rock", **window_arguments(SETTINGS))
     if motions:
         specimen = specimen.assign(motion_variables(motions))
@@ -77,6 +77,13 @@ def test_the_spread_is_that_of_the_values_and_grows_with_the_motions():
     assert (np.diff(values["closure"]) > 0).all()
     assert (np.diff(values["separation"]) < 0).all()
     assert (np.diff(values["stiffness"]) > 0).all()
+
+
+def test_values_do_not_depend_on_how_far_apart_the_faces_were_scanned():
+    motions = [Motion(MIDDLE, (12.1, 12.0)), Motion(MIDDLE, (11.9, 12.0))]
+    near, far = registration_values(loading(motions)), registration_values(loading(motions, 3.0))
+    for name, values in near.items():
+        np.testing.assert_allclose(values, far[name], rtol=1e-3)
 
 
 def test_loads_can_be_chosen():

@@ -1,14 +1,24 @@
 """Contact states of several directions put together, on cells that are not square."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.window import window_sides
 from fractalcontact.elastic.halfspace import HalfSpace
+from fractalcontact.mechanics.area import contact_perimeter, corrected_area
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
-from fractalcontact.mechanics.joint import composite_topography, describe_joint
+from fractalcontact.mechanics.joint import (
+    composite_topography,
+    describe_joint,
+    face_correlation,
+    rigid_dilatancy,
+)
 from fractalcontact.mechanics.loading import JointLoading
+from fractalcontact.mechanics.state_scalars import numbers_of, state_errors
 from fractalcontact.mechanics.states import MAP_PRESSURE, OFFSETS, combine, domains_of, map_states
 from fractalcontact.mechanics.sweep import contact_states, joint_states, load_steps
 from fractalcontact.surface.specimen import make_specimen
@@ -53,6 +63,55 @@ def parts(specimen, joint):
         for i in range(len(cells))
         for resolution in (1, 2)
     ]
+
+
+def lone_node(space):
+    """State of one node in contact, which may as well not touch; and its number."""
+    heights = np.zeros(space.shape)
+    heights[4, 3] = 1e-3
+    return replace(solve_contact(heights, space, closure=1e-4), residual=1.0), (4, 3)
+
+
+def lone_gap(space):
+    """State of all nodes in contact but one, which may as well touch; and its number."""
+    heights, closure = np.zeros(space.shape), 0.05
+    heights[4, 3] = -1.0
+    over_a_pit = solve_contact(heights, space, closure=closure)
+    heights[4, 3] = 1.02 * (over_a_pit.displacement[4, 3] - closure)
+    return replace(solve_contact(heights, space, closure=closure), residual=4e-3), (4, 3)
+
+
+@pytest.mark.parametrize("made", [lone_node, lone_gap])
+@pytest.mark.parametrize("spacing", [(SPACING_Y, SPACING_X), (SPACING_X, SPACING_Y)])
+def test_errors_of_a_domain_are_those_of_an_undecided_node(made, spacing):
+    space = HalfSpace((9, 7), spacing, 2e4)
+    state, node = made(space)
+    assert state.ambiguous == 1
+    found, errors = numbers_of(state), state_errors(state)
+    other = state.in_contact.copy()
+    other[node] = not other[node]
+    decided = {
+        "nodes": np.count_nonzero(other),
+        "area": np.count_nonzero(other) * space.cell_area,
+        "perimeter": contact_perimeter(other, spacing),
+        "area_corrected": corrected_area(other, spacing),
+    }
+    for name, value in decided.items():
+        off = abs(found[name] - value)
+        # No less; and no more than the three times that a corrected area may differ by.
+        assert off * (1 - 1e-12) <= errors[f"{name}_error"] <= 3 * off, name
+
+
+def test_rigid_offsets_are_the_nearest_cells_of_each_direction(specimen, joint):
+    spacing = dict(zip("ENWS", (SPACING_X, SPACING_Y) * 2, strict=True))
+    for direction in joint["direction"].values:
+        cells = np.rint(joint["rigid_offset"].values / spacing[direction]).astype(int)
+        found = joint.sel(direction=direction)
+        opened, spread = rigid_dilatancy(specimen, direction, cells)
+        np.testing.assert_allclose(found["rigid_dilatancy"], opened, rtol=1e-12)
+        np.testing.assert_allclose(found["composite_rms"], spread, rtol=1e-9)
+        correlation = face_correlation(specimen, direction, cells)
+        np.testing.assert_allclose(found["face_correlation"], correlation, rtol=1e-9)
 
 
 def test_directions_keep_the_order_of_the_study(parts, joint):

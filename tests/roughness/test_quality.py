@@ -9,7 +9,7 @@ from scipy import stats
 
 from fractalcontact.roughness.quality import height_step, scan_quality
 from fractalcontact.roughness.quality_words import noise_words, range_words
-from fractalcontact.roughness.spectra import radial_spectrum
+from fractalcontact.roughness.spectra import FIRST_ORDER, radial_spectrum
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
@@ -73,6 +73,13 @@ def test_the_radial_spectrum_of_white_noise_is_its_variance_times_the_cell(spaci
     assert np.mean(density[: len(density) // 2]) == pytest.approx(
         0.02**2 * spacing[0] * spacing[1], rel=0.05
     )
+
+
+@pytest.mark.parametrize("spacing", [(0.1, 0.25), (0.25, 0.1)])
+def test_the_radial_spectrum_has_waves_that_every_direction_has(spacing):
+    wavelength, _ = radial_spectrum(white((128, 128)), spacing)
+    assert wavelength.min() > 2 * max(spacing)  # two of the longer sides of a cell
+    assert wavelength.max() <= 128 * min(spacing) / FIRST_ORDER
 
 
 def test_the_radial_spectrum_of_a_self_affine_surface_falls_as_it_should():

@@ -504,6 +504,23 @@ def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, messa
         text.read_text(path, text.ScanOptions())
 
 
+@pytest.mark.parametrize("share", [0.3, 3.0])
+def test_cells_are_far_from_points_whichever_side_of_theirs_is_longer(share):
+    cell = 1.0, 4.0
+    scattered = cloud(60, height=lambda x, y: np.where(x < 15, 0.0, np.nan))
+    far = {
+        pitch: density.far_from_points(
+            scattered[:, order], points.Lattice(0, 0, *pitch, *nodes), share * np.prod(cell)
+        )
+        for pitch, nodes, order in (
+            (cell, (21, 6), [0, 1, 2]),
+            (cell[::-1], (6, 21), [1, 0, 2]),
+        )
+    }
+    np.testing.assert_array_equal(far[cell], far[cell[::-1]].T)
+    assert 0 < far[cell].mean() < 1
+
+
 # --- the benchmark -----------------------------------------------------------------------------
 
 

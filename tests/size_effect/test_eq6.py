@@ -158,6 +158,14 @@ def test_its_whole_is_predicted_from_its_parts():
         )
 
 
+def test_the_area_of_the_whole_is_its_force_over_its_real_pressure():
+    states = made_states(lambda p, b: 100 * (p * b**0.4) ** 0.2)
+    delta = xr.DataArray(np.full((3, 4), 2.0), dims=("estimator", "normal_force"))
+    pressure = states["nominal_pressure"].values
+    real = 100 * (pressure * 16**0.4) ** 0.2
+    np.testing.assert_allclose(predict_whole(states, delta, 4)["direct_area"], pressure / real)
+
+
 def test_power_law_of_closure():
     states = made_states(lambda p, b: 50 + 0 * b * p, lambda p, b: 1e-3 * p**0.5 * b**0.7)
     delta = xr.DataArray(np.full((3, 4), 2.0), dims=("estimator", "normal_force"))

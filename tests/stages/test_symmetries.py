@@ -11,6 +11,7 @@ from materials import ROCK
 from symmetries import LENGTH, STRESS, differences, exchanged, grown, with_axes_exchanged
 
 from fractalcontact.mechanics.states import SOLVER_ERROR
+from fractalcontact.stages.strength import strength_stages
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
@@ -42,9 +43,8 @@ def face(heights, spacing):
     return xr.DataArray(heights, dims=("y", "x"), coords=coords, attrs=attrs)
 
 
-@cache
-def stages(length=1.0, stress=1.0, turned=False):
-    """Stages of two faces with a hole, a spike and an overlap."""
+def rock_joint(length=1.0, stress=1.0, turned=False):
+    """Two faces with a hole, a spike and an overlap, and the settings of their study."""
     lower, more = (
         self_affine((96, 96), 0.1, 0.8, rms=0.03, seed=seed, roll_off=1.5)[:64, :80]
         for seed in (1, 2)
@@ -72,8 +72,13 @@ def stages(length=1.0, stress=1.0, turned=False):
             "fill_holes": 3,
         },
     }
-    settings = resolve_settings(study, "joint", {}, "tiny")
-    return stages_of("joint", faces, settings, SOLVER)
+    return faces, resolve_settings(study, "joint", {}, "tiny")
+
+
+@cache
+def stages(length=1.0, stress=1.0, turned=False):
+    """Stages of that joint."""
+    return stages_of("joint", *rock_joint(length, stress, turned), SOLVER)
 
 
 @pytest.mark.parametrize("stage", MADE_OF_SPECIMEN)
@@ -89,3 +94,29 @@ def test_results_do_not_depend_on_which_axis_is_called_x(stage):
     found = differences(other, first, rtol=1e-3, atol=1e-6, unordered="window")
     exact = [name for name in found if SOLVER_ERROR not in first[name].attrs.get("long_name", "")]
     assert not {name: found[name] for name in exact if not OF_ORDER.fullmatch(name)}
+
+
+def test_size_laws_below_a_roll_off_are_in_the_units_that_they_state():
+    found = []
+    for length, stress in ((1.0, 1.0), (LENGTH, STRESS)):
+        made = dict(stages(length, stress))
+        made["surface_dimension"] = made["surface_dimension"].assign(
+            roll_off=2.0 * length, range_max=1.0 * length
+        )
+        given = {need: made[need] for need in STAGES["windows"].needs}
+        settings = rock_joint(length, stress)[1]
+        found.append(strength_stages(**given, settings=settings)["windows"])
+    first, other = found
+    assert np.isfinite(first["face_hurst"]).any()
+    assert not first["face_hurst"].equals(stages()["windows"]["face_hurst"])
+    different = differences(other, grown(first), rtol=1e-4, atol=1e-6)
+    assert not {name: different[name] for name in different.keys() - ABSOLUTE}
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_errors_are_those_of_the_state_that_is_reported(turned):
+    made = stages(turned=turned)
+    closure, budget = made["closure"], made["error_budget"].attrs
+    assert budget["direction"] == closure["reported_direction"]
+    assert budget["offset_mm"] == closure["reported_offset"]
+    assert budget["resolution"] == closure["reported_resolution"]

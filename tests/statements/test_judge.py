@@ -22,6 +22,8 @@ SETTINGS = {
     "material": ROCK,
     "opposite": "match",
 }
+#: Faces that are uncorrelated at the first offset beyond the correlation length.
+WITHIN = {"length": 1.3, "uncorrelated": 1.4}
 CONCRETE = {**SETTINGS, "material": {**ROCK, "name": "concrete"}}
 
 
@@ -292,6 +294,9 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 3, 3]}, FAILS),
         ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 4, 4.5]}, HOLDS),
         ("compliance_rises_again", {"uncorrelated": np.nan}, UNDETERMINED),
+        # None between: the last offset within the correlation length, not a first one, is before.
+        ("compliance_rises_again", WITHIN | {"compliance": [1, 1.8, 3.2, 4, 4, 4, 4]}, FAILS),
+        ("compliance_rises_again", WITHIN | {"compliance": [9, 8, 7, 4, 5, 5, 5]}, HOLDS),
         ("closure_is_hyperbolic", {"law": ["", *["hyperbola"] * 3, *["undecided"] * 3]}, HOLDS),
         ("closure_is_hyperbolic", {"law": ["", "hyperbola", *["semi-logarithmic"] * 5]}, PARTLY),
         ("closure_is_hyperbolic", {"law": ["semi-logarithmic"] * 7}, FAILS),
@@ -464,6 +469,15 @@ def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():
         yielding, {**SETTINGS, "material": material | {"hardness": 1.1}}
     ).yields_everywhere
     assert not Joint(yielding, SETTINGS).yields_everywhere
+
+
+@pytest.mark.parametrize("length", [0.05, 0.4, 1.3])
+@pytest.mark.parametrize("uncorrelated", [1.4, 1.5, np.nan])
+def test_every_offset_belongs_to_one_part_of_the_sliding(length, uncorrelated):
+    """Also one that is the correlation length, or at which no correlation is left, exactly."""
+    joint = Joint(stages(length=length, uncorrelated=uncorrelated), SETTINGS)
+    times = sum(part.astype(int) for part in (joint.initial, joint.between, joint.unrelated))
+    np.testing.assert_array_equal(times, joint.offset > 0)
 
 
 def test_flush_faces_are_left_out():

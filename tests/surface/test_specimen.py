@@ -1,5 +1,7 @@
 """Levelling, window and reach of a specimen."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -223,6 +225,22 @@ def test_no_hole_free_place_says_where_the_holes_are_and_what_fits():
     specimen = make_specimen(scan_of(z), window=14.5)
     assert specimen.attrs["window_ny"] == 29
     assert specimen.valid.values[window_slices(specimen)].all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_place_that_a_refusal_names_is_free(seed):
+    z = rough((40, 60), seed)
+    z[np.random.default_rng(seed).random(z.shape) < 0.02] = np.nan
+    with pytest.raises(InputError) as error:
+        make_specimen(scan_of(z), window=15.0)
+    side, x, y = re.search(
+        r"a side of (\S+) mm, centred on x = (\S+), y = (\S+) mm", str(error.value)
+    ).groups()
+    found = make_specimen(scan_of(z), window=float(side), window_centre=(float(y), float(x)))
+    assert found.attrs["window_note"] == ""  # it did not have to move
+    # Nor is there room for a larger one.
+    with pytest.raises(InputError, match="no hole-free place"):
+        make_specimen(scan_of(z), window=float(side) + 0.5)
 
 
 def test_faces_on_different_grids_are_refused():

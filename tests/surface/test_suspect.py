@@ -150,6 +150,17 @@ def test_the_statistics_of_the_overlap_are_those_of_the_gap():
     assert numbers["fraction"][1] == 1 / 24**2
 
 
+def test_the_depth_of_overlaps_is_that_of_the_deepest():
+    lower, upper = pair(noise=0.0)
+    depths = [0.7, 0.2, 0.4]
+    for cell, depth in zip(SPIKES, depths, strict=True):
+        lower[cell] += 0.5 + depth
+    made = specimen(lower, upper)
+    whole, window = overlap_statistics(made, window_slices(made))["depth"]
+    assert whole == pytest.approx(max(depths))
+    assert window == pytest.approx(depths[2])  # that of the third cell alone
+
+
 @pytest.mark.parametrize("face", ["lower", "upper"])
 def test_fill_takes_spikes_away_from_the_face_that_has_them(face):
     lower, upper = pair()

@@ -7,7 +7,12 @@ from ensembles import ensemble
 
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
 from fractalcontact.study.embedded import write_scan
-from fractalcontact.surface.synthesis import disc_outline, self_affine
+from fractalcontact.surface.synthesis import (
+    band_slope,
+    disc_outline,
+    grid_side,
+    self_affine,
+)
 
 SEEDS = range(ensemble("synthetic seeds"))
 SPACING = 0.08
@@ -161,3 +166,21 @@ def test_sidecar_cannot_contradict_the_scan(tmp_path):
         write_scan(tmp_path / "a.npy", np.zeros((3, 3)), SPACING, sidecar={"unit": "m"})
     with pytest.raises(ValueError, match=r"\.npy"):
         write_scan(tmp_path / "a.npz", np.zeros((3, 3)), SPACING, sidecar={})
+
+
+@pytest.mark.parametrize("roll_off", [None, 12 * SPACING])
+@pytest.mark.parametrize("shape", [(24, 24), (25, 25), (20, 32)])
+def test_the_slope_of_a_band_is_that_of_all_its_waves(shape, roll_off):
+    """Also of those at the end of the grid's spectrum, each of which is its own mirror image."""
+    hurst, prefactor, shortest = 0.7, 3e-4, 2 * SPACING
+    side = grid_side(shape)
+    q_y, q_x = np.meshgrid(*[2 * np.pi * np.fft.fftfreq(side, SPACING)] * 2, indexing="ij")
+    q = np.hypot(q_y, q_x)
+    longest = 2 * np.pi / roll_off if roll_off else 0.0
+    seen = (q > 0) & (q <= 2 * np.pi / shortest * (1 + 1e-9))
+    density = prefactor * np.maximum(q[seen], longest) ** (-2 * (1 + hurst))
+    expected = np.sqrt(np.sum(q[seen] ** 2 * density)) / (side * SPACING)
+    found = band_slope(
+        shape, SPACING, hurst, prefactor=prefactor, cut_off=shortest, roll_off=roll_off
+    )
+    assert found == pytest.approx(expected)
