@@ -7,13 +7,17 @@ import shutil
 import netCDF4
 import numpy as np
 import pytest
-from code_blocks import code, run_code
+import yaml
+from code_blocks import blocks, code, run_code
 from markup import MARKUP
 from places import ROOT
 from print_size import faults
 
 from fractalcontact.core import checksums
-from fractalcontact.figures.kit.drawing import finest_curves, print_style
+from fractalcontact.core.subject import Subject
+from fractalcontact.figures.kit import caption
+from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.figures.kit.words import short
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.study.crate import Workflow, write_crate
 from fractalcontact.study.figure_list import read_figure
@@ -90,7 +94,7 @@ def test_the_first_lines_read_an_atlas():
     left["atlas"].close()
 
 
-def test_the_figure_of_the_recipe_is_drawn(atlas, tmp_path):
+def test_the_figure_of_the_recipe_is_drawn(atlas, tmp_path, monkeypatch):
     """Its constants are read from its text, its words stand apart, its data are the atlas's."""
     (tmp_path / "joint").mkdir()
     path = tmp_path / "joint/stiffness.py"
@@ -98,14 +102,21 @@ def test_the_figure_of_the_recipe_is_drawn(atlas, tmp_path):
     stated = read_figure(path)
     for stage in stated.needs:
         assert stage in atlas.children
+    (entry,) = (
+        one.text for one in blocks("docs/extending.md") if one.text.startswith("stiffness:")
+    )
+    added = yaml.safe_load(entry)["stiffness"]
+    monkeypatch.setattr(caption, "_templates", lambda group: {"added": added})
     module = run_code("docs/extending.md", "A figure", package="fractalcontact.figures.joint")
     for name in ("sliding", "flat"):
         with print_style():
             drawing = module["draw"](atlas, name)
             assert faults(drawing.figure) == []
-        curve = finest_curves(atlas, name).isel(offset=0)
-        np.testing.assert_array_equal(drawing.data["stiffness"], curve["stiffness"])
+        states = Subject.of(atlas, name).states("closure")
+        np.testing.assert_array_equal(drawing.data["stiffness_N_per_mm"], states["stiffness"])
         assert drawing.caption.startswith("Supplementary figure.")
+        stiffest = float(states["stiffness"].max())
+        assert f"at most {short(stiffest)} N/mm." in drawing.caption
 
 
 def test_no_word_of_the_atlas_is_markup_of_docstrings(atlas):

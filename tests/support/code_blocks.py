@@ -24,6 +24,10 @@ NOT_RUN = {
     ("docs/cluster.md", "make slurm"): CLUSTER,
     ("docs/cluster.md", ".venv/bin/python workflow/run.py config/mine.yaml"): CLUSTER,
     ("docs/cluster.md", "cp -r workflow/profiles/slurm"): CLUSTER,
+    (
+        "docs/extending.md",
+        "stiffness:",
+    ): "a caption: tests/figures/test_atlas_examples.py",
     ("docs/extending.md", "rule summits:"): "a rule: run in tests/workflow/test_added_stage.py",
     ("docs/first_hour.md", "make            # environment"): INSTALLS,
     ("docs/first_hour.md", "unit: mm"): "a sidecar: read in tests/test_documents.py",
