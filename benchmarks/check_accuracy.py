@@ -116,7 +116,7 @@ def main():
     full_in = ours_in.with_name(f"{ours_in.name}_full")
     ours, full = (read_atlas(path / "atlas.nc") for path in (ours_in, full_in))
     config = json.loads(ours.attrs["configuration"])["study"]
-    tolerance = solver_settings(config, str(ours_in))["accuracy"]["closure"]
+    tolerance = solver_settings(config, str(ours_in)).accuracy["closure"]
     print_numbers(ours, full, tolerance)
     print_seconds(ours_in, full_in)
 

@@ -18,6 +18,7 @@ import argparse
 import csv
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,6 +27,7 @@ import numpy as np
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.limits import DECISIVE
+from fractalcontact.core.settings import Settings, Solver
 from fractalcontact.core.window import cell_side, window_sides
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.closure_laws import fit_hyperbola
@@ -93,18 +95,18 @@ def variants(specimen, faces: int, points: bool) -> Iterator[tuple[str, dict, di
     yield "filled, other window", {}, fill | smaller | aside
 
 
-def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict:
+def numbers(specimen, settings: Settings, solver: Solver, wanted: float) -> dict:
     """Quantities of a specimen with errors, at the offset nearest to the one wanted (mm)."""
     joint = describe_joint(specimen, settings)
     loading = JointLoading.of_joint(
-        specimen, joint, settings["contact_directions"][0], settings, solver
+        specimen, joint, settings.contact_directions[0], settings, solver
     )
     cells = loading.cells[np.argmin(abs(loading.offsets - wanted))]
     loading = loading.at(cells)
     states = combine([contact_states(loading, [1, 2], mapped=cells)])
-    e_star = settings["material"]["e_star"]
+    e_star = settings.material.e_star
     curves = closure_curves(states, window_sides(specimen), e_star).isel(direction=0, offset=0)
-    (force,) = forces_of([settings["map_load"]], loading.area)
+    (force,) = forces_of([settings.map_load], loading.area)
     at, coarse = (
         curves.sel(resolution=k).sel(normal_force=force, method="nearest") for k in (1, 2)
     )
@@ -133,7 +135,7 @@ def numbers(specimen, settings: Mapping, solver: Mapping, wanted: float) -> dict
             values["k_ni"] * highest / hyperbolas[1].lowest,
         ),
     }
-    of_motion = registration_spread(loading, [settings["map_load"]]) or {}
+    of_motion = registration_spread(loading, [settings.map_load]) or {}
     errors = {}
     for name, value in values.items():
         moved = float(of_motion.get(name, [0.0])[0])
@@ -185,10 +187,12 @@ def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dic
 
     def prepared(of_scan: Mapping, of_study: Mapping):
         settings = resolve_settings(study, name, own | of_study, source)
-        settings |= {"resolutions": [1, 2]}
-        if settings["opposite"] != "flat":  # this offset, and in the first direction alone
-            first = settings["contact_directions"][:1]
-            settings |= {"offsets": [offset], "directions": first, "contact_directions": first}
+        settings = replace(settings, resolutions=[1, 2])
+        if settings.opposite != "flat":  # this offset, and in the first direction alone
+            first = settings.contact_directions[:1]
+            settings = replace(
+                settings, offsets=[offset], directions=first, contact_directions=first
+            )
         key = str(sorted(of_scan.items()))
         if key not in read:
             faces = read_faces(scan.lower, scan.upper, options | of_scan)
@@ -209,7 +213,7 @@ def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dic
         except InputError as error:
             sys.stderr.write(f"{words}: {error}\n")
             continue
-        quality = scan_quality(specimen, settings["resolutions"])
+        quality = scan_quality(specimen, settings.resolutions)
         lights = [overlap_words(specimen, quality), suspect_words(specimen)]
         lights.append(quality.attrs["warning"])
         yield {"variant": words, **found, "lights": "; ".join(filter(None, lights)) or "ok"}

@@ -63,7 +63,7 @@ def test_the_study_of_the_first_hour_takes_what_is_dropped_in(schema, tmp_path, 
     study = resolve_study(config, schema, "config/mine.yaml")
     assert config["study"] == "mine"
     assert set(study.settings) == {"rock"}
-    assert study.settings["rock"]["material"]["modulus"] == 40e3  # of the sidecar, not the study
+    assert study.settings["rock"].material.modulus == 40e3  # of the sidecar, not the study
     assert study.options["rock"] == {"unit": "mm", "spacing": "0.05 mm"}
 
 

@@ -71,14 +71,14 @@ def budget_of(name, accuracy=None, **more):
     )
     solver = solver_settings({"accuracy": accuracy} if accuracy else {}, "budget")
     joint = describe_joint(specimen, settings)
-    directions = settings["contact_directions"]
+    directions = settings.contact_directions
     parts = joint_states(
-        specimen, joint, directions, slice(None), settings, settings["resolutions"], solver
+        specimen, joint, directions, slice(None), settings, settings.resolutions, solver
     )
     states = combine([parts])
     loading = JointLoading.of_joint(specimen, joint, directions[0], settings, solver)
     sides = tuple(np.array(loading.shape) * SPACING)
-    curves = closure_curves(states, sides, settings["material"]["e_star"])
+    curves = closure_curves(states, sides, settings.material.e_star)
     domains = analyse_domains(domains_of(states), SPACING)
     budget = error_budget(loading.at_map_offset(), curves, domains, **more)
     plan = solve_plan(curves, elastic_dilatancy(curves, joint), settings, solver, budget)
@@ -150,7 +150,7 @@ def test_errors_cover_a_solve_at_an_eighth_of_the_spacing(one):
     composite = loading.composite(int(loading.cells[0]))
     finer = subgrid(composite, 8)
     sides = (SPACING / 8, SPACING / 8)
-    space = HalfSpace(finer.shape, sides, loading.settings["material"]["e_star"])
+    space = HalfSpace(finer.shape, sides, loading.settings.material.e_star)
     within = []
     for force in budget["normal_force"].values:
         state = solve_contact(finer, space, force=force, rtol=1e-5)

@@ -1,5 +1,7 @@
 """A small atlas, by the functions that the jobs of a study call: what tests draw figures from."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 from made_stages import scan, stages_of
@@ -135,7 +137,8 @@ def atlas_file(tmp_path_factory):
     for stage, dataset in _experiments().items():
         parts[stage]["surfaces"] = dataset
     path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
-    join_stages(parts, path, {"study": STUDY, "settings": settings})
+    records = {name: asdict(stated) for name, stated in settings.items()}
+    join_stages(parts, path, {"study": STUDY, "settings": records})
     return path
 
 

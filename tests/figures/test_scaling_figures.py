@@ -12,6 +12,7 @@ from cases import representative
 from matplotlib.figure import Figure
 
 from fractalcontact.core.fitting import fit_line
+from fractalcontact.core.settings import Material, read
 from fractalcontact.domain.analysis import scaling_over_resolutions
 from fractalcontact.domain.box_dimension import ESTIMATORS
 from fractalcontact.figures import draw as figures
@@ -110,7 +111,8 @@ def judged_anew(atlas, **material):
     settings["material"] |= material
     other.attrs["configuration"] = json.dumps(configuration)
     area, scaling = (atlas[f"{stage}/sliding"].to_dataset() for stage in ("area", "scaling"))
-    other["elastic_model/sliding"] = xr.DataTree(model_validity(area, scaling, settings))
+    judged = model_validity(area, scaling, read(Material, settings["material"]))
+    other["elastic_model/sliding"] = xr.DataTree(judged)
     return other, settings["material"]
 
 

@@ -5,6 +5,7 @@ from scipy import fft
 from symmetries import LENGTH, STRESS, differences, grown
 
 from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.core.settings import Solver
 from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics import area, theory
 from fractalcontact.mechanics.area import (
@@ -189,14 +190,14 @@ def solved():
     heights = self_affine((96, 96), SPACING, 0.8, rms=0.1, seed=3, roll_off=1.5)
     specimen = make_specimen(_scan(heights), None, name="one", **window_arguments(settings))
     joint = describe_joint(specimen, settings)
-    solver = {"rtol": 1e-6, "kernel": "love"}
+    solver = Solver(1e-6, "love", None)
     states = combine(
         [
             contact_states(
                 JointLoading.of_joint(specimen, joint, direction, settings, solver),
-                settings["resolutions"],
+                settings.resolutions,
             )
-            for direction in settings["contact_directions"]
+            for direction in settings.contact_directions
         ]
     )
     curves = closure_curves(states, window_sides(specimen), E_STAR)

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.core.settings import Solver
 from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics.closure import (
     bulk_settlement,
@@ -282,7 +283,7 @@ def slid_joint(cells, loads, resolutions=(1,)):
     return specimen, describe_joint(specimen, settings), curves
 
 
-SOLVER = {"rtol": 1e-7, "kernel": "love"}
+SOLVER = Solver(1e-7, "love", None)
 
 
 def test_the_closure_of_polished_faces_in_full_contact_is_undetermined():

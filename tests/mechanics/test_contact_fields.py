@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from made_settings import made_settings
 
 from fractalcontact.core import netcdf
 from fractalcontact.core.window import nominal_area
@@ -16,18 +17,17 @@ from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
-SETTINGS = {
-    "directions": ["E", "W"],
-    "contact_directions": ["W", "E"],
-    "offsets": [0.6, 0.3],
-    "loads": [(1.0, "pressure"), (5.0, "pressure"), (25.0, "pressure")],
-    "dilatancy_loads": [(5.0, "pressure")],
-    "map_load": (25.0, "pressure"),
-    "map_offset": 0.3,
-    "resolutions": [1, 2],
-    "material": {"e_star": 2e4, "hardness": np.inf},
-    "surface_range": None,
-}
+SETTINGS = made_settings(
+    directions=["E", "W"],
+    contact_directions=["W", "E"],
+    offsets=[0.6, 0.3],
+    loads=[(1.0, "pressure"), (5.0, "pressure"), (25.0, "pressure")],
+    dilatancy_loads=[(5.0, "pressure")],
+    map_load=(25.0, "pressure"),
+    map_offset=0.3,
+    resolutions=[1, 2],
+    surface_range=None,
+)
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def made():
     solver = solver_settings({}, "study")
     parts = [
         joint_states(specimen, joint, [direction], slice(None), SETTINGS, [1, 2], solver)
-        for direction in SETTINGS["contact_directions"]
+        for direction in SETTINGS.contact_directions
     ]
     domains = domains_of(combine(parts))
     stage = contact_fields(domains, parts, joint, SETTINGS, nominal_area(specimen))
@@ -109,7 +109,7 @@ def test_pressure_and_gap_belong_to_the_state_of_the_maps(made):
     assert kept.values.tolist() == [False, True, True]
     assert float(abs(gap.where(touching)).max()) < 1e-4 * float(gap.max())
     # Opposite in sign and form to the composite topography, and smoother by the displacement.
-    loading = JointLoading(specimen, "W", [3], SETTINGS, {})
+    loading = JointLoading(specimen, "W", [3], SETTINGS, solver_settings({}, "study"))
     assert loading.offsets.tolist() == [0.3]
     h = composite_topography(specimen, "W", 3)
     assert np.corrcoef(gap.isel(normal_force=2).values.ravel(), -h.ravel())[0, 1] > 0.8

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.settings import Solver
 from fractalcontact.mechanics.closure import interface_closure
 from fractalcontact.mechanics.joint import composite_topography, describe_joint, sliding_axis
 from fractalcontact.mechanics.loading import JointLoading
@@ -13,7 +14,7 @@ from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
-SOLVER = {"rtol": 1e-6, "kernel": "love"}
+SOLVER = Solver(1e-6, "love", None)
 STUDY = {
     "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.0}},
     "defaults": {
@@ -61,7 +62,7 @@ def test_half_space_lies_under_the_window(joint):
     coarse = loading.half_space((8, 16), 2)
     assert coarse.spacing == pytest.approx((0.4, 0.2))
     assert coarse.modulus == pytest.approx(20e3 / 2)
-    np.testing.assert_allclose(loading.forces(joint[2]["loads"]), np.array([1, 5]) * loading.area)
+    np.testing.assert_allclose(loading.forces(joint[2].loads), np.array([1, 5]) * loading.area)
     assert loading.solving == {"rtol": 1e-6, "hardness": np.inf}
 
 

@@ -1,15 +1,18 @@
 """The verdict on the elastic model: limits stated, limits assumed, and the worse of two counts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
+from made_settings import made_settings
 
 from fractalcontact.core.verdicts import GOOD, IN_PART, NOT_ASKED, POOR
 from fractalcontact.mechanics.model_validity import Validity, elastic_model_validity, model_validity
 
-NOTHING = {"modulus": 20e3, "hardness": np.inf, "joint_wall_strength": np.nan}
-STRENGTH = NOTHING | {"joint_wall_strength": 80.0}
-HARDNESS = STRENGTH | {"hardness": 1000.0}
+NOTHING = replace(made_settings().material, modulus=20e3)
+STRENGTH = replace(NOTHING, joint_wall_strength=80.0)
+HARDNESS = replace(STRENGTH, hardness=1000.0)
 
 
 @pytest.mark.parametrize(
@@ -52,7 +55,7 @@ def test_a_stated_strength_within_the_assumed_range_is_judged_no_better_at_its_e
     """An assumed verdict of good, or of poor, holds for every usual strength."""
     order = (GOOD, IN_PART, POOR).index
     for strength in np.geomspace(20e3 / 1000, 20e3 / 200, 9):
-        stated = NOTHING | {"joint_wall_strength": strength}
+        stated = replace(NOTHING, joint_wall_strength=strength)
         for pressure in np.geomspace(1, 1e4, 50):
             assumed = elastic_model_validity(pressure, 0.1, NOTHING).verdict
             if assumed != IN_PART:
@@ -81,7 +84,7 @@ def test_the_stage_holds_the_verdict_of_every_state_at_the_finest_resolution(mat
     scaling = xr.Dataset({"sigma_n": (dims, sigma_n)}, coords | {"resolution": [2, 1]})
     slopes = rng.uniform(0, 1, (2, 3))
     area = xr.Dataset({"rms_slope": (("direction", "offset"), slopes)}, coords)
-    found = model_validity(area, scaling, {"material": material})
+    found = model_validity(area, scaling, material)
     assert found["verdict"].dims == ("direction", "offset", "normal_force")
     for i, j, k in np.ndindex(found["verdict"].shape):
         wanted = elastic_model_validity(sigma_n[j, i, 1, k], slopes[i, j], material)

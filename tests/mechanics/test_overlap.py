@@ -1,5 +1,7 @@
 """How much load suspicious cells carry: exact where it is known, and said where it decides."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -48,15 +50,15 @@ def faces(spike=1.0):
 
 
 def made(scans, **settings):
-    return make_specimen(*scans, name="rock", **(window_arguments(SETTINGS | settings)))
+    return make_specimen(*scans, name="rock", **(window_arguments(SETTINGS) | settings))
 
 
 def states_of(specimen, settings=SETTINGS):
     joint = describe_joint(specimen, settings)
-    directions = settings["contact_directions"]
+    directions = settings.contact_directions
     solver = solver_settings({}, "tiny")
     return joint_states(
-        specimen, joint, directions, slice(None), settings, settings["resolutions"], solver
+        specimen, joint, directions, slice(None), settings, settings.resolutions, solver
     )
 
 
@@ -98,7 +100,7 @@ def test_a_spike_carries_what_first_touches_it_and_a_twin_nothing():
     odd = states["suspect_load_share"].sel(resolution=2).isel(offset=0)
     assert odd.max() == 0
     twin = make_specimen(faces(spike=0.0)[0], name="rock", **window_arguments(SETTINGS))
-    settings = SETTINGS | {"offsets": [1.0]}
+    settings = replace(SETTINGS, offsets=[1.0])
     assert states_of(twin, settings)["suspect_load_share"].max() == 0
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from made_settings import made_settings
 
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.core.errors import InputError
@@ -20,17 +21,16 @@ from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1
-SETTINGS = {
-    "directions": ["W", "E"],
-    "contact_directions": ["W", "E"],
-    "offsets": [0.2, 0.5],
-    "surface_range": None,
-    "resolutions": [1, 2, 4],
-    "loads": [(2.0, "pressure"), (20.0, "force"), (100.0, "force"), (300.0, "force")],
-    "dilatancy_loads": [(100.0, "force")],
-    "map_load": (2.0, "pressure"),
-    "material": {"e_star": 2e4},
-}
+SETTINGS = made_settings(
+    directions=["W", "E"],
+    contact_directions=["W", "E"],
+    offsets=[0.2, 0.5],
+    surface_range=None,
+    resolutions=[1, 2, 4],
+    loads=[(2.0, "pressure"), (20.0, "force"), (100.0, "force"), (300.0, "force")],
+    dilatancy_loads=[(100.0, "force")],
+    map_load=(2.0, "pressure"),
+)
 ACCURACY = {"closure": 0.01, "delta_sigma": 0.02}
 FORCES = np.array([20.0, 32.0, 100.0, 300.0])  # 2 MPa on 16 mm2 are 32 N
 
@@ -68,9 +68,9 @@ def test_the_tolerance_follows_the_stricter_wish():
 )
 def test_what_a_study_says_becomes_the_solver_s_settings(study, rtol, accuracy):
     found = solver_settings(study, "study.yaml")
-    assert found["kernel"] == "love"
-    assert found["rtol"] == pytest.approx(rtol)
-    assert found["accuracy"] == (None if accuracy is None else pytest.approx(accuracy))
+    assert found.kernel == "love"
+    assert found.rtol == pytest.approx(rtol)
+    assert found.accuracy == (None if accuracy is None else pytest.approx(accuracy))
 
 
 @pytest.mark.parametrize("text", ["1 mm", "-1 %", "100 %", 0, 1.5, "", "1 % %", True])
@@ -156,7 +156,7 @@ def curves_of(specimen, solver):
         contact_states(
             JointLoading(specimen, direction, [2, 5], SETTINGS, solver), [1, 2, 4], mapped=5
         )
-        for direction in SETTINGS["contact_directions"]
+        for direction in SETTINGS.contact_directions
     ]
     return closure_curves(combine(states), (4.0, 4.0), 2e4)
 

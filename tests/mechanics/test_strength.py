@@ -1,12 +1,14 @@
 """Dilatancy angle, shear strength, and Barton and Bandis' law."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from fractalcontact.core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
+from fractalcontact.core.settings import Friction, Solver
 from fractalcontact.core.window import nominal_area, window_sides
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import describe_joint
@@ -30,7 +32,7 @@ from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1
-SOLVER = {"rtol": 1e-6, "kernel": "love"}
+SOLVER = Solver(1e-6, "love", None)
 
 
 def scan(heights, spacing=SPACING):
@@ -52,8 +54,8 @@ def settings(offsets, directions=("W",), **material):
         },
     }
     chosen = resolve_settings(study, "made", {}, "made")
-    chosen["material"] |= {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0} | material
-    return chosen
+    strength = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0} | material
+    return replace(chosen, material=replace(chosen.material, **strength))
 
 
 def pressed(specimen, chosen):
@@ -62,10 +64,10 @@ def pressed(specimen, chosen):
     states = combine(
         [
             contact_states(JointLoading.of_joint(specimen, joint, d, chosen, SOLVER), [1])
-            for d in chosen["contact_directions"]
+            for d in chosen.contact_directions
         ]
     )
-    curves = closure_curves(states, window_sides(specimen), chosen["material"]["e_star"])
+    curves = closure_curves(states, window_sides(specimen), chosen.material.e_star)
     return elastic_dilatancy(curves, joint), joint
 
 
@@ -210,7 +212,7 @@ def test_bartons_law_is_that_of_the_theory_with_the_roughness_of_the_face(streng
 
 
 def test_no_law_is_scaled_beyond_bartons_roughness():
-    stated = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0}
+    stated = Friction(basic_friction_angle=30.0, joint_wall_strength=100.0)
     pressure = np.array([1.0, 10.0])
     for jrc, side, known in ((15.0, 50.0, True), (15.0, 3.2, False)):
         law = _by_barton(jrc, stated, side, pressure)

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from made_settings import made_settings
 
 from fractalcontact.contact.solve import solve_contact
+from fractalcontact.core.settings import Solver
 from fractalcontact.core.window import window_sides
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.area import contact_perimeter, corrected_area
@@ -26,15 +28,14 @@ from fractalcontact.surface.synthesis import self_affine
 
 SPACING_Y, SPACING_X = 0.12, 0.1
 OFFSETS_ASKED = [0.44, 0.7]  # 4 and 7 cells along x, 4 and 6 along y: 0.48 and 0.72 mm
-SETTINGS = {
-    "directions": ["E", "N", "W", "S"],
-    "contact_directions": ["W", "N", "E"],
-    "offsets": OFFSETS_ASKED,
-    "loads": [(20.0, "force"), (200.0, "force")],
-    "material": {"e_star": 2e4},
-    "surface_range": None,
-}
-SOLVER = {"rtol": 1e-6, "kernel": "love"}
+SETTINGS = made_settings(
+    directions=["E", "N", "W", "S"],
+    contact_directions=["W", "N", "E"],
+    offsets=OFFSETS_ASKED,
+    loads=[(20.0, "force"), (200.0, "force")],
+    surface_range=None,
+)
+SOLVER = Solver(1e-6, "love", None)
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +59,7 @@ def parts(specimen, joint):
         contact_states(
             JointLoading(specimen, direction, cells[i : i + 1], SETTINGS, SOLVER), [resolution]
         )
-        for direction in SETTINGS["contact_directions"]
+        for direction in SETTINGS.contact_directions
         for cells in [joint["offset_cells"].sel(contact_direction=direction).values]
         for i in range(len(cells))
         for resolution in (1, 2)
@@ -116,7 +117,7 @@ def test_rigid_offsets_are_the_nearest_cells_of_each_direction(specimen, joint):
 
 def test_directions_keep_the_order_of_the_study(parts, joint):
     states = combine(parts)
-    assert states.direction.values.tolist() == SETTINGS["contact_directions"]
+    assert states.direction.values.tolist() == SETTINGS.contact_directions
     np.testing.assert_allclose(states.offset, joint.offset)
     np.testing.assert_allclose(states.offset, [0.4, 0.7])
     made = states.offset_made.sel(direction="N")
@@ -132,7 +133,7 @@ def test_parts_may_come_in_any_order_within_a_direction(parts):
 
 def of_jobs(specimen, joint, directions, offsets, resolutions):
     """What jobs write that each take some of them; the maps are at the second offset."""
-    settings = SETTINGS | {"map_offset": 0.7, "resolutions": [1, 2]}
+    settings = replace(SETTINGS, map_offset=0.7, resolutions=[1, 2])
     return [
         joint_states(specimen, joint, some, slice(*these), settings, factors, SOLVER)
         for some in directions
@@ -188,9 +189,9 @@ def test_every_state_stands_at_its_own_place(parts):
 def test_elastic_dilatancy_opens_by_the_cells_that_were_solved(specimen, joint, parts):
     curves = closure_curves(combine(parts), window_sides(specimen), 2e4)
     result = elastic_dilatancy(curves, joint)
-    assert result.contact_direction.values.tolist() == SETTINGS["contact_directions"]
+    assert result.contact_direction.values.tolist() == SETTINGS.contact_directions
     np.testing.assert_allclose(result.offset, joint.offset)
-    for direction in SETTINGS["contact_directions"]:
+    for direction in SETTINGS.contact_directions:
         mated = composite_topography(specimen, direction, 0).max()
         cells = joint["offset_cells"].sel(contact_direction=direction).values
         opened = [composite_topography(specimen, direction, n).max() - mated for n in cells]

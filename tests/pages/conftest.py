@@ -2,6 +2,7 @@
 
 import struct
 import zlib
+from dataclasses import asdict
 
 import pytest
 from made_stages import scan, stages_of
@@ -51,14 +52,15 @@ def results(tmp_path_factory):
             parts[stage][name] = dataset
     folder = tmp_path_factory.mktemp("project") / "results/tiny"
     folder.mkdir(parents=True)
-    join_stages(parts, folder / "atlas.nc", {"study": STUDY, "settings": settings})
+    records = {name: asdict(stated) for name, stated in settings.items()}
+    join_stages(parts, folder / "atlas.nc", {"study": STUDY, "settings": records})
     for name in scans:
         figures = folder / "figures" / name
         figures.mkdir(parents=True)
         for figure in figures_of("flat" if name == "flat.1" else "match"):
             png_of(figures / f"{figure}.png")
             (figures / f"{figure}.csv").write_text("a,b\n1,2\n")
-            label = settings[name]["label"]
+            label = settings[name].label
             (figures / f"{figure}.txt").write_text(f"Supplementary figure: {label}. It. Found.\n")
     (folder / "benchmarks").mkdir()
     (folder / "benchmarks/one.tsv").write_text("s\th:m:s\n61.5\t0:01:01\n")

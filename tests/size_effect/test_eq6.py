@@ -1,5 +1,7 @@
 """The direct test of eq. 6 and the predictions from small windows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -8,6 +10,7 @@ from places import SCANS
 
 from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.settings import Solver
 from fractalcontact.domain.renormalisation import hausdorff_measure
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.joint import composite_topography
@@ -29,7 +32,7 @@ from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
-SOLVER = {"rtol": 1e-6, "kernel": "love"}
+SOLVER = Solver(1e-6, "love", None)
 
 
 def scan(heights, spacing=0.1):
@@ -70,7 +73,7 @@ def found_of(specimen, direction, cells, chosen, solver=SOLVER):
     """The test, with the strength of the parts as the stage before it has it."""
     no_dimension = Estimate()
     loading = JointLoading(specimen, direction, cells, chosen, solver)
-    laws = joint_by_size(window_states(loading), specimen, no_dimension, None, chosen["material"])
+    laws = joint_by_size(window_states(loading), specimen, no_dimension, None, chosen.material)
     test = size_test(loading)
     return test.merge(predict_whole_strength(laws, test["delta_sigma"])) if loading.slides else test
 
@@ -302,7 +305,7 @@ def test_doublings_that_are_left_out_change_nothing(flat, monkeypatch):
 def test_doublings_that_no_estimate_asks_for_are_left_out_and_change_nothing(flat):
     specimen, asked = flat
     accuracy = {"closure": 0.01, "delta_sigma": 0.02}
-    found = found_of(specimen, "none", [0], settings("flat"), SOLVER | {"accuracy": accuracy})
+    found = found_of(specimen, "none", [0], settings("flat"), replace(SOLVER, accuracy=accuracy))
     of_steps = ["real_pressure", "real_pressure_error"]
     assert found["real_pressure"].count() < asked["real_pressure"].count()
     known = np.isfinite(found["real_pressure"])

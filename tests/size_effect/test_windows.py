@@ -1,5 +1,7 @@
 """Sub-windows of a joint, and how its mechanics goes with size."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -9,6 +11,7 @@ from symmetries import LENGTH, STRESS, differences, grown, with_axes_exchanged
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.mean_plane import without_mean_plane
+from fractalcontact.core.settings import Friction, Solver, StrengthSettings
 from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.loading import JointLoading
@@ -27,9 +30,9 @@ from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 
-SOLVER, EXACT = ({"rtol": rtol, "kernel": "love"} for rtol in (1e-6, 1e-9))
+SOLVER, EXACT = (Solver(rtol, "love", None) for rtol in (1e-6, 1e-9))
 DIMENSION = Estimate(2.2, 2.15, 2.25)
-ROCK = {"basic_friction_angle": 30.0, "joint_wall_strength": 100.0}
+ROCK = Friction(basic_friction_angle=30.0, joint_wall_strength=100.0)
 
 
 def scan(heights, spacing=(0.1, 0.1)):
@@ -90,7 +93,8 @@ def oblong():
         window = (4.8 * length, 6.4 * length)[:: -1 if way == "N" else 1]
         loads = [f"{2 * stress} MPa", f"{20 * stress} MPa"]
         chosen = settings(loads)
-        chosen["material"]["e_star"] *= stress
+        stiffer = replace(chosen.material, e_star=stress * chosen.material.e_star)
+        chosen = replace(chosen, material=stiffer)
         specimen = make_specimen(scan(length * z, spacing), window=window, name="oblong")
         found.append(states_of(specimen, way, [3, 6], chosen, (1, 2), solver=EXACT))
     return found
@@ -303,7 +307,7 @@ def test_local_roughness_is_that_of_the_roughness_length_estimator():
 
 def test_the_whole_window_is_the_specimen_itself(rock, states):
     whole = combine([contact_states(JointLoading(rock, "W", [1, 8, 32], settings(), SOLVER), [1])])
-    curves = closure_curves(whole, window_sides(rock), settings()["material"]["e_star"])
+    curves = closure_curves(whole, window_sides(rock), settings().material.e_star)
     curves = curves.sel(direction="W", resolution=1)
     one = states.sel(part=1, offset=curves["offset"], method="nearest").isel(window=0)
     for name in ("closure", "interface_closure", "area", "stiffness"):
@@ -325,9 +329,8 @@ def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
     )
     cells = (("contact_direction", "offset"), [[1, 2, 4, 8, 16, 32]])
     joint = xr.Dataset({"offset_cells": cells}, {"contact_direction": ["W"]})
-    chosen = settings()
-    chosen["material"] |= ROCK
-    strength = joint_strength(dilatancy, joint, rock, chosen).sel(contact_direction="W")
+    strength = joint_strength(dilatancy, joint, rock, StrengthSettings(ROCK, None))
+    strength = strength.sel(contact_direction="W")
     one = laws.sel(part=1)
     for name in ("peak_strength", "peak_dilatancy_angle", "residual_strength", "shear_strength"):
         np.testing.assert_allclose(one[name], strength[name])
@@ -336,7 +339,7 @@ def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
 
 def test_loose_states_are_off_by_no_more_than_they_say(rock, laws):
     chosen = [1, 2, 4, 8, 16, 32]
-    loose = {"rtol": 1e-2, "kernel": "love"}
+    loose = Solver(1e-2, "love", None)
     states = states_of(rock, "W", chosen, settings(), (1, 2, 4, 8), solver=loose)
     found = size_laws(states, ROCK, 12.0, DIMENSION)
     differ = 0
@@ -447,7 +450,7 @@ def test_a_surface_against_a_plane_has_no_strength():
 
 
 def test_what_the_study_does_not_state_is_missing(states):
-    unstated = {"basic_friction_angle": np.nan, "joint_wall_strength": np.nan}
+    unstated = Friction(basic_friction_angle=np.nan, joint_wall_strength=np.nan)
     found = size_laws(states, unstated, 12.0, DIMENSION)
     for name in ("peak_strength", "similar_strength", "held_share", "barton_scaled_strength"):
         assert np.isnan(found[name]).all()

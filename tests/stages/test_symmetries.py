@@ -1,6 +1,7 @@
 """All stages of a joint in other units, and with x and y exchanged: on oblong cells and window."""
 
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -18,7 +19,7 @@ from fractalcontact.surface.synthesis import self_affine
 
 SPACING, WINDOW = (0.15, 0.1), (6.0, 4.8)  # (y, x), mm
 OFFSETS, LOADS = (0.0, 0.3, 0.9), (2.0, 10.0, 30.0, 90.0)  # mm, MPa
-SOLVER = solver_settings({}, "tiny") | {"rtol": 1e-8}
+SOLVER = replace(solver_settings({}, "tiny"), rtol=1e-8)
 MADE_OF_SPECIMEN = [
     name for name, stage in STAGES.items() if stage.grain in ("specimen", "joint") and stage.filed
 ]

@@ -7,7 +7,7 @@ import yaml
 
 from fractalcontact.core.claims import claims_of
 from fractalcontact.study.configuration import resolve_embedded, resolve_settings
-from fractalcontact.study.selection import chosen_for, is_capped_variant
+from fractalcontact.study.selection import is_capped_variant
 
 ROOT = Path(__file__).parents[2]
 NAMES = set(claims_of("one"))
@@ -16,6 +16,10 @@ NAMES = set(claims_of("one"))
 @pytest.fixture
 def paper():
     return yaml.safe_load((ROOT / "config/paper.yaml").read_text())
+
+
+def chosen_for(study, name):
+    return resolve_settings(study, name, {}, "paper").chosen_for
 
 
 def test_the_schema_knows_the_statements():
@@ -50,8 +54,8 @@ def test_settings_hold_it_for_the_atlas_that_figures_of_one_specimen_are_drawn_f
         resolve_settings(paper, name, {}, "paper")
         for name in ("sandstone_twin", "sandstone_capped")
     )
-    assert twin["chosen_for"] == chosen_for(paper, "sandstone_twin")
-    assert (twin["capped_variant"], capped["capped_variant"]) == (False, True)
+    assert twin.chosen_for == paper["embedded"]["sandstone_twin"]["chosen_for"]
+    assert (twin.capped_variant, capped.capped_variant) == (False, True)
 
 
 def test_another_surface_or_no_other_hardness_repeats_nothing(paper):

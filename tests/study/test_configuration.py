@@ -107,10 +107,10 @@ def test_the_sidecar_wins_over_the_study_and_the_study_over_its_defaults(study, 
     scan, settings = read_sidecar(sidecar, SCHEMA)
     assert scan == {"unit": "um", "spacing": 5}
     resolved = resolve_settings(study, "concrete_twin", settings, "paper.yaml")
-    assert resolved["window"] == 10
-    assert resolved["material"]["name"] == "concrete"
-    assert resolved["material"]["e_star"] == pytest.approx(30e3 / (2 * (1 - 0.2**2)))
-    assert resolved["directions"] == ["E", "N", "W", "S"]
+    assert resolved.window == 10
+    assert resolved.material.name == "concrete"
+    assert resolved.material.e_star == pytest.approx(30e3 / (2 * (1 - 0.2**2)))
+    assert resolved.directions == ["E", "N", "W", "S"]
 
 
 def test_a_sidecar_with_an_unknown_key_is_refused_by_file_and_key(tmp_path):
@@ -121,8 +121,8 @@ def test_a_sidecar_with_an_unknown_key_is_refused_by_file_and_key(tmp_path):
 
 
 def test_the_known_dimension_is_that_of_the_recipe(study):
-    assert resolve_settings(study, "concrete_twin", {}, "paper.yaml")["known_dimension"] == 2.24
-    assert np.isnan(resolve_settings(study, "a scan", {}, "paper.yaml")["known_dimension"])
+    assert resolve_settings(study, "concrete_twin", {}, "paper.yaml").known_dimension == 2.24
+    assert np.isnan(resolve_settings(study, "a scan", {}, "paper.yaml").known_dimension)
 
 
 def test_the_window_is_cut_to_the_coarsest_prefractal(study):
@@ -163,11 +163,11 @@ def test_embedded_lengths_are_in_millimetres(study):
 
 
 def test_strength_of_the_material_is_missing_where_it_is_not_stated(study):
-    material = resolve_settings(study, "concrete_twin", {}, "paper")["material"]
-    assert (material["basic_friction_angle"], material["joint_wall_strength"]) == (35, 40)
+    material = resolve_settings(study, "concrete_twin", {}, "paper").material
+    assert (material.basic_friction_angle, material.joint_wall_strength) == (35, 40)
     del study["materials"]["concrete"]["basic_friction_angle"]
-    material = resolve_settings(study, "concrete_twin", {}, "paper")["material"]
-    assert math.isnan(material["basic_friction_angle"])
+    material = resolve_settings(study, "concrete_twin", {}, "paper").material
+    assert math.isnan(material.basic_friction_angle)
 
 
 def test_joints_with_and_without_a_roll_off_follow_an_embedded_specimen(study):
@@ -275,9 +275,9 @@ def test_the_seating_load_is_one_of_the_loads_or_left_to_the_states():
         "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
         "defaults": {"material": "rock", "loads": ["1 MPa", "10 kN"], "resolutions": [1]},
     }
-    assert resolve_settings(study, None, {}, "x")["seating_load"] is None
+    assert resolve_settings(study, None, {}, "x").seating_load is None
     stated = study | {"defaults": study["defaults"] | {"seating_load": "10 kN"}}
-    assert resolve_settings(stated, None, {}, "x")["seating_load"] == (10e3, "force")
+    assert resolve_settings(stated, None, {}, "x").seating_load == (10e3, "force")
     stated["defaults"]["seating_load"] = "2 MPa"
     with pytest.raises(InputError, match="seating_load: '2 MPa' is not among the loads"):
         resolve_settings(stated, None, {}, "x")
@@ -289,6 +289,6 @@ def test_a_plane_is_opposite_to_no_pair_of_scanned_faces(study, tmp_path):
     study["scans"] = str(tmp_path)
     study["defaults"]["opposite"] = "flat"
     settings = resolve_study(study, SCHEMA, "here").settings
-    assert (settings["one"]["directions"], settings["one"]["offsets"]) == (["none"], [0.0])
-    assert settings["two"]["directions"] == study["defaults"]["directions"]
-    assert settings["two"]["opposite"] == "match"
+    assert (settings["one"].directions, settings["one"].offsets) == (["none"], [0.0])
+    assert settings["two"].directions == study["defaults"]["directions"]
+    assert settings["two"].opposite == "match"

@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 import pytest
+from made_settings import made_settings
 from samples import scan_of
 
 from fractalcontact.study.resources import (
@@ -142,12 +143,12 @@ def test_more_is_asked_for_large_files_and_for_two_faces(tmp_path):
 def test_nodes_follow_from_files_and_windows(tmp_path):
     file = sized(tmp_path / "rock.npy", 4 * 128**2)
     assert nodes_of_files([file]) == 128**2
-    settings = {"window": 5.0}
+    settings = made_settings(window=5.0)
     assert nodes_of_window(settings, 0.1, 1e6) == pytest.approx(2500)
     assert nodes_of_window(settings, "100 um", 1e6) == pytest.approx(2500)
-    assert nodes_of_window({"window": [5.0, 10.0]}, 0.1, 1e6) == pytest.approx(5000)
+    assert nodes_of_window(made_settings(window=[5.0, 10.0]), 0.1, 1e6) == pytest.approx(5000)
     for window, spacing in ((5.0, None), (5.0, ["1 mm", "2 mm"]), (500.0, 0.1)):
-        assert nodes_of_window({"window": window}, spacing, 4000.0) == 4000
+        assert nodes_of_window(made_settings(window=window), spacing, 4000.0) == 4000
 
 
 def test_an_automatic_window_has_no_more_nodes_than_are_asked_for():
@@ -156,9 +157,9 @@ def test_an_automatic_window_has_no_more_nodes_than_are_asked_for():
     for opposite in ("match", "flat"):
         specimen = make_specimen(scan, opposite=opposite)
         nodes = specimen.attrs["window_ny"] * specimen.attrs["window_nx"]
-        settings = {"window": None, "opposite": opposite}
+        settings = made_settings(opposite=opposite)
         assert nodes == nodes_of_window(settings, None, 24**2)
 
 
 def test_states_are_directions_offsets_and_loads():
-    assert states_of({"contact_directions": ["W", "E"], "loads": [1, 2, 3]}, 5) == 30
+    assert states_of(made_settings(contact_directions=["W", "E"], loads=[1, 2, 3]), 5) == 30

@@ -42,7 +42,7 @@ def folders(tmp_path):
 def test_folders_are_groups_and_give_their_names(folders):
     found = study(folders, groups=FOLDERS)
     assert sorted(found.settings) == ["alone", "hard_s1", "hard_s2", "soft_s1", "soft_s2"]
-    groups = {name: settings["group"] for name, settings in found.settings.items()}
+    groups = {name: settings.group for name, settings in found.settings.items()}
     assert groups == {
         "alone": "",
         "hard_s1": "hard",
@@ -57,9 +57,9 @@ def test_a_group_has_one_sidecar_and_a_specimens_own_comes_first(folders):
     found = study(folders, groups=FOLDERS)
     assert found.options["hard_s2"] == {"unit": "um"}
     assert found.options["hard_s1"] == {"unit": "mm"}
-    assert found.settings["hard_s1"]["window"] == 5
-    assert found.settings["hard_s1"]["label"] == "of the hard ones"
-    assert found.settings["soft_s1"]["label"] == "soft_s1"
+    assert found.settings["hard_s1"].window == 5
+    assert found.settings["hard_s1"].label == "of the hard ones"
+    assert found.settings["soft_s1"].label == "soft_s1"
 
 
 def test_without_the_key_folders_are_passed_over(folders):
@@ -69,7 +69,7 @@ def test_without_the_key_folders_are_passed_over(folders):
 
 def test_a_study_may_say_the_group_itself(folders):
     found = study(folders, groups=FOLDERS, specimens={"soft_s1": {"group": "mine"}})
-    assert found.settings["soft_s1"]["group"] == "mine"
+    assert found.settings["soft_s1"].group == "mine"
 
 
 def test_two_specimens_of_one_name_are_refused(tmp_path):
@@ -117,15 +117,15 @@ def table(tmp_path):
 def test_a_table_names_files_groups_and_keys(table):
     found = study(table.parent / "scans", groups=str(table))
     assert sorted(found.settings) == ["first", "pair", "s2"]
-    assert [found.settings[name]["group"] for name in ("first", "pair", "s2")] == [
+    assert [found.settings[name].group for name in ("first", "pair", "s2")] == [
         "hard",
         "3",
         "soft; 2",
     ]
-    assert found.settings["first"]["window"] == 5
-    assert found.settings["s2"]["resolutions"] == [1, 2]
+    assert found.settings["first"].window == 5
+    assert found.settings["s2"].resolutions == [1, 2]
     assert found.options["s2"] == {"unit": "mm"}
-    assert found.settings["s2"]["label"] == "of its sidecar"
+    assert found.settings["s2"].label == "of its sidecar"
     assert found.scans["pair"].upper.name == "s2.npy"
 
 

@@ -1,6 +1,8 @@
 """The whole chain of a specimen as calls: what the jobs of a study compute, one after the other."""
 
-from made_stages import read, stages_of_specimen
+from dataclasses import asdict
+
+from made_stages import stages_of_specimen
 from materials import ROCK
 
 from fractalcontact.figures.draw import draw_figures
@@ -8,7 +10,7 @@ from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.figure_list import figures_of
 from fractalcontact.study.preparation import prepare_specimen
-from fractalcontact.study.stages import STAGES
+from fractalcontact.study.scan_files import ScanFiles
 
 SOLVER = solver_settings({}, "tiny")
 
@@ -37,17 +39,16 @@ def atlas_of_scan(lower, upper, options, folder, settings=(), name="specimen"):
     opposite : str
     """
     own = dict(settings)
-    resolved = resolve_settings(SMALL_STUDY, name, own, "small", pair=upper is not None)
-    specimen = prepare_specimen(
-        lower, upper, options, read(STAGES["specimens"].function, resolved), name
-    )
+    scan = ScanFiles(name, lower, upper, None)
+    resolved = resolve_settings(SMALL_STUDY, name, own, "small", scan)
+    specimen = prepare_specimen(lower, upper, options, resolved, name)
     parts = {
         stage: {name: data}
         for stage, data in stages_of_specimen(specimen, resolved, SOLVER).items()
     }
     path = folder / "atlas.nc"
-    join_stages(parts, path, {"study": SMALL_STUDY, "settings": {name: resolved}})
-    return path, resolved["opposite"]
+    join_stages(parts, path, {"study": SMALL_STUDY, "settings": {name: asdict(resolved)}})
+    return path, resolved.opposite
 
 
 def draw_scan(atlas, opposite, folder, name="specimen"):

@@ -2,15 +2,15 @@
 
 import numpy as np
 import xarray as xr
-from declared import Declared
 
+from fractalcontact.core.settings import arguments
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.configuration import window_arguments
-from fractalcontact.study.stages import CONTACT, SOLVER_READ, STAGES, read_by, solver_read_by
+from fractalcontact.study.stages import CONTACT, STAGES, read_by
 from fractalcontact.surface.specimen import make_specimen
 
 
@@ -27,37 +27,29 @@ LATER = {"window_states": window_stages, "closure": state_stages, "windows": str
 
 def stages_of(name, faces, settings, solver, later=tuple(LATER)):
     """Stages of a specimen made from its faces, all by default."""
-    arguments = window_arguments(read(STAGES["specimens"].function, settings))
-    specimen = make_specimen(*faces, name=name, **arguments)
+    specimen = make_specimen(*faces, name=name, **window_arguments(settings))
     return stages_of_specimen(specimen, settings, solver, later)
 
 
 def stages_of_specimen(specimen, settings, solver, later=tuple(LATER)):
     """Stages of a specimen, all by default, as the jobs of a study compute them."""
-    known = specimen_stages(specimen, read(STAGES["specimens"].function, settings))
+
+    def given(name, function):
+        """What a rule hands over: the settings that the function names alone."""
+        return arguments(function, read_by(name, settings, solver))
+
+    known = specimen_stages(specimen, **given(STAGES["specimens"].function, specimen_stages))
     states = joint_states(
         specimen,
         known["joints"],
-        settings["contact_directions"],
+        settings.contact_directions,
         slice(None),
-        read(CONTACT, settings),
-        settings["resolutions"],
-        Declared(solver_read_by(CONTACT, solver)),
+        resolutions=settings.resolutions,
+        **given(CONTACT, joint_states),
     )
     for stage in later:
         before = {need: known[need] for need in STAGES[stage].needs}
         parts = {"parts": [states]} if stage == "closure" else {}
-        known |= LATER[stage](**before, **parts, **_given(STAGES[stage].function, settings, solver))
+        function = LATER[stage]
+        known |= function(**before, **parts, **given(STAGES[stage].function, function))
     return known
-
-
-def read(function, settings):
-    """What a rule hands over: the settings that the function declares; others are refused."""
-    return Declared(read_by(function, settings))
-
-
-def _given(function, settings, solver):
-    given = {"settings": read(function, settings)}
-    if function in SOLVER_READ:
-        given["solver"] = Declared(solver_read_by(function, solver))
-    return given

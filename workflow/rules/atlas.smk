@@ -37,7 +37,7 @@ rule atlas:
         mem_mb=doubled(4000),
         runtime=doubled(10),
     params:
-        configuration={"study": config, "settings": SETTINGS},
+        configuration={"study": config, "settings": RECORDS},
         code=code("atlas"),
     message:
         "the study: its atlas, and what the paper says compared with it"

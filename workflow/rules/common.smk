@@ -3,6 +3,7 @@
 import functools
 import os
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import snakemake
@@ -93,6 +94,8 @@ REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 #: Measured contact maps, which have no settings.
 MAPS = {name: SCANS[name] for name in LABELS}
 SPECIMENS = sorted(SETTINGS)
+#: Settings as the atlas keeps them.
+RECORDS = {name: asdict(stated) for name, stated in SETTINGS.items()}
 
 
 def recipe_named(name):
@@ -113,7 +116,7 @@ def nodes_of(name):
 
 def most_offsets(name):
     """Most shear offsets of a specimen: how many "auto" finds is known only later."""
-    stated = SETTINGS[name]["offsets"]
+    stated = SETTINGS[name].offsets
     return len(stated) if stated else AUTOMATIC_OFFSETS + 1
 
 
@@ -160,7 +163,7 @@ def digests_of(scan):
 
 # Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
 DIGEST_OF_SCAN = {path: digest_of(path) for scan in SCANS.values() for path in scan.files}
-NOW = plan.plan_of(config, SETTINGS, OPTIONS, {str(p): d for p, d in DIGEST_OF_SCAN.items()})
+NOW = plan.plan_of(config, RECORDS, OPTIONS, {str(p): d for p, d in DIGEST_OF_SCAN.items()})
 if workflow.is_main_process:
     DIGESTS.save()
 elif PLANNED:
@@ -187,18 +190,12 @@ def known(wildcards):
     return wildcards.specimen
 
 
-def settings_read_by(stage):
-    """Settings of a specimen that the function of a stage reads: a change of others is no change.
+def settings_read_by(function):
+    """Settings that a function reads of a specimen and of the solver, and no others.
 
-    A friction angle or a label solves nothing again.
+    A change of others is no change: a friction angle or a label solves nothing again.
     """
-    function = stages.STAGES[stage].function
-    return lambda wildcards: stages.read_by(function, SETTINGS[known(wildcards)])
-
-
-def solver_read_by(stage):
-    """Settings of the solver that the function of a stage reads."""
-    return stages.solver_read_by(stages.STAGES[stage].function, SOLVER)
+    return lambda wildcards: stages.read_by(function, SETTINGS[known(wildcards)], SOLVER)
 
 
 def doubled(amount):
@@ -215,7 +212,7 @@ def is_pair(specimen):
 
 
 #: Surfaces against a plane, which cannot slide, and all others.
-FLAT = [name for name in SPECIMENS if SETTINGS[name]["opposite"] == "flat" and not is_pair(name)]
+FLAT = [name for name in SPECIMENS if SETTINGS[name].opposite == "flat" and not is_pair(name)]
 SLIDING = sorted(set(SPECIMENS) - set(FLAT))
 SLIDING_NAMES = set(SLIDING)
 
@@ -247,7 +244,8 @@ def outputs_of(stage, grains=stages.GRAINS):
 def calling(stage):
     """Parameters by which scripts/stage.py calls the function of a stage."""
     function, module = stages.STAGES[stage].function, stages.STAGES[stage].module
-    return {"function": function, "code": code("stage", module)}
+    given = {"settings": settings_read_by(function)} if stages.sections_of(function) else {}
+    return {"function": function, "code": code("stage", module), **given}
 
 
 #: Files of the stages that every specimen has, and of those that only joints that slide have.

@@ -6,10 +6,10 @@ def parts_of(specimen):
     """Slices of directions, of offsets and of resolutions that the jobs of a specimen take."""
     settings = SETTINGS[specimen]
     return {
-        "directions": grain("directions", len(settings["contact_directions"])),
+        "directions": grain("directions", len(settings.contact_directions)),
         # Where there are fewer offsets, a job without any writes an empty part.
         "offsets": grain("offsets", most_offsets(specimen)),
-        "resolutions": grain("resolutions", len(settings["resolutions"])),
+        "resolutions": grain("resolutions", len(settings.resolutions)),
     }
 
 
@@ -32,15 +32,12 @@ rule contact:
         mem_mb=memory_for("contact"),
         runtime=minutes_for("contact"),
     params:
-        settings=lambda wc: stages.read_by(stages.CONTACT, SETTINGS[wc.specimen]),
-        solver=stages.solver_read_by(stages.CONTACT, SOLVER),
-        directions=lambda wc: SETTINGS[wc.specimen]["contact_directions"][
+        settings=settings_read_by(stages.CONTACT),
+        directions=lambda wc: SETTINGS[wc.specimen].contact_directions[
             slice(*part_of(wc, "directions"))
         ],
         offsets=lambda wc: part_of(wc, "offsets"),
-        resolutions=lambda wc: SETTINGS[wc.specimen]["resolutions"][
-            slice(*part_of(wc, "resolutions"))
-        ],
+        resolutions=lambda wc: SETTINGS[wc.specimen].resolutions[slice(*part_of(wc, "resolutions"))],
         code=code("contact"),
     message:
         "{wildcards.specimen}: contact states, part {wildcards.directions}.{wildcards.offsets}.{wildcards.resolutions}"
@@ -77,8 +74,6 @@ rule analysis:
         runtime=minutes_for("analysis"),
     params:
         **calling("closure"),
-        settings=settings_read_by("closure"),
-        solver=solver_read_by("closure"),
     message:
         "{wildcards.specimen}: closure, contact domains and their errors"
     script:
@@ -102,7 +97,6 @@ rule strength:
         runtime=minutes_for("strength"),
     params:
         **calling("windows"),
-        settings=settings_read_by("windows"),
     message:
         "{wildcards.specimen}: strength and size laws"
     script:

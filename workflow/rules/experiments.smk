@@ -14,8 +14,7 @@ rule roll_off:
         mem_mb=doubled(2000),
         runtime=doubled(30),
     params:
-        # Without the words for it: a new label makes no new joints.
-        **stages.without_label(resolve_roll_off(config, SOURCE) or {}),
+        **(resolve_roll_off(config, SOURCE) or {}),
         **calling("roll_off"),
     message:
         "roll-off: dilatancy of synthetic joints with and without one"
@@ -39,7 +38,7 @@ rule area_slope:
     params:
         **calling("area_slope"),
         recipe=config.get("area_slope"),
-        rtol=SOLVER["rtol"],
+        rtol=SOLVER.rtol,
     message:
         "area slope: contact area at light load, compared with the theories"
     script:
@@ -63,7 +62,7 @@ rule dimension_test:
     params:
         **calling("dimension_test"),
         recipe=config.get("dimension_test"),
-        rtol=SOLVER["rtol"],
+        rtol=SOLVER.rtol,
     message:
         "dimension test: both estimates of Delta_sigma on synthetic surfaces"
     script:
@@ -108,7 +107,7 @@ rule size_strength:
     params:
         **calling("size_strength"),
         recipe=config.get("size_strength"),
-        rtol=SOLVER["rtol"],
+        rtol=SOLVER.rtol,
     message:
         "size strength: synthetic joints that slide, over their size"
     script:

@@ -61,7 +61,7 @@ def configuration_of(wildcards):
     """
     name = known(wildcards)
     stated = {key: config[key] for key in ("study", "accuracy", "solver") if key in config}
-    return {"study": stated, "settings": {name: SETTINGS[name]}}
+    return {"study": stated, "settings": {name: RECORDS[name]}}
 
 
 #: Names of the figures that failed, which is empty but for an error of the program.

@@ -19,8 +19,6 @@ rule windows:
         runtime=minutes_for("windows"),
     params:
         **calling("window_states"),
-        settings=settings_read_by("window_states"),
-        solver=solver_read_by("window_states"),
     message:
         "{wildcards.specimen}: contact states of sub-windows, and eq. 6"
     script:
@@ -56,7 +54,7 @@ rule size_effect_part:
     params:
         tasks=lambda wc: [list(task) for task in SIZE_JOBS[wc.job]],
         loads=config.get("size_effect", {}).get("loads"),
-        rtol=SOLVER["rtol"],
+        rtol=SOLVER.rtol,
         code=code("size_effect_part"),
     message:
         "size effect: synthetic surfaces {wildcards.job}"

@@ -1,12 +1,6 @@
 # From scan files, a user's or the study's own, to levelled specimens, their surfaces and joints.
 
 
-def recipe_of(wildcards):
-    """Recipe of an embedded specimen, without what is only words: that makes no new surface."""
-    recipe = recipe_named(known(wildcards))
-    return {key: value for key, value in recipe.items() if key != "label"}
-
-
 rule embedded:
     output:
         scan=f"{RESULTS}/embedded/{{specimen}}.npy",
@@ -23,7 +17,7 @@ rule embedded:
             "embedded", nodes_of(wc.specimen)[0], attempt=attempt
         ),
     params:
-        recipe=recipe_of,
+        recipe=lambda wc: recipe_named(known(wc)),
         code=code("embedded"),
     message:
         "{wildcards.specimen}: synthetic scan"
@@ -49,7 +43,7 @@ def scan_digests(wildcards):
 def options_of(wildcards):
     """How the scan of a specimen is read: the scan keys of its sidecar."""
     name = wildcards.specimen
-    return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_of(wildcards)["spacing"])
+    return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_named(name)["spacing"])
 
 
 def memory_of(wildcards, attempt):
@@ -78,7 +72,7 @@ rule specimen:
             "specimen", nodes_of(wc.specimen)[0], attempt=attempt
         ),
     params:
-        settings=settings_read_by("specimens"),
+        settings=settings_read_by(stages.STAGES["specimens"].function),
         options=options_of,
         digests=scan_digests,
         code=code("specimen"),

@@ -2,7 +2,7 @@
 
 from _job import job
 
-from fractalcontact.core import netcdf
+from fractalcontact.core import netcdf, settings
 from fractalcontact.mechanics.sweep import joint_states
 
 with job(snakemake) as log:
@@ -12,9 +12,8 @@ with job(snakemake) as log:
         netcdf.read(snakemake.input.joints),
         params.directions,
         slice(*params.offsets),
-        params.settings,
-        params.resolutions,
-        params.solver,
+        resolutions=params.resolutions,
+        **settings.arguments(joint_states, params.settings),
     )
     netcdf.write(states, snakemake.output[0])
     log.info("%d states, largest residual %s", states.solved.sum(), states.residual.max().item())

@@ -6,6 +6,7 @@ from _job import job, require_unchanged
 
 from fractalcontact.core import netcdf
 from fractalcontact.core.errors import InputError
+from fractalcontact.core.settings import SpecimenSettings, read
 from fractalcontact.roughness.quality_words import noise_words, range_words
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.study.preparation import prepare_specimen
@@ -13,8 +14,9 @@ from fractalcontact.study.preparation import prepare_specimen
 with job(snakemake) as log:
     files, params, name = snakemake.input, snakemake.params, snakemake.wildcards.specimen
     upper = files.get("upper")
-    specimen = prepare_specimen(files.lower, upper, params.options, params.settings, name)
-    stages = specimen_stages(specimen, params.settings)
+    settings = read(SpecimenSettings, params.settings["settings"])
+    specimen = prepare_specimen(files.lower, upper, params.options, settings, name)
+    stages = specimen_stages(specimen, settings)
     # What was read, and what lies there now: a file may have been exchanged and put back.
     require_unchanged(params.digests)
     for face, digest in zip(("lower", "upper"), params.digests.values(), strict=False):

@@ -8,13 +8,14 @@ from importlib import import_module
 
 from _job import job
 
-from fractalcontact.core import netcdf
+from fractalcontact.core import netcdf, settings
 
 arguments = dict(snakemake.params.items())
 # Not from the table of stages: then a new one would make all others again.
 module, _, name = arguments.pop("function").partition(":")
 function = getattr(import_module(f"fractalcontact.{module}"), name)
 del arguments["code"]
+arguments |= settings.arguments(function, arguments.pop("settings", {}))
 
 with job(snakemake) as log:
     for key, paths in snakemake.input.items():

@@ -11,6 +11,7 @@ from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
+from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
 from ..mechanics.subgrid import state_quantities
@@ -23,7 +24,6 @@ from .refinement import (
     Refinement,
     chosen_loads,
     domain_dimension,
-    named_loads,
     refine,
 )
 
@@ -100,7 +100,7 @@ def map_curve(
 
 
 def error_budget(
-    loading: JointLoading,
+    loading: JointLoading[StateSettings],
     curves: xr.Dataset,
     domains: xr.Dataset,
     *,
@@ -135,7 +135,7 @@ def error_budget(
     """
     finest = int(curves["resolution"].min())
     curve = map_curve(loading, curves, domains, finest)
-    accuracy = loading.solver.get("accuracy")
+    accuracy = loading.solver.accuracy
     found = refine(curve, loading.settings, None if accuracy is None else accuracy["closure"])
     values = curve.values()
     windows, n_windows, effective = _window_spread(curve)
@@ -313,8 +313,8 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
     loading, values = curve.loading, curve.values()
     spread = np.full(values.shape, np.nan)
     composites, effective = other_composites(loading, int(loading.cells[0]))
-    places = chosen_loads(curve, named_loads(loading.settings))
-    limits = loading.settings["box_range"]
+    places = chosen_loads(curve, loading.settings.drawn_loads)
+    limits = loading.settings.box_range
     if not composites:
         return spread, 1, effective
     found = np.full((len(composites) + 1, *values.shape), np.nan)

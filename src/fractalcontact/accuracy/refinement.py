@@ -4,14 +4,14 @@ At s/2 a few loads are solved, at s/4 those of them whose closure changed by mor
 asks for; what lies between is interpolated.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..contact.state import ContactState
+from ..core.settings import ContactSettings, Load
 from ..domain.box_dimension import dimension_of_domain
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.loading import JointLoading
@@ -121,14 +121,13 @@ class Refinement:
     finest: np.ndarray
 
 
-def refined_loads(curve: LoadCurve, settings: Mapping[str, Any], *, all_states: bool) -> np.ndarray:
+def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bool) -> np.ndarray:
     """Loads that are solved on finer grids.
 
     Parameters
     ----------
     curve : LoadCurve
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : ContactSettings
     all_states : bool
         Whether the study requests all states.
 
@@ -142,15 +141,10 @@ def refined_loads(curve: LoadCurve, settings: Mapping[str, Any], *, all_states: 
         return np.empty(0, int)
     if all_states:
         return np.flatnonzero(_solved_loads(curve))
-    return chosen_loads(curve, named_loads(settings))
+    return chosen_loads(curve, settings.drawn_loads)
 
 
-def named_loads(settings: Mapping[str, Any]) -> list[tuple[float, str]]:
-    """Loads that figures show: those of the dilatancy and of the contact maps."""
-    return [*settings["dilatancy_loads"], settings["map_load"]]
-
-
-def chosen_loads(curve: LoadCurve, named: Sequence[tuple[float, str]]) -> np.ndarray:
+def chosen_loads(curve: LoadCurve, named: Sequence[Load]) -> np.ndarray:
     """Loads by name, and with them the smallest and the largest, as far as they are solved.
 
     Parameters
@@ -175,14 +169,13 @@ def _solved_loads(curve: LoadCurve) -> np.ndarray:
     return np.isfinite(curve.curve["closure"].values) & (curve.curve["nodes"].values > 0)
 
 
-def refine(curve: LoadCurve, settings: Mapping[str, Any], asked: float | None) -> Refinement:
+def refine(curve: LoadCurve, settings: ContactSettings, asked: float | None) -> Refinement:
     """Numerical errors of a load curve.
 
     Parameters
     ----------
     curve : LoadCurve
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : ContactSettings
     asked : float or None
         Error of a closure that the study asks for, a fraction; None where it requests all states.
 

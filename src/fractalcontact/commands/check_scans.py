@@ -23,11 +23,11 @@ from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import length_words, overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
-from ..study.checks import check_study, stated_of, with_coordinates
+from ..study.checks import check_study, read_scans
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
 from ..study.preparation import prepare_specimen
-from ..study.scan_groups import grouped_notes, list_grouped
+from ..study.scan_groups import grouped_notes
 from ..study.sidecar import is_contact_map
 from .scan_words import gap_words, warnings_of_specimen
 
@@ -99,33 +99,18 @@ def check_scans(
         By name, numbers in names as numbers; what is wrong with one does not keep the others from
         being read.
     """
-    scans, refused = list_grouped(folder, study.get("groups"))
-    shared: dict[Path, tuple[dict, dict]] = {}
-    scans = _with_coordinates(scans, refused, schema, shared)
+    scans, stated, refused = read_scans({**study, "scans": folder}, schema)
     for name in sorted(scans.keys() | refused.keys(), key=natural_key):
-        if name in refused:
-            yield Checked(name, refusal=str(refused[name]))
-            continue
+        scan = scans.get(name)
         try:
-            yield _check(scans[name], study, source, stated_of(scans[name], schema, shared))
+            if name in refused:
+                raise refused[name]
+            yield _check(scan, study, source, stated[name])
         except InputError as error:
-            yield Checked(
-                name, lines=[_file_names(scans[name])], refusal=_shown(error, scans[name])
-            )
-
-
-def _with_coordinates(scans, refused, schema, shared):
-    """Scans without the files of x and y of others; what is wrong with one goes to `refused`."""
-    options = {}
-    for name, scan in scans.items():
-        try:
-            keys, _ = stated_of(scan, schema, shared)
-            with_coordinates(scans, {name: keys})
-        except InputError as error:
-            refused.setdefault(name, InputError(_shown(error, scan)))
-            continue
-        options[name] = keys
-    return with_coordinates(scans, options)
+            if scan is None:
+                yield Checked(name, refusal=str(error))
+                continue
+            yield Checked(name, lines=[_file_names(scan)], refusal=_shown(error, scan))
 
 
 def _check(scan, study, source, stated):
@@ -135,21 +120,13 @@ def _check(scan, study, source, stated):
     options, own = stated
     if is_contact_map(options):
         return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
-    settings = resolve_settings(
-        study,
-        scan.name,
-        own,
-        source,
-        pair=scan.upper is not None,
-        sidecar_file=scan.sidecar or scan.row_of or scan.shared,
-        group=scan.group,
-    )
+    settings = resolve_settings(study, scan.name, own, source, scan)
     specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
     _require_solvable(specimen, settings)
     dimension = surface_dimension(
-        specimen["lower"].values, spacing_of(specimen), fit_range=settings["surface_range"]
+        specimen["lower"].values, spacing_of(specimen), fit_range=settings.surface_range
     )
-    row = _specimen_row(scan, specimen, scan_quality(specimen, settings["resolutions"]))
+    row = _specimen_row(scan, specimen, scan_quality(specimen, settings.resolutions))
     doubtful = dimension["no_dimension"].item() or beyond_roll_off(dimension)
     (row.warnings if doubtful else row.lines).append(dimension_words(dimension))
     return row
@@ -157,8 +134,8 @@ def _check(scan, study, source, stated):
 
 def _require_solvable(specimen, settings):
     """Refuse what the study would refuse once the specimen is read: its offsets and loads."""
-    every = dict.fromkeys([*settings["directions"], *settings["contact_directions"]])
-    choose_offsets(specimen, settings["offsets"], list(every))
+    every = dict.fromkeys([*settings.directions, *settings.contact_directions])
+    choose_offsets(specimen, settings.offsets, list(every))
     hardness_of(settings, specimen)
 
 

@@ -1,12 +1,12 @@
 """Contact fields of the atlas: contact domains with coordinates, pressure and gap of the maps."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
 from ..core.labels import cf_attrs
+from ..core.settings import ContactSettings
 from .states import MAP_GAP, MAP_PRESSURE, forces_of
 
 #: Where a state was not solved: xarray reads it as missing.
@@ -17,7 +17,7 @@ def contact_fields(
     domains: xr.Dataset,
     parts: Sequence[xr.Dataset],
     joint: xr.Dataset,
-    settings: Mapping[str, Any],
+    settings: ContactSettings,
     area: float,
 ) -> xr.Dataset:
     """Stage contact: contact domains of all states, and fields at the offset of the maps.
@@ -30,8 +30,7 @@ def contact_fields(
         From :func:`mechanics.sweep.contact_states`.
     joint : xr.Dataset
         From :func:`mechanics.joint.describe_joint`: its window has the coordinates.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : ContactSettings
     area : float
         A_0, mm2.
 
@@ -58,7 +57,7 @@ def contact_fields(
     if part is None:
         return result
     forces = part["normal_force"].values
-    loads = forces_of([*settings["dilatancy_loads"], settings["map_load"]], area)
+    loads = forces_of(settings.drawn_loads, area)
     kept = np.isin(forces, loads)
     pressure, gap = part[MAP_PRESSURE], part[MAP_GAP]
     values = {
@@ -72,7 +71,7 @@ def contact_fields(
     return result.assign_attrs(
         map_direction=str(place["direction"]),
         map_offset=float(place["offset"]),
-        map_load=float(forces_of([settings["map_load"]], area)[0]),
+        map_load=float(forces_of([settings.map_load], area)[0]),
         map_resolution=int(place["resolution"]),
     )
 

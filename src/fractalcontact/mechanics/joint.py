@@ -4,8 +4,7 @@ Signs are those of docs/conventions.md: the window stays with the upper block, w
 towards a direction d; h(xi; v, d) = z_l(xi + v d) - z_u(xi), and the largest h touches first.
 """
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -15,6 +14,7 @@ from ..core.datasets import labelled, labelled_dataset
 from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
+from ..core.settings import SpecimenSettings
 from ..core.window import faces, nominal_area, window_slices
 from ..surface.specimen import largest_offset
 from .composite_dimension import composite_dimensions
@@ -250,14 +250,13 @@ _CORRELATION = {
 }
 
 
-def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Dataset:
+def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Dataset:
     """Offsets, rigid dilatancy and composite topographies of a specimen.
 
     Parameters
     ----------
     specimen : xr.Dataset
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : SpecimenSettings
 
     Returns
     -------
@@ -275,9 +274,9 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
     InputError
         As :func:`choose_offsets`.
     """
-    directions, solved = settings["directions"], settings["contact_directions"]
+    directions, solved = settings.directions, settings.contact_directions
     every = list(dict.fromkeys([*directions, *solved]))
-    chosen = choose_offsets(specimen, settings["offsets"], every)
+    chosen = choose_offsets(specimen, settings.offsets, every)
     reference = solved[0]
     cells, spacing = chosen[reference], direction_spacing(specimen, reference)
     slide = _describe_slide(specimen, directions, np.arange(int(max(cells)) + 1), spacing)
@@ -296,7 +295,7 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
         "composite": np.array(composites),
     }
     return slide.assign(
-        composite_dimensions(specimen, composites, cells * spacing, settings["surface_range"])
+        composite_dimensions(specimen, composites, cells * spacing, settings.surface_range)
         | labelled(table, values)
     ).assign_coords(
         contact_direction=solved,

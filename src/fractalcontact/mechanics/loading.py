@@ -4,23 +4,28 @@ These five travel together through every solve of a study, and what follows from
 forces, half-spaces) is computed here and nowhere else.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Generic, TypeVar
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from ..core.settings import JointSettings, Load, Solver
 from ..core.window import nominal_area
 from ..elastic.halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing, offsets_of
 from .overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of
 
+#: Settings of a joint, and what else those who get the loading read of them.
+P = TypeVar("P", bound=JointSettings, covariant=True)
+Q = TypeVar("Q", bound=JointSettings)
+
 
 @dataclass(frozen=True, eq=False)
-class JointLoading:
+class JointLoading(Generic[P]):
     """A joint at some shear offsets in one direction, under the loads of a study.
 
     Parameters
@@ -29,31 +34,27 @@ class JointLoading:
         As for :func:`mechanics.joint.composite_topography`.
     cells : (n,) int array_like
         Shear offsets in cells of the scan; may be empty.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
-    solver : mapping
-        From :func:`study.configuration.solver_settings`: ``rtol``, ``kernel`` and, unless all
-        states are asked for, ``accuracy``.
+    settings : JointSettings
+    solver : Solver
     """
 
     specimen: xr.Dataset
     direction: str
     cells: np.ndarray
-    settings: Mapping[str, Any]
-    solver: Mapping[str, Any]
+    settings: P
+    solver: Solver
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cells", np.asarray(self.cells, int))
 
-    @classmethod
+    @staticmethod
     def of_joint(
-        cls,
         specimen: xr.Dataset,
         joint: xr.Dataset,
         direction: str,
-        settings: Mapping[str, Any],
-        solver: Mapping[str, Any],
-    ) -> "JointLoading":
+        settings: Q,
+        solver: Solver,
+    ) -> "JointLoading[Q]":
         """The loading at all offsets of a joint.
 
         Parameters
@@ -64,15 +65,15 @@ class JointLoading:
             From :func:`mechanics.joint.describe_joint`.
         """
         cells = joint["offset_cells"].sel(contact_direction=direction).values
-        return cls(specimen, direction, cells, settings, solver)
+        return JointLoading(specimen, direction, cells, settings, solver)
 
-    def at(self, cells: ArrayLike) -> "JointLoading":
+    def at(self, cells: ArrayLike) -> "JointLoading[P]":
         """The same at other offsets, in cells."""
         return replace(self, cells=np.atleast_1d(cells))
 
-    def at_map_offset(self) -> "JointLoading":
+    def at_map_offset(self) -> "JointLoading[P]":
         """The same at the offset of the contact maps alone."""
-        offset = chosen_offset(self.settings["map_offset"], self.offsets)
+        offset = chosen_offset(self.settings.map_offset, self.offsets)
         return self.at(self.cells[self.offsets == offset][0])
 
     @property
@@ -111,11 +112,11 @@ class JointLoading:
             As :func:`mechanics.states.hardness_of`.
         """
         return {
-            "rtol": self.solver["rtol"],
+            "rtol": self.solver.rtol,
             "hardness": hardness_of(self.settings, self.specimen),
         }
 
-    def forces(self, loads: Sequence[tuple[float, str]]) -> np.ndarray:
+    def forces(self, loads: Sequence[Load]) -> np.ndarray:
         """Loads as forces on the whole window, N, ascending."""
         return forces_of(loads, self.area)
 
@@ -133,6 +134,6 @@ class JointLoading:
         return HalfSpace(
             (rows, columns),
             tuple(self.spacing * factor),
-            self.settings["material"]["e_star"],
-            kernel=self.solver["kernel"],
+            self.settings.material.e_star,
+            kernel=self.solver.kernel,
         )

@@ -5,13 +5,13 @@ slopes. One function judges it, once, for the atlas: the stage ``elastic_model``
 page, its summary and the caption of Fig. 8 quote.
 """
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.settings import Material
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_ASKED, POOR, STRENGTH, USUAL
 
 #: Rms slope of the composite topography up to which half-spaces are a fair model of its faces, and
@@ -119,15 +119,14 @@ _OF_MATERIAL = {
 }
 
 
-def model_validity(area: xr.Dataset, scaling: xr.Dataset, settings: Mapping) -> xr.Dataset:
+def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) -> xr.Dataset:
     """Verdicts on the elastic model in every state at the scan's own resolution.
 
     Parameters
     ----------
     area, scaling : xr.Dataset
         Of the stages of these names.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`; its ``material`` counts.
+    material : Material
 
     Returns
     -------
@@ -142,7 +141,7 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, settings: Mapping) -> 
     judged = np.empty(pressures.shape, object)
     for place in np.ndindex(judged.shape):
         pressure, slope = float(pressures.values[place]), float(of_offsets[place[:2]])
-        judged[place] = elastic_model_validity(pressure, slope, settings["material"])
+        judged[place] = elastic_model_validity(pressure, slope, material)
     values: dict[str, Any] = {
         name: np.array([getattr(one, name) for one in judged.flat]).reshape(judged.shape)
         for name in _OF_STATES
@@ -151,13 +150,11 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, settings: Mapping) -> 
         **{name: (dims, *words) for name, words in _OF_STATES.items()},
         **{name: ((), *words) for name, words in _OF_MATERIAL.items()},
     }
-    limits = material_limits(settings["material"])
+    limits = material_limits(material)
     return labelled_dataset(table, values | limits._asdict(), coords=dict(pressures.coords))
 
 
-def elastic_model_validity(
-    pressure: float, rms_slope: float, material: Mapping[str, float]
-) -> Validity:
+def elastic_model_validity(pressure: float, rms_slope: float, material: Material) -> Validity:
     """Judge the elastic model under one load: the worse of pressure and slope counts.
 
     Good up to the hardness, which caps the pressure, or to the joint wall strength; in part up to
@@ -171,9 +168,7 @@ def elastic_model_validity(
         Real mean pressure, MPa: ``sigma_n`` of the stage ``scaling``. NaN gives no verdict.
     rms_slope : float
         Of the composite topography; NaN counts nothing.
-    material : mapping of str to float
-        ``modulus``, ``hardness`` (infinite where nothing yields) and ``joint_wall_strength`` (NaN
-        where not stated), MPa.
+    material : Material
     """
     limits = material_limits(material)
     if not np.isfinite(pressure):
@@ -207,20 +202,19 @@ def _place(pressure, verdict, limits):
     return "among" if pressure <= limits.strength_high else "above"
 
 
-def material_limits(material: Mapping[str, float]) -> Limits:
+def material_limits(material: Material) -> Limits:
     """Limits of the elastic model of a material: its hardness, its strength, or usual strengths.
 
     Parameters
     ----------
-    material : mapping of str to float
-        As for :func:`elastic_model_validity`.
+    material : Material
     """
-    hardness, strength = float(material["hardness"]), float(material["joint_wall_strength"])
+    hardness, strength = float(material.hardness), float(material.joint_wall_strength)
     if np.isfinite(hardness):
         return Limits(HARDNESS, hardness, hardness, hardness, hardness)
     if np.isfinite(strength):
         return Limits(STRENGTH, strength, strength, strength, CONFINED * strength)
-    modulus = float(material["modulus"])
+    modulus = float(material.modulus)
     low, high = modulus / LARGEST_RATIO, modulus / LEAST_RATIO
     return Limits(USUAL, low, high, low, CONFINED * high)
 

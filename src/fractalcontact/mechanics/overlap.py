@@ -4,15 +4,13 @@ What is suspicious is found in :mod:`surface.suspect` and :mod:`surface.cleaning
 composite topography is where either of its two cells is.
 """
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from ..core.determined import decided_by_scan
 from ..core.directions import axis_and_sign
 from ..core.limits import RESOLVED_NODES
+from ..core.settings import ContactSettings
 from ..core.window import nominal_area, window_slices
 from .states import chosen_offset, forces_of
 
@@ -126,7 +124,7 @@ def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
     return (2 * (decisive & counted).sum("normal_force") >= states) & (states > 0)
 
 
-def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: Mapping[str, Any]) -> str:
+def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: ContactSettings) -> str:
     """Warning where errors of the scans carry the load that decides a number, "" if nowhere.
 
     Parameters
@@ -134,8 +132,7 @@ def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: Mapping[str
     curves : xr.Dataset
         From :func:`mechanics.closure.closure_curves`.
     specimen : xr.Dataset
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : ContactSettings
 
     Returns
     -------
@@ -144,8 +141,8 @@ def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: Mapping[str
         more than half of the map load, and those at which they do so in half of the states fitted.
     """
     finest = curves.sel(resolution=curves["resolution"].min()).isel(direction=0)
-    (force,) = forces_of([settings["map_load"]], nominal_area(specimen))
-    at_map = chosen_offset(settings["map_offset"], finest["offset"].values)
+    (force,) = forces_of([settings.map_load], nominal_area(specimen))
+    at_map = chosen_offset(settings.map_offset, finest["offset"].values)
     mapped = finest["suspect_load_share"].sel(normal_force=force, method="nearest")
     parts = []
     worst = float(mapped.max())

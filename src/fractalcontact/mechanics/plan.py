@@ -6,18 +6,18 @@ makes, as far as that can be estimated from the states themselves.
 """
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.settings import ContactSettings, Solver
 from ..core.tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
 from .states import forces_of
 
 
 def solved_loads(
-    settings: Mapping[str, Any],
+    settings: ContactSettings,
     forces: np.ndarray,
     area: float,
     *,
@@ -30,8 +30,7 @@ def solved_loads(
 
     Parameters
     ----------
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : ContactSettings
     forces : (n,) ndarray
         N, ascending.
     area : float
@@ -56,19 +55,19 @@ def solved_loads(
     at the finest resolution; how they change with the resolution, at the offset of the maps. In the
     other directions only the dilatancy under its loads is.
     """
-    if all_states or (first and (mapped or factor == min(settings["resolutions"]))):
+    if all_states or (first and (mapped or factor == min(settings.resolutions))):
         return np.arange(len(forces))
-    if factor != min(settings["resolutions"]):
+    if factor != min(settings.resolutions):
         return np.arange(0)
-    wanted = forces_of([*settings["dilatancy_loads"], settings["map_load"]], area)
+    wanted = forces_of(settings.drawn_loads, area)
     return np.flatnonzero(np.isin(forces, wanted))
 
 
 def solve_plan(
     curves: xr.Dataset,
     dilatancy: xr.Dataset,
-    settings: Mapping[str, Any],
-    solver: Mapping[str, Any],
+    settings: ContactSettings,
+    solver: Solver,
     budget: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """The solve plan of a specimen: quantity, value, reason and estimated error.
@@ -79,8 +78,8 @@ def solve_plan(
         From :func:`mechanics.closure.closure_curves`.
     dilatancy : xr.Dataset
         From :func:`mechanics.closure.elastic_dilatancy`.
-    settings, solver : mapping
-        From :mod:`study.configuration`.
+    settings : ContactSettings
+    solver : Solver
     budget : xr.Dataset, optional
         Stage ``error_budget``: with it the plan says what the spacing leaves uncertain.
 
@@ -90,7 +89,7 @@ def solve_plan(
         ``value``, ``reason``, ``error_of`` and ``error`` (a fraction; NaN where there is none) over
         ``choice``; the requested accuracy as attribute ``asked``.
     """
-    solved, requested = curves["solved"], solver["accuracy"]
+    solved, requested = curves["solved"], solver.accuracy
     rows = [
         _of_tolerance(curves, solver, requested),
         _of_loads(curves, dilatancy, requested),
@@ -134,15 +133,15 @@ def _largest(values: xr.DataArray) -> float:
     return float(known.max(initial=-np.inf)) if known.size else np.nan
 
 
-def _of_tolerance(curves, solver, requested):
+def _of_tolerance(curves, solver: Solver, requested):
     reason = (
         "stated by the study"
-        if requested is None or solver["rtol"] != tolerance(requested)
+        if requested is None or solver.rtol != tolerance(requested)
         else f"{SHARE_OF_CLOSURE:g} of the error asked of the closure, {SHARE_OF_DIMENSION:g} of "
         "that of Delta_sigma: ten times and more below them in trials"
     )
     error = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
-    return "solver tolerance", f"{solver['rtol']:.1g}", reason, "interface closure", _largest(error)
+    return "solver tolerance", f"{solver.rtol:.1g}", reason, "interface closure", _largest(error)
 
 
 def _of_loads(curves, dilatancy, requested):
@@ -162,8 +161,8 @@ def _of_loads(curves, dilatancy, requested):
     return "load steps", value, reason, "interface closure, if every second were left out", np.nan
 
 
-def _of_directions(curves, settings):
-    first, *others = settings["contact_directions"]
+def _of_directions(curves, settings: ContactSettings):
+    first, *others = settings.contact_directions
     if first == "none":
         return "directions", "none", "a surface against a plane does not slide", "", np.nan
     if not others:

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import t_quantile
+from ..core.settings import Load
 from ..scan.registration_scatter import stored_motions
 from ..scan.surface_motion import Motion, Surface, grid_nodes
 from .closure import bulk_settlement, interface_closure, interface_stiffness
@@ -48,7 +49,7 @@ def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
 
 
 def registration_values(
-    loading: JointLoading, loads: Sequence[tuple[float, str]] | None = None
+    loading: JointLoading, loads: Sequence[Load] | None = None
 ) -> dict[str, np.ndarray]:
     """Closure, separation, area and stiffness of each registration that is as good.
 
@@ -72,7 +73,7 @@ def registration_values(
         If a state could not be verified.
     """
     (cells,) = loading.cells
-    forces = loading.forces(loading.settings["loads"] if loads is None else loads)
+    forces = loading.forces(loading.settings.loads if loads is None else loads)
     space = loading.half_space(loading.shape)
     settlement = bulk_settlement(
         forces, space.modulus, *(n * s for n, s in zip(space.shape, space.spacing, strict=True))
@@ -107,7 +108,7 @@ def registration_values(
 
 
 def registration_spread(
-    loading: JointLoading, loads: Sequence[tuple[float, str]] | None = None
+    loading: JointLoading, loads: Sequence[Load] | None = None
 ) -> dict[str, np.ndarray] | None:
     """Registration error: half-widths of the 95 % spread over registrations that are as good.
 

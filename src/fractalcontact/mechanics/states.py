@@ -4,7 +4,6 @@ Apart from the solving, which takes the solver: most jobs of a study only read s
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
+from ..core.settings import JointSettings, Load
 from ..core.window import nominal_area
 
 #: Scalars kept of every state: name, unit, long name.
@@ -64,7 +64,7 @@ def error_attrs(attrs: Mapping[str, str]) -> dict[str, str]:
     return cf_attrs(attrs["units"], f"{attrs['long_name']}, {SOLVER_ERROR}")
 
 
-def forces_of(loads: Sequence[tuple[float, str]], area: float) -> np.ndarray:
+def forces_of(loads: Sequence[Load], area: float) -> np.ndarray:
     """Loads as forces, N, ascending: pressures are nominal, on ``area`` in mm2.
 
     Parameters
@@ -97,9 +97,7 @@ def with_pressure(stage: xr.Dataset, area: float) -> xr.Dataset:
     return stage.assign_coords(nominal_pressure=("normal_force", pressure, words))
 
 
-def force_range(
-    loads: Sequence[tuple[float, str]] | None, specimen: xr.Dataset
-) -> tuple[float, float] | None:
+def force_range(loads: Sequence[Load] | None, specimen: xr.Dataset) -> tuple[float, float] | None:
     """Smallest and largest force, N, of a range of loads; None for all."""
     return None if loads is None else tuple(forces_of(loads, nominal_area(specimen))[[0, -1]])
 
@@ -120,7 +118,7 @@ def chosen_offset(wanted: float | None, offsets: ArrayLike) -> float:
     return float(min(offsets, key=lambda offset: abs(offset - wanted)))
 
 
-def hardness_of(settings: Mapping[str, Any], specimen: xr.Dataset) -> float:
+def hardness_of(settings: JointSettings, specimen: xr.Dataset) -> float:
     """Largest pressure of the material, MPa, or infinity.
 
     Raises
@@ -128,9 +126,9 @@ def hardness_of(settings: Mapping[str, Any], specimen: xr.Dataset) -> float:
     InputError
         If a load of the study is more than the whole window carries at that pressure.
     """
-    hardness = settings["material"].get("hardness", np.inf)
+    hardness = settings.material.hardness
     area = nominal_area(specimen)
-    largest = forces_of(settings["loads"], area)[-1]
+    largest = forces_of(settings.loads, area)[-1]
     if largest >= hardness * area:
         raise InputError(
             f"specimen {specimen.attrs['name']}: load {largest:g} N is more than the window of "

@@ -6,7 +6,6 @@ asperities, the sum can pass the vertical, and what is stated as strength is hel
 :data:`core.limits.LARGEST_FRICTION_ANGLE` as in Barton's law. What was held is counted.
 """
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from ..core.estimate import Estimate, rows_of
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
+from ..core.settings import Friction, StrengthSettings
 from ..core.window import nominal_area, window_sides
 from .joint import rigid_dilatancy, sliding_axis
 from .jrc import profile_roughness
@@ -182,7 +182,7 @@ def joint_strength(
     dilatancy: xr.Dataset,
     joint: xr.Dataset,
     specimen: xr.Dataset,
-    settings: Mapping[str, Any],
+    settings: StrengthSettings,
 ) -> xr.Dataset:
     """Dilatancy angle, friction angle and shear strength over the offsets, peak and residual.
 
@@ -194,10 +194,8 @@ def joint_strength(
         From :func:`mechanics.joint.describe_joint`.
     specimen : xr.Dataset
         That slides: not one against a plane.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`; its ``material`` gives
-        ``basic_friction_angle`` (degrees) and ``joint_wall_strength`` (JCS, MPa), NaN where the
-        study states none, and then what depends on them is NaN.
+    settings : StrengthSettings
+        What depends on a quantity that is not stated is NaN.
 
     Returns
     -------
@@ -214,7 +212,7 @@ def joint_strength(
     the window: Z2 at a fixed step hardly depends on the length of the profile. His correction for
     scale then goes from `LABORATORY_LENGTH` to the window's own length along the sliding.
     """
-    material = settings["material"]
+    material = settings.material
     pressure = dilatancy["normal_force"].values / nominal_area(specimen)
     directions = [str(d) for d in dilatancy["contact_direction"].values]
     parts = [
@@ -236,7 +234,7 @@ def joint_strength(
         ("basic_friction_angle", "degree", "basic friction angle phi_b"),
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),
     ):
-        result[name] = ((), float(material[name]), cf_attrs(units, words))
+        result[name] = ((), float(getattr(material, name)), cf_attrs(units, words))
     return result
 
 
@@ -279,12 +277,12 @@ def _one_direction(
     dilatancy: xr.Dataset,
     joint: xr.Dataset,
     specimen: xr.Dataset,
-    material: Mapping[str, float],
+    material: Friction,
     direction: str,
     pressure: np.ndarray,
 ) -> xr.Dataset:
     """All of :func:`joint_strength` for one direction."""
-    angle_b = material["basic_friction_angle"]
+    angle_b = material.basic_friction_angle
     largest = dilatancy["offset_made"].sel(contact_direction=direction).values[-1]
     curves = _curves_with_rigid(dilatancy, joint, specimen, direction)
     midpoint, angles, angles_off = angles_with_errors(*curves)
@@ -343,11 +341,9 @@ def _curves_with_rigid(
     return offset, both, errors
 
 
-def _by_barton(
-    jrc: float, material: Mapping[str, float], side: float, pressure: np.ndarray
-) -> dict[str, Any]:
+def _by_barton(jrc: float, material: Friction, side: float, pressure: np.ndarray) -> dict[str, Any]:
     """Barton's law with the JRC and JCS as they are, and scaled to the side of the window."""
-    angle, wall = material["basic_friction_angle"], material["joint_wall_strength"]
+    angle, wall = material.basic_friction_angle, material.joint_wall_strength
     scaled_jrc, scaled_wall = scaled_joint(jrc, wall, side)
     # Beyond Barton's scale there is nothing that his law was measured on.
     scaled_jrc = scaled_jrc if scaled_jrc <= JRC_RANGE[1] else np.nan

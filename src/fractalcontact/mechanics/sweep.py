@@ -12,6 +12,7 @@ from ..contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.errors import NotConverged
 from ..core.labels import cf_attrs
+from ..core.settings import ContactSettings, Solver
 from ..elastic.halfspace import HalfSpace
 from .closure import bulk_settlement, interface_closure
 from .joint import prefractal, rigid_dilatancy
@@ -78,19 +79,18 @@ def _solved(
         raise
 
 
-def map_place(joint: xr.Dataset, settings: Mapping[str, Any], direction: str) -> int:
+def map_place(joint: xr.Dataset, settings: ContactSettings, direction: str) -> int:
     """Offset of the contact maps in cells of a direction.
 
     Parameters
     ----------
     joint : xr.Dataset
         From :func:`mechanics.joint.describe_joint`.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : ContactSettings
     direction : str
     """
     offsets = joint["offset"].values
-    offset = chosen_offset(settings["map_offset"], np.sort(offsets))
+    offset = chosen_offset(settings.map_offset, np.sort(offsets))
     cells = joint["offset_cells"].sel(contact_direction=direction).values
     return cells[offsets == offset][0]
 
@@ -100,9 +100,9 @@ def joint_states(
     joint: xr.Dataset,
     directions: Sequence[str],
     offsets: slice,
-    settings: Mapping[str, Any],
+    settings: ContactSettings,
     resolutions: Sequence[int],
-    solver: Mapping[str, Any],
+    solver: Solver,
 ) -> xr.Dataset:
     """Contact states of a joint in some directions, at some of its offsets and resolutions.
 
@@ -137,7 +137,7 @@ def joint_states(
 
 
 def contact_states(
-    loading: JointLoading, resolutions: Sequence[int], *, mapped: int | None = None
+    loading: JointLoading[ContactSettings], resolutions: Sequence[int], *, mapped: int | None = None
 ) -> xr.Dataset:
     """Contact states at some offsets and resolutions, under the loads that are needed.
 
@@ -169,7 +169,7 @@ def contact_states(
         As :func:`mechanics.states.hardness_of`.
     """
     settings, direction, cells = loading.settings, loading.direction, loading.cells
-    forces = loading.forces(settings["loads"])
+    forces = loading.forces(settings.loads)
     shape = (1, len(cells), len(resolutions), len(forces))
     scalars = {name: np.full(shape, np.nan) for name in SCALARS | ERRORS}
     solved = np.zeros(shape, bool)
@@ -188,11 +188,7 @@ def contact_states(
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state, suspicious).items():
                     scalars[name][0, i, k, j] = value
-            if (
-                _in_first_direction(loading)
-                and n == mapped
-                and factor == min(settings["resolutions"])
-            ):
+            if _in_first_direction(loading) and n == mapped and factor == min(settings.resolutions):
                 fields |= map_fields(pressures, gaps, loading.offsets[i], direction, factor)
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "normal_force", f"y_{factor}", f"x_{factor}"),
@@ -202,16 +198,21 @@ def contact_states(
     return _labelled_states(loading, resolutions, scalars | {"solved": solved}).assign(fields)
 
 
-def _in_first_direction(loading: JointLoading) -> bool:
-    return loading.direction == loading.settings["contact_directions"][0]
+def _in_first_direction(loading: JointLoading[ContactSettings]) -> bool:
+    return loading.direction == loading.settings.contact_directions[0]
 
 
 def _load_curve(
-    loading: JointLoading, cells: int, factor: int, space: HalfSpace, *, mapped: bool
+    loading: JointLoading[ContactSettings],
+    cells: int,
+    factor: int,
+    space: HalfSpace,
+    *,
+    mapped: bool,
 ) -> Iterator[tuple[int, ContactState]]:
     """Places among the loads, and states, that are needed at one offset and resolution."""
-    settings, accuracy = loading.settings, loading.solver.get("accuracy")
-    forces = loading.forces(settings["loads"])
+    settings, accuracy = loading.settings, loading.solver.accuracy
+    forces = loading.forces(settings.loads)
     steps = solved_loads(
         settings,
         forces,
@@ -235,7 +236,7 @@ def _labelled_states(
     loading: JointLoading, resolutions: Sequence[int], of_states: Mapping[str, np.ndarray]
 ) -> xr.Dataset:
     """The dataset of :func:`contact_states` but for its fields."""
-    forces = loading.forces(loading.settings["loads"])
+    forces = loading.forces(loading.settings.loads)
     opened, spread = rigid_dilatancy(loading.specimen, loading.direction, loading.cells)
     of_offsets = {
         "offset_made": loading.offsets,

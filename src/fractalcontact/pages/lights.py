@@ -104,7 +104,7 @@ def _nodes(chosen):
 def _grid(chosen):
     """Numerical error of the closure beside what the study asks for."""
     key, title = "grid", "Converged in the grid"
-    accuracy = solver_settings(configuration_of(chosen.atlas)["study"], "study")["accuracy"]
+    accuracy = solver_settings(configuration_of(chosen.atlas)["study"], "study").accuracy
     # All states, at full cost, says nothing of the grid: the usual accuracy is then compared.
     asked = accuracy["closure"] if accuracy else share(ACCURACY["closure"], "closure")
     budget = chosen.stage("error_budget").sel(quantity="closure")

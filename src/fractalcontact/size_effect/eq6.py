@@ -32,6 +32,7 @@ from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.limits import CONFIDENCE, CORRECTED_NODES
 from ..core.ranges import within
+from ..core.settings import WindowSettings
 from ..core.verdicts import NOT_TESTED
 from ..core.window import cell_side
 from ..domain.box_dimension import dimension_of_domain
@@ -54,7 +55,7 @@ DELTA_SIGMA_ESTIMATORS = {
 }
 
 
-def size_test(loading: JointLoading, parts: Sequence[int] = PARTS) -> xr.Dataset:
+def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PARTS) -> xr.Dataset:
     """Size test of a joint: contact against b at equal sigma_0 and at equal sigma*, and eq. 6.
 
     Parameters
@@ -133,11 +134,14 @@ _PREDICTED: dict[str, tuple] = {
 
 
 def _dimensions(
-    loading: JointLoading, whole: xr.Dataset, domains: np.ndarray, parts: Sequence[int]
+    loading: JointLoading[WindowSettings],
+    whole: xr.Dataset,
+    domains: np.ndarray,
+    parts: Sequence[int],
 ) -> xr.Dataset:
     """Delta_sigma of the whole window by every estimator, with sigma* and the slope predicted."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
-    boxes = [dimension_of_domain(d, spacing, fit_range=settings["box_range"]) for d in domains]
+    boxes = [dimension_of_domain(d, spacing, fit_range=settings.box_range) for d in domains]
     occupied = Estimate.stack(_slope_of_occupied(domain, parts) for domain in domains)
     by_estimator = {
         "area": _by_area(loading, whole, spacing),
@@ -165,12 +169,12 @@ def _dimensions(
     return result
 
 
-def _by_area(loading: JointLoading, whole: xr.Dataset, spacing: float) -> Estimate:
+def _by_area(loading: JointLoading[WindowSettings], whole: xr.Dataset, spacing: float) -> Estimate:
     """Delta_sigma (load) from the corrected area of the whole over resolutions."""
     areas = whole_areas(loading, whole)
     s = spacing * areas["resolution"]
-    if loading.settings["scaling_range"] is not None:
-        areas = areas.where(within(s, *loading.settings["scaling_range"]))
+    if loading.settings.scaling_range is not None:
+        areas = areas.where(within(s, *loading.settings.scaling_range))
     by_area = renormalisation(
         s, areas["area_corrected"], whole["normal_force"], areas["nodes"], CORRECTED_NODES
     )

@@ -1,6 +1,6 @@
 """How sigma_z, closure, compliance and strength go with the side b of a joint (eq. 2, sect. 5)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -9,6 +9,7 @@ from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
+from ..core.settings import Friction
 from ..mechanics.jrc import profile_roughness
 from .division import spread_windows
 from .size_exponents import add_size_exponents, usable_sizes
@@ -43,7 +44,7 @@ def joint_by_size(
     specimen: xr.Dataset,
     dimension: Estimate,
     lags: Sequence[float] | None,
-    material: Mapping[str, float],
+    material: Friction,
 ) -> xr.Dataset:
     """Size laws of a joint: closure, roughness and strength of its sub-windows against b.
 
@@ -56,8 +57,7 @@ def joint_by_size(
     lags : (float, float) or None
         Range stated for Delta_g, or below a roll-off, mm: eq. 2 is fitted over windows that look at
         the same waves.
-    material : mapping
-        As for :func:`size_laws`.
+    material : Friction
 
     Returns
     -------
@@ -74,7 +74,7 @@ def joint_by_size(
 
 def size_laws(
     states: xr.Dataset,
-    material: Mapping[str, float],
+    material: Friction,
     roughness: float,
     dimension: Estimate,
     fit_range: Sequence[float] | None = None,
@@ -85,8 +85,7 @@ def size_laws(
     ----------
     states : xr.Dataset
         From :func:`size_effect.windows.window_states`.
-    material : mapping
-        ``basic_friction_angle`` (degrees) and ``joint_wall_strength`` (MPa), NaN where not stated.
+    material : Friction
     roughness : float
         JRC of the window as used in Barton's law (``jrc_used`` of
         :func:`mechanics.jrc.profile_roughness`); NaN for a joint that does not slide.

@@ -10,6 +10,7 @@ from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..core.ranges import within
+from ..core.settings import JointSettings
 from ..domain.renormalisation import FEWEST_NODES
 from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure
@@ -36,7 +37,9 @@ Estimate = Callable[[xr.Dataset, np.ndarray, Sequence[int]], xr.Dataset]
 
 
 def solve_sub_windows(
-    loading: JointLoading, parts: Sequence[int] = PARTS, estimate: Estimate | None = None
+    loading: JointLoading[JointSettings],
+    parts: Sequence[int] = PARTS,
+    estimate: Estimate | None = None,
 ) -> tuple[xr.Dataset, np.ndarray]:
     """States of all sub-windows of several sizes under the study's loads and some beyond.
 
@@ -81,13 +84,11 @@ def solve_sub_windows(
     composite = loading.composite(loading.cells.item())
     parts = solvable_parts(parts, loading.shape)
     smallest = min(loading.shape) // max(parts)
-    factors = [
-        k for k in settings["resolutions"] if k == 1 or smallest // k >= FEWEST_NODES_PER_SIDE
-    ]
-    of_study = loading.forces(settings["loads"]) / area
+    factors = [k for k in settings.resolutions if k == 1 or smallest // k >= FEWEST_NODES_PER_SIDE]
+    of_study = loading.forces(settings.loads) / area
     pressures = _ladder(of_study, loading.solving["hardness"])
     # Stiffness costs a solve of its own: at the loads whose closure is looked at.
-    looked_at = loading.forces(settings["dilatancy_loads"]) / area
+    looked_at = loading.forces(settings.dilatancy_loads) / area
     compliant = np.isclose(pressures[:, np.newaxis], looked_at, rtol=1e-9).any(axis=1)
     n_tested = min(len(of_study) + TESTED_DOUBLINGS, len(pressures))
     sizes = []
@@ -102,7 +103,7 @@ def solve_sub_windows(
     domains = np.array(whole.domains[:n_tested])
     if estimate is not None:
         estimated = estimate(_labelled([whole], [1], of_study[-1], n_tested, area), domains, parts)
-        if loading.solver.get("accuracy") is not None:
+        if loading.solver.accuracy is not None:
             powers = 2 - estimated["delta_sigma"].values
     largest = np.nanmax(whole.real_pressure()[0, :n_tested], initial=0.0)
     for size in sizes:
@@ -148,7 +149,7 @@ class _LoadedSize:
 
     def __init__(
         self,
-        loading: JointLoading,
+        loading: JointLoading[JointSettings],
         windows: np.ndarray,
         factors: Sequence[int],
         pressures: np.ndarray,
@@ -167,7 +168,7 @@ class _LoadedSize:
         self._compliant = compliant
         self.domains: list[np.ndarray] = []
         self.solved = 0
-        modulus = loading.settings["material"]["e_star"]
+        modulus = loading.settings.material.e_star
         self._settlement = bulk_settlement(self.loads, modulus, *self.sides)
         self.bulk_compliance = self._settlement[0] / pressures[0]
         self._flush = [np.ptp(window) == 0 for window in windows]
@@ -326,7 +327,7 @@ def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> 
     return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
 
 
-def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.Dataset:
+def whole_areas(loading: JointLoading[JointSettings], states: xr.Dataset) -> xr.Dataset:
     """Corrected real area of the whole window at all resolutions of the study.
 
     Parameters
@@ -342,7 +343,7 @@ def whole_areas(loading: JointLoading, states: xr.Dataset) -> xr.Dataset:
         ``area_corrected``, mm2, and ``nodes`` (resolution, normal_force).
     """
     composite = loading.composite(loading.cells.item())
-    factors, loads = loading.settings["resolutions"], states["normal_force"]
+    factors, loads = loading.settings.resolutions, states["normal_force"]
     solved = states.sel(part=1).isel(window=0, step=slice(len(loads)))
     # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)

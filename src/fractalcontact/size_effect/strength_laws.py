@@ -1,7 +1,5 @@
 """Shear strength over the side b of a joint, at one v and at one v/b (sect. 5)."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 
@@ -9,6 +7,7 @@ from ..core.datasets import labelled
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
+from ..core.settings import Friction
 from ..mechanics.strength import (
     FIELDS,
     angles_with_errors,
@@ -26,9 +25,7 @@ from .window_means import add_law, add_mean
 OFFSET_FRACTIONS = (0.01, 0.02, 0.05, 0.1)
 
 
-def strength_by_size(
-    states: xr.Dataset, material: Mapping[str, float], roughness: float
-) -> xr.Dataset:
+def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -> xr.Dataset:
     """Peak and residual strength of the sub-windows, each from its own elastic dilatancy curve.
 
     Parameters
@@ -66,7 +63,7 @@ def strength_by_size(
     side = states["side"]
     offset, curve, error = _dilatancy_curves(states)
     midpoint, angle, angle_off = angles_with_errors(offset, curve, error)
-    friction = material["basic_friction_angle"] + angle
+    friction = material.basic_friction_angle + angle
     pressure = states["nominal_pressure"].values
     strength, bound, off = strength_with_error(pressure, friction, angle_off)
     held = np.where(np.isnan(strength), np.nan, bound == 1)
@@ -168,17 +165,15 @@ def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
     return offset, curve, error
 
 
-def _by_barton(
-    states: xr.Dataset, material: Mapping[str, float], roughness: float
-) -> dict[str, np.ndarray]:
+def _by_barton(states: xr.Dataset, material: Friction, roughness: float) -> dict[str, np.ndarray]:
     """Barton's law with the JRC and JCS of each size."""
     lengths = states["side_along"].values
-    scaled = scaled_joint(roughness, material["joint_wall_strength"], lengths)
+    scaled = scaled_joint(roughness, material.joint_wall_strength, lengths)
     # His law was measured on his scale: beyond it there is nothing to compare with.
     on_scale = np.where(np.asarray(scaled[0]) <= JRC_RANGE[1], scaled[0], np.nan)
     strength = barton_strength(
         states["nominal_pressure"].values,
-        material["basic_friction_angle"],
+        material.basic_friction_angle,
         *(np.asarray(of_size)[:, np.newaxis] for of_size in (on_scale, scaled[1])),
     )
     return {"barton_roughness": on_scale, "barton_scaled_strength": np.asarray(strength)}

@@ -12,6 +12,7 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_planes
+from ..core.settings import JointSettings
 from ..elastic.halfspace import HalfSpace
 from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure
@@ -67,7 +68,7 @@ _TABLE = {
 
 
 def window_states(
-    loading: JointLoading,
+    loading: JointLoading[JointSettings],
     parts: Sequence[int] = PARTS,
     most: int = MOST_WINDOWS,
     *,
@@ -109,7 +110,7 @@ def window_states(
     size; the part of its closure that comes from tilt alone then vanishes.
     """
     area, cells = loading.area, loading.cells
-    pressures = loading.forces(loading.settings["dilatancy_loads"]) / area
+    pressures = loading.forces(loading.settings.dilatancy_loads) / area
     parts = solvable_parts(parts, loading.shape)
     chosen = [spread_windows(n, most) for n in parts]
     dims = (len(parts), max(map(len, chosen), default=0), len(cells), len(pressures))
@@ -159,7 +160,7 @@ class _SubWindows:
     """The sub-windows of one size that are solved, over the offsets of a joint."""
 
     def __init__(
-        self, loading: JointLoading, parts: int, chosen: np.ndarray, *, seated: bool
+        self, loading: JointLoading[JointSettings], parts: int, chosen: np.ndarray, *, seated: bool
     ) -> None:
         ny, nx = loading.shape
         shape = ny // parts, nx // parts
@@ -188,7 +189,7 @@ def _solved(
     space: HalfSpace,
     forces: np.ndarray,
     settlement: np.ndarray,
-    loading: JointLoading,
+    loading: JointLoading[JointSettings],
     where: str,
 ) -> dict[str, np.ndarray]:
     """:data:`STATES` (n_load,) of one sub-window under rising forces."""

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.netcdf import versions
+from ..core.settings import Material, read
 from ..mechanics.model_validity import model_validity
 from ..statements.comparison import UNGROUPED, compare_specimens, specimen_row
 from ..statements.judge import judge
@@ -156,7 +157,9 @@ def _models(of_joints, settings):
     if not of_joints:
         return {}
     judged = {
-        name: model_validity(stages["area"], stages["scaling"], settings[name])
+        name: model_validity(
+            stages["area"], stages["scaling"], read(Material, settings[name]["material"])
+        )
         for name, stages in of_joints.items()
     }
     return {"elastic_model": judged}

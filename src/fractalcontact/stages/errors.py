@@ -1,10 +1,9 @@
 """Error budget of a specimen, and with it what was solved and how exactly."""
 
-from collections.abc import Mapping
-
 import xarray as xr
 
 from ..accuracy.error_budget import error_budget
+from ..core.settings import Solver, StateSettings
 from ..mechanics.loading import JointLoading
 from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread
@@ -17,8 +16,8 @@ def error_stages(
     closure: xr.Dataset,
     dilatancy: xr.Dataset,
     domains: xr.Dataset,
-    settings: Mapping,
-    solver: Mapping,
+    settings: StateSettings,
+    solver: Solver,
 ) -> dict[str, xr.Dataset]:
     """Stages that solve some states again on finer grids, along the first direction of contact.
 
@@ -26,17 +25,15 @@ def error_stages(
     ----------
     specimens, joints, closure, dilatancy, domains : xr.Dataset
         Of the stages of these names.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
-    solver : mapping
-        From :func:`study.configuration.solver_settings`.
+    settings : StateSettings
+    solver : Solver
 
     Returns
     -------
     dict of str to xr.Dataset
         By stage: error_budget and choices.
     """
-    direction = settings["contact_directions"][0]
+    direction = settings.contact_directions[0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at_map_offset()
     spread = registration_spread(loading)

@@ -1,24 +1,22 @@
 """What is known of a specimen before contact is solved: dimension, scan quality, sliding joint."""
 
-from collections.abc import Mapping
-
 import xarray as xr
 
+from ..core.settings import SpecimenSettings
 from ..core.window import spacing_of
 from ..mechanics.joint import describe_joint
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 
 
-def specimen_stages(specimen: xr.Dataset, settings: Mapping) -> dict[str, xr.Dataset]:
+def specimen_stages(specimen: xr.Dataset, settings: SpecimenSettings) -> dict[str, xr.Dataset]:
     """Stages of one levelled specimen, itself among them.
 
     Parameters
     ----------
     specimen : xr.Dataset
         From :func:`study.preparation.prepare_specimen`.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : SpecimenSettings
 
     Returns
     -------
@@ -31,8 +29,8 @@ def specimen_stages(specimen: xr.Dataset, settings: Mapping) -> dict[str, xr.Dat
         "surface_dimension": surface_dimension(
             specimen.lower.values,
             spacing_of(specimen),
-            fit_range=settings["surface_range"],
-            known_dimension=settings["known_dimension"],
+            fit_range=settings.surface_range,
+            known_dimension=settings.known_dimension,
         ),
-        "quality": scan_quality(specimen, settings["resolutions"]),
+        "quality": scan_quality(specimen, settings.resolutions),
     }

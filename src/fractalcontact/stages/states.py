@@ -1,10 +1,11 @@
 """What follows from contact states of a specimen: curves, laws, domains, errors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import xarray as xr
 
 from ..core.reported import Reported
+from ..core.settings import Solver, StateSettings
 from ..core.window import cell_side, nominal_area, window_sides
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
@@ -32,8 +33,8 @@ def state_stages(
     surface_dimension: xr.Dataset,
     joints: xr.Dataset,
     parts: Sequence[xr.Dataset],
-    settings: Mapping,
-    solver: Mapping,
+    settings: StateSettings,
+    solver: Solver,
 ) -> dict[str, xr.Dataset]:
     """Stages that are computed from the contact states of one specimen.
 
@@ -43,10 +44,8 @@ def state_stages(
         Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
     parts : sequence of xr.Dataset
         Contact states, from :func:`mechanics.sweep.joint_states`.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
-    solver : mapping
-        From :func:`study.configuration.solver_settings`.
+    settings : StateSettings
+    solver : Solver
 
     Returns
     -------
@@ -56,12 +55,12 @@ def state_stages(
     """
     states, mapped = combine(parts), map_states(parts)
     spacing, area = cell_side(specimens), nominal_area(specimens)
-    e_star = settings["material"]["e_star"]
+    e_star = settings.material.e_star
     curves = closure_curves(
         states,
         window_sides(specimens),
         e_star,
-        force_range(settings["hyperbola_range"], specimens),
+        force_range(settings.hyperbola_range, specimens),
         openings=prefractal_openings(
             specimens, joints, [int(k) for k in states["resolution"].values]
         ),
@@ -78,8 +77,8 @@ def state_stages(
         best_dimension(surface_dimension).value,
     )
     fields = domains_of(states)
-    domains = analyse_domains(fields, spacing, fit_range=settings["box_range"])
-    nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings["box_range"])
+    domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
+    nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
     domains = beside_domains(domains, nulls)
     stages = {
         "closure": curves,
@@ -88,9 +87,9 @@ def state_stages(
         "domains": domains,
         "contact": contact_fields(fields, parts, joints, settings, area),
         "scaling": scaling_over_resolutions(
-            curves, domains, spacing, fit_range=settings["scaling_range"]
+            curves, domains, spacing, fit_range=settings.scaling_range
         ),
-        "domain_measures": measures_of_map_states(mapped, spacing, settings["box_range"]),
+        "domain_measures": measures_of_map_states(mapped, spacing, settings.box_range),
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     return stages | error_stages(
@@ -104,18 +103,18 @@ def state_stages(
     )
 
 
-def _reported(curves: xr.Dataset, settings: Mapping, area: float) -> Reported:
+def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Reported:
     """States that the study wants published."""
     return Reported.choose(
         curves,
-        direction=str(settings["contact_directions"][0]),
-        offset=chosen_offset(settings["map_offset"], curves["offset"].values),
-        loads=forces_of(settings["dilatancy_loads"], area),
-        reference=float(forces_of([settings["map_load"]], area)[0]),
+        direction=str(settings.contact_directions[0]),
+        offset=chosen_offset(settings.map_offset, curves["offset"].values),
+        loads=forces_of(settings.dilatancy_loads, area),
+        reference=float(forces_of([settings.map_load], area)[0]),
     )
 
 
-def _seating_force(settings: Mapping, area: float) -> float | None:
+def _seating_force(settings: StateSettings, area: float) -> float | None:
     """Force from which closure is seated, N; None where the study leaves it to the states."""
-    seating = settings["seating_load"]
+    seating = settings.seating_load
     return None if seating is None else float(forces_of([seating], area)[0])

@@ -1,10 +1,9 @@
 """Strength of a specimen, and what the side of its sub-windows does: nothing is solved here."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 
+from ..core.settings import StrengthSettings
 from ..core.window import cell_side, nominal_area
 from ..mechanics.states import with_pressure
 from ..mechanics.strength import joint_strength
@@ -21,7 +20,7 @@ def strength_stages(
     window_states: xr.Dataset,
     size_test: xr.Dataset,
     dilatancy: xr.Dataset,
-    settings: Mapping,
+    settings: StrengthSettings,
 ) -> dict[str, xr.Dataset]:
     """Stages that read friction angles, so that a change of one makes no others again.
 
@@ -33,8 +32,7 @@ def strength_stages(
         Likewise, from :func:`stages.windows.window_stages`.
     dilatancy : xr.Dataset
         From :func:`stages.states.state_stages`.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : StrengthSettings
 
     Returns
     -------
@@ -55,11 +53,11 @@ def _size_laws(
     specimens: xr.Dataset,
     surface_dimension: xr.Dataset,
     window_states: xr.Dataset,
-    settings: Mapping,
+    settings: StrengthSettings,
 ) -> xr.Dataset:
     """Size laws, fitted below a roll-off where there is one."""
-    lags = settings["surface_range"]
+    lags = settings.surface_range
     if lags is None and np.isfinite(surface_dimension["roll_off"]):
         lags = FEWEST_CELLS * cell_side(specimens), float(surface_dimension["range_max"])
     dimension = best_dimension(surface_dimension)
-    return joint_by_size(window_states, specimens, dimension, lags, settings["material"])
+    return joint_by_size(window_states, specimens, dimension, lags, settings.material)

@@ -1,10 +1,9 @@
 """Sub-windows of a specimen solved: their states, and eq. 6 tested on them."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 
+from ..core.settings import Solver, WindowSettings
 from ..mechanics.loading import JointLoading
 from ..mechanics.states import with_pressure
 from ..size_effect import windows
@@ -12,7 +11,7 @@ from ..size_effect.eq6 import size_test
 
 
 def window_stages(
-    specimens: xr.Dataset, joints: xr.Dataset, settings: Mapping, solver: Mapping
+    specimens: xr.Dataset, joints: xr.Dataset, settings: WindowSettings, solver: Solver
 ) -> dict[str, xr.Dataset]:
     """Stages that solve sub-windows of one specimen, along its first direction of contact.
 
@@ -23,17 +22,15 @@ def window_stages(
     ----------
     specimens, joints : xr.Dataset
         Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
-    solver : mapping
-        From :func:`study.configuration.solver_settings`.
+    settings : WindowSettings
+    solver : Solver
 
     Returns
     -------
     dict of str to xr.Dataset
         By stage: window_states and size_test.
     """
-    direction = settings["contact_directions"][0]
+    direction = settings.contact_directions[0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at(np.sort(joint.cells))
     stages = {"window_states": windows.window_states(loading), "size_test": size_test(loading)}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..core.errors import InputError
 from ..core.file_names import specimen_name
+from ..core.settings import Settings, Solver
 from ..scan.options import coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
 from .figure_list import figures_of
@@ -15,9 +16,6 @@ from .scan_files import ScanFiles
 from .scan_groups import list_grouped
 from .schema import nearest, shortened, validate
 from .sidecar import is_contact_map, read_yaml
-
-#: Keys of a sidecar that say how to read the scan; its other keys are settings of the specimen.
-_SCAN_DEFINITION, _SETTINGS_DEFINITION = "scan", "settings"
 
 
 @dataclass(frozen=True)
@@ -28,24 +26,23 @@ class Study:
     ----------
     scans : dict of str to ScanFiles
         By specimen or contact map.
-    settings : dict of str to dict
-        By specimen, scanned or embedded: :func:`study.configuration.resolve_settings`.
+    settings : dict of str to Settings
+        By specimen, scanned or embedded.
     options : dict of str to dict
         By scan: how to read it, the scan keys of its sidecar.
     labels : dict of str to str
         By measured contact map, which have no settings.
-    solver : dict
-        :func:`study.configuration.solver_settings`.
+    solver : Solver
     refused : dict of str to InputError
         What is wrong with scans that were left out, by specimen or file name; empty where the first
         such thing was raised.
     """
 
     scans: dict[str, ScanFiles]
-    settings: dict[str, dict]
+    settings: dict[str, Settings]
     options: dict[str, dict]
     labels: dict[str, str]
-    solver: dict
+    solver: Solver
     refused: dict[str, InputError] = field(default_factory=dict)
 
 
@@ -71,77 +68,68 @@ def resolve_study(
         For the first thing that is wrong.
     """
     check_study(config, schema, source)
+    scans, stated, refused = read_scans(config, schema)
     folder = config.get("scans", "scans")
-    scans, refused = list_grouped(folder, config.get("groups")) if folder else ({}, {})
     check_names(scans, config, folder, source)
-    embedded = config.get("embedded", {})
-    unknown = sorted(set(config.get("specimens", {})) - {*scans, *embedded, *refused})
-    if unknown:
+    known = {*scans, *refused, *config.get("embedded", {})}
+    if unknown := sorted(set(config.get("specimens", {})) - known):
         raise InputError(
             f"{source}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
         )
-    sidecars: dict[str, tuple[dict, dict]] = {}
-    shared: dict[Path, tuple[dict, dict]] = {}
-    for name, scan in list(scans.items()):
-        with _refusing(refused, name):
-            sidecars[name] = stated_of(scan, schema, shared)
-            with_coordinates(scans, {name: sidecars[name][0]})
-    scans = with_coordinates(
-        scans, {name: keys for name, (keys, _) in sidecars.items() if name not in refused}
-    )
     settings, options, labels = {}, {}, {}
-    for name in sorted(scans.keys() - refused.keys()):
+    for name in sorted(stated.keys() - refused.keys()):
         with _refusing(refused, name):
-            keys, own = sidecars[name]
+            keys, own = stated[name]
             if is_contact_map(keys):
                 labels[name] = own.get("label", name)
             else:
-                scan = scans[name]
-                settings[name] = resolve_settings(
-                    config,
-                    name,
-                    own,
-                    source,
-                    pair=scan.upper is not None,
-                    sidecar_file=scan.sidecar or scan.row_of or scan.shared,
-                    group=scan.group,
-                )
+                settings[name] = resolve_settings(config, name, own, source, scans[name])
             options[name] = keys
     if refused and not leave_out:
         raise refused[min(refused)]
     scans = {name: scan for name, scan in scans.items() if name in options}
-    for name in embedded:
+    for name in config.get("embedded", {}):
         settings[name] = resolve_settings(config, name, {}, source)
     return Study(scans, settings, options, labels, solver_settings(config, source), refused)
 
 
-def stated_of(
-    scan: ScanFiles, schema: Mapping, shared: dict[Path, tuple[dict, dict]]
-) -> tuple[dict, dict]:
-    """Scan keys and settings of a specimen: of its group, then its sidecar's, then its table's.
-
-    What its group says may have no meaning for some of the group.
+def read_scans(
+    config: Mapping, schema: Mapping
+) -> tuple[dict[str, ScanFiles], dict[str, tuple[dict, dict]], dict[str, InputError]]:
+    """Scan files of a study, and what is said of them.
 
     Parameters
     ----------
-    scan : ScanFiles
+    config : mapping
+        A study that passed the schema.
     schema : mapping
         config/schema/study.schema.yaml.
-    shared : dict of Path to tuple
-        What sidecars of groups say, which is kept here, to be read once.
 
     Returns
     -------
-    scan, settings : dict
-        As of :func:`read_sidecar`.
-
-    Raises
-    ------
-    InputError
+    scans : dict of str to ScanFiles
+    stated : dict of str to tuple
+        Scan keys and settings of each: of its group, then its sidecar's, then its table's.
+    refused : dict of str to InputError
+        What is wrong with some, by specimen or file name.
     """
-    if scan.shared is not None and scan.shared not in shared:
-        shared[scan.shared] = read_sidecar(scan.shared, schema)
-    of_group = shared[scan.shared] if scan.shared is not None else ({}, {})
+    folder = config.get("scans", "scans")
+    scans, refused = list_grouped(folder, config.get("groups")) if folder else ({}, {})
+    stated: dict[str, tuple[dict, dict]] = {}
+    shared: dict[Path | None, tuple[dict, dict]] = {None: ({}, {})}
+    for name, scan in scans.items():
+        with _refusing(refused, name):
+            if scan.shared not in shared:
+                shared[scan.shared] = read_sidecar(scan.shared, schema)
+            said = _stated_of(scan, shared[scan.shared], schema)
+            with_coordinates(scans, {name: said[0]})
+            stated[name] = said
+    scans = with_coordinates(scans, {name: keys for name, (keys, _) in stated.items()})
+    return scans, {name: stated[name] for name in stated if name in scans}, refused
+
+
+def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict], schema: Mapping) -> tuple[dict, dict]:
+    """What is said of one specimen; what its group says may have no meaning for some of it."""
     of_file = read_sidecar(scan.sidecar, schema)
     of_row = _split(dict(scan.row), schema, scan.row_of) if scan.row else ({}, {})
     own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})
@@ -188,8 +176,7 @@ def with_coordinates(
                 taken.add(listed[path])
             # A table names maps alone, not what goes with them.
             elif not (scan.row_of and path.is_file() and not path.is_symlink()):
-                where = scan.sidecar or scan.row_of
-                raise InputError(f"{where}: {key}: no file {path.name} beside it")
+                raise InputError(f"{scan.said_in}: {key}: no file {path.name} beside it")
         found[name] = replace(scan, coordinates=tuple(files.values()))
     return {name: scan for name, scan in found.items() if name not in taken}
 
@@ -302,8 +289,8 @@ def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
 def _split(document: dict, schema: Mapping, source: str) -> tuple[dict, dict]:
     """Scan keys and settings of what a sidecar, or a row of a table, says."""
     definitions = schema["$defs"]
-    scan_keys = definitions[_SCAN_DEFINITION]["properties"]
-    properties = {**scan_keys, **definitions[_SETTINGS_DEFINITION]["properties"]}
+    scan_keys = definitions["scan"]["properties"]
+    properties = {**scan_keys, **definitions["settings"]["properties"]}
     sidecar_schema = {
         "$defs": definitions,
         "type": "object",

@@ -2,18 +2,25 @@
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 from ..core.errors import InputError
+from ..core.settings import Material, Settings, Solver, SpecimenSettings
 from ..core.tolerance import tolerance
 from ..core.units import load, quantity, share
+from .scan_files import ScanFiles
 from .schema import nearest
-from .selection import chosen_for, is_capped_variant
+from .selection import is_capped_variant
 
 #: Nodes per side of an embedded specimen: a surface of that many takes some 35 GB to make.
 FEWEST_NODES, MOST_NODES = 2, 16384
 
 #: What a study that does not mention it gets; everything else must be stated.
+SPECIMEN = {
+    "opposite": "match",
+    "outliers": "keep",
+    "fill_holes": 0,
+    "directions": ["E", "N", "W", "S"],
+}
 SOLVER = {"kernel": "love"}
 ACCURACY = {"closure": "1 %", "delta_sigma": 0.02}
 #: Tolerance of a study that asks for everything.
@@ -21,16 +28,9 @@ FULL_RTOL = 1e-6
 
 
 def resolve_settings(
-    config: Mapping,
-    name: str | None,
-    sidecar: Mapping,
-    source: str,
-    *,
-    pair: bool = False,
-    sidecar_file: Path | str | None = None,
-    group: str = "",
-) -> dict:
-    """Settings of one specimen: the defaults, then the study's own for it, then its sidecar's.
+    config: Mapping, name: str | None, own: Mapping, source: str, scan: ScanFiles | None = None
+) -> Settings:
+    """Settings of one specimen: the defaults, then the study's for it, then its sidecar's.
 
     Parameters
     ----------
@@ -38,72 +38,51 @@ def resolve_settings(
         A study that passed the schema.
     name : str or None
         The specimen; None for the defaults alone.
-    sidecar : mapping
+    own : mapping
         Settings of its sidecar.
     source : str
         For errors.
-    pair : bool, optional
-        Whether both faces were scanned: then ``opposite`` has nothing to say.
-    sidecar_file : Path, optional
-        Of these settings, for errors.
-    group : str, optional
-        Group of the specimen unless its settings say otherwise: of its folder.
-
-    Returns
-    -------
-    dict
-        Plain numbers in mm, N and MPa; ``None`` stands for "auto". Loads are pairs (value, kind).
+    scan : ScanFiles, optional
+        Of a specimen that was scanned. With both faces ``opposite`` has nothing to say.
 
     Raises
     ------
     InputError
         If a quantity has the wrong unit, a material no definition, or a needed key is missing.
     """
-    for key in ("materials", "defaults"):
-        if key not in config:
-            raise InputError(
-                f"{source}: missing key '{key}', which the specimen {name} needs (contact maps say "
-                "'kind: contact-map' in their sidecar)"
-            )
-    stated = _Stated(config, name, sidecar, source, sidecar_file)
-    loads = stated.loads("loads")
-    opposite = "match" if pair else stated.get("opposite", "match")
+    stated = _Stated(config, name, own, source, scan)
+    opposite = "match" if scan and scan.upper else stated["opposite"]
     flat = opposite == "flat"
-    directions = stated.get("directions", ["E", "N", "W", "S"])
+    directions = ["none"] if flat else stated["directions"]
+    loads = stated.loads("loads")
+    seating = stated.chosen_loads("seating_load", loads) if "seating_load" in stated else [None]
     recipe = config.get("embedded", {}).get(name, {})
-    settings = {
-        "label": stated.get("label", recipe.get("label", name)),
-        "group": stated.get("group", group),
-        "known_dimension": float(recipe.get("dimension", math.nan)),
-        "chosen_for": chosen_for(config, name),
-        "capped_variant": is_capped_variant(config, name),
-        "material": _material(config, stated["material"], stated.where("material"), source),
-        "opposite": opposite,
-        "outliers": stated.get("outliers", "keep"),
-        "fill_holes": stated.get("fill_holes", 0),
-        "window": stated.lengths("window"),
-        "window_centre": None,
-        "directions": ["none"] if flat else directions,
-        "contact_directions": ["none"] if flat else stated.get("contact_directions", directions),
-        "offsets": [0.0] if flat else stated.lengths("offsets"),
-        "loads": loads,
-        "resolutions": sorted(stated["resolutions"]),
-        "dilatancy_loads": stated.chosen_loads("dilatancy_loads", loads),
-        "map_load": stated.chosen_loads("map_load", loads)[-1],
-        "map_offset": None,
-        "hyperbola_range": None,
-        "seating_load": None,
-    }
-    for key in ("surface_range", "box_range", "scaling_range"):
-        settings[key] = stated.lengths(key)
-    if stated.get("hyperbola_range", "auto") != "auto":
-        settings["hyperbola_range"] = stated.loads("hyperbola_range")
-    if "seating_load" in stated:
-        settings["seating_load"] = stated.chosen_loads("seating_load", loads)[0]
-    if "window_centre" in stated:
-        settings["window_centre"] = stated.lengths("window_centre")
-    if "map_offset" in stated and not flat:
-        settings["map_offset"] = stated.lengths("map_offset")
+    settings = Settings(
+        label=stated.get("label", recipe.get("label", name)),
+        group=stated.get("group", scan.group if scan else ""),
+        known_dimension=float(recipe.get("dimension", math.nan)),
+        chosen_for=dict(recipe.get("chosen_for", {})),
+        capped_variant=is_capped_variant(config, name),
+        material=_material(config, stated["material"], stated.where("material"), source),
+        opposite=opposite,
+        outliers=stated["outliers"],
+        fill_holes=stated["fill_holes"],
+        window=stated.lengths("window"),
+        window_centre=stated.lengths("window_centre"),
+        directions=directions,
+        contact_directions=directions if flat else stated.get("contact_directions", directions),
+        offsets=[0.0] if flat else stated.lengths("offsets"),
+        loads=loads,
+        resolutions=sorted(stated["resolutions"]),
+        dilatancy_loads=stated.chosen_loads("dilatancy_loads", loads),
+        map_load=stated.chosen_loads("map_load", loads)[-1],
+        map_offset=None if flat else stated.lengths("map_offset"),
+        hyperbola_range=stated.loads("hyperbola_range"),
+        seating_load=seating[0],
+        surface_range=stated.range("surface_range"),
+        box_range=stated.range("box_range"),
+        scaling_range=stated.range("scaling_range"),
+    )
     _refuse_contradictions(settings, stated.where)
     return settings
 
@@ -111,33 +90,45 @@ def resolve_settings(
 class _Stated(dict):
     """Settings of one specimen as they are written: defaults, the study's own, its sidecar's."""
 
-    def __init__(self, config, name, sidecar, source, sidecar_file=None):
-        self._study, self._sidecar = config.get("specimens", {}).get(name, {}), sidecar
-        self._name, self._source = name, source
-        self._sidecar_name = sidecar_file or f"sidecar of {name}"
-        super().__init__({**config["defaults"], **self._study, **sidecar})
+    def __init__(self, config, name, own, source, scan):
+        for key in ("materials", "defaults"):
+            if key not in config:
+                raise InputError(
+                    f"{source}: missing key '{key}', which the specimen {name} needs (contact maps "
+                    "say 'kind: contact-map' in their sidecar)"
+                )
+        self._study, self._own = config.get("specimens", {}).get(name, {}), own
+        self._name, self._source, self._scan = name, source, scan
+        super().__init__({**SPECIMEN, **config["defaults"], **self._study, **own})
         for key in ("material", "loads", "resolutions"):
             if key not in self:
                 raise InputError(f"{source}: missing key 'defaults.{key}'")
 
     def where(self, key):
         """Where a setting stands, for errors."""
-        if key in self._sidecar:
-            return f"{self._sidecar_name}: {key}"
+        if key in self._own:
+            said_in = self._scan.said_in if self._scan else f"sidecar of {self._name}"
+            return f"{said_in}: {key}"
         place = f"specimens.{self._name}" if key in self._study else "defaults"
         return f"{self._source}: {place}.{key}"
 
     def lengths(self, key):
         """None for "auto", one length, or a list of lengths, mm."""
-        value, where = self.get(key, "auto"), self.where(key)
-        if value == "auto":
-            return None
-        if isinstance(value, list):
-            return [quantity(text, "length", where) for text in value]
-        return quantity(value, "length", where)
+        return self._each(key, lambda text: quantity(text, "length", self.where(key)))
+
+    def range(self, key):
+        """None for "auto", or two lengths, mm."""
+        return None if self.get(key, "auto") == "auto" else tuple(self.lengths(key))
 
     def loads(self, key):
-        return [load(text, self.where(key)) for text in self[key]]
+        """None for "auto", or a list of loads."""
+        return self._each(key, lambda text: load(text, self.where(key)))
+
+    def _each(self, key, resolved):
+        value = self.get(key, "auto")
+        if value == "auto":
+            return None
+        return [*map(resolved, value)] if isinstance(value, list) else resolved(value)
 
     def chosen_loads(self, key, loads):
         """Loads picked for a figure: those named, which must be solved, or the largest three."""
@@ -152,7 +143,7 @@ class _Stated(dict):
 
     def _not_solved(self, key, text):
         """What is wrong where a load is to be drawn that is not solved: the later file of both."""
-        if "loads" in self._sidecar and key not in self._sidecar:
+        if "loads" in self._own and key not in self._own:
             return InputError(
                 f"{self.where('loads')}: {self['loads']} lacks {text!r}, which {self.where(key)} "
                 f"names; add it, or write '{key}' here too"
@@ -162,43 +153,42 @@ class _Stated(dict):
 
 def _refuse_contradictions(settings, where):
     """Refuse directions, offsets and loads that do not go with each other or with the problem."""
-    for direction in settings["contact_directions"]:
-        if direction not in settings["directions"]:
+    for direction in settings.contact_directions:
+        if direction not in settings.directions:
             raise InputError(
                 f"{where('contact_directions')}: {direction} is not among the directions "
-                f"{settings['directions']} of {where('directions')}; add it there, the rigid "
+                f"{settings.directions} of {where('directions')}; add it there, the rigid "
                 "dilatancy is needed too"
             )
-    for offset in settings["offsets"] or ():
+    for offset in settings.offsets or ():
         if offset < 0:
             raise InputError(f"{where('offsets')}: {offset} mm is negative; slide the other way")
-    for value, kind in settings["loads"]:
+    for value, kind in settings.loads:
         if value <= 0:
             raise InputError(f"{where('loads')}: a {kind} of {value}; loads must be positive")
 
 
-def window_arguments(settings: Mapping) -> dict:
+def window_arguments(settings: SpecimenSettings) -> dict:
     """How :func:`surface.specimen.make_specimen` is to clean faces and place the window.
 
     The window is cut to whole cells of the coarsest pre-fractal, so that all resolutions cover the
     same area, and placed where the offsets of the study can slide it.
     """
-    centre = settings["window_centre"]
-    reach = max(settings["offsets"] or [0.0])
-    flat = settings["opposite"] == "flat"
+    centre = settings.window_centre
+    reach = max(settings.offsets or [0.0])
     return {
-        "opposite": settings["opposite"],
-        "outliers": settings["outliers"],
-        "fill_holes": settings["fill_holes"],
-        "window": settings["window"],
+        "opposite": settings.opposite,
+        "outliers": settings.outliers,
+        "fill_holes": settings.fill_holes,
+        "window": settings.window,
         "window_centre": None if centre is None else (centre[1], centre[0]),
-        "multiple": math.lcm(*settings["resolutions"]),
-        "reach": 0.0 if flat else dict.fromkeys(settings["directions"], reach),
+        "multiple": math.lcm(*settings.resolutions),
+        "reach": 0.0 if settings.opposite == "flat" else dict.fromkeys(settings.directions, reach),
     }
 
 
 def resolve_embedded(recipe: Mapping, where: str) -> dict:
-    """Recipe of an embedded specimen with its lengths in mm.
+    """Recipe of an embedded specimen with its lengths in mm, without what is only words.
 
     Raises
     ------
@@ -206,7 +196,7 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
         If a length has no unit of length or is not positive, the nodes are too few or too many, or
         the construction has no such surface.
     """
-    numbers = {key: value for key, value in recipe.items() if key != "chosen_for"}
+    numbers = {key: value for key, value in recipe.items() if key not in ("label", "chosen_for")}
     for key in ("size", "spacing", "rms", "roll_off"):
         if recipe.get(key) is not None:
             numbers[key] = quantity(recipe[key], "length", f"{where}.{key}")
@@ -257,8 +247,8 @@ def resolve_roll_off(config: Mapping, source: str) -> dict | None:
     return {"recipe": recipe, "window": window, "seeds": stated["seeds"]}
 
 
-def solver_settings(config: Mapping, source: str) -> dict:
-    """How the contact solver is used.
+def solver_settings(config: Mapping, source: str) -> Solver:
+    """How the contact solver is used; ``rtol`` follows from the accuracy where it is not stated.
 
     Parameters
     ----------
@@ -266,12 +256,6 @@ def solver_settings(config: Mapping, source: str) -> dict:
         A study that passed the schema.
     source : str
         For errors.
-
-    Returns
-    -------
-    dict
-        ``kernel``; ``accuracy``, a dict of fractions, or None where the study asks for everything;
-        and ``rtol``, which follows from it unless the study states its own.
 
     Raises
     ------
@@ -285,11 +269,11 @@ def solver_settings(config: Mapping, source: str) -> dict:
         wanted = ACCURACY | stated
         accuracy = {key: share(wanted[key], f"{source}: accuracy.{key}") for key in ACCURACY}
         rtol = tolerance(accuracy)
-    return {"rtol": rtol, **SOLVER, **config.get("solver", {}), "accuracy": accuracy}
+    return Solver(**{"rtol": rtol, **SOLVER, **config.get("solver", {})}, accuracy=accuracy)
 
 
-def _material(config, material, where, source):
-    """Name, E (MPa), Poisson's ratio, E* of two like bodies (MPa), and what may be stated."""
+def _material(config, material, where, source) -> Material:
+    """A material with E* of two like bodies, and what may be stated."""
     if isinstance(material, Mapping):
         label, definition = "own", material
     else:
@@ -303,15 +287,15 @@ def _material(config, material, where, source):
     if modulus <= 0:
         raise InputError(f"{where}.modulus: {definition['modulus']!r} must be positive")
     poisson = float(definition["poisson"])
-    return {
-        "name": label,
-        "modulus": modulus,
-        "poisson": poisson,
-        "e_star": modulus / (2 * (1 - poisson**2)),
-        "basic_friction_angle": _if_stated(definition, "basic_friction_angle", "angle", where),
-        "joint_wall_strength": _if_stated(definition, "joint_wall_strength", "pressure", where),
-        "hardness": _if_stated(definition, "hardness", "pressure", where, math.inf),
-    }
+    return Material(
+        name=label,
+        modulus=modulus,
+        poisson=poisson,
+        e_star=modulus / (2 * (1 - poisson**2)),
+        basic_friction_angle=_if_stated(definition, "basic_friction_angle", "angle", where),
+        joint_wall_strength=_if_stated(definition, "joint_wall_strength", "pressure", where),
+        hardness=_if_stated(definition, "hardness", "pressure", where, math.inf),
+    )
 
 
 def _if_stated(definition, key, kind, where, otherwise=math.nan):

@@ -1,19 +1,11 @@
 """Keys of a sidecar that would change nothing: they were meant to, so they are refused."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from ..core.errors import InputError
 from .scan_files import ScanFiles
 from .sidecar import is_contact_map
 
-#: Scan keys of contact maps alone.
-_OF_MAPS = ("threshold", "outline", "series", "x", "y", "cells", "load")
-#: Settings that a measured contact map has; nothing is solved of it.
-_SETTINGS_OF_MAPS = ("label",)
-#: Scan keys that say how two faces lie to each other, or how points become a grid.
-_NOT_OF_MAPS = ("registration", "mirror_upper", "grid", "columns", "unit_z")
-#: Settings of sliding, which a surface against a plane does not do.
-_OF_SLIDING = ("directions", "contact_directions", "offsets", "map_offset")
 #: Endings of files that hold one array without a name.
 _UNNAMED = (".npy", ".csv", ".tsv", ".xyz", ".stl", ".ply", ".obj")
 
@@ -32,51 +24,36 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
     InputError
         For the first of them.
     """
-    if scan.sidecar is None and not scan.row:
-        return
+    if is_contact_map(keys) and scan.upper is not None:
+        raise InputError(
+            f"{scan.said_in}: a contact map is one file, here are two faces; remove "
+            "'kind: contact-map', or one of the files"
+        )
+    for idle, why in _idle(scan, keys, settings):
+        for key in idle:
+            if key in keys or key in settings:
+                raise InputError(f"{scan.said_in}: key '{key}' has no meaning {why}; remove it")
+
+
+def _idle(scan: ScanFiles, keys: Mapping, settings: Mapping) -> Iterator[tuple[Sequence[str], str]]:
+    """Keys that have no meaning for what the files are, and why."""
     if is_contact_map(keys):
-        if scan.upper is not None:
-            raise InputError(
-                f"{_where(scan)}: a contact map is one file, here are two faces; remove "
-                "'kind: contact-map', or one of the files"
-            )
-        idle = _first(_NOT_OF_MAPS, keys) or next(
-            (key for key in settings if key not in _SETTINGS_OF_MAPS), ""
-        )
-        _refuse(scan, idle, "for a contact map, of which nothing is solved")
+        solved = [key for key in settings if key != "label"]
+        how_faces_lie = ["registration", "mirror_upper", "grid", "columns", "unit_z"]
+        yield [*how_faces_lie, *solved], "for a contact map, of which nothing is solved"
         return
-    if key := _first(_OF_MAPS, keys):
-        meant = "did you mean 'loads'?" if key == "load" else "or write 'kind: contact-map'"
-        _refuse(scan, key, "but for a contact map", meant)
+    yield ["load"], "but for a contact map (did you mean 'loads'?)"
+    of_maps = ["threshold", "outline", "series", "x", "y", "cells"]
+    yield of_maps, "but for a contact map (or write 'kind: contact-map')"
     if scan.upper is not None:
-        _refuse(scan, _first(("opposite",), settings), "where both faces were scanned")
+        yield ["opposite"], "where both faces were scanned"
     else:
-        _refuse(
-            scan,
-            _first(("registration", "mirror_upper"), keys),
-            "for one face, without an upper one",
-        )
+        yield ["registration", "mirror_upper"], "for one face, without an upper one"
     if settings.get("opposite") == "flat":
-        _refuse(
-            scan, _first(_OF_SLIDING, settings), "against a rigid plane, on which nothing slides"
-        )
+        sliding = ["directions", "contact_directions", "offsets", "map_offset"]
+        yield sliding, "against a rigid plane, on which nothing slides"
     if {"unit", "unit_xy", "unit_z"} <= set(keys):
-        _refuse(scan, "unit", "beside both 'unit_xy' and 'unit_z'")
+        yield ["unit"], "beside both 'unit_xy' and 'unit_z'"
     if all(path.suffix.lower() in _UNNAMED for path in scan.files):
         ending = scan.lower.suffix.lower()
-        _refuse(scan, _first(("variable",), keys), f"for a {ending} file, which names no arrays")
-
-
-def _where(scan: ScanFiles) -> object:
-    """What says it: a table comes last, and so says it where there is one."""
-    return scan.row_of or scan.sidecar
-
-
-def _first(names: Sequence[str], stated: Mapping) -> str:
-    return next((name for name in names if name in stated), "")
-
-
-def _refuse(scan: ScanFiles, key: str, why: str, otherwise: str = "") -> None:
-    if key:
-        hint = f" ({otherwise})" if otherwise else ""
-        raise InputError(f"{_where(scan)}: key '{key}' has no meaning {why}; remove it{hint}")
+        yield ["variable"], f"for a {ending} file, which names no arrays"

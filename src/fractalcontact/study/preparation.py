@@ -5,6 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from ..core.settings import SpecimenSettings
 from ..scan.read import read_faces
 from ..scan.registration_scatter import motion_variables, scattered_motions
 from ..surface.specimen import make_specimen
@@ -12,7 +13,11 @@ from .configuration import window_arguments
 
 
 def prepare_specimen(
-    lower: Path | str, upper: Path | str | None, options: Mapping, settings: Mapping, name: str
+    lower: Path | str,
+    upper: Path | str | None,
+    options: Mapping,
+    settings: SpecimenSettings,
+    name: str,
 ) -> xr.Dataset:
     """Read the faces of a specimen, level them and place the window.
 
@@ -24,8 +29,7 @@ def prepare_specimen(
         ``upper`` is None if one face was scanned.
     options : mapping
         Scan keys of the sidecar.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : SpecimenSettings
     name : str
 
     Returns

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..core.settings import JointSettings, SpecimenSettings
 from ..core.units import quantity
 
 #: Megabytes and minutes below which no job asks: the interpreter and its libraries, and Snakemake
@@ -163,22 +164,21 @@ def nodes_of_recipe(recipe: Mapping[str, Any]) -> float:
     return float(round(recipe["size"] / recipe["spacing"]) ** 2)
 
 
-def nodes_of_window(settings: Mapping[str, Any], spacing: object, of_face: float) -> float:
+def nodes_of_window(settings: SpecimenSettings, spacing: object, of_face: float) -> float:
     """Most nodes of the window of a specimen.
 
     Parameters
     ----------
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    settings : SpecimenSettings
     spacing : float, str or None
         Distance of nodes: mm, or as a sidecar has it; None where the file alone knows.
     of_face : float
         Nodes of a face, of which it is a part.
     """
-    window = settings["window"]
+    window = settings.window
     if window is None:
         # Half the side of the largest hole-free square, so that it can slide; all against a plane.
-        return of_face if settings["opposite"] == "flat" else of_face / 4
+        return of_face if settings.opposite == "flat" else of_face / 4
     if spacing is None:
         return of_face
     length = quantity(spacing, "length", "spacing") if isinstance(spacing, str) else spacing
@@ -188,9 +188,9 @@ def nodes_of_window(settings: Mapping[str, Any], spacing: object, of_face: float
     return min(of_face, sides[0] * sides[1] / length**2)
 
 
-def states_of(settings: Mapping[str, Any], n_offsets: int) -> int:
+def states_of(settings: JointSettings, n_offsets: int) -> int:
     """Most contact states of a specimen: directions, offsets and loads."""
-    return len(settings["contact_directions"]) * n_offsets * len(settings["loads"])
+    return len(settings.contact_directions) * n_offsets * len(settings.loads)
 
 
 def _is_plain(path):

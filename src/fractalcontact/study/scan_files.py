@@ -62,6 +62,11 @@ class ScanFiles:
     row_of: str = ""
 
     @property
+    def said_in(self) -> Path | str | None:
+        """The last of what says something of it, for errors: a table, its sidecar, its group's."""
+        return self.row_of or self.sidecar or self.shared
+
+    @property
     def files(self) -> tuple[Path, ...]:
         """All that is measured: what its results are made of, beside the sidecar."""
         return tuple(path for path in (self.lower, self.upper, *self.coordinates) if path)

@@ -1,12 +1,7 @@
-"""How the embedded specimens of a study were chosen, and which of them are one surface twice."""
+"""Which embedded specimens of a study are one surface twice."""
 
 from collections.abc import Mapping
 from typing import Any
-
-
-def chosen_for(study: Mapping[str, Any], name: str | None) -> dict[str, str]:
-    """Statements that an embedded specimen was chosen for, and how, as the study says."""
-    return dict(study.get("embedded", {}).get(name, {}).get("chosen_for", {}))
 
 
 def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:

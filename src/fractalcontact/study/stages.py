@@ -5,14 +5,18 @@ so that reading it imports none of them: on a cluster every job reads the workfl
 
 To add a stage: an entry here; its function, which takes its settings and, by their names, the
 datasets of the stages it needs; a rule; a test. Its dataset then stands in the atlas. In a module
-of its own the function makes no other stage out of date. A key of the settings that a function
-reads stands in :data:`SETTINGS_READ`, and it gets no others: a change of one that it does not read
-makes nothing of it again.
+of its own the function makes no other stage out of date. It gets the settings that the class in its
+signature names, and no others: a change of one that it does not read makes nothing of it again.
 """
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+import ast
+import functools
+from collections.abc import Collection
+from dataclasses import asdict, dataclass, is_dataclass
+from pathlib import Path
 from typing import Any
+
+from ..core import settings
 
 #: How often a stage is made: for every specimen, for those that slide, for every measured contact
 #: map; once, of all specimens together; once, on synthetic surfaces, where the study has the
@@ -258,85 +262,40 @@ _TABLE = (
 #: Every stage by name, in the order of the atlas.
 STAGES = {stage.name: stage for stage in _TABLE}
 
-_SOLVED = ("loads", "map_offset", "material.e_star", "material.hardness")
-_STRENGTH = ("material.basic_friction_angle", "material.joint_wall_strength")
-#: Keys of a specimen's settings that a function reads; those within another stand behind a point.
-SETTINGS_READ = {
-    _SPECIMEN_STAGES: (
-        "opposite",
-        "outliers",
-        "fill_holes",
-        "window",
-        "window_centre",
-        "directions",
-        "contact_directions",
-        "offsets",
-        "resolutions",
-        "surface_range",
-        "known_dimension",
-    ),
-    CONTACT: (*_SOLVED, "contact_directions", "resolutions", "dilatancy_loads", "map_load"),
-    _STATE_STAGES: (
-        *_SOLVED,
-        "contact_directions",
-        "dilatancy_loads",
-        "map_load",
-        "seating_load",
-        "hyperbola_range",
-        "box_range",
-        "scaling_range",
-    ),
-    _STRENGTH_STAGES: (*_STRENGTH, "surface_range"),
-    _WINDOW_STAGES: (
-        *_SOLVED,
-        "contact_directions",
-        "resolutions",
-        "dilatancy_loads",
-        "box_range",
-        "scaling_range",
-    ),
-}
-#: Keys of the solver's settings, likewise.
-SOLVER_READ = {
-    CONTACT: ("rtol", "kernel", "accuracy"),
-    _STATE_STAGES: ("rtol", "kernel", "accuracy"),
-    _WINDOW_STAGES: ("rtol", "kernel", "accuracy"),
-}
 
+@functools.cache
+def sections_of(function: str) -> dict[str, type]:
+    """Settings that a function reads: classes of :mod:`core.settings` by its parameter.
 
-def read_by(function: str, settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Settings of a specimen that a function reads: :data:`SETTINGS_READ`, and no others.
+    Read from its text: whoever plans jobs imports nothing of what they compute with.
 
     Parameters
     ----------
     function : str
         Of a stage, or :data:`CONTACT`.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
     """
-    return _picked(SETTINGS_READ[function], settings)
+    module, _, name = function.partition(":")
+    path = Path(settings.__file__).parents[1] / f"{module.replace('.', '/')}.py"
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    (made,) = (node for node in body if isinstance(node, ast.FunctionDef) and node.name == name)
+    named = {one.arg: ast.unparse(one.annotation) for one in made.args.args if one.annotation}
+    known: dict[str, Any] = {n: of for n, of in vars(settings).items() if is_dataclass(of)}
+    return {parameter: known[of] for parameter, of in named.items() if of in known}
 
 
-def solver_read_by(function: str, solver: Mapping[str, Any]) -> dict[str, Any]:
-    """Settings of the solver that a function reads: :data:`SOLVER_READ`, and no others."""
-    return _picked(SOLVER_READ[function], solver)
+def read_by(function: str, stated: settings.Settings, solver: settings.Solver) -> dict[str, dict]:
+    """What a function reads of the settings of a specimen, by parameter, as plain data.
 
-
-def without_label(resolved: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of an experiment, the recipe among them without its label, which is only words."""
-    recipe = {key: value for key, value in resolved.get("recipe", {}).items() if key != "label"}
-    return {**resolved, **({"recipe": recipe} if recipe else {})}
-
-
-def _picked(keys: Collection[str], settings: Mapping[str, Any]) -> dict[str, Any]:
-    picked: dict[str, Any] = {}
-    for key in keys:
-        outer, _, inner = key.partition(".")
-        if inner:
-            picked.setdefault(outer, {})[inner] = settings[outer][inner]
-        else:
-            picked[outer] = settings[outer]
-    return picked
+    Parameters
+    ----------
+    function : str
+        As of :func:`sections_of`.
+    stated, solver
+        From :mod:`study.configuration`.
+    """
+    everything = asdict(stated) | asdict(solver)
+    sections = sections_of(function).items()
+    return {key: asdict(settings.read(section, everything)) for key, section in sections}
 
 
 def paths_of(*grains: str) -> dict[str, str]:

@@ -1,0 +1,152 @@
+"""Settings of a study by who reads them: what a stage takes is the class its function names.
+
+Fields have the names of the keys of config/schema/study.schema.yaml; lengths are in mm, forces in
+N, pressures in MPa, angles in degrees, and None stands for "auto".
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, TypeVar, get_type_hints
+
+#: Value and kind, "force" (N) or "pressure" (MPa).
+Load = tuple[float, str]
+#: Smallest and largest length, mm.
+Range = tuple[float, float] | None
+S = TypeVar("S")
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """What of a material decides its contact; infinite hardness where nothing yields."""
+
+    e_star: float
+    hardness: float
+
+
+@dataclass(frozen=True)
+class Friction:
+    """What of a material decides its strength; NaN where not stated."""
+
+    basic_friction_angle: float
+    joint_wall_strength: float
+
+
+@dataclass(frozen=True)
+class Material(Elastic, Friction):
+    """A material of a study."""
+
+    name: str
+    modulus: float
+    poisson: float
+
+
+@dataclass(frozen=True)
+class SpecimenSettings:
+    """What is read before contact is solved."""
+
+    known_dimension: float
+    opposite: str
+    outliers: str
+    fill_holes: int
+    window: float | list[float] | None
+    window_centre: list[float] | None
+    directions: list[str]
+    contact_directions: list[str]
+    offsets: list[float] | None
+    resolutions: list[int]
+    surface_range: Range
+
+
+@dataclass(frozen=True)
+class JointSettings:
+    """What every solve of a joint reads."""
+
+    material: Elastic
+    loads: list[Load]
+    dilatancy_loads: list[Load]
+    resolutions: list[int]
+    contact_directions: list[str]
+    map_offset: float | None
+
+
+@dataclass(frozen=True)
+class ContactSettings(JointSettings):
+    """What decides which states are solved."""
+
+    map_load: Load
+
+    @property
+    def drawn_loads(self) -> list[Load]:
+        """Loads that figures show: those of the dilatancy and of the contact maps."""
+        return [*self.dilatancy_loads, self.map_load]
+
+
+@dataclass(frozen=True)
+class WindowSettings(JointSettings):
+    """What is read to solve sub-windows."""
+
+    box_range: Range
+    scaling_range: Range
+
+
+@dataclass(frozen=True)
+class StateSettings(ContactSettings):
+    """What is read to make curves, laws and domains of states."""
+
+    box_range: Range
+    scaling_range: Range
+    hyperbola_range: list[Load] | None
+    seating_load: Load | None
+
+
+@dataclass(frozen=True)
+class StrengthSettings:
+    """What is read once everything is solved."""
+
+    material: Friction
+    surface_range: Range
+
+
+@dataclass(frozen=True)
+class Settings(SpecimenSettings, StateSettings, WindowSettings, StrengthSettings):
+    """All settings of a specimen, as the atlas keeps them."""
+
+    material: Material
+    label: str
+    group: str
+    chosen_for: dict[str, str]
+    capped_variant: bool
+
+
+@dataclass(frozen=True)
+class Solver:
+    """How the contact solver is used; no accuracy where a study asks for everything."""
+
+    rtol: float
+    kernel: str
+    accuracy: dict[str, float] | None
+
+
+def read(section: type[S], stated: Mapping[str, Any]) -> S:
+    """The part of some settings that a class names.
+
+    Parameters
+    ----------
+    section : type
+        Of this module.
+    stated : mapping
+        By key, such as ``dataclasses.asdict`` of :class:`Settings`; other keys are passed over.
+    """
+    types = get_type_hints(section)
+    return section(
+        **{
+            key: read(types[key], stated[key]) if is_dataclass(types[key]) else stated[key]
+            for key in (field.name for field in fields(section))  # type: ignore[arg-type]
+        }
+    )
+
+
+def arguments(function: object, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Arguments of a function that are settings, from what a job is given by parameter."""
+    types = get_type_hints(function)
+    return {parameter: read(types[parameter], part) for parameter, part in stated.items()}

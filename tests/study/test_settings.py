@@ -1,0 +1,77 @@
+"""What a stage reads of the settings: what its function's annotations name, and nothing else."""
+
+import importlib
+from dataclasses import asdict, fields, replace
+from typing import get_type_hints
+
+import pytest
+from made_settings import made_settings
+
+from fractalcontact.core import settings
+from fractalcontact.study.configuration import solver_settings
+from fractalcontact.study.stages import CONTACT, STAGES, read_by, sections_of
+
+SOLVER = solver_settings({}, "study")
+SPECIMEN, STATES, WINDOWS, STRENGTH = (
+    STAGES[name].function for name in ("joints", "closure", "size_test", "strength")
+)
+JOBS = (SPECIMEN, CONTACT, STATES, WINDOWS, STRENGTH)
+
+
+def taken_by(function):
+    """Parameters of a function that are settings, as Python itself has them."""
+    module, _, name = function.partition(":")
+    made = getattr(importlib.import_module(f"fractalcontact.{module}"), name)
+    return {key: of for key, of in get_type_hints(made).items() if of in vars(settings).values()}
+
+
+@pytest.mark.parametrize(
+    "function", sorted({CONTACT, *(s.function for s in STAGES.values() if s.filed)})
+)
+def test_what_a_function_takes_is_known_without_importing_it(function):
+    taken = {
+        key: of for key, of in taken_by(function).items() if hasattr(of, "__dataclass_fields__")
+    }
+    assert sections_of(function) == taken
+    assert bool(taken) == (function in JOBS)
+
+
+def test_a_section_holds_what_its_class_names_and_no_more():
+    read = settings.read(settings.StrengthSettings, asdict(made_settings()))
+    assert [field.name for field in fields(read)] == ["material", "surface_range"]
+    assert set(asdict(read.material)) == {"basic_friction_angle", "joint_wall_strength"}
+
+
+def test_settings_that_the_atlas_keeps_are_read_back_as_they_were():
+    whole = made_settings(known_dimension=2.2)
+    again = settings.read(settings.Settings, asdict(whole))
+    assert repr(again) == repr(whole)  # not a number is equal to none
+
+
+def _material(**stated):
+    return {"material": replace(made_settings().material, **stated)}
+
+
+@pytest.mark.parametrize(
+    ("change", "again"),
+    [
+        ({"label": "another"}, ()),
+        (_material(basic_friction_angle=35.0), (STRENGTH,)),
+        (_material(joint_wall_strength=60.0), (STRENGTH,)),
+        (_material(hardness=900.0), (CONTACT, STATES, WINDOWS)),
+        (_material(name="another", modulus=1.0, poisson=0.3), ()),
+        ({"box_range": (0.2, 1.0)}, (STATES, WINDOWS)),
+        ({"seating_load": (1.0, "pressure")}, (STATES,)),
+        ({"map_load": (5.0, "pressure")}, (CONTACT, STATES)),
+        ({"surface_range": (0.2, 1.0)}, (SPECIMEN, STRENGTH)),
+        ({"outliers": "mask"}, (SPECIMEN,)),
+    ],
+    ids=str,
+)
+def test_only_what_reads_a_setting_is_made_again_for_it(change, again):
+    before = made_settings()
+    after = replace(before, **change)
+    assert before != after
+    for function in JOBS:
+        same = repr(read_by(function, before, SOLVER)) == repr(read_by(function, after, SOLVER))
+        assert same == (function not in again), function
