@@ -15,8 +15,8 @@ from fractalcontact.core.fitting import fit_line
 from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
 from fractalcontact.figures.kit.drawing import DPI, print_style, save, spread
 from fractalcontact.figures.kit.maps import MISSING
+from fractalcontact.figures.kit.relief import shaded
 from fractalcontact.figures.kit.words import force_label, force_unit, length_unit
-from fractalcontact.figures.paper.fig02_relief import _shaded
 from fractalcontact.figures.paper.fig03_composite import Slid
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.pages.chosen import Chosen
@@ -54,7 +54,7 @@ def test_light_comes_from_the_north_west():
     y, x = np.mgrid[-10:11, -10:11] * 1.0
     dome = np.sqrt(400 - x**2 - y**2)
     # Equal colours for equal heights, so that only the light differs.
-    brightness = _shaded(dome, (1.0, 1.0), -1e6, 1e6).sum(axis=2)
+    brightness = shaded(dome, (1.0, 1.0), -1e6, 1e6).sum(axis=2)
     north_west, south_east = brightness[15, 5], brightness[5, 15]
     assert north_west > brightness[15, 15] > south_east
     assert north_west > brightness[5, 5] > south_east
@@ -64,7 +64,7 @@ def test_missing_cells_are_grey_and_leave_their_neighbours_light_alone():
     heights = np.add.outer(np.arange(12.0), np.zeros(12))
     holed = heights.copy()
     holed[5, 6] = np.nan
-    whole, seen = (_shaded(z, (1.0, 1.0), 0.0, 11.0) for z in (heights, holed))
+    whole, seen = (shaded(z, (1.0, 1.0), 0.0, 11.0) for z in (heights, holed))
     np.testing.assert_allclose(seen[5, 6], to_rgb(MISSING))
     far = np.ones(heights.shape, bool)
     far[4:7, 5:8] = False
@@ -328,24 +328,21 @@ def test_a_missing_fit_is_said_with_its_reason(atlas):
 
 def test_a_surface_without_a_dimension_is_still_drawn(atlas):
     ends = dict.fromkeys(("dimension", "dimension_low", "dimension_high"), np.nan)
+    ends["dimensions_fitted"] = 0
     drawing = drawn(with_changes(atlas, "surface_dimension/flat", **ends), "flat", "fig02_relief")
     assert "No dimension could be fitted" in drawing.caption
 
 
-def test_axes_are_separated_only_where_their_intervals_are(atlas):
-    ends = {"hurst_x": 0.5, "hurst_x_low": 0.45, "hurst_x_high": 0.55}
-    ends |= {"hurst_y": 0.8, "hurst_y_low": 0.7, "hurst_y_high": 0.9}
-    group = "surface_dimension/flat"
-
-    def legend(changed):
+def test_the_legend_counts_the_estimators_that_separate_the_axes(atlas):
+    def legend(compared, differing):
+        counts = {"axes_compared": compared, "axes_differing": differing}
+        changed = with_changes(atlas, "surface_dimension/flat", **counts)
         texts = drawn(changed, "flat", "fig02_relief").figure.legends[0].get_texts()
         return " ".join(" ".join(text.get_text() for text in texts).split())
 
-    assert "differ by 7 of 7 estimators" in legend(with_changes(atlas, group, **ends))
-    wider = with_changes(atlas, group, **(ends | {"hurst_y_low": 0.5}))
-    assert "differ by 0 of 7 estimators" in legend(wider)
-    none = with_changes(atlas, group, **dict.fromkeys(ends, np.nan))
-    assert "differ" not in legend(none)
+    assert "differ by 7 of 7 estimators" in legend(7, 7)
+    assert "differ by 0 of 7 estimators" in legend(7, 0)
+    assert "differ" not in legend(0, 0)
 
 
 def test_the_recommended_and_the_known_dimension_are_drawn(atlas):
