@@ -17,7 +17,6 @@ from fractalcontact.figures.kit.drawing import DPI, print_style, save, spread
 from fractalcontact.figures.kit.maps import MISSING
 from fractalcontact.figures.kit.relief import shaded
 from fractalcontact.figures.kit.words import force_label, force_unit, length_unit
-from fractalcontact.figures.paper.fig03_composite import Slid
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.summary import summarised
@@ -144,19 +143,24 @@ def test_a_single_face_lies_on_its_match_before_sliding(atlas):
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
 def test_composite_drawn_is_that_of_the_joint_at_the_largest_offset(atlas, specimen):
-    slid = Slid.of(atlas, specimen)
     stored = atlas[f"specimens/{specimen}"].to_dataset()
-    cells = round(slid.offset / 0.1)
-    again = composite_topography(stored, slid.direction, cells)
-    np.testing.assert_array_equal(slid.composite, again)
-    mated = composite_topography(stored, slid.direction, 0)
-    # The dilatancy is from faces with all their digits, the composite from those of the atlas.
+    joint = atlas[f"joints/{specimen}"].to_dataset().isel(offset=-1, contact_direction=0)
+    direction, cells = str(joint["contact_direction"].values), int(joint["offset_cells"])
+    assert cells == round(float(joint["offset"]) / 0.1)
+    again = composite_topography(stored, direction, cells)
+    drawing = drawn(atlas, specimen, "fig03_composite")
+    _, composite = (axes for axes in drawing.figure.axes if axes.images)
     face_step = float(stored["lower"].max() - stored["lower"].min()) / 1e6
-    assert slid.dilatancy == pytest.approx(again.max() - mated.max(), abs=2 * face_step)
     step = np.ptp(again) / 65532 + 2 * face_step
-    kept = atlas[f"joints/{specimen}/composite"].sel(offset=slid.offset, method="nearest")
-    np.testing.assert_allclose(kept, again, atol=step)
-    assert again[slid.touch] == again.max()
+    np.testing.assert_allclose(composite.images[0].get_array(), again, atol=step)
+    # The dilatancy is from faces with all their digits, the composite from those of the atlas.
+    mated = composite_topography(stored, direction, 0)
+    opening = joint["rigid_dilatancy"].sel(direction=direction).isel(rigid_offset=cells)
+    assert float(opening) == pytest.approx(again.max() - mated.max(), abs=2 * face_step)
+    assert f"delta_r = {float(opening):.3g} mm" in drawing.caption
+    touch = joint[["first_touch_y", "first_touch_x"]]
+    at = xr.DataArray(again, {"y": joint["window_y"].values, "x": joint["window_x"].values})
+    assert at.sel(y=touch["first_touch_y"], x=touch["first_touch_x"]) == again.max()
 
 
 def closures_drawn(atlas, specimen):
