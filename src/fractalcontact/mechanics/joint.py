@@ -282,7 +282,7 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
     reference = solved[0]
     cells, spacing = chosen[reference], direction_spacing(specimen, reference)
     slide = _describe_slide(specimen, directions, np.arange(int(max(cells)) + 1), spacing)
-    composites = np.array([composite_topography(specimen, reference, n) for n in cells])
+    composites = [composite_topography(specimen, reference, n) for n in cells]
     window = window_slices(specimen)
     y, x = (specimen[axis].values[along] for axis, along in zip("yx", window, strict=True))
     touching = np.unravel_index([h.argmax() for h in composites], (y.size, x.size))
@@ -299,7 +299,7 @@ def describe_joint(specimen: xr.Dataset, settings: Mapping[str, Any]) -> xr.Data
     }
     values = {
         "offset_cells": np.array([chosen[direction] for direction in solved]),
-        "composite": composites,
+        "composite": np.array(composites),
         "first_touch_y": y[touching[0]],
         "first_touch_x": x[touching[1]],
     }

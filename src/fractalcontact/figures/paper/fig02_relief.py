@@ -1,6 +1,7 @@
 """Shaded relief of the levelled faces, and their dimension (Fig. 2)."""
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from xarray import DataTree
@@ -42,7 +43,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, height))
     ratios = [1.6 if alone else 1.2] * len(faces) + [1]
     *maps, axes = figure.subplots(1, len(ratios), width_ratios=ratios)
-    handles = [draw_faces(figure, maps, specimen, faces, sides)]
+    handles: list[Artist] = [draw_faces(figure, maps, specimen, faces, sides)]
     if any(not np.isfinite(specimen[face]).all() for face in faces):
         handles.append(missing_patch())
     handles += _draw_dimensions(axes, dimension)
