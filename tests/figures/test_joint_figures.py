@@ -134,7 +134,6 @@ def test_closures_drawn_over_the_offset_count_from_the_common_seat_of_the_atlas(
 def test_columns_of_one_name_hold_one_number_for_one_state(atlas, name):
     """The tables of a specimen's figures of closure, at the offsets and loads that both have."""
     tables = [drawn(atlas, figure, name).data for figure in ("compliance", "fig04_05_closure")]
-    tables = [table.rename(columns={"force_N": "normal_force_N"}) for table in tables]
     state = ["offset_mm", "normal_force_N"]
     first, second = (
         table[table["interface_closure_mm"].notna()].round(dict.fromkeys(state, 9)).set_index(state)

@@ -15,9 +15,8 @@ from fractalcontact.core.fitting import fit_line
 from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
 from fractalcontact.figures.kit.drawing import DPI, print_style, save, spread
 from fractalcontact.figures.kit.maps import MISSING
+from fractalcontact.figures.kit.relief import shaded
 from fractalcontact.figures.kit.words import force_label, force_unit, length_unit
-from fractalcontact.figures.paper.fig02_relief import _shaded
-from fractalcontact.figures.paper.fig03_composite import Slid
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.summary import summarised
@@ -54,7 +53,7 @@ def test_light_comes_from_the_north_west():
     y, x = np.mgrid[-10:11, -10:11] * 1.0
     dome = np.sqrt(400 - x**2 - y**2)
     # Equal colours for equal heights, so that only the light differs.
-    brightness = _shaded(dome, (1.0, 1.0), -1e6, 1e6).sum(axis=2)
+    brightness = shaded(dome, (1.0, 1.0), -1e6, 1e6).sum(axis=2)
     north_west, south_east = brightness[15, 5], brightness[5, 15]
     assert north_west > brightness[15, 15] > south_east
     assert north_west > brightness[5, 5] > south_east
@@ -64,7 +63,7 @@ def test_missing_cells_are_grey_and_leave_their_neighbours_light_alone():
     heights = np.add.outer(np.arange(12.0), np.zeros(12))
     holed = heights.copy()
     holed[5, 6] = np.nan
-    whole, seen = (_shaded(z, (1.0, 1.0), 0.0, 11.0) for z in (heights, holed))
+    whole, seen = (shaded(z, (1.0, 1.0), 0.0, 11.0) for z in (heights, holed))
     np.testing.assert_allclose(seen[5, 6], to_rgb(MISSING))
     far = np.ones(heights.shape, bool)
     far[4:7, 5:8] = False
@@ -144,19 +143,24 @@ def test_a_single_face_lies_on_its_match_before_sliding(atlas):
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
 def test_composite_drawn_is_that_of_the_joint_at_the_largest_offset(atlas, specimen):
-    slid = Slid.of(atlas, specimen)
     stored = atlas[f"specimens/{specimen}"].to_dataset()
-    cells = round(slid.offset / 0.1)
-    again = composite_topography(stored, slid.direction, cells)
-    np.testing.assert_array_equal(slid.composite, again)
-    mated = composite_topography(stored, slid.direction, 0)
-    # The dilatancy is from faces with all their digits, the composite from those of the atlas.
+    joint = atlas[f"joints/{specimen}"].to_dataset().isel(offset=-1, contact_direction=0)
+    direction, cells = str(joint["contact_direction"].values), int(joint["offset_cells"])
+    assert cells == round(float(joint["offset"]) / 0.1)
+    again = composite_topography(stored, direction, cells)
+    drawing = drawn(atlas, specimen, "fig03_composite")
+    _, composite = (axes for axes in drawing.figure.axes if axes.images)
     face_step = float(stored["lower"].max() - stored["lower"].min()) / 1e6
-    assert slid.dilatancy == pytest.approx(again.max() - mated.max(), abs=2 * face_step)
     step = np.ptp(again) / 65532 + 2 * face_step
-    kept = atlas[f"joints/{specimen}/composite"].sel(offset=slid.offset, method="nearest")
-    np.testing.assert_allclose(kept, again, atol=step)
-    assert again[slid.touch] == again.max()
+    np.testing.assert_allclose(composite.images[0].get_array(), again, atol=step)
+    # The dilatancy is from faces with all their digits, the composite from those of the atlas.
+    mated = composite_topography(stored, direction, 0)
+    opening = joint["rigid_dilatancy"].sel(direction=direction).isel(rigid_offset=cells)
+    assert float(opening) == pytest.approx(again.max() - mated.max(), abs=2 * face_step)
+    assert f"delta_r = {float(opening):.3g} mm" in drawing.caption
+    touch = joint[["first_touch_y", "first_touch_x"]]
+    at = xr.DataArray(again, {"y": joint["window_y"].values, "x": joint["window_x"].values})
+    assert at.sel(y=touch["first_touch_y"], x=touch["first_touch_x"]) == again.max()
 
 
 def closures_drawn(atlas, specimen):
@@ -172,7 +176,7 @@ def test_closure_points_are_those_of_the_atlas(atlas, specimen):
     for offset, points in table.groupby("offset_mm"):
         stored = curves.sel(offset=offset, method="nearest")
         for column, name in (
-            ("force_N", "normal_force"),
+            ("normal_force_N", "normal_force"),
             ("interface_closure_mm", "interface_closure"),
             ("area_mm2", "area"),
             ("area_corrected_share", "area_corrected_share"),
@@ -180,7 +184,7 @@ def test_closure_points_are_those_of_the_atlas(atlas, specimen):
             ("separation_mm", "separation"),
         ):
             np.testing.assert_array_equal(points[column], stored[name])
-        np.testing.assert_array_equal(points["w_m_mm"].unique(), stored["hyperbola_w_m"])
+        np.testing.assert_array_equal(points["hyperbola_w_m_mm"].unique(), stored["hyperbola_w_m"])
     assert table["offset_mm"].nunique() == min(5, curves.sizes["offset"])
 
 
@@ -189,7 +193,7 @@ def test_area_exponent_is_that_of_the_points_marked_as_fitted(atlas):
     for _, points in table.groupby("offset_mm"):
         fitted = points[points["corrected_fitted"]]
         assert (fitted["nodes"] >= 30).all()
-        line = fit_line(np.log(fitted["force_N"]), np.log(fitted["area_corrected_mm2"]))
+        line = fit_line(np.log(fitted["normal_force_N"]), np.log(fitted["area_corrected_mm2"]))
         np.testing.assert_array_equal(points["corrected_exponent"].unique(), line.slope.value)
 
 
@@ -218,14 +222,16 @@ def test_stiffness_over_the_spacing_is_that_of_the_atlas(atlas):
     curves = atlas["closure/sliding"].to_dataset().isel(direction=0)
     curves = curves.sel(offset=0.4, method="nearest")
     assert table["offset_mm"].unique() == pytest.approx([0.4])
-    tangent = table[table["quantity"] == "tangent"]
-    assert tangent["force_N"].nunique() == 3  # the loads of the dilatancy
+    tangent = table.dropna(subset="normal_force_N")
+    assert tangent["normal_force_N"].nunique() == 3  # the loads of the dilatancy
     for spacing, points in tangent.groupby("spacing_mm"):
-        curve = curves.sel(resolution=round(spacing / 0.1), normal_force=points["force_N"].values)
-        np.testing.assert_array_equal(points["stiffness_MPa_per_mm"], curve["interface_stiffness"])
-        np.testing.assert_array_equal(points["resolved"], curve["nodes"] >= 10)
-    initial = table[table["quantity"] != "tangent"]
-    np.testing.assert_array_equal(initial["stiffness_MPa_per_mm"], curves["hyperbola_k_ni"])
+        forces = points["normal_force_N"].values
+        curve = curves.sel(resolution=round(spacing / 0.1), normal_force=forces)
+        for column in ("interface_stiffness_MPa_per_mm", "resolved", "reference_load"):
+            name = column.removesuffix("_MPa_per_mm")
+            np.testing.assert_array_equal(points[column].astype(float), curve[name])
+    initial = table[table["normal_force_N"].isna()]
+    np.testing.assert_array_equal(initial["hyperbola_k_ni_MPa_per_mm"], curves["hyperbola_k_ni"])
 
 
 def test_few_nodes_are_hollow(atlas):
@@ -243,16 +249,18 @@ def test_elastic_dilatancy_is_rigid_dilatancy_less_closure(atlas, specimen):
     table = drawn(atlas, specimen, "fig06_07_dilatancy").data
     curves = atlas[f"closure/{specimen}"].to_dataset().isel(direction=0, resolution=0)
     direction = str(curves["direction"].values)
-    elastic = table[table["curve"] == "elastic"]
-    rigid = table[(table["curve"] == "rigid") & (table["direction"] == direction)]
+    elastic = table[table["panel"] == "b"]
+    rigid = table[(table["panel"] == "a") & (table["direction"] == direction)]
     assert set(elastic["direction"]) == {direction}
     for _, point in elastic.iterrows():
         state = curves.sel(
-            offset=point["offset_mm"], normal_force=point["force_N"], method="nearest"
+            offset=point["offset_mm"], normal_force=point["normal_force_N"], method="nearest"
         )
-        opened = np.interp(point["offset_mm"], rigid["offset_mm"], rigid["dilatancy_mm"])
+        opened = np.interp(
+            point["offset_mm"], rigid["rigid_offset_mm"], rigid["rigid_dilatancy_mm"]
+        )
         expected = opened - float(state["interface_closure"])
-        assert point["dilatancy_mm"] == pytest.approx(expected, abs=1e-12)
+        assert point["elastic_dilatancy_mm"] == pytest.approx(expected, abs=1e-12)
         assert point["area_share"] == float(state["area_share"])
 
 
@@ -328,24 +336,21 @@ def test_a_missing_fit_is_said_with_its_reason(atlas):
 
 def test_a_surface_without_a_dimension_is_still_drawn(atlas):
     ends = dict.fromkeys(("dimension", "dimension_low", "dimension_high"), np.nan)
+    ends["dimensions_fitted"] = 0
     drawing = drawn(with_changes(atlas, "surface_dimension/flat", **ends), "flat", "fig02_relief")
     assert "No dimension could be fitted" in drawing.caption
 
 
-def test_axes_are_separated_only_where_their_intervals_are(atlas):
-    ends = {"hurst_x": 0.5, "hurst_x_low": 0.45, "hurst_x_high": 0.55}
-    ends |= {"hurst_y": 0.8, "hurst_y_low": 0.7, "hurst_y_high": 0.9}
-    group = "surface_dimension/flat"
-
-    def legend(changed):
+def test_the_legend_counts_the_estimators_that_separate_the_axes(atlas):
+    def legend(compared, differing):
+        counts = {"axes_compared": compared, "axes_differing": differing}
+        changed = with_changes(atlas, "surface_dimension/flat", **counts)
         texts = drawn(changed, "flat", "fig02_relief").figure.legends[0].get_texts()
         return " ".join(" ".join(text.get_text() for text in texts).split())
 
-    assert "differ by 7 of 7 estimators" in legend(with_changes(atlas, group, **ends))
-    wider = with_changes(atlas, group, **(ends | {"hurst_y_low": 0.5}))
-    assert "differ by 0 of 7 estimators" in legend(wider)
-    none = with_changes(atlas, group, **dict.fromkeys(ends, np.nan))
-    assert "differ" not in legend(none)
+    assert "differ by 7 of 7 estimators" in legend(7, 7)
+    assert "differ by 0 of 7 estimators" in legend(7, 0)
+    assert "differ" not in legend(0, 0)
 
 
 def test_the_recommended_and_the_known_dimension_are_drawn(atlas):
@@ -428,8 +433,8 @@ def test_plateaus_are_those_of_the_atlas(atlas):
     ends = {"plateau_change": 0.25, "plateau_change_low": 0.2, "plateau_change_high": 0.3}
     for trend, words in (
         ("level", "4 of 4 directions have a plateau"),
-        ("rising", "(rising: East, North, West, South)"),
-        ("falling", "0 of 4 directions have a plateau (changes within 10 %) (falling: "),
+        ("rising", "; rising: East, North, West, South."),
+        ("falling", "No direction has a plateau (changes within 10 %); falling: East, "),
     ):
         told = with_changes(atlas, "joints/sliding", plateau_trend=trend, **ends)
         drawing = drawn(told, "sliding", "fig06_07_dilatancy")
@@ -456,4 +461,4 @@ def test_every_k_ni_of_the_closure_curves_is_as_determined_as_the_atlas_says(atl
         legend = [text.get_text() for text in figure.legends[0].get_texts()]
         assert sum(words in text for text in legend) == 5
         table = drawn(told, "sliding", "fig04_05_closure").data
-        assert set(table["k_ni_determined"].dropna()) == {determined}
+        assert set(table["hyperbola_k_ni_determined"].dropna()) == {determined}

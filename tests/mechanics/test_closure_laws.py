@@ -10,6 +10,7 @@ from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
 from fractalcontact.mechanics.closure_laws import (
     add_closure_laws,
+    at_twice,
     better_law,
     fit_hyperbola,
     fit_semi_logarithmic,
@@ -259,3 +260,22 @@ def test_change_of_k_ni_is_that_from_twice_the_spacing():
     change = curves["hyperbola_k_ni_change"].squeeze()
     assert change[0].item() == pytest.approx(1.5, rel=1e-5)
     assert np.isnan(change[1:]).all()
+
+
+@pytest.mark.parametrize(("lightest", "softer"), [(1.0, False), (2.0, True)])
+def test_a_curve_below_its_hyperbola_at_light_load_is_softer_than_its_k_ni(lightest, softer):
+    """A hyperbola is nowhere softer than its k_ni; twice its closure at the lightest load is."""
+    closure = hyperbola(PRESSURE)
+    closure[0] *= lightest
+    curves = made_curves(np.r_[1, np.full(7, 50)], closure)  # that load is not fitted
+    add_closure_laws(curves, None)
+    assert curves["hyperbola_k_ni"].item() == pytest.approx(30, rel=1e-5)
+    assert curves["softer_than_k_ni"].item() == softer
+
+
+def test_the_change_of_a_value_is_known_where_twice_the_spacing_was_solved():
+    dims = {"resolution": [1, 2, 8], "normal_force": [1.0, 10.0]}
+    values = xr.DataArray([[1.0, 4.0], [2.0, 3.0], [5.0, np.nan]], dims)
+    change = at_twice(values)
+    assert change.dims == values.dims
+    np.testing.assert_allclose(change, [[1.0, -0.25], [np.nan] * 2, [np.nan] * 2])

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import xarray as xr
 from ensembles import ensemble
 from places import SCANS
 
@@ -8,7 +9,7 @@ from fractalcontact.roughness.dimension import (
     slope_statistics,
     surface_dimension,
 )
-from fractalcontact.roughness.recommended import dimension_table
+from fractalcontact.roughness.recommended import variables_of_all
 from fractalcontact.roughness.registry import ESTIMATORS
 from fractalcontact.surface.synthesis import disc_outline, self_affine
 
@@ -175,16 +176,28 @@ def test_every_variable_says_what_it_is(surface):
         assert {"units", "long_name"} <= set(values.attrs), name
 
 
-def test_table_holds_range_and_mean(surface):
+def test_the_range_is_that_of_all_estimators(surface):
     result = surface_dimension(surface, 0.1)
-    table = dimension_table(result)
-    assert table["lowest"] == result.dimension.min()
-    assert table["highest"] == result.dimension.max()
-    assert table["mean"] == pytest.approx(result.dimension.mean().item())
-    assert table["n"] == len(ESTIMATORS)
-    nothing = dimension_table(surface_dimension(np.zeros((64, 64)), 0.1))
-    assert nothing["n"] == 0
-    assert np.isnan(nothing["mean"])
+    assert result["lowest_dimension"] == result.dimension.min()
+    assert result["highest_dimension"] == result.dimension.max()
+    assert result["dimensions_fitted"] == len(ESTIMATORS)
+    nothing = surface_dimension(np.zeros((64, 64)), 0.1)
+    assert nothing["dimensions_fitted"] == 0
+    assert np.isnan(nothing["lowest_dimension"])
+    assert nothing["axes_compared"] == nothing["axes_differing"] == 0
+
+
+def test_axes_are_separated_only_where_their_intervals_are(surface):
+    result = surface_dimension(surface, 0.1)
+    compared = int(np.isfinite(result["hurst_x"]).sum())
+    ends = {"hurst_x": 0.5, "hurst_x_low": 0.45, "hurst_x_high": 0.55}
+    ends |= {"hurst_y": 0.8, "hurst_y_low": 0.7, "hurst_y_high": 0.9}
+    for low_of_y, differing in ((0.7, compared), (0.5, 0)):
+        told = {name: result[name].where(result[name].isnull(), end) for name, end in ends.items()}
+        told["hurst_y_low"] = told["hurst_y_low"].where(told["hurst_y_low"].isnull(), low_of_y)
+        counts = xr.Dataset(variables_of_all(result.assign(told)))
+        assert counts["axes_compared"] == compared == len(WITH_AXES)
+        assert counts["axes_differing"] == differing
 
 
 # -- real scans ------------------------------------------------------------------------------------

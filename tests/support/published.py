@@ -21,11 +21,7 @@ SAME = {
     "real_pressure_MPa": "sigma_n_MPa",
     "contact_nodes": "nodes",
     "k_ni_MPa_per_mm": "hyperbola_k_ni_MPa_per_mm",
-    "k_ni_change": "hyperbola_k_ni_change",
     "k_ni_change_at_twice_the_spacing": "hyperbola_k_ni_change",
-    "w_m_mm": "hyperbola_w_m_mm",
-    "w_m_low_mm": "hyperbola_w_m_low_mm",
-    "w_m_high_mm": "hyperbola_w_m_high_mm",
 }
 #: Names of summary.csv for what the atlas has by names of its own.
 SUMMARY = {

@@ -223,6 +223,7 @@ _OF_CURVES = {
     ),
     "hyperbola_k_ni_determined": ("1", "whether the hyperbola is the law, and k_ni is determined"),
     "hyperbola_k_ni_reason": ("1", "why k_ni is undetermined"),
+    "softer_than_k_ni": ("1", "whether the curve is softer than its k_ni under any load"),
     "closure_law": ("1", "the law that fits better: hyperbola, semi-logarithmic, or none of them"),
     "closure_law_reason": ("1", "why no law is named"),
     "closure_fit_min": ("N", "smallest force fitted"),
@@ -266,9 +267,10 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
     forces = np.where(fitted, force, np.nan)
     undetermined = [undetermined_stiffness(hyperbola, law) for hyperbola, _, law in fits.flat]
     of_curves = {
-        "hyperbola_k_ni_change": _changes(curves["hyperbola_k_ni"]),
+        "hyperbola_k_ni_change": at_twice(curves["hyperbola_k_ni"]).transpose(*_DIMS).values,
         "hyperbola_k_ni_determined": np.array([not why for why in undetermined]),
         "hyperbola_k_ni_reason": np.array(undetermined),
+        "softer_than_k_ni": _softer(curves["hyperbola_k_ni"].values, closure, pressure),
         "closure_law": np.array([fit[2].name for fit in fits.flat]),
         "closure_law_reason": np.array([fit[2].reason for fit in fits.flat]),
         "closure_fit_min": _extreme(np.fmin, forces),
@@ -300,8 +302,23 @@ def _extreme(which: np.ufunc, forces: np.ndarray) -> np.ndarray:
     return which.reduce(forces, axis=-1)
 
 
-def _changes(values: xr.DataArray) -> np.ndarray:
-    """What twice the spacing makes of a value, relative to it; NaN where it was not solved."""
+def _softer(k_ni: np.ndarray, closure: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Curves that are softer than their k_ni under any load, loads in the last axis.
+
+    A hyperbola stiffens with load: sigma_0 / w can nowhere be below its k_ni. Where it is, the
+    curve is none, and k_ni an extrapolation that light loads do not follow.
+    """
+    return np.any(k_ni[..., np.newaxis] * closure > pressure, axis=-1)
+
+
+def at_twice(values: xr.DataArray) -> xr.DataArray:
+    """What twice the spacing makes of values, relative to them; NaN where it was not solved.
+
+    Parameters
+    ----------
+    values : xr.DataArray
+        Over ``resolution`` among others.
+    """
     resolutions = values["resolution"].values
     twice = values.reindex(resolution=2 * resolutions).assign_coords(resolution=resolutions)
-    return (twice / values - 1).transpose(*_DIMS).values
+    return (twice / values - 1).transpose(*values.dims)

@@ -265,9 +265,10 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
         at every cell up to the largest offset; the plateaus of :func:`mechanics.plateau
         .rigid_plateaus`, ``correlation_length`` and ``uncorrelated_offset`` (direction),
         ``correlation_limit``; ``offset_cells`` (direction, offset) of the contact solves; for the
-        first direction whose contact is solved ``composite`` (offset, window_y,
-        window_x) and its dimension Delta_g ``composite_dimension`` (offset), with its interval, the
-        lengths fitted and why there is none.
+        first direction whose contact is solved ``composite`` (offset, window_y, window_x), the node
+        ``first_touch_y``, ``first_touch_x`` (offset) where it is highest, and its dimension Delta_g
+        ``composite_dimension`` (offset), with its interval, the lengths fitted and why there is
+        none.
 
     Raises
     ------
@@ -281,7 +282,10 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
     cells, spacing = chosen[reference], direction_spacing(specimen, reference)
     slide = _describe_slide(specimen, directions, np.arange(int(max(cells)) + 1), spacing)
     composites = [composite_topography(specimen, reference, n) for n in cells]
-    window_y, window_x = window_slices(specimen)
+    window = window_slices(specimen)
+    y, x = (specimen[axis].values[along] for axis, along in zip("yx", window, strict=True))
+    touching = np.unravel_index([h.argmax() for h in composites], (y.size, x.size))
+    slid_so = f"in the window before it slides, direction {reference}"
     table = {
         "offset_cells": (("contact_direction", "offset"), "1", "offset in cells of the scan"),
         "composite": (
@@ -289,10 +293,14 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
             "mm",
             f"composite topography h, direction {reference}",
         ),
+        "first_touch_y": ("offset", "mm", f"y of the node that touches first, {slid_so}"),
+        "first_touch_x": ("offset", "mm", f"x of the node that touches first, {slid_so}"),
     }
     values = {
         "offset_cells": np.array([chosen[direction] for direction in solved]),
         "composite": np.array(composites),
+        "first_touch_y": y[touching[0]],
+        "first_touch_x": x[touching[1]],
     }
     return slide.assign(
         composite_dimensions(specimen, composites, cells * spacing, settings.surface_range)
@@ -300,8 +308,8 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
     ).assign_coords(
         contact_direction=solved,
         offset=("offset", offsets_of(cells, spacing), cf_attrs("mm", "shear offset v")),
-        window_y=("window_y", specimen.y.values[window_y], specimen.y.attrs),
-        window_x=("window_x", specimen.x.values[window_x], specimen.x.attrs),
+        window_y=("window_y", y, specimen.y.attrs),
+        window_x=("window_x", x, specimen.x.attrs),
     )
 
 

@@ -21,7 +21,7 @@ from .curves import Curve, jackknife_standard_error
 from .estimator import Estimator
 from .fit_range import FitRange, choose_fit_range
 from .known_bias import HURST_GRID, POINTS, Fit, extended, slopes
-from .recommended import recommended_variables
+from .recommended import recommended_variables, variables_of_all
 from .registry import ESTIMATORS
 from .roll_off import RollOff
 from .spectrum_model import BAND_LIMITED
@@ -81,7 +81,8 @@ def surface_dimension(
         interval (mm; infinite where none is seen, `roll_off_low` then the shortest not excluded),
         the lags `range_min` and `range_max` and `range_reason`; the `recommended` estimator with
         its `reason`, `recommended_dimension` with its interval, or `no_dimension`, why there is
-        none (:func:`roughness.recommended.recommended`); `known_dimension`.
+        none (:func:`roughness.recommended.recommended`); `known_dimension`; of all estimators
+        together what :func:`roughness.recommended.variables_of_all` counts.
 
     Raises
     ------
@@ -142,7 +143,7 @@ def surface_dimension(
     result.update(delta_g.variables("dimension", "estimator", "1", words))
     words = "wavelength above which the spectrum is flat"
     result.update(chosen_range.roll_off.variables("roll_off", (), "mm", words))
-    return result.assign(recommended_variables(result))
+    return result.assign(recommended_variables(result) | variables_of_all(result))
 
 
 _DIMENSIONS = {

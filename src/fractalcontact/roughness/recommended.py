@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import labelled
 from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
 from .fit_range import LAST_OF_ROLL_OFF
@@ -62,30 +63,43 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
     return Estimate(reason=reason)
 
 
-def dimension_table(dimensions: xr.Dataset) -> dict[str, float]:
-    """Range and mean of Delta_g over the estimators, as the paper states them.
+#: What is stored of all estimators together: long names.
+_OF_ALL = {
+    "dimensions_fitted": "estimators that found a dimension",
+    "lowest_dimension": "lowest Delta_g of the estimators",
+    "highest_dimension": "highest Delta_g of the estimators",
+    "axes_compared": "estimators with a Hurst exponent along x and along y",
+    "axes_differing": "estimators whose intervals of the Hurst exponent along x and y lie apart",
+}
+
+
+def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
+    """Range of Delta_g over the estimators, as the paper states it, and how many separate x and y.
 
     Parameters
     ----------
     dimensions : xr.Dataset
-        From :func:`roughness.dimension.surface_dimension`.
+        ``dimension``, and ``hurst_x`` and ``hurst_y`` with their intervals, on ``estimator``.
 
     Returns
     -------
     dict
-        ``lowest``, ``highest``, ``mean`` (NaN without a fit) and ``n``, how many gave a dimension.
-        The mean is no estimate: see :func:`best_dimension`.
+        Variables by the names of the atlas; the range is NaN without a fit. The middle of the range
+        is no estimate: see :func:`best_dimension`.
     """
     known = dimensions["dimension"].values
     known = known[np.isfinite(known)]
-    if not known.size:
-        return dict.fromkeys(("lowest", "highest", "mean"), np.nan) | {"n": 0}
-    return {
-        "lowest": float(known.min()),
-        "highest": float(known.max()),
-        "mean": float(known.mean()),
-        "n": known.size,
+    x, y = (Estimate.read(dimensions, f"hurst_{axis}") for axis in "xy")
+    compared = x.known & y.known
+    apart = compared & ((x.low > y.high) | (y.low > x.high))
+    values = {
+        "dimensions_fitted": known.size,
+        "lowest_dimension": min(known, default=np.nan),
+        "highest_dimension": max(known, default=np.nan),
+        "axes_compared": np.sum(compared),
+        "axes_differing": np.sum(apart),
     }
+    return labelled({name: ((), "1", words) for name, words in _OF_ALL.items()}, values)
 
 
 def beyond_roll_off(dimensions: xr.Dataset) -> bool:

@@ -25,8 +25,8 @@ from ..kit.drawing import (
     settings_of,
 )
 from ..kit.maps import scan_extent
+from ..kit.relief import draw_faces
 from ..kit.words import SUPPLEMENTARY, percent
-from ..paper.fig02_relief import draw_faces
 from ._history import history
 from ._quality_pair import draw_gap, draw_gap_heights, draw_load_share, pair_entries, pair_table
 from ._quality_panels import (
