@@ -10,7 +10,6 @@ from xarray import DataTree
 from ...core.determined import differs, is_determined
 from ...core.estimate import DIMENSION, Estimate
 from ...core.labels import loads_of
-from ...core.limits import MIN_NODES
 from ...core.subject import Subject
 from ...core.verdicts import UNDETERMINED
 from .drawing import COLOURS, MARKERS, spread
@@ -37,6 +36,11 @@ class DeltaSigma(Estimate):
     key: str
     label: str
     symbol: str
+
+    @property
+    def name(self) -> str:
+        """Of its variable in the stage ``scaling``."""
+        return f"delta_sigma_{self.key}"
 
     def at(self, i: int) -> str:
         """Delta_sigma under the i-th load in words, or why there is none."""
@@ -107,21 +111,21 @@ def spread_loads(n: int, most: int, including: int | None = None) -> np.ndarray:
     return np.unique(chosen)
 
 
-def departures(counts: xr.Dataset) -> str:
-    """Words on the loads at which domains differ from their null models.
+def departures(counts: xr.Dataset) -> dict[str, str]:
+    """Loads at which domains differ from each null model, in words; empty where none is compared.
 
     Parameters
     ----------
     counts : xr.Dataset
-        Of the stage ``domains``, over load, of domains that are looked at closely.
+        The stage ``domains`` over loads, of domains that are looked at closely.
     """
-    p = {null: counts[f"local_slope_{null}_p"].values for null in ("random", "cut")}
-    compared = {null: values[np.isfinite(values)] for null, values in p.items()}
-    if not compared["random"].size:
-        return f"No domain has the {MIN_NODES} nodes that a comparison with null models needs."
-    random, cut = (loads_of(sum(map(differs, p)), p.size) for p in compared.values())
-    beside = f", from bearing-area cuts at {cut}" if compared["cut"].size else ""
-    return f"Domains of {MIN_NODES} nodes or more differ from random nodes at {random}{beside}."
+    found = {}
+    for null in ("random", "cut"):
+        p = counts[f"local_slope_{null}_p"].values
+        compared = p[np.isfinite(p)]
+        some = loads_of(sum(map(differs, compared)), compared.size)
+        found[null] = some if compared.size else ""
+    return found
 
 
 def rise_words(atlas: DataTree, name: str, *, numbers: bool = True) -> str:
