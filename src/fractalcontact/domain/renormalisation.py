@@ -263,9 +263,9 @@ def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
     -------
     xarray.Dataset
         `delta_sigma_area` and `delta_sigma_box` with their intervals, `difference` = area - box
-        with `difference_low`, `_high`: the ends of the two intervals combined as those of independent estimates (root of
-        the sum of squares); and whether they `disagree`: the interval of the difference leaves out
-        zero.
+        with `difference_low`, `_high`: the ends of the two intervals combined as those of
+        independent estimates (root of the sum of squares); and whether they `disagree`: the
+        interval of the difference leaves out zero.
     """
     area, area_low, area_high = (by_area[name] for name in names_of("delta_sigma"))
     box, box_low, box_high = (by_boxes[name] for name in names_of("delta_sigma"))

@@ -133,7 +133,8 @@ def _draw_slopes(panel, counts):
     axes.set_ylim(-0.1, 2.3)
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    ends = dict.fromkeys(f"{end:.2f}" for end in np.sort(slope.value)[[0, -1][: middle.size]])
+    ends = (slope.value.min(), slope.value.max()) if middle.size else ()
+    ends = dict.fromkeys(f"{end:.2f}" for end in ends)
     panel.title(f"local slopes: {' to '.join(ends)}" if ends else "no local slopes")
 
 

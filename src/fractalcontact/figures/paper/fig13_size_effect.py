@@ -38,7 +38,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes = figure.subplots(1, 2, sharex=True, sharey=True)
     panels, columns = [], []
     for one, which, here in zip(estimates_of(states), "ab", axes, strict=True):
-        # As many nodes as touch: the legend of Fig. 12 has the room to say so.
+        # As many nodes as touch: the caption of Fig. 12 has the room to say so.
         rise = verdict_words(atlas, name, RISES[one.key]).replace("as many random", "random")
         words = rf"$\Delta_\sigma$ by {one.symbol}; the paper's rise with $F$:"
         panel = Panel(here, which, f"{words}\n{rise.replace(' of F', ' of $F$')}")
