@@ -2,12 +2,13 @@
 
 import numpy as np
 import xarray as xr
+from scipy import special
 
 from ..core.datasets import labelled_dataset
 from ..core.determined import follows_law
 from ..core.estimate import Estimate, rows_of
 from ..core.fitting import fit_line
-from ..core.limits import RESOLVED_NODES
+from ..core.limits import CONFIDENCE, RESOLVED_NODES
 from ..core.ranges import within
 
 _STATES = ("direction", "offset", "resolution", "normal_force")
@@ -25,6 +26,14 @@ _TABLE = {
         "1",
         "whether cluster sizes lie as near to their power law as chance would have them",
     ),
+    **{
+        f"morisita_by_chance_{end}": (
+            _STATES,
+            "1",
+            f"Morisita's index of as many random nodes, {words} end of 95 % by its scatter",
+        )
+        for end, words in (("low", "lower"), ("high", "upper"))
+    },
     "morisita_used": (_STATES, "1", "state in the fit of morisita_exponent"),
     **{
         name: (_OVER_OFFSETS, *words)
@@ -52,8 +61,8 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
     -------
     xr.Dataset
         ``cluster_area`` over (resolution, octave), mm2; ``clusters_at_least`` and, over the
-        octaves fitted, ``cluster_law_count``; ``cluster_law_followed``; ``morisita_used`` and
-        ``morisita_exponent``.
+        octaves fitted, ``cluster_law_count``; ``cluster_law_followed``; what chance leaves of
+        ``morisita``; ``morisita_used`` and ``morisita_exponent``.
     """
     cell = (domains["resolution"] * spacing) ** 2
     area = 2.0 ** domains["octave"] * cell
@@ -69,6 +78,8 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
         output_core_dims=[[]] * 3,
         vectorize=True,
     )
+    # Random nodes have an index of 1 in the mean.
+    reach = special.ndtri((1 + CONFIDENCE) / 2) * domains["morisita_scatter"]
     values = {
         "cluster_area": area,
         "clusters_at_least": np.cumsum(counts[..., ::-1], axis=-1)[..., ::-1],
@@ -76,6 +87,8 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
         "cluster_law_followed": follows_law(
             domains["cluster_fit_n"], domains["cluster_fit_distance"]
         ),
+        "morisita_by_chance_low": 1 - reach,
+        "morisita_by_chance_high": 1 + reach,
         "morisita_used": used,
         **Estimate(*exponent).columns("morisita_exponent"),
     }

@@ -132,8 +132,9 @@ def measures_of_states(
     xr.Dataset
         Over load: the measures of :func:`domain_measures` but D_q, with ``_low``, ``_high``,
         ``_r_min``, ``_r_max`` and ``_n``. ``generalised_dimension`` over (normal_force, order),
-        likewise, and ``dimensions_fall`` over load. ``local_slope`` of the box counts over (normal_force, slope_side); ``lacunarity``
-        with ``_low`` and ``_high`` over (normal_force, gliding_side). Sides in mm are coordinates.
+        likewise, and ``dimensions_fall`` over load. ``local_slope`` of the box counts over
+        (normal_force, slope_side); ``lacunarity`` with ``_low`` and ``_high`` over (normal_force,
+        gliding_side). Sides in mm are coordinates.
 
     Raises
     ------

@@ -46,7 +46,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """Local slopes of the box counts, lacunarity and the spectrum D_q of the pressure."""
     subject = Subject.of(atlas, name)
     measures, reference = subject["domain_measures"], subject.reported.reference
-    some = np.flatnonzero(np.isfinite(measures["lacunarity"]).any("gliding_side").values)
+    some = np.flatnonzero(measures["lacunarity"].notnull().any("gliding_side").values)
     at = np.flatnonzero(some == reference)
     chosen = some[spread_loads(some.size, MAX_LOADS, int(at[0]) if at.size else None)]
     shown = measures.isel(normal_force=chosen)

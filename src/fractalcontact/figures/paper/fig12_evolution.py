@@ -61,8 +61,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     if ringed:
         which = " to ".join(dict.fromkeys((ringed[0], ringed[-1])))
         handles.append(ring_entry(f"ring: one node ({which})"))
-    beside = {"loc": "upper left", "bbox_to_anchor": (1.01, 1), "borderaxespad": 0}
-    panel.axes.legend(handles=handles, **beside)
+    right = (1.01, 1)
+    panel.axes.legend(handles=handles, loc="upper left", bbox_to_anchor=right, borderaxespad=0)
     headline(figure, subject.label, place(subject.direction, subject.offset))
     table = table_of(panel)
     if series:
