@@ -1,6 +1,5 @@
 """Clusters of the contact domain against the offset: number, size and localisation."""
 
-import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
@@ -70,12 +69,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     panels = [Panel(*one) for one in zip(axes, "abcd", (*titles, "sizes of clusters"), strict=True)]
     for panel, quantity in zip(panels, _DRAWN, strict=False):
         _draw_states(panel, states, quantity)
-    _finish(*axes[:3], states)
+    _finish(axes[:3], states)
     _draw_sizes(panels[3], sizes)
     by_load = [heading(r"(a) to (c): Morisita's index $I \sim v^x$ [95 %]"), *entries(axes[0])]
     force = force_label(reported.force)
     by_offset = [heading(rf"(d) at $F$ = {force}: number $\sim a^{{-\beta}}$ [95 %]")]
-    legends_below(figure, by_load, [*by_offset, *entries(axes[3]), *_bands(states)])
+    by_offset += entries(axes[3])
+    if states.sizes["offset"] > 1:
+        band = {"color": "0.5", "alpha": _FAINT, "lw": 0}
+        by_load.append(Patch(label="(c) bands: as many random nodes, 95 %", **band))
+    legends_below(figure, by_load, by_offset)
     headline(figure, subject.label, place(subject.direction))
     why = f"I ~ v^x over all v at {force}"
     text = caption(
@@ -112,15 +115,16 @@ def _draw_states(panel, states, quantity):
         panel.axes.plot([], [], marker, color="0.4", label=words)
 
 
-def _finish(number, share, localised, states):
+def _finish(panels, states):
     """Axes of what is drawn over the offsets, and the bands of random nodes."""
+    number, share, localised = panels
     ends = (states[f"morisita_by_chance_{end}"] for end in ("low", "high"))
     low, high = (one.transpose("normal_force", "offset").values for one in ends)
     for n in range(states.sizes["normal_force"]):
         band = {"color": colour_of(n), "alpha": _FAINT, "lw": 0}
         localised.fill_between(states["offset"], low[n].clip(min=0.1), high[n], **band)
     localised.axhline(1, color="0.4", lw=0.8)
-    for axes in (number, share, localised):
+    for axes in panels:
         offset_axis(axes, states["offset"].values)
     number.set(yscale="log", ylabel="contact clusters (1)")
     share.set(ylabel="largest cluster / contact area (1)")
@@ -153,23 +157,8 @@ def _draw_sizes(panel, sizes):
         axes.plot([], [], color="0.4", lw=0.8, label="lines: laws over the areas fitted")
 
 
-def _bands(states):
-    """The bands of random nodes in (c), in the colours of their loads; none of a single offset."""
-    if states.sizes["offset"] < 2:
-        return []
-    return [
-        Patch(
-            color=colour_of(n),
-            alpha=_FAINT,
-            lw=0,
-            label=f"(c) as many random nodes, 95 %: $F$ = {force_label(force)}",
-        )
-        for n, force in enumerate(states["normal_force"].values)
-    ]
-
-
 def _laws(sizes):
-    """Exponents of the sizes of clusters in words, and the offsets where sizes do not follow them."""
+    """Exponents of the sizes of clusters in words, and the offsets where sizes follow no law."""
     fitted = sizes.isel(offset=sizes["cluster_exponent"].notnull().values)
     exponents = Estimate.read(fitted, "cluster_exponent", scale=EXPONENT)
     if exponents.value.size < 2:
