@@ -340,7 +340,8 @@ def test_an_interval_that_ends_far_below_the_axes_is_drawn(atlas, tmp_path):
     for key in ("area", "box"):
         scaling[f"delta_sigma_{key}_low"] = scaling[f"delta_sigma_{key}_low"] * 0 - 80.0
         scaling[f"delta_sigma_{key}_high"] = scaling[f"delta_sigma_{key}_high"] * 0 + 80.0
-    scaling.update(extrapolated_pressure(scaling, 4.8))
+    side = np.sqrt(Subject.of(atlas, "sliding").area)
+    scaling.update(extrapolated_pressure(scaling, side))
     changed["scaling/sliding"] = xr.DataTree(scaling)
     drawing = draw(changed, "fig10_scaling", "sliding")
     areas = [one for axes in drawing.figure.axes for one in axes.collections]

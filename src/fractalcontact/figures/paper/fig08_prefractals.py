@@ -94,7 +94,7 @@ def _area_words(state):
 
 def _draw_pressures(panel, states, model):
     axes, style = panel.axes, {"color": COLOURS[0], "marker": "o"}
-    known = states.where(states["area_corrected_resolved"], drop=True)
+    known = states.isel(resolution=states["area_corrected_resolved"].values)
     if known.sizes["resolution"]:
         label = r"$A_r$ corrected for its edge"
         axes.plot(known["spacing"], known["sigma_n"], **style, label=label)

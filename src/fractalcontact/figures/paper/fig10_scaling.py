@@ -55,7 +55,7 @@ def _draw_areas(panel, states, by_area, reference):
     panel.keep(states, *names)
     for n, i in enumerate(spread_loads(len(forces), _MAX_LOADS, reference)):
         state = states.isel(normal_force=i)
-        used = state.where(state["area_used"], drop=True)
+        used = state.isel(resolution=state["area_used"].values)
         # Low loads may share their few nodes: the later marker lets the earlier one show.
         style = {"color": _LOAD_COLOURS[n], "marker": MARKERS[n], "linestyle": "none"}
         raw = {"mfc": "none", "mew": 0.6, "markersize": 4}
