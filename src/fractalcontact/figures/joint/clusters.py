@@ -1,7 +1,6 @@
 """Clusters of the contact domain against the offset: number, size and localisation."""
 
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
@@ -74,11 +73,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     by_load = [heading(r"(a) to (c): Morisita's index $I \sim v^x$ [95 %]"), *entries(axes[0])]
     force = force_label(reported.force)
     by_offset = [heading(rf"(d) at $F$ = {force}: number $\sim a^{{-\beta}}$ [95 %]")]
-    by_offset += entries(axes[3])
-    if states.sizes["offset"] > 1:
-        band = {"color": "0.5", "alpha": _FAINT, "lw": 0}
-        by_load.append(Patch(label="(c) bands: as many random nodes, 95 %", **band))
-    legends_below(figure, by_load, by_offset)
+    legends_below(figure, by_load, [*by_offset, *entries(axes[3])])
     headline(figure, subject.label, place(subject.direction))
     why = f"I ~ v^x over all v at {force}"
     text = caption(
@@ -123,6 +118,9 @@ def _finish(panels, states):
     for n in range(states.sizes["normal_force"]):
         band = {"color": colour_of(n), "alpha": _FAINT, "lw": 0}
         localised.fill_between(states["offset"], low[n].clip(min=0.1), high[n], **band)
+    if states.sizes["offset"] > 1:
+        grey = {"color": "0.5", "alpha": _FAINT, "lw": 0}
+        number.fill_between([], [], label="(c) bands: as many random nodes, 95 %", **grey)
     localised.axhline(1, color="0.4", lw=0.8)
     for axes in panels:
         offset_axis(axes, states["offset"].values)

@@ -29,12 +29,11 @@ class DeltaSigma(Estimate):
     ----------
     key : str
         "area" or "box".
-    label, symbol : str
-        What it is estimated from, for captions and for legends.
+    symbol : str
+        What it is estimated from, for legends.
     """
 
     key: str
-    label: str
     symbol: str
 
     @property
@@ -84,10 +83,9 @@ def estimates_of(states: xr.Dataset) -> tuple[DeltaSigma, ...]:
             reason=states[f"delta_sigma_{key}_reason"].values,
             scale=DIMENSION,
             key=key,
-            label=label,
             symbol=symbol,
         )
-        for key, (label, symbol) in _ESTIMATORS.items()
+        for key, (_, symbol) in _ESTIMATORS.items()
     )
 
 
