@@ -6,6 +6,7 @@ from scipy import stats
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.domain.renormalisation import (
     compare_dimensions,
+    fractal_pressure,
     hausdorff_measure,
     nominal_pressure,
     renormalisation,
@@ -135,6 +136,24 @@ def test_negative_areas_and_spacings_are_refused():
 def test_hausdorff_measure_counts_nodes_in_their_own_dimension():
     assert hausdorff_measure(0.5, 12 * 0.25, 1.5) == pytest.approx(12 * 0.5**1.5)
     assert hausdorff_measure(0.5, 12 * 0.25, 0.0) == pytest.approx(12)
+
+
+def test_eq_6_of_a_full_square_is_the_pressure_applied_whatever_the_size():
+    assert fractal_pressure(640.0, 8.0, 2.0) == pytest.approx(10.0)  # MPa, 640 N on 64 mm2
+
+
+@pytest.mark.parametrize("delta", [0.4, 1.5, 2.0])
+def test_eq_6_meets_the_specimen(delta):
+    # Eq. 5 as written: sigma_0 A_0 = sigma* H_D of the whole joint.
+    b, force = 16.0, 100.0
+    assert fractal_pressure(force, b, delta) * b ** (delta - 2) == pytest.approx(force / b**2)
+
+
+def test_sigma_star_does_not_depend_on_the_unit_of_length():
+    # N mm^-delta in N m^-delta: a joint of 16 mm is one of 0.016 m.
+    delta = 1.3
+    in_mm, in_m = (fractal_pressure(100.0, b, delta) for b in (16.0, 0.016))
+    assert in_m == pytest.approx(in_mm * 1000**delta)
 
 
 def test_size_effect_has_the_slope_of_equation_six():

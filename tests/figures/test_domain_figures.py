@@ -37,11 +37,13 @@ def test_drawing_shows_what_was_measured(atlas, name, tmp_path):
         save(drawing, tmp_path, "domain_measures")
     with Image.open(tmp_path / "domain_measures.png") as picture:
         assert np.ptp(np.asarray(picture.convert("L"))) > 100  # something is drawn
-    spectrum = drawing.data[drawing.data["kind"] == "spectrum"]
-    for force, points in spectrum.groupby("force_N"):
-        expected = found["generalised_dimension"].sel(normal_force=force).dropna("order")
-        np.testing.assert_allclose(points["value"], expected)
-    assert set(drawing.data["kind"]) == {"slope", "lacunarity", "spectrum"}
+    for panel, name in zip(
+        "abc", ("local_slope", "lacunarity", "generalised_dimension"), strict=True
+    ):
+        drawn = drawing.data[drawing.data["panel"] == panel]
+        assert len(drawn)
+        for force, points in drawn.groupby("normal_force_N"):
+            np.testing.assert_array_equal(points[name], found[name].sel(normal_force=force))
     assert "section 6" in drawing.caption
     assert "nan" not in drawing.caption
 

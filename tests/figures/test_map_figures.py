@@ -78,10 +78,11 @@ def test_a_map_stands_at_its_own_pressure_and_its_own_load_is_in_the_table(with_
     }
     assert round(value, 6) in places
     rows = drawing.data.set_index("map")
-    assert rows.loc["cast", "load_N"] == pytest.approx(3000)
+    assert rows.loc["cast", "normal_force_N"] == pytest.approx(3000)
     assert rows.loc["cast", "nominal_pressure_MPa"] == pytest.approx(value)
     computed = drawing.data[drawing.data["map"].isna()]
-    np.testing.assert_allclose(computed["load_N"], computed["nominal_pressure_MPa"] * nominal)
+    forces = computed["nominal_pressure_MPa"] * nominal
+    np.testing.assert_allclose(computed["normal_force_N"], forces)
     legend = [text.get_text() for text in axes.get_legend().get_texts()]
     assert sum(text.startswith("measured: ") for text in legend) == 3
     assert len(set(legend)) == len(legend)

@@ -38,7 +38,12 @@ CURVES = {
     "Delta_sigma by areas": "delta_sigma_area",
 }
 #: Further columns that say what a row is about, no values themselves.
-COORDINATES = ("b_mm", "box_side_mm", "spacing_mm", "v_over_b", "order_q", "x_mm", "wavelength_mm")
+COORDINATES = (
+    *("b_mm", "box_side_mm", "mean_side_mm", "null_side_mm", "null_mean_side_mm", "spacing_mm"),
+    *("slope_side_mm", "gliding_side_mm", "order", "eq6_side_mm", "cluster_area_mm2", "octave"),
+    *("scale", "mean_scale", "null_scale", "null_mean_scale", "null_octave"),
+    *("v_over_b", "x_mm", "wavelength_mm"),
+)
 #: Columns that say what the numbers of a row are.
 WHAT = ("quantity", "estimator")
 #: Tables have eight digits.
@@ -156,6 +161,7 @@ def _add(found, source, variable, values, columns):
     if values.dims:
         rows = values.rename("value").to_dataframe().reset_index()
     names = {"offset": "offset_mm", "normal_force": "force_N", "value": column}
+    names |= {name: f"{name}_mm" for name in ("slope_side", "gliding_side", "eq6_side")}
     found.setdefault(column, []).append(Table(source, rows.rename(columns=names)))
 
 

@@ -97,12 +97,16 @@ def is_determined(low: float, high: float) -> bool:
     return bool(high - low <= WIDEST)
 
 
-def follows_law(clusters: float, distance: float) -> bool:
+def follows_law(clusters: Any, distance: Any) -> Any:
     """Whether sizes are as near to their power law as chance would have them.
 
     Parameters
     ----------
-    clusters, distance : float
+    clusters, distance : float or array_like
         ``cluster_fit_n`` and ``cluster_fit_distance``.
+
+    Returns
+    -------
+    bool, or array of bool
     """
-    return bool(distance * np.sqrt(clusters) <= LARGEST_DISTANCE)
+    return distance * np.sqrt(clusters) <= LARGEST_DISTANCE

@@ -9,12 +9,15 @@ from ..core.arrays import padded
 from ..core.datasets import labelled_dataset
 from ..core.determined import is_determined
 from ..core.estimate import names_of, rows_of
+from ..core.fitting import FEWEST_POINTS
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
 from .box_counts import window_sizes
 from .box_dimension import ESTIMATORS, dimension_of_domain
+from .cluster_laws import cluster_laws
 from .clusters import CLUSTER_FIELDS, cluster_statistics
+from .fitted_counts import fitted_counts
 from .isotropy import LAG_FIELDS, contact_at_lag
 from .mean_law import mean_sizes
 from .renormalisation import compare_dimensions, renormalisation
@@ -111,8 +114,8 @@ def analyse_domains(
         :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension) and ``determined`` over
         (direction, offset, resolution, load); ``box_count`` and ``box_used`` with a last dimension
         scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with octave; ``box_side`` and
-        ``mean_side`` (resolution, ...) in mm. The curve of the count law is that of
-        :func:`domain.count_law.law_count` with the terms ``law_...``.
+        ``mean_side`` (resolution, ...) in mm; the curves of the laws that are fitted, by
+        :func:`domain.fitted_counts.fitted_counts` and :func:`domain.cluster_laws.cluster_laws`.
 
     Notes
     -----
@@ -135,6 +138,7 @@ def analyse_domains(
     solved, ambiguous = _solver_state(fields, shape)
     n_scales, n_means = (max(map(len, of_all)) for of_all in sizes.values())
     table = _empty_table(shape, n_scales, n_means, n_octaves)
+    nodes = np.zeros(shape, int)
     directions = [str(direction) for direction in fields["direction"].values]
     for place in np.ndindex(shape):
         direction, offset, k, load = place
@@ -142,8 +146,10 @@ def analyse_domains(
             table["reason"][place] = NOT_NEEDED
             continue
         factor = factors[k]
+        domain = domains[factor][direction, offset, load]
+        nodes[place] = domain.sum()
         row = _row(
-            domains[factor][direction, offset, load],
+            domain,
             factor * spacing,
             ambiguous[place],
             directions[direction],
@@ -164,7 +170,8 @@ def analyse_domains(
         name: fields[name] for name in ("direction", "offset", "normal_force")
     }
     coords |= {"resolution": multiples, "octave": octaves}
-    return labelled_dataset(_TABLE, table, coords=coords)
+    result = labelled_dataset(_TABLE, table, coords=coords)
+    return result.merge(fitted_counts(result)).merge(cluster_laws(result, nodes, spacing))
 
 
 def _solver_state(fields, shape):
@@ -257,8 +264,10 @@ def scaling_over_resolutions(
         offset, load), and both estimates of Delta_sigma with their difference; the box counts are
         those at the scan's own resolution. ``delta_sigma_raw``, with its interval and ``_n``, is
         that of the raw area; ``area``, ``area_corrected`` and ``nodes`` are those of the states.
-        ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch, and
-        ``area_used`` says which of these areas Delta_sigma is fitted to.
+        ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch,
+        ``sigma_n_raw`` that of the raw one; ``area_used`` says which areas Delta_sigma is fitted
+        to, ``fitted_area`` is their law. ``delta_sigma_area_reason`` and ``delta_sigma_box_reason``
+        say why there is no estimate.
 
     Notes
     -----
@@ -278,6 +287,10 @@ def scaling_over_resolutions(
     result["sigma_n"] = force / curves["area_corrected"].where(enough)
     words = f"real mean pressure F / A_r; none below {CORRECTED_NODES} nodes in contact"
     result["sigma_n"].attrs = cf_attrs("MPa", words)
+    result["sigma_n_raw"] = force / curves["area"].where(curves["area"] > 0)
+    result["sigma_n_raw"].attrs = cf_attrs("MPa", "F / A_r of the area not corrected for its edge")
+    result["fitted_area"] = result["hausdorff_measure"] * s ** (2 - result["delta_sigma"])
+    result["fitted_area"].attrs = cf_attrs("mm2", "contact area by the law that delta_sigma is of")
     raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES)
     for name, raw_name in zip(names_of("delta_sigma"), names_of("delta_sigma_raw"), strict=True):
         result[raw_name] = raw[name]
@@ -285,7 +298,26 @@ def scaling_over_resolutions(
     result["delta_sigma_raw_n"] = raw["n"]
     finest = domains.sel(resolution=domains["resolution"].min())
     result = result.merge(compare_dimensions(result, finest), compat="override", join="exact")
+    result.update(_reasons(result, finest))
     result["spacing"] = s
     for name in ("area", "area_corrected", "nodes"):
         result[name] = curves[name]
     return result.drop_vars([n for n in result.coords if n not in result.dims])
+
+
+def _reasons(scaling, finest):
+    """Why an estimate of Delta_sigma is missing; empty where it is there."""
+    too_few = f"of the {FEWEST_POINTS} resolutions needed"
+    why = [f"no fit: A_r large enough at {n} {too_few}" for n in scaling["n"].values.flat]
+    area = scaling["n"].copy(data=np.reshape(why, scaling["n"].shape))
+    no_box = finest["reason"].astype(object)
+    reasons = {
+        "delta_sigma_area_reason": area.where(scaling["delta_sigma"].isnull(), ""),
+        "delta_sigma_box_reason": xr.where(no_box == "", "", "no dimension: " + no_box),
+    }
+    for name, reason in reasons.items():
+        reason.attrs = cf_attrs("1", f"why there is no {name.removesuffix('_reason')}")
+    return {
+        name: reason.drop_vars("resolution", errors="ignore").astype(str)
+        for name, reason in reasons.items()
+    }

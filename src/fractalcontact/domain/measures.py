@@ -132,8 +132,9 @@ def measures_of_states(
     xr.Dataset
         Over load: the measures of :func:`domain_measures` but D_q, with ``_low``, ``_high``,
         ``_r_min``, ``_r_max`` and ``_n``. ``generalised_dimension`` over (normal_force, order),
-        likewise. ``local_slope`` of the box counts over (normal_force, slope_side); ``lacunarity``
-        with ``_low`` and ``_high`` over (normal_force, gliding_side). Sides in mm are coordinates.
+        likewise, and ``dimensions_fall`` over load. ``local_slope`` of the box counts over
+        (normal_force, slope_side); ``lacunarity`` with ``_low`` and ``_high`` over (normal_force,
+        gliding_side). Sides in mm are coordinates.
 
     Raises
     ------
@@ -171,7 +172,21 @@ def measures_of_states(
         "slope_side": ("slope_side", side, cf_attrs("mm", "middle of the doubling")),
         "gliding_side": ("gliding_side", curves[0].r, cf_attrs("mm", "side of the gliding box")),
     }
-    return xr.Dataset(variables | labelled(_CURVES, curve_values), coords=coords)
+    measures = xr.Dataset(variables | labelled(_CURVES, curve_values), coords=coords)
+    return measures.assign(dimensions_fall=_dimensions_fall(measures))
+
+
+def _dimensions_fall(measures):
+    """Whether the dimensions of the pressure fall with their order, as a monofractal's do not."""
+    first, last = (
+        Estimate.read(measures.sel(order=q), "generalised_dimension") for q in _COMPARED_ORDERS
+    )
+    attrs = cf_attrs("1", "whether the interval of D_4 lies below that of D_0")
+    return "normal_force", last.high < first.low, attrs
+
+
+#: D_q of these orders are compared: of the support, and of the largest pressures.
+_COMPARED_ORDERS = (0.0, 4.0)
 
 
 #: Measures of a domain that are curves over a box side.

@@ -176,6 +176,81 @@ def nominal_pressure(sigma_star: Any, delta_sigma: Any, b: Any) -> Any:
     return sigma_star * b ** (delta_sigma - 2)
 
 
+def fractal_pressure(force: Any, side: Any, delta_sigma: Any) -> Any:
+    """sigma* = F / H_D with the fractal measure H_D = b^delta of the whole joint (eq. 5).
+
+    So sigma_0 A_0 = sigma* H_D holds on the specimen itself, and eq. 6 passes through it. The
+    measure N_n s_n^delta of the pre-fractals, ``hausdorff_measure`` in the atlas, differs from it
+    by a factor without dimension, which eq. 6 does not contain.
+
+    Parameters
+    ----------
+    force : array_like
+        F, N.
+    side : array_like
+        b of the specimen, mm.
+    delta_sigma : array_like
+        Dimension of the contact domain.
+
+    Returns
+    -------
+    Of the arguments' common shape, in N mm^-delta.
+    """
+    return force / side**delta_sigma
+
+
+def extrapolated_pressure(scaling: xr.Dataset, side: float) -> xr.Dataset:
+    """Nominal pressures of joints of other sizes by eq. 6, which is fixed on the specimen.
+
+    Parameters
+    ----------
+    scaling : xr.Dataset
+        Both estimates of Delta_sigma, from :func:`compare_dimensions`.
+    side : float
+        b of the specimen, mm: of the square that has its window's area.
+
+    Returns
+    -------
+    xr.Dataset
+        Over the coordinate ``estimator`` ("area", "box") and the dimensions of the estimates:
+        ``eq6_sigma_star``; over ``eq6_side``, too (`SIDES` times ``side``): ``eq6_pressure`` with
+        the ends of its interval, which follow from those of Delta_sigma, each with its own sigma*.
+    """
+    force = scaling["normal_force"]
+    sides = xr.DataArray(side * SIDES, dims="eq6_side")
+    names = [names_of(f"delta_sigma_{estimator}") for estimator in ESTIMATORS]
+    dimensions = [
+        xr.concat([scaling[name] for name in of_end], "estimator")
+        for of_end in zip(*names, strict=True)
+    ]
+    stars = [fractal_pressure(force, side, dimension) for dimension in dimensions]
+    value, *ends = (
+        nominal_pressure(star, dimension, sides)
+        for star, dimension in zip(stars, dimensions, strict=True)
+    )
+    # The lines of both ends cross: which is the lower depends on b.
+    pressure = Estimate(value, np.fmin(*ends), np.fmax(*ends))
+    values = {"eq6_sigma_star": stars[0], **pressure.columns("eq6_pressure")}
+    coords = {
+        "estimator": ("estimator", list(ESTIMATORS), cf_attrs("1", "what gives Delta_sigma")),
+        "eq6_side": ("eq6_side", sides.values, cf_attrs("mm", "side b of a joint in eq. 6")),
+    }
+    result = _described(values, _EXTRAPOLATED).assign_coords(coords)
+    return result.transpose("estimator", *scaling["delta_sigma_area"].dims, "eq6_side")
+
+
+#: What Delta_sigma is estimated from.
+ESTIMATORS = ("area", "box")
+#: Sides b of joints that eq. 6 is extrapolated to, as multiples of the specimen's: two decades.
+SIDES = np.array([0.1, 1.0, 10.0])
+
+#: Unit and long name of what eq. 6 makes of other sizes.
+_EXTRAPOLATED = {
+    "eq6_sigma_star": ("N mm^-delta_sigma", "sigma* = F / b^Delta_sigma, which fixes eq. 6"),
+    **rows_of("eq6_pressure", "MPa", "nominal pressure by eq. 6 on a joint of side b"),
+}
+
+
 def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
     """Set two estimates of Delta_sigma side by side: from A_r(s) and from box counting.
 
@@ -187,10 +262,10 @@ def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        `delta_sigma_area`, `delta_sigma_box`, `difference` = area - box with `difference_low`,
-        `_high`: the ends of the two intervals combined as those of independent estimates (root of
-        the sum of squares); and whether they `disagree`: the interval of the difference leaves out
-        zero.
+        `delta_sigma_area` and `delta_sigma_box` with their intervals, `difference` = area - box
+        with `difference_low`, `_high`: the ends of the two intervals combined as those of
+        independent estimates (root of the sum of squares); and whether they `disagree`: the
+        interval of the difference leaves out zero.
     """
     area, area_low, area_high = (by_area[name] for name in names_of("delta_sigma"))
     box, box_low, box_high = (by_boxes[name] for name in names_of("delta_sigma"))
@@ -198,8 +273,8 @@ def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
     low = difference - np.hypot(area - area_low, box_high - box)
     high = difference + np.hypot(area_high - area, box - box_low)
     values = {
-        "delta_sigma_area": area,
-        "delta_sigma_box": box,
+        **Estimate(area, area_low, area_high).columns("delta_sigma_area"),
+        **Estimate(box, box_low, box_high).columns("delta_sigma_box"),
         **Estimate(difference, low, high).columns("difference"),
         "disagree": (low > 0) | (high < 0),
     }
@@ -208,8 +283,8 @@ def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
 
 #: Unit and long name of two estimates side by side.
 _COMPARED = {
-    "delta_sigma_area": ("1", "Delta_sigma from the contact area over resolutions"),
-    "delta_sigma_box": ("1", "Delta_sigma from box counting"),
+    **rows_of("delta_sigma_area", "1", "Delta_sigma from the contact area over resolutions"),
+    **rows_of("delta_sigma_box", "1", "Delta_sigma from box counting"),
     **rows_of("difference", "1", "Delta_sigma from area less that from box counting"),
     "disagree": ("1", "the two estimates of Delta_sigma differ by more than their intervals"),
 }

@@ -18,7 +18,6 @@ from ..core.determined import decided_by_scan, determined
 from ..core.labels import cf_attrs
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import cell_side
-from ..domain.count_law import LawTerms, law_count
 from ..mechanics.overlap import overlapping_nodes, suspect_nodes
 from .summary import DIMENSION
 
@@ -172,7 +171,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     numbers = _Numbers([], {})
     for stage, variable in (*STATE, *CURVES):
         _add_with_bounds(numbers, stages[stage], stage, variable)
-    numbers.add("domains", "delta_sigma", _law(stages["domains"]), key="law_count")
+    numbers.add("domains", "law_count", stages["domains"]["law_count"], key="law_count")
     _add_undetermined(numbers, stages)
     return {
         **{
@@ -208,20 +207,6 @@ def _bound_of(variable, ending):
     if variable == "delta_sigma_area":
         return BOUNDS_OF_AREA.get(ending, "")
     return f"{variable}{ending}"
-
-
-def _law(domains):
-    """Box counts by the count law over the sizes of the mean counts; NaN beyond its fit."""
-    side, dimension = domains["mean_side"], domains["delta_sigma"]
-    terms = LawTerms(*(domains[f"law_{field}"] for field in LawTerms._fields))
-    kept = (side >= domains["fit_min"] * (1 - 1e-9)) & (side <= domains["fit_max"] * (1 + 1e-9))
-    with np.errstate(invalid="ignore"):
-        counts = xr.apply_ufunc(
-            lambda r, d, *t: law_count(r, d, LawTerms(*t)), side, dimension, *terms
-        )
-    return counts.where(kept).assign_attrs(
-        units="1", long_name="box counts by the law that Delta_sigma is fitted with"
-    )
 
 
 def _add_undetermined(numbers, stages):

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import xarray as xr
 
 from ..core.reported import Reported
@@ -10,6 +11,7 @@ from ..core.window import cell_side, nominal_area, window_sides
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
+from ..domain.renormalisation import extrapolated_pressure
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..mechanics.contact_fields import contact_fields
@@ -80,15 +82,14 @@ def state_stages(
     domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
     nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
     domains = beside_domains(domains, nulls)
+    scaling = scaling_over_resolutions(curves, domains, spacing, fit_range=settings.scaling_range)
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,
         "area": laws,
         "domains": domains,
         "contact": contact_fields(fields, parts, joints, settings, area),
-        "scaling": scaling_over_resolutions(
-            curves, domains, spacing, fit_range=settings.scaling_range
-        ),
+        "scaling": scaling.merge(extrapolated_pressure(scaling, float(np.sqrt(area)))),
         "domain_measures": measures_of_map_states(mapped, spacing, settings.box_range),
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}

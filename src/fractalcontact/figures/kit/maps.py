@@ -35,8 +35,6 @@ _RING["mec"] = COLOURS[3]
 #: Points that a node in contact is wide at least, so that print shows it, as long as no more than
 #: this fraction of the map becomes black.
 LEAST_DOT, MOST_BLACK = 0.8, 0.3
-#: Of captions of maps whose nodes are drawn wider than they are.
-ENLARGED = "Nodes are drawn enlarged."
 
 
 def scan_extent(specimen: xr.Dataset) -> tuple[float, ...]:
@@ -136,7 +134,7 @@ def draw_domain(
     Returns
     -------
     bool
-        Whether nodes are drawn enlarged, which the figure then says, or the caption by `ENLARGED`.
+        Whether nodes are drawn enlarged, which the figure or its caption then says.
     """
     # No cell is missing in a window, and a node smaller than a pixel must not vanish.
     grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}

@@ -1,166 +1,118 @@
 """Fig. 8: the contact domain at coarser and coarser resolution, and its real mean pressure."""
 
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
-from ...core.limits import CORRECTED_NODES
+from ...core.subject import Subject
 from ...core.verdicts import USUAL
-from ...domain.renormalisation import RESOLUTION
-from ...mechanics.model_validity import Validity
-from ..kit.domains import Loading, fall_reason
-from ..kit.drawing import (
-    COLOURS,
-    WIDTH,
-    Drawing,
-    group,
-    headline,
-    label_short_span,
-    letter,
-)
+from ...core.window import window_sides
+from ..kit.caption import caption
+from ..kit.domains import contact_domain, estimates_of, prefractals
+from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
 from ..kit.maps import LEAST_DOT, draw_domain
-from ..kit.verdicts import claim, sentences
-from ..kit.words import (
-    REAL_PRESSURE,
-    force_label,
-    number,
-    opening,
-    percent,
-    short,
-)
+from ..kit.panel import Panel, table_of
+from ..kit.verdicts import claim
+from ..kit.words import REAL_PRESSURE, area_label, force_label, place, short
 
 TITLE = "Fig. 8: contact domains of the pre-fractals under one load, and their mean pressure"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "area", "elastic_model", "statements")
+NEEDS = ("specimens", "contact", "closure", "scaling", "area", "elastic_model", "statements")
 ORDER = 130
 
 #: Maps side by side, and the most times as wide as they are that all draw their nodes.
 _COLUMNS, _WIDEST = 4, 3
+_LETTERS = "abcdefghijklmnop"
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """Contact domains at all resolutions, with A_r and sigma_n = F / A_r."""
-    loading = Loading.of(atlas, name)
-    i = loading.map_load
-    table = _table(loading, i)
-    laws = group(atlas, "area", name).sel(direction=loading.direction)
-    slope = float(laws["rms_slope"].sel(offset=loading.offset, method="nearest"))
-    models = group(atlas, "elastic_model", name).sel(direction=loading.direction)
-    model = Validity.of(models.sel(offset=loading.offset, method="nearest").isel(normal_force=i))
-    rows, columns = -(-len(table) // _COLUMNS), min(len(table), _COLUMNS)
-    aspect = loading.sides[0] / loading.sides[1]
-    height = rows * (WIDTH / _COLUMNS * aspect + 0.75)
+    subject = Subject.of(atlas, name)
+    load, force = subject.reported.reference, subject.reported.force
+    states = _states(subject)
+    model, n = subject.state("elastic_model"), states.sizes["resolution"]
+    sides = window_sides(subject["specimens"])
+    rows, columns = -(-n // _COLUMNS), min(n, _COLUMNS)
+    height = rows * (WIDTH / _COLUMNS * sides[0] / sides[1] + 0.75)
     figure = Figure(figsize=(WIDTH, height + 2.3))
     top, bottom = figure.subfigures(2, 1, height_ratios=[height, 2.0])  # type: ignore[misc]  # an array
-    panels = top.subplots(rows, columns, squeeze=False, sharey=True).ravel()
-    letters = "abcdefghijklmnop"
-    times = _times(loading, columns)
-    for axes, which, row in zip(panels, letters, table.itertuples(), strict=False):
-        domain = loading.domain(row.resolution, i)
-        draw_domain(axes, domain, loading.sides, ticks=4, times=times)
-        letter(axes, which, f"$s$ = {short(row.spacing_mm)} mm\n{_area_words(row)}")
-        axes.label_outer()
-    for axes in panels[len(table) :]:
+    maps = top.subplots(rows, columns, squeeze=False, sharey=True).ravel()
+    domains = [contact_domain(subject, k, load) for k in states["resolution"].values]
+    times = _times(max(domains[0].shape), columns)
+    for i, domain in enumerate(domains):
+        draw_domain(maps[i], domain, sides, ticks=4, times=times)
+        letter(maps[i], _LETTERS[i], _area_words(states.isel(resolution=i)))
+        maps[i].label_outer()
+    for axes in maps[n:]:
         axes.remove()
-    axes = bottom.subplots()
-    _draw_pressures(axes, table, model.limits)
-    found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {_exponent_words(loading.estimates[0], i)}"
-    title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(slope)}"
-    letter(axes, letters[len(table)], title)
+    by_area, _ = estimates_of(subject.states("scaling"))
+    found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {by_area.entry(load)}"
+    title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(states['rms_slope'])}"
+    panel = Panel(bottom.subplots(), _LETTERS[n], title)
+    _draw_pressures(panel, states, model)
     wide = "black: real contact area $A_r$ of the nominal $A_0$"
     wide += f"; nodes drawn {times} times as wide in all maps" if times > 1 else ""
-    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}", below=wide)
-    why = fall_reason(loading.estimates[0], i)
-    caption = sentences(
-        f"{opening('Fig. 8')} Contact domains at F = {force_label(loading.forces[i])}.",
-        model.sentence,
-        claim(atlas, name, "area_is_lacunar", numbers=not why, why=why),
+    where = place(subject.direction, subject.offset)
+    headline(figure, subject.label, where, f"$F$ = {force_label(force)}", below=wide)
+    words = {key: str(model[key].item()) for key in ("verdict", "reason")}
+    falls = claim(atlas, name, "area_is_lacunar")
+    return Drawing(figure, table_of(panel), caption(__name__, force=force, falls=falls, **words))
+
+
+def _states(subject):
+    """States at all resolutions under the reference load, corrected areas where they are known."""
+    closure, scaling = (
+        prefractals(subject, stage).isel(normal_force=subject.reported.reference)
+        for stage in ("closure", "scaling")
     )
-    return Drawing(figure, table.assign(rms_slope=slope), caption)
+    enough = closure["area_corrected_resolved"]
+    corrected = {of: closure[of].where(enough) for of in ("area_corrected", "area_corrected_share")}
+    kept = closure[["nodes", "area", "area_share", "area_corrected_resolved"]].assign(corrected)
+    kept = kept.assign(scaling[["spacing", "sigma_n", "sigma_n_raw"]].data_vars)
+    return kept.assign(rms_slope=subject.states("area")["rms_slope"])
 
 
-def _table(loading, i):
-    """One row a resolution, fine to coarse."""
-    scaling = loading.scaling.isel(normal_force=i).sortby(RESOLUTION)
-    area, corrected = scaling["area"].values, scaling["area_corrected"].values
-    nodes, force = scaling["nodes"].values, loading.forces[i]
-    enough = nodes >= CORRECTED_NODES
-    return pd.DataFrame(
-        {
-            "load_N": force,
-            "offset_mm": loading.offset,
-            "resolution": scaling[RESOLUTION].values,
-            "spacing_mm": scaling["spacing"].values,
-            "nodes": nodes,
-            "area_mm2": area,
-            "area_share": area / np.prod(loading.sides),
-            "area_corrected_mm2": np.where(enough, corrected, np.nan),
-            "area_corrected_share": np.where(enough, corrected, np.nan) / np.prod(loading.sides),
-            "sigma_n_MPa": scaling["sigma_n"].values,
-            "sigma_n_raw_MPa": force / area,
-        }
-    )
-
-
-def _times(loading, columns):
+def _times(nodes, columns):
     """How many times as wide as they are all maps draw their nodes, so that print shows the finest.
 
     One number for all: with one for each, finer domains would look fuller than coarser ones.
     """
-    nodes = max(loading.domain(loading.finest, 0).shape)
     points = 72 * 0.85 * WIDTH / columns / nodes
     return int(np.clip(np.ceil(LEAST_DOT / points), 1, _WIDEST))
 
 
-def _exponent_words(by_area, i):
-    """Delta_sigma of the areas with its interval, or that too few nodes touch for one."""
-    if by_area.reason[i]:
-        return f"no fit (fewer than {CORRECTED_NODES} nodes)"
-    ends = (number(end[i]) for end in (by_area.value, by_area.low, by_area.high))
-    doubt = "" if by_area.determined[i] else " (undetermined)"
-    return r"$\Delta_\sigma$ = {} [{}, {}]".format(*ends) + doubt
-
-
-def _area_words(row):
+def _area_words(state):
     """Area and pressure of a panel: corrected, or raw where too few nodes touch."""
-    if np.isfinite(row.area_corrected_mm2):
-        area, share, pressure = row.area_corrected_mm2, row.area_corrected_share, row.sigma_n_MPa
-        raw = ""
-    else:
-        area, share, pressure = row.area_mm2, row.area_share, row.sigma_n_raw_MPa
-        raw = " (raw)"
+    known = bool(state["area_corrected_resolved"])
+    area, pressure = ("area_corrected", "sigma_n") if known else ("area", "sigma_n_raw")
     return (
-        f"$A_r$ = {short(area)} mm$^2${raw}\n$A_r/A_0$ = {percent(share)}\n"
-        rf"$\sigma_n$ = {short(pressure)} MPa"
+        f"$s$ = {short(state['spacing'])} mm\n$A_r$ = {short(state[area])} mm$^2$\n"
+        f"$A_r/A_0$ = {area_label(state)}\n$\\sigma_n$ = {short(state[pressure])} MPa"
     )
 
 
-def _draw_pressures(axes, table, limits):
-    style = {"color": COLOURS[0], "marker": "o"}
-    known = table.dropna(subset="sigma_n_MPa")
-    if len(known):
+def _draw_pressures(panel, states, model):
+    axes, style = panel.axes, {"color": COLOURS[0], "marker": "o"}
+    known = states.isel(resolution=states["area_corrected_resolved"].values)
+    if known.sizes["resolution"]:
         label = r"$A_r$ corrected for its edge"
-        axes.plot(known["spacing_mm"], known["sigma_n_MPa"], **style, label=label)
-    raw = {"mfc": "none", "ls": ":", "lw": 0.8}
-    axes.plot(table["spacing_mm"], table["sigma_n_raw_MPa"], **style, **raw, label="$A_r$ raw")
-    _draw_limit(axes, limits)
+        axes.plot(known["spacing"], known["sigma_n"], **style, label=label)
+    raw = {"mfc": "none", "ls": ":", "lw": 0.8, "label": "$A_r$ raw"}
+    kept = [name for name in states if name not in ("spacing", "sigma_n_raw")]
+    panel.curve(states, "spacing", "sigma_n_raw", keep=kept, **style, **raw)
+    low, high = (float(model[f"strength_{end}"]) for end in ("low", "high"))
+    criterion = str(model["criterion"].item())
+    if criterion == USUAL:
+        label = f"{USUAL}:\n{short(low)} to {short(high)} MPa"
+        axes.axhspan(low, high, color=COLOURS[2], alpha=0.2, lw=0, label=label)
+    else:
+        label = f"{criterion}: {short(low)} MPa"
+        axes.axhline(low, color=COLOURS[2], ls="--", label=label)
     axes.set(xscale="log", yscale="log")
-    axes.set_xticks(table["spacing_mm"], [short(s) for s in table["spacing_mm"]])
+    axes.set_xticks(states["spacing"], [short(s) for s in states["spacing"].values])
     axes.xaxis.set_minor_locator(NullLocator())
     label_short_span(axes.yaxis)
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel(f"{REAL_PRESSURE} (MPa)")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
-
-
-def _draw_limit(axes, limits):
-    """The pressure that the material bears: what the study states, or that of usual materials."""
-    low, high = limits.strength_low, limits.strength_high
-    if limits.criterion != USUAL:
-        label = f"{limits.criterion}: {short(low)} MPa"
-        axes.axhline(low, color=COLOURS[2], ls="--", label=label)
-        return
-    label = f"{USUAL}:\n{short(low)} to {short(high)} MPa"
-    axes.axhspan(low, high, color=COLOURS[2], alpha=0.2, lw=0, label=label)

@@ -3,239 +3,156 @@
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.determined import is_determined
-from ...core.estimate import DIMENSION, Estimate, names_of
-from ...core.ranges import within
-from ...domain.count_law import LawTerms, law_count
-from ..kit.domains import Loading
+from ...core.estimate import DIMENSION, Estimate
+from ...core.subject import Subject
+from ...core.window import window_sides
+from ..kit.caption import caption
+from ..kit.domains import contact_domain
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, heading, headline, label_short_span, letter
 from ..kit.maps import draw_domain
+from ..kit.panel import Panel, table_of
 from ..kit.points import reach
-from ..kit.verdicts import claim, sentences
-from ..kit.words import force_label, opening, short
+from ..kit.verdicts import claim
+from ..kit.words import force_label, place, short
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
+NEEDS = ("specimens", "contact", "closure", "domains", "statements")
 ORDER = 140
 
-#: Columns of the null models and the variables that they hold.
-NULLS = {
-    "random_count": "null_count_random",
-    "random_count_low": "null_count_random_low",
-    "random_count_high": "null_count_random_high",
-    "cut_count": "null_count_cut",
+#: What each panel keeps, by the dimension of its sides.
+_COUNTS = {
+    "scale": ("box_side", "box_count", "box_used", "ordinary_used", "ordinary_count"),
+    "mean_scale": ("mean_side", "mean_count", "law_count"),
+    "null_scale": ("null_side", "null_count_random", "null_count_cut"),
+    "null_mean_scale": ("null_mean_side", "null_mean_count"),
 }
-
-#: Columns of the local slopes, their variables and the ends of their intervals.
-SLOPES = {
-    "slope_to_mm": "local_slope_side_max",
-    **{name: name for name in names_of("local_slope")},
-    **dict(zip(names_of("random_slope"), names_of("local_slope_random"), strict=True)),
-    "cut_slope": "local_slope_cut",
-}
-
-#: Grey of random nodes; lines over markers, which would hide them; markers that hide no line.
+_SIDES = ("local_slope_side", "local_slope_side_min", "local_slope_side_max")
+_SLOPES = ("local_slope", "local_slope_random", "local_slope_cut")
+#: Grey of random nodes; the cut; lines over markers, which would hide them.
 _RANDOM = "0.7"
+_CUT: dict[str, Any] = {"ls": "-.", "color": COLOURS[4]}
 _SEEN: dict[str, Any] = {"zorder": 4, "linewidth": 1.4}
-_CROSS = {"ms": 3.5, "mew": 0.7, "alpha": 0.7}
-_SLOPE_LABEL = "(c) mean of origins, 95 %"
+#: Colours of the count law and of the ordinary slope.
+_LAW, _ORDINARY = COLOURS[2], COLOURS[0]
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """A contact domain, its box counts N(r) with count law and ordinary slope, local slopes."""
-    loading = Loading.of(atlas, name)
-    i = loading.map_load
-    counts = loading.counts.isel(normal_force=i)
-    table = _table(counts)
+    subject = Subject.of(atlas, name)
+    reported, counts = subject.reported, subject.state("domains")
+    law = Estimate.read(counts, "delta_sigma", scale=DIMENSION)
+    slope = Estimate.read(counts, "delta_sigma_ordinary", scale=DIMENSION)
+    ordinary = slope.text() if bool(counts["ordinary_determined"]) else slope.undetermined()
     figure = Figure(figsize=(WIDTH, 3.7))
-    left, middle, right = figure.subplots(1, 3)
-    larger = draw_domain(left, loading.domain(loading.finest, i), loading.sides)
-    letter(left, "a", "contact domain")
-    _draw_counts(middle, table, counts)
-    _draw_slopes(right, table, counts)
-    if larger:
-        left.set_title("nodes enlarged", loc="right", fontsize=7)
-    handles, _ = middle.get_legend_handles_labels()
-    if np.isfinite(table["law_count"]).any():
+    axes = figure.subplots(1, 3)
+    domain = contact_domain(subject, reported.resolution, reported.reference)
+    letter(axes[0], "a", "contact domain")
+    if draw_domain(axes[0], domain, window_sides(subject["specimens"])):
+        axes[0].set_title("nodes enlarged", loc="right", fontsize=7)
+    b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c")
+    _draw_counts(b, counts, rf"count law: $\Delta_\sigma$ {law.text()}", ordinary)
+    _draw_slopes(c, counts)
+    handles, _ = axes[1].get_legend_handles_labels()
+    if np.isfinite(counts["law_count"]).any():
         handles.append(heading(_law_form(counts)))
-    handles.append(Patch(**_band(COLOURS[2]), label="(c) 95 % of the count law"))
-    handles.append(Patch(**_band(COLOURS[0]), label="(c) 95 % of the ordinary slope"))
+    handles.append(Patch(**_band(_LAW), label="(c) 95 % of the count law"))
+    handles.append(Patch(**_band(_ORDINARY), label="(c) 95 % of the ordinary slope"))
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
-    headline(figure, *loading.title, f"$F$ = {force_label(loading.forces[i])}")
-    caption = sentences(
-        _caption(loading, i, counts),
-        claim(atlas, name, "boxes_follow_one_law", numbers=False),
-        claim(atlas, name, "domains_are_fractal"),
+    where = place(subject.direction, subject.offset)
+    headline(figure, subject.label, where, f"$F$ = {force_label(reported.force)}")
+    text = caption(
+        __name__,
+        reason=str(counts["reason"].item()),
+        law=law,
+        ordinary=ordinary,
+        one_law=claim(atlas, name, "boxes_follow_one_law", numbers=False),
+        fractal=claim(atlas, name, "domains_are_fractal"),
     )
-    return Drawing(figure, table, caption)
+    return Drawing(figure, table_of(b, c), text)
 
 
-def _table(counts):
-    """One row a box size: minimal cover and mean counts, their fits, null models, local slope."""
-    kept = np.isfinite(counts["box_side"].values) & np.isfinite(counts["box_count"].values)
-    r, n = counts["box_side"].values[kept], counts["box_count"].values[kept]
-    ordinary = counts["ordinary_used"].values[kept]
-    table = pd.DataFrame(
-        {
-            "box_side_mm": r,
-            "box_count": n,
-            "used": counts["box_used"].values[kept],
-            "ordinary_used": ordinary,
-        }
-    )
-    table["ordinary_count"] = np.nan
-    if ordinary.any():
-        slope = counts["delta_sigma_ordinary"].item()
-        level = np.mean(np.log(n[ordinary]) + slope * np.log(r[ordinary]))
-        line = within(r, *(counts[f"ordinary_fit_{end}"].item() for end in ("min", "max")))
-        table.loc[line, "ordinary_count"] = np.exp(level) * r[line] ** -slope
-    table["mean_count"] = _at(r, counts["mean_side"].values, counts["mean_count"].values)
-    fitted = within(r, counts["fit_min"].item(), counts["fit_max"].item())
-    terms = LawTerms(*(counts[f"law_{name}"].item() for name in LawTerms._fields))
-    table["law_count"] = np.nan
-    table.loc[fitted, "law_count"] = law_count(r[fitted], counts["delta_sigma"].item(), terms)
-    for column, name in NULLS.items():
-        table[column] = _at(r, counts["null_side"].values, counts[name].values)
-    table["random_mean_count"] = _at(
-        r, counts["null_mean_side"].values, counts["null_mean_count"].values
-    )
-    sides = counts["local_slope_side_min"].values
-    for column, name in SLOPES.items():
-        table[column] = _at(r, sides, counts[name].values)
-    return table
-
-
-def _at(r, side, count):
-    """Counts at the sizes r, NaN at those that have none."""
-    nearest = np.abs(np.subtract.outer(r, side))
-    nearest[~np.isfinite(nearest)] = np.inf
-    place = nearest.argmin(axis=1)
-    return np.where(nearest[np.arange(r.size), place] < 1e-6 * r, count[place], np.nan)
-
-
-def _draw_counts(axes, table, counts):
-    r = table["box_side_mm"]
-    null = table[np.isfinite(table["random_count"])]
-    axes.fill_between(
-        null["box_side_mm"],
-        null["random_count_low"].clip(lower=0.5),
-        null["random_count_high"],
-        color=_RANDOM,
-        lw=1.5,
-        label="random nodes: 95 %",
-        zorder=0,
-    )
-    axes.loglog(
-        null["box_side_mm"],
-        null["cut_count"],
-        "-.",
-        color=COLOURS[4],
-        label="bearing-area cut: highest nodes",
-    )
-    for used, face in ((table["ordinary_used"], COLOURS[0]), (~table["ordinary_used"], "white")):
-        words = "boxes, fewest" + (", fitted" if face != "white" else ", not fitted")
-        axes.loglog(
-            r[used], table["box_count"][used], "o", ms=4, mfc=face, mec=COLOURS[0], label=words
-        )
-    if np.isfinite(table["ordinary_count"]).any():
-        weak = {} if bool(counts["ordinary_determined"]) else WEAK
-        label = f"ordinary slope: {_ordinary(counts)}"
-        axes.loglog(r, table["ordinary_count"], "--", color=COLOURS[0], label=label, **_SEEN | weak)
-    label = "boxes, mean of origins"
-    axes.loglog(r, table["mean_count"], "x", color=COLOURS[2], label=label, **_CROSS)
-    axes.errorbar([], [], yerr=[], fmt="D", ms=4, color=COLOURS[2], lw=0.8, label=_SLOPE_LABEL)
-    if np.isfinite(table["law_count"]).any():
-        weak = {} if _law_determined(counts) else WEAK
-        label = rf"count law: $\Delta_\sigma$ {_by_law(counts)}"
-        axes.loglog(r, table["law_count"], color=COLOURS[2], label=label, **_SEEN | weak)
-    axes.set_ylim(0.7, table["box_count"].max() ** 1.1 * 2)
+def _draw_counts(panel, counts, law, ordinary):
+    axes = panel.axes
+    for names in _COUNTS.values():
+        panel.keep(counts, *names)
+    random, low, high = Estimate.read(counts, "null_count_random").ends
+    sides, shown = counts["null_side"].values, np.isfinite(random)
+    band = {"color": _RANDOM, "lw": 1.5, "label": "random nodes: 95 %", "zorder": 0}
+    axes.fill_between(sides[shown], low[shown].clip(min=0.5), high[shown], **band)
+    cut = counts["null_count_cut"].values
+    axes.loglog(sides[shown], cut[shown], **_CUT, label="bearing-area cut: highest nodes")
+    r, used = counts["box_side"].values, counts["ordinary_used"].values
+    for some, face, words in ((used, _ORDINARY, "fitted"), (~used, "white", "not fitted")):
+        style = {"ms": 4, "mfc": face, "mec": _ORDINARY, "label": f"boxes, fewest, {words}"}
+        axes.loglog(r[some], counts["box_count"].values[some], "o", **style)
+    if np.isfinite(counts["ordinary_count"]).any():
+        style = _SEEN | ({} if bool(counts["ordinary_determined"]) else WEAK)
+        label = f"ordinary slope: {ordinary}"
+        axes.loglog(r, counts["ordinary_count"], "--", color=_ORDINARY, label=label, **style)
+    # Markers that hide no line.
+    crosses = {"ms": 3.5, "mew": 0.7, "alpha": 0.7, "label": "boxes, mean of origins"}
+    axes.loglog(counts["mean_side"], counts["mean_count"], "x", color=_LAW, **crosses)
+    slopes = {"fmt": "D", "ms": 4, "lw": 0.8, "label": "(c) mean of origins, 95 %"}
+    axes.errorbar([], [], yerr=[], color=_LAW, **slopes)
+    if np.isfinite(counts["law_count"]).any():
+        style = _SEEN | ({} if bool(counts["determined"]) else WEAK)
+        axes.loglog(counts["mean_side"], counts["law_count"], color=_LAW, label=law, **style)
+    axes.set_ylim(0.7, float(counts["box_count"].max()) ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
     label_short_span(axes.xaxis)
-    letter(axes, "b", "box counts")
 
 
-def _law_determined(counts):
-    """Whether the count law has a dimension that is narrow enough to be one."""
-    return is_determined(*(counts[f"delta_sigma_{end}"].item() for end in ("low", "high")))
-
-
-def _draw_slopes(axes, table, counts):
-    slopes = table[np.isfinite(table["local_slope"])]
-    middle = np.sqrt(slopes["box_side_mm"] * slopes["slope_to_mm"])
-    random, low, high = Estimate.read(slopes, "random_slope").ends
+def _draw_slopes(panel, counts):
+    axes = panel.axes
+    panel.keep(counts, *_SIDES, *_SLOPES)
+    slopes = counts.isel(null_octave=np.isfinite(counts["local_slope"]).values)
+    middle, slope = slopes["local_slope_side"].values, Estimate.read(slopes, "local_slope")
+    random, low, high = Estimate.read(slopes, "local_slope_random").ends
     axes.fill_between(middle, low, high, color=_RANDOM, lw=1.5, zorder=0)
     axes.plot(middle, random, color=_RANDOM, lw=1)
-    axes.plot(middle, slopes["cut_slope"], "-.", color=COLOURS[4], lw=1)
-    ends = Estimate.read(slopes, "local_slope").ends
-    axes.errorbar(
-        middle, slopes["local_slope"], yerr=reach(*ends), fmt="D", ms=4, color=COLOURS[2], lw=0.8
-    )
+    axes.plot(middle, slopes["local_slope_cut"], **_CUT, lw=1)
+    bars = {"yerr": reach(*slope.ends), "fmt": "D", "ms": 4, "lw": 0.8}
+    axes.errorbar(middle, slope.value, color=_LAW, **bars)
     axes.set_xscale("log")
-    for name, fit, colour, style, sure in (
-        ("delta_sigma", "fit", COLOURS[2], "-", _law_determined(counts)),
-        (
-            "delta_sigma_ordinary",
-            "ordinary_fit",
-            COLOURS[0],
-            "--",
-            bool(counts["ordinary_determined"]),
-        ),
+    for name, fit, sure, colour, ls in (
+        ("delta_sigma", "fit", "determined", _LAW, "-"),
+        ("delta_sigma_ordinary", "ordinary_fit", "ordinary_determined", _ORDINARY, "--"),
     ):
-        ends = [counts[f"{fit}_min"].item(), counts[f"{fit}_max"].item()]
-        if np.isfinite(counts[name].item()):
-            weak = {} if sure else WEAK
-            axes.plot(ends, [counts[name].item()] * 2, color=colour, ls=style, **weak)
-            low, high = (counts[f"{name}_{end}"].item() for end in ("low", "high"))
-            axes.fill_between(ends, low, high, **_band(colour))
+        ends, level = [float(counts[f"{fit}_{end}"]) for end in ("min", "max")], counts[name]
+        if np.isfinite(level):
+            weak = {} if bool(counts[sure]) else WEAK
+            axes.plot(ends, [float(level)] * 2, color=colour, ls=ls, **weak)
+            axes.fill_between(ends, *Estimate.read(counts, name).ends[1:], **_band(colour))
     axes.set_ylim(-0.1, 2.3)
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    ends = dict.fromkeys(f"{slope:.2f}" for slope in slopes["local_slope"].agg(["min", "max"]))
-    letter(axes, "c", f"local slopes: {' to '.join(ends)}" if len(slopes) else "no local slopes")
+    ends = (slope.value.min(), slope.value.max()) if middle.size else ()
+    ends = dict.fromkeys(f"{end:.2f}" for end in ends)
+    panel.title(f"local slopes: {' to '.join(ends)}" if ends else "no local slopes")
 
 
 def _band(colour):
     """How the interval of a fit is drawn in (c): that of the black one hides nothing grey."""
-    if colour == COLOURS[0]:
+    if colour == _ORDINARY:
         return {"fc": "none", "ec": colour, "ls": ":", "lw": 0.8}
     return {"fc": to_rgba(colour, 0.15), "ec": "none"}
 
 
-def _caption(loading, i, counts):
-    start = f"{opening('Fig. 9')} Box counts beside null models. "
-    ordinary = _ordinary(counts)
-    reason = str(counts["reason"].item())
-    if reason:
-        return f"{start}There is no dimension: {reason}; ordinary slope {ordinary}."
-    return f"{start}Delta_sigma is {loading.estimates[1].at(i)}, the ordinary slope {ordinary}."
-
-
 def _law_form(counts):
     """The count law as a formula: its curve in (b), its level in (c)."""
-    terms = LawTerms(*(counts[f"law_{name}"].item() for name in LawTerms._fields))
+    width = float(counts["law_node_width"])
+    outlines = [float(counts[f"law_outline{end}"]) for end in ("", "_square")]
     # An index within an exponent would be too small to read in print.
     power, exponent, node = "r^{-x}", r"\Delta_\sigma", ""
-    if terms.node_width:
-        node = f"; node width $c$ = {short(terms.node_width)} mm"
+    if width:
+        node = f"; node width $c$ = {short(width)} mm"
         power, exponent = "(r-c)^x/r^2", r"2-\Delta_\sigma"
-    outline = r"\,[1+\ldots]" if terms.outline or terms.outline_square else ""
+    outline = r"\,[1+\ldots]" if any(outlines) else ""
     return f"(b) $N \\sim {power}{outline}$, $x = {exponent}$\n(c) level{node}"
-
-
-def _by_law(counts):
-    """The dimension of the count law with its interval."""
-    return Estimate.read(counts, "delta_sigma", scale=DIMENSION).text()
-
-
-def _ordinary(counts):
-    """The ordinary dimension with its interval, or that it is undetermined."""
-    slope = Estimate.read(counts, "delta_sigma_ordinary", scale=DIMENSION)
-    return slope.text() if bool(counts["ordinary_determined"]) else slope.undetermined()

@@ -1,164 +1,110 @@
 """Fig. 10: real contact area against resolution, and the nominal pressure it implies for size."""
 
 import numpy as np
-import pandas as pd
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
-from ...domain.renormalisation import RESOLUTION
-from ..kit.domains import Loading, disagreement, fall_reason
-from ..kit.drawing import (
-    COLOURS,
-    MARKERS,
-    WEAK,
-    WIDTH,
-    Drawing,
-    entries,
-    headline,
-    legends_below,
-    letter,
-)
+from ...core.subject import Subject
+from ..kit.caption import caption
+from ..kit.domains import estimates_of, prefractals, size_axes, spread_loads
+from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing, entries, headline, legends_below
+from ..kit.panel import Panel, table_of
 from ..kit.verdicts import claim
-from ..kit.words import force_label, opening, short
-from ._size_effect import draw_axes, size_effect
+from ..kit.words import force_label, place, short
 
 TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
+NEEDS = ("specimens", "closure", "scaling", "statements")
 ORDER = 160
 SECTION = "size effect"
 
 #: Loads in panel (a).
-_MOST_LOADS = 5
+_MAX_LOADS = 5
 #: Colours of loads: none of those of the two estimates.
 _LOAD_COLOURS = ("0.65", COLOURS[4], "0.4", COLOURS[3], COLOURS[0])
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
-    """A_r(s) with its power laws, and eq. 6 under the load of the maps."""
-    loading = Loading.of(atlas, name)
-    i = loading.map_load
+    """A_r(s) with its power laws, and eq. 6 under the reference load."""
+    subject = Subject.of(atlas, name)
+    states, load = subject.states("scaling"), subject.reported.reference
+    estimates = estimates_of(states)
     figure = Figure(figsize=(WIDTH, 3.9))
-    left, right = figure.subplots(1, 2)
-    area = _area_table(loading)
-    _draw_areas(left, loading, i, area)
-    pressure = size_effect(loading, i)
-    _draw_pressures(right, loading, i, pressure)
-    legends_below(figure, entries(left), entries(right))
-    headline(figure, *loading.title)
-    table = pd.concat([area, pressure.assign(panel="b")], ignore_index=True)
-    why = fall_reason(loading.estimates[0], i)
-    falls = claim(atlas, name, "area_is_lacunar", numbers=not why, why=why)
-    return Drawing(figure, table, _caption(loading, i, falls))
+    axes = figure.subplots(1, 2)
+    a = Panel(axes[0], "a", r"contact area, $A_r \sim s^{2-\Delta_\sigma}$ [95 %]")
+    _draw_areas(a, prefractals(subject, "scaling"), estimates[0], load)
+    force = subject.reported.force
+    b = Panel(axes[1], "b", f"eq. 6 extrapolated, $F$ = {force_label(force)}")
+    _draw_pressures(b, states.isel(normal_force=load), estimates, load, np.sqrt(subject.area))
+    legends_below(figure, entries(a.axes), entries(b.axes))
+    headline(figure, subject.label, place(subject.direction, subject.offset))
+    state = states.isel(normal_force=load)
+    apart = bool(state["disagree"]) if np.isfinite(state["difference"]) else None
+    words = {one.key: one.at(load) for one in estimates}
+    falls = claim(atlas, name, "area_is_lacunar", numbers=False)
+    text = caption(__name__, force=force, falls=falls, apart=apart, **words)
+    return Drawing(figure, table_of(a, b), text)
 
 
-def _area_table(loading):
-    """One row a load and resolution; every load of the study, drawn or not."""
-    scaling = loading.scaling.sortby(RESOLUTION)
-    frame = scaling[["area", "area_corrected", "nodes", "area_used"]].to_dataframe().reset_index()
-    spacing = scaling["spacing"].to_series()
-    measure = scaling["hausdorff_measure"].to_series()
-    delta = scaling["delta_sigma"].to_series()
-    s = frame["resolution"].map(spacing)
-    exponent = 2 - frame["normal_force"].map(delta)
-    return pd.DataFrame(
-        {
-            "panel": "a",
-            "load_N": frame["normal_force"],
-            "spacing_mm": s,
-            "nodes": frame["nodes"],
-            "area_mm2": frame["area"],
-            "area_corrected_mm2": frame["area_corrected"],
-            "used": frame["area_used"],
-            "fitted_area_mm2": frame["normal_force"].map(measure) * s**exponent,
-        }
-    ).sort_values(["load_N", "spacing_mm"], ignore_index=True)
-
-
-def _draw_areas(axes, loading, map_load, table):
-    by_area, thin = loading.estimates[0], False
-    for n, i in enumerate(loading.spread_loads(_MOST_LOADS, map_load)):
-        force = loading.forces[i]
-        rows = table[table["load_N"] == force]
-        style = {"color": _LOAD_COLOURS[n], "marker": MARKERS[n], "linestyle": "none"}
+def _draw_areas(panel, states, by_area, reference):
+    """Areas of some loads, raw and corrected, with the laws fitted; rows of every load."""
+    axes, forces = panel.axes, states["normal_force"].values
+    names = ("spacing", "nodes", "area", "area_corrected", "area_used", "fitted_area")
+    panel.keep(states, *names)
+    for n, i in enumerate(spread_loads(len(forces), _MAX_LOADS, reference)):
+        state = states.isel(normal_force=i)
+        used = state.isel(resolution=state["area_used"].values)
         # Low loads may share their few nodes: the later marker lets the earlier one show.
-        style["markersize"] = 7.5 - n
-        label = f"{force_label(force)}: {by_area.entry(i)}"
-        used = rows[rows["used"]]
+        style = {"color": _LOAD_COLOURS[n], "marker": MARKERS[n], "linestyle": "none"}
         raw = {"mfc": "none", "mew": 0.6, "markersize": 4}
-        hollow = axes.plot(rows["spacing_mm"], rows["area_mm2"], **(style | raw))
-        full = axes.plot(used["spacing_mm"], used["area_corrected_mm2"], **style)
-        (hollow if used.empty else full)[0].set_label(label)
+        hollow = axes.plot(state["spacing"], state["area"], **(style | raw))
+        filled = axes.plot(used["spacing"], used["area_corrected"], **style, markersize=7.5 - n)
+        drawn = filled if used.sizes["resolution"] else hollow
+        drawn[0].set_label(f"{force_label(forces[i])}: {by_area.entry(i)}")
         weak = {} if by_area.determined[i] else WEAK
-        thin |= bool(weak) and np.isfinite(used["fitted_area_mm2"]).any()
-        colour = _LOAD_COLOURS[n]
-        axes.plot(used["spacing_mm"], used["fitted_area_mm2"], color=colour, **weak)
-    spacings = loading.scaling["spacing"].sortby(RESOLUTION).values
+        axes.plot(used["spacing"], used["fitted_area"], color=_LOAD_COLOURS[n], **weak)
     axes.set(xscale="log", yscale="log")
-    axes.set_xticks(spacings, [short(s) for s in spacings])
+    axes.set_xticks(states["spacing"], [short(s) for s in states["spacing"].values])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
-    axes.plot(
-        [], [], "o", color="0.3", ls="-", ms=4, label="filled: corrected for the edge, fitted"
-    )
-    axes.plot([], [], "o", color="0.3", mfc="none", mew=0.6, ms=4, label="hollow: raw, not fitted")
-    if thin:
-        label = r"thin line: $\Delta_\sigma$ undetermined"
-        axes.plot([], [], color="0.3", label=label, **WEAK)
-    letter(axes, "a", r"contact area, $A_r \sim s^{2-\Delta_\sigma}$ [95 %]")
+    grey = {"color": "0.3", "marker": "o", "ms": 4}
+    axes.plot([], [], **grey, label="filled: corrected for the edge, fitted")
+    axes.plot([], [], **grey, mfc="none", mew=0.6, ls="none", label="hollow: raw, not fitted")
+    axes.plot([], [], color="0.3", label=r"thin line: $\Delta_\sigma$ undetermined", **WEAK)
 
 
-def _draw_pressures(axes, loading, i, table):
-    for estimate in loading.estimates:
-        rows = table[table["estimator"] == estimate.label]
-        style = {"color": estimate.style["color"], "linestyle": estimate.style["linestyle"]}
-        if estimate.reason[i]:
-            style["linestyle"] = "none"  # nothing is drawn: no line in the legend either
-        style |= {} if estimate.determined[i] else WEAK
-        label = f"{estimate.symbol}: {estimate.entry(i)}"
-        axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style, label=label)
-    own = table.iloc[0]
-    point = own["specimen_b_mm"], own["specimen_sigma_0_MPa"]
-    axes.plot(*point, "*k", ms=9, label=r"specimen: $\sigma_0 = F/A_0$")
-    draw_axes(axes)
+def _draw_pressures(panel, state, estimates, load, side):
+    """Eq. 6 by both estimates through the specimen, and the bands of their intervals."""
+    axes = panel.axes
+    panel.keep(state, "eq6_pressure", "eq6_sigma_star", specimen_b_mm=side)
+    panel.keep(state, "delta_sigma_area", "delta_sigma_box")
+    for one in estimates:
+        line = state.sel(estimator=one.key)
+        style = {"color": one.style["color"], "ls": one.style["linestyle"]}
+        if one.reason[load]:
+            style["ls"] = "none"  # nothing is drawn: no line in the legend either
+        style |= {} if one.determined[load] else WEAK
+        label = f"{one.symbol}: {one.entry(load)}"
+        axes.plot(line["eq6_side"], line["eq6_pressure"], **style, label=label)
+    specimen = float(state["nominal_pressure"])
+    axes.plot(side, specimen, "*k", ms=9, label=r"specimen: $\sigma_0 = F/A_0$")
+    size_axes(axes)
     # The bands come last and do not widen the axes: some intervals span many decades.
     axes.set_ylim(axes.get_ylim())
-    for estimate in loading.estimates:
-        rows = table[table["estimator"] == estimate.label]
-        ends = rows["sigma_0_low_MPa"], rows["sigma_0_high_MPa"]
-        colour, faint = estimate.style["color"], 0.2 if estimate.determined[i] else 0.1
+    for one in estimates:
+        band = state.sel(estimator=one.key)
+        ends = [band[f"eq6_pressure_{end}"].values for end in ("low", "high")]
+        if not np.isfinite(ends).any():
+            continue
+        colour, ls = one.style["color"], one.style["linestyle"]
+        face, edge = to_rgba(colour, 0.2 if one.determined[load] else 0.1), to_rgba(colour, 0.5)
         # The edges show whose band it is where both lie on each other.
-        style = {"fc": to_rgba(colour, faint), "ec": to_rgba(colour, 0.5), "lw": 0.5}
-        style["ls"] = estimate.style["linestyle"]
-        if np.isfinite(ends).any():
-            axes.fill_between([], [], label=f"95 %, {estimate.symbol}", **style)
-            # Lines are cut to the axes before they are dashed, edges of areas after: the dashes of
-            # one that ends a thousand decades below would never be done.
-            axes.fill_between(rows["b_mm"], *ends, fc=style["fc"], lw=0)
-            for end in ends:
-                axes.plot(rows["b_mm"], end, color=style["ec"], lw=0.5, ls=style["ls"])
-    letter(axes, "b", f"eq. 6 extrapolated, $F$ = {force_label(loading.forces[i])}")
-
-
-def _caption(loading, i, falls):
-    by_area, by_box = loading.estimates
-    return (
-        f"{opening('Fig. 10')} A_r(s), and eq. 6 extrapolated from the specimen at F = "
-        f"{force_label(loading.forces[i])}. {falls} Delta_sigma is {by_area.at(i)} by A_r(s)"
-        f"{_determined_words(loading, i)}, {by_box.at(i)} by box counting. "
-        f"{disagreement(loading.scaling.isel(normal_force=i))}"
-    )
-
-
-def _determined_words(loading, i):
-    """Where the load of the maps determines none: the nearest load drawn that does."""
-    by_area = loading.estimates[0]
-    drawn = loading.spread_loads(_MOST_LOADS, i)
-    known = [j for j in drawn if by_area.determined[j] and not by_area.reason[j]]
-    if by_area.determined[i] or by_area.reason[i] or not known:
-        return ""
-    nearest = min(known, key=lambda j: abs(j - i))
-    return f" but {by_area.at(nearest)} at {force_label(loading.forces[nearest])}"
+        axes.fill_between([], [], label=f"95 %, {one.symbol}", fc=face, ec=edge, lw=0.5, ls=ls)
+        # Lines are cut to the axes before they are dashed, edges of areas after: the dashes of one
+        # that ends a thousand decades below would never be done.
+        axes.fill_between(band["eq6_side"], *ends, fc=face, lw=0)
+        for end in ends:
+            axes.plot(band["eq6_side"], end, color=edge, lw=0.5, ls=ls)

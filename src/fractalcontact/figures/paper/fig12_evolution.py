@@ -1,43 +1,35 @@
 """Fig. 12: the contact domain and its dimension as the joint closes."""
 
-import re
-import textwrap
-
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...core.limits import CORRECTED_NODES
-from ..kit.domains import RISES, Loading, departures, rise_words
+from ...core.limits import MIN_NODES
+from ...core.subject import Subject
+from ...core.window import window_sides
+from ..kit.caption import caption
+from ..kit.domains import contact_domain, departures, estimates_of, rise_words, spread_loads
 from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
 from ..kit.empty import say_empty
-from ..kit.maps import ENLARGED, draw_domain, ring_entry
-from ..kit.measured import draw_series, measured_series, table_of, threshold_words
+from ..kit.maps import draw_domain, ring_entry
+from ..kit.measured import draw_series, measured_series, threshold_words
+from ..kit.measured import table_of as table_of_maps
+from ..kit.panel import Panel, table_of
 from ..kit.points import reach
-from ..kit.verdicts import sentences, verdict_words
-from ..kit.words import force_label, opening, percent, wrapped
+from ..kit.words import area_label, force_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "contact_maps", "statements")
+NEEDS = ("specimens", "contact", "closure", "domains", "scaling", "contact_maps", "statements")
 ORDER = 190
 
 #: Contact domains drawn.
-_MOST_MAPS = 6
-
-#: Null models of box counting, in words.
-NULLS = {"random": "random nodes (95 % band)", "cut": "bearing-area cut"}
-#: The same in the legend: as many nodes as touch.
-NULL_LABELS = {
-    "random": "as many random nodes (95 % band)",
-    "cut": "as many nodes: bearing-area cut",
-}
-
-#: Letters of a line of the legend.
-_LEGEND = 34
-
+_MAX_MAPS = 6
+_LETTERS = "abcdefg"
+#: What a share of few nodes is.
+_RAW = "; raw: not corrected for the perimeter"
 #: Points of the letters above the maps.
 _ABOVE_MAPS = 8
 #: Points between the panel's title and its upper edge, where an axis stands.
@@ -48,72 +40,94 @@ _APART = {"area": 1 / 1.04, "box": 1.04}
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """Contact domains under growing load, and Delta_sigma against F by both estimators."""
-    loading = Loading.of(atlas, name)
-    shown = loading.spread_loads(_MOST_MAPS)
-    aspect = loading.sides[0] / loading.sides[1]
-    map_height = WIDTH / _MOST_MAPS * aspect + 0.95
-    figure = Figure(figsize=(WIDTH, map_height + 3))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[map_height, 3])  # type: ignore[misc]  # an array
+    subject, series = Subject.of(atlas, name), measured_series(atlas)
+    counts, sides = subject.states("domains"), window_sides(subject["specimens"])
+    shown = spread_loads(len(subject.forces), _MAX_MAPS)
+    height = WIDTH / _MAX_MAPS * sides[0] / sides[1] + 0.95
+    figure = Figure(figsize=(WIDTH, height + 3))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[height, 3])  # type: ignore[misc]  # an array
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
-    nominal = np.prod(loading.sides)
-    states = loading.scaling.sel(resolution=loading.finest)
-    finest = states["area"].values
-    corrected = np.where(states["nodes"] >= CORRECTED_NODES, states["area_corrected"], np.nan)
-    larger, some_raw = False, False
-    for axes, which, i in zip(maps, "abcdef", shown, strict=False):
-        larger |= draw_domain(axes, loading.domain(loading.finest, i), loading.sides, ticks=3)
-        known = np.isfinite(corrected[i])
-        share = percent((corrected if known else finest)[i] / nominal) + ("" if known else " raw")
-        some_raw |= not known
-        letter(axes, which, f"{force_label(loading.forces[i])}\n{share}")
-        axes.label_outer()
-    raw = "; raw: not corrected for the perimeter" if some_raw else ""
-    above = f"force $F$ and real contact area $A_r/A_0$ of each domain (contact black{raw})"
-    top.suptitle(above, fontsize=_ABOVE_MAPS)
-    axes = bottom.subplots()
-    measured = measured_series(atlas)
-    _draw_nulls(axes, loading)
-    _draw_dimensions(axes, loading, _rises(atlas, name))
-    _draw_measured(axes, measured, nominal)
-    handles = entries(axes)
-    ringed = [ring_entry(f"ring: one node ({which})") for which in [_ringed(maps)] if which]
-    axes.legend(
-        handles=[*handles, *ringed], loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0
+    larger = _draw_maps(maps, subject, shown, sides)
+    above = "force $F$ and real contact area $A_r/A_0$ of each domain (contact black"
+    raw = "" if subject.states("closure")["area_corrected_resolved"][shown].all() else _RAW
+    top.suptitle(f"{above}{raw})", fontsize=_ABOVE_MAPS)
+    words = r"dimension $\Delta_\sigma$ of the contact domain"
+    panel = Panel(bottom.subplots(), _LETTERS[len(shown)], words)
+    _draw_nulls(panel, counts)
+    _draw_dimensions(panel, subject)
+    _draw_measured(panel.axes, series, subject.area)
+    handles = entries(panel.axes)
+    ringed = [which for which, axes in zip(_LETTERS, maps, strict=False) if axes.lines]
+    if ringed:
+        which = " to ".join(dict.fromkeys((ringed[0], ringed[-1])))
+        handles.append(ring_entry(f"ring: one node ({which})"))
+    right = (1.01, 1)
+    panel.axes.legend(handles=handles, loc="upper left", bbox_to_anchor=right, borderaxespad=0)
+    headline(figure, subject.label, place(subject.direction, subject.offset))
+    table = table_of(panel)
+    if series:
+        of_maps = table_of_maps(series).rename(columns={"load_N": "normal_force_N"})
+        table = pd.concat([table, of_maps.assign(panel=panel.which)], ignore_index=True)
+    text = caption(
+        __name__,
+        rises=rise_words(atlas, name),
+        verdicts=rise_words(atlas, name, numbers=False),
+        least=MIN_NODES,
+        larger=larger,
+        **departures(counts),
+        **_measured_range(series),
     )
-    letter(axes, "abcdefg"[len(shown)], r"dimension $\Delta_\sigma$ of the contact domain")
-    _pressure_axis(axes, nominal)
-    headline(figure, *loading.title)
-    table = pd.concat([_table(loading, finest, corrected, nominal), *_measured_rows(measured)])
-    rises = rise_words(atlas, name, loading)
-    caption = f"{_caption(loading, rises)}{_measured_words(measured)}"
-    caption = sentences(caption, ENLARGED if larger else "")
-    return Drawing(figure, table.reset_index(drop=True), caption)
+    return Drawing(figure, table, text)
 
 
-def _rises(atlas, name):
-    """Verdict on the rise of Delta_sigma with the load, by estimator, in lines of a legend."""
-    found = {}
-    for key, statement in RISES.items():
-        words = verdict_words(atlas, name, statement).replace(" a decade of F", " a decade")
-        # An interval stays in one line.
-        words = re.sub(r"(\[\S+) ", "\\1\N{NO-BREAK SPACE}", words)
-        found[key] = textwrap.fill(f"rise with $F$: {words}", _LEGEND)
-    return found
+def _draw_maps(maps, subject, shown, sides):
+    """Domains at the finest resolution; whether nodes are drawn enlarged."""
+    states, larger = subject.states("closure"), False
+    for axes, which, i in zip(maps, _LETTERS, shown, strict=False):
+        domain = contact_domain(subject, subject.reported.resolution, i)
+        larger |= draw_domain(axes, domain, sides, ticks=3)
+        share = area_label(states.isel(normal_force=i))
+        letter(axes, which, f"{force_label(subject.forces[i])}\n{share}")
+        axes.label_outer()
+    return larger
 
 
-def _ringed(maps):
-    """Letters of the maps whose nodes have rings, "a to d"; empty where none has."""
-    letters = [which for axes, which in zip(maps, "abcdef", strict=False) if axes.lines]
-    return " to ".join(dict.fromkeys((letters[0], letters[-1]))) if letters else ""
+def _draw_nulls(panel, counts):
+    """Delta_sigma by box counting of the null models."""
+    panel.keep(counts, "delta_sigma_random", "delta_sigma_cut")
+    axes, forces = panel.axes, counts["normal_force"].values
+    random, low, high = Estimate.read(counts, "delta_sigma_random").ends
+    axes.fill_between(forces, low, high, color="0.8", lw=0, zorder=0)
+    label = "as many random nodes (95 % band)"
+    axes.plot(forces, random, color="0.5", lw=1, label=label)
+    cut = {"color": COLOURS[4], "lw": 1, "label": "as many nodes: bearing-area cut"}
+    axes.plot(forces, counts["delta_sigma_cut"], "-.", **cut)
 
 
-def _measured_rows(series):
-    """Rows of the table for the maps: their own load and area, not those of the window."""
-    if not series:
-        return []
-    table = table_of(series)
-    table["estimator"] = "box counting, measured: " + table.pop("label").astype(str)
-    return [table[[name for name in table if not name.startswith(("random", "verdict"))]]]
+def _draw_dimensions(panel, subject):
+    """Delta_sigma by both estimators against F, faint where it is undetermined."""
+    axes, forces, states = panel.axes, subject.forces, subject.states("scaling")
+    estimates = estimates_of(states)
+    kept = [name for one in estimates for name in (one.name, f"{one.name}_reason")]
+    enough = subject.states("closure")["area_corrected_resolved"]
+    corrected = states["area_corrected"].where(enough)
+    panel.keep(states.assign(area_corrected=corrected), "area", "area_corrected", *kept)
+    for one in estimates:
+        places, bars = forces * _APART[one.key], {"capsize": 2, "elinewidth": 0.8, "alpha": 0.35}
+        axes.errorbar(places, one.value, yerr=reach(*one.ends), **one.style, **bars)
+        sure, style = one.determined, one.style | {"linestyle": "none"}
+        label = rf"$\Delta_\sigma$ by {one.symbol}"
+        axes.plot(places[sure], one.value[sure], **style, label=label)
+    axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
+    faint = "faint: undetermined, not in the rise"
+    axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
+    if not any(one.known.any() for one in estimates):
+        say_empty(axes, "\n".join(wrapped(one.reason[0]) for one in estimates))
+    axes.set_xscale("log")
+    axes.set_xlim(forces.min() / 1.5, forces.max() * 1.5)
+    axes.set_ylim(-0.05, 2.05)
+    axes.set_xlabel("normal force $F$ (N)")
+    axes.set_ylabel(r"dimension $\Delta_\sigma$ (1)")
 
 
 def _draw_measured(axes, series, nominal):
@@ -130,116 +144,17 @@ def _draw_measured(axes, series, nominal):
             axes.axhline(value, color=each.style["color"], ls="-.", lw=0.9, label=name)
     if series:
         axes.autoscale(axis="x")
-
-
-def _pressure_axis(axes, nominal):
-    """The nominal pressure above the force: where measured maps, whose area is another, stand."""
-    above = axes.secondary_xaxis(
-        "top", functions=(lambda force: force / nominal, lambda pressure: pressure * nominal)
-    )
-    above.set_xlabel(r"nominal pressure $\sigma_0 = F/A_0$ (MPa)")
+    # Above the force stands the pressure of measured maps, whose area is another.
+    functions = (lambda force: force / nominal, lambda pressure: pressure * nominal)
+    pressures = axes.secondary_xaxis("top", functions=functions)
+    pressures.set_xlabel(r"nominal pressure $\sigma_0 = F/A_0$ (MPa)")
     axes.set_title(axes.get_title(loc="left"), loc="left", pad=_ABOVE)
 
 
-def _measured_words(series):
-    """Range of Delta_sigma by box counting of the measured domains."""
-    values = np.concatenate([each.values("delta_sigma") for each in series] or [[]]).astype(float)
+def _measured_range(series):
+    """Number of measured maps, their thresholds and the range of their Delta_sigma."""
+    values = np.array([value for each in series for value in each.values("delta_sigma")], float)
     known = values[np.isfinite(values)]
-    if not known.size:
-        return f" Measured maps: {len(values)}, without a dimension." if len(values) else ""
-    ends = dict.fromkeys(f"{end:.2f}" for end in (known.min(), known.max()))
-    return f" Measured ({threshold_words(series)}): {' to '.join(ends)}."
-
-
-def _table(loading, area, corrected, nominal):
-    """One row a load and estimator."""
-    return pd.concat(
-        [
-            pd.DataFrame(
-                {
-                    "load_N": loading.forces,
-                    "nominal_pressure_MPa": loading.forces / nominal,
-                    "offset_mm": loading.offset,
-                    "area_mm2": area,
-                    "corrected_area_mm2": corrected,
-                    "estimator": estimate.label,
-                    **estimate.columns("delta_sigma"),
-                    "reason": estimate.reason,
-                }
-            )
-            for estimate in loading.estimates
-        ]
-        + [_null_table(loading, area, nominal, null) for null in NULLS],
-        ignore_index=True,
-    )
-
-
-def _null_table(loading, area, nominal, null):
-    """One row a load of a null model of box counting."""
-    name = f"delta_sigma_{null}"
-    columns = (
-        Estimate.read(loading.counts, name).columns("delta_sigma")
-        if null == "random"
-        else {"delta_sigma": loading.counts[name].values}
-    )
-    return pd.DataFrame(
-        {
-            "load_N": loading.forces,
-            "nominal_pressure_MPa": loading.forces / nominal,
-            "offset_mm": loading.offset,
-            "area_mm2": area,
-            "estimator": f"box counting, {NULLS[null]}",
-            **columns,
-            "reason": "",
-        }
-    )
-
-
-def _draw_nulls(axes, loading):
-    """Delta_sigma by box counting of the null models."""
-    counts, forces = loading.counts, loading.forces
-    low, high = (counts[f"delta_sigma_random_{end}"].values for end in ("low", "high"))
-    axes.fill_between(forces, low, high, color="0.8", lw=0, zorder=0)
-    axes.plot(forces, counts["delta_sigma_random"], color="0.5", lw=1, label=NULL_LABELS["random"])
-    axes.plot(
-        forces, counts["delta_sigma_cut"], "-.", color=COLOURS[4], lw=1, label=NULL_LABELS["cut"]
-    )
-
-
-def _draw_dimensions(axes, loading, rises):
-    for estimate in loading.estimates:
-        axes.errorbar(
-            loading.forces * _APART[estimate.key],
-            estimate.value,
-            yerr=reach(estimate.value, estimate.low, estimate.high),
-            **estimate.style,
-            capsize=2,
-            elinewidth=0.8,
-            alpha=0.35,
-        )
-        sure = estimate.determined
-        axes.plot(
-            loading.forces[sure] * _APART[estimate.key],
-            estimate.value[sure],
-            **estimate.style | {"linestyle": "none"},
-            label=f"$\\Delta_\\sigma$ by {estimate.symbol}\n{rises[estimate.key]}",
-        )
-    axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
-    faint = "faint: undetermined, not in the rise"
-    axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
-    if not any(np.isfinite(estimate.value).any() for estimate in loading.estimates):
-        first = "\n".join(wrapped(estimate.reason[0]) for estimate in loading.estimates)
-        say_empty(axes, first)
-    axes.set_xscale("log")
-    axes.set_xlim(loading.forces.min() / 1.5, loading.forces.max() * 1.5)
-    axes.set_ylim(-0.05, 2.05)
-    axes.set_xlabel("normal force $F$ (N)")
-    axes.set_ylabel(r"dimension $\Delta_\sigma$ (1)")
-
-
-def _caption(loading, rises):
-    departing = departures(loading.counts)
-    return (
-        f"{opening('Fig. 12')} Contact domains with A_r/A_0, and Delta_sigma over load. The "
-        f"paper's rise with F: {rises}. {departing}"
-    )
+    ends = [f"{end:.2f}" for end in (known.min(), known.max())] if known.size else []
+    words = threshold_words(series) if series else ""
+    return {"maps": values.size, "measured": list(dict.fromkeys(ends)), "thresholds": words}

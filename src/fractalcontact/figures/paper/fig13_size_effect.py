@@ -3,112 +3,83 @@
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import DIMENSION, Estimate
-from ..kit.domains import RISES, Loading, rise_words
-from ..kit.drawing import (
-    COLOURS,
-    MARKERS,
-    WEAK,
-    WIDTH,
-    Drawing,
-    heading,
-    headline,
-    legends_below,
-    letter,
-)
+from ...core.subject import Subject
+from ..kit.caption import caption
+from ..kit.domains import RISES, estimates_of, rise_words, size_axes, spread_loads
+from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing, heading, headline, legends_below
 from ..kit.empty import say_empty
+from ..kit.panel import Panel, table_of
 from ..kit.sizes import plain_decades
-from ..kit.verdicts import row_of, verdict_words
-from ..kit.words import force_label, opening
-from ._size_effect import draw_axes, size_effect
+from ..kit.verdicts import verdict_words
+from ..kit.words import force_label, place
 
 TITLE = "Fig. 13: eq. 6 extrapolated to other sizes, load by load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "domains", "scaling", "statements")
+NEEDS = ("specimens", "closure", "scaling", "statements")
 ORDER = 200
 SECTION = "size effect"
 
 #: Loads drawn.
-_MOST_LOADS = 6
+_MAX_LOADS = 6
 #: Bars of the n-th load stand the n-th power of this factor of b beyond the ends of its line.
 _BESIDE = 1.04
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """Eq. 6 under several loads, one panel an estimator."""
-    loading = Loading.of(atlas, name)
-    shown = loading.spread_loads(_MOST_LOADS)
-    table = pd.concat([size_effect(loading, i) for i in shown], ignore_index=True)
+    subject = Subject.of(atlas, name)
+    states = subject.states("scaling")
+    shown = spread_loads(states.sizes["normal_force"], _MAX_LOADS)
     figure = Figure(figsize=(WIDTH, 4.6))
-    panels = figure.subplots(1, 2, sharex=True, sharey=True)
-    columns = []
-    for axes, which, estimate in zip(panels, "ab", loading.estimates, strict=True):
-        columns.append(_draw_lines(axes, loading, estimate, shown, table))
-        draw_axes(axes)
-        rises = verdict_words(atlas, name, RISES[estimate.key], numbers=False)
-        words = rf"$\Delta_\sigma$ by {estimate.symbol}; the paper's rise with $F$:"
-        found = "; ".join(filter(None, (rises, _numbers(atlas, name, estimate))))
-        letter(axes, which, f"{words}\n{found}")
-    plain_decades(panels[0].xaxis)
-    panels[1].set_ylabel("")
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    panels, columns = [], []
+    for one, which, here in zip(estimates_of(states), "ab", axes, strict=True):
+        # As many nodes as touch: the caption of Fig. 12 has the room to say so.
+        rise = verdict_words(atlas, name, RISES[one.key]).replace("as many random", "random")
+        words = rf"$\Delta_\sigma$ by {one.symbol}; the paper's rise with $F$:"
+        panel = Panel(here, which, f"{words}\n{rise.replace(' of F', ' of $F$')}")
+        columns.append(_draw_lines(panel, states, one, shown, np.sqrt(subject.area)))
+        panels.append(panel)
+    plain_decades(axes[0].xaxis)
+    axes[1].set_ylabel("")
     # Of both panels.
     columns[0].append(heading("markers: the specimen, on which eq. 6 is fixed; lines: eq. 6"))
     columns[0].append(heading("bars at the ends: 95 % interval; thin, no bar: undetermined"))
     legends_below(figure, *columns, columnspacing=2)
-    headline(figure, *loading.title)
-    return Drawing(figure, table, _caption(rise_words(atlas, name, loading, numbers=False)))
+    headline(figure, subject.label, place(subject.direction, subject.offset))
+    rises = rise_words(atlas, name, numbers=False)
+    return Drawing(figure, table_of(*panels), caption(__name__, rises=rises))
 
 
-def _numbers(atlas, name, estimate):
-    """The numbers that decide about the rise by one estimate; empty where it was not asked."""
-    row = row_of(atlas, "statements", name, RISES[estimate.key])
-    if row is None:
-        return ""
-    # As many nodes as touch: the legend of Fig. 12 has the room to say so.
-    numbers = str(row["numbers"].item()).replace("as many random", "random")
-    return numbers.replace(" of F", " of $F$")
-
-
-def _draw_lines(axes, loading, estimate, shown, table):
+def _draw_lines(panel, states, one, shown, side):
     """Lines of one estimator, a colour a load, and the specimen; entries of a legend."""
-    handles = [heading(rf"{estimate.symbol}: slope $-(2-\Delta_\sigma)$ [95 % interval]")]
+    axes, own = panel.axes, states.sel(estimator=one.key)
+    names = ("eq6_pressure", "eq6_sigma_star", f"delta_sigma_{one.key}")
+    panel.keep(own.isel(normal_force=shown), *names, specimen_b_mm=side)
+    handles = [heading(rf"{one.symbol}: slope $-(2-\Delta_\sigma)$ [95 % interval]")]
     for n, i in enumerate(shown):
-        if estimate.reason[i]:
+        if one.reason[i]:
             continue
-        force = loading.forces[i]
-        rows = table[(table["load_N"] == force) & (table["estimator"] == estimate.label)]
+        line = own.isel(normal_force=i)
         style: dict[str, Any] = {"color": COLOURS[n]}
-        faint = {} if estimate.determined[i] else WEAK
-        axes.plot(rows["b_mm"], rows["sigma_0_MPa"], **style | faint)
-        if estimate.determined[i]:
-            ends = rows.iloc[[0, -1]]
+        faint = {} if one.determined[i] else WEAK
+        axes.plot(line["eq6_side"], line["eq6_pressure"], **style | faint)
+        if one.determined[i]:
+            ends = line.isel(eq6_side=[0, -1])
             # Beside each other, lest one hides another.
-            b = ends["b_mm"] * np.array([1 / _BESIDE**n, _BESIDE**n])
-            axes.vlines(b, ends["sigma_0_low_MPa"], ends["sigma_0_high_MPa"], lw=1, **style)
-        own = rows.iloc[0]
+            b = ends["eq6_side"] * np.array([1 / _BESIDE**n, _BESIDE**n])
+            axes.vlines(b, ends["eq6_pressure_low"], ends["eq6_pressure_high"], lw=1, **style)
         point = style | {"marker": MARKERS[n], "ms": 6, "mec": "white", "mew": 0.5}
-        axes.plot(own["specimen_b_mm"], own["specimen_sigma_0_MPa"], zorder=3, **point)
-        slope = Estimate(*(d[i] for d in _slope(estimate)), scale=DIMENSION).text()
-        label = f"$F$ = {force_label(force)}: {slope}"
+        axes.plot(side, float(line["nominal_pressure"]), zorder=3, **point)
+        slope = one[i].mapped(lambda delta: delta - 2).text()
+        label = f"$F$ = {force_label(float(line['normal_force']))}: {slope}"
         handles.append(Line2D([], [], marker=MARKERS[n], label=label, **style | faint))
     if len(handles) == 1:
         say_empty(axes, "no $\\Delta_\\sigma$ at the loads drawn", ticks=False)
-        return []
+        handles = []
+    size_axes(axes)
     return handles
-
-
-def _slope(estimate):
-    """-(2 - Delta_sigma) and its interval, each (n_load,)."""
-    return estimate.value - 2, estimate.low - 2, estimate.high - 2
-
-
-def _caption(rises):
-    return (
-        f"{opening('Fig. 13')} Nominal pressure of joints of other sizes by eq. 6, extrapolated "
-        f"from the specimen, not measured. The paper's rise of Delta_sigma: {rises}."
-    )

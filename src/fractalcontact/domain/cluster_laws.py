@@ -1,0 +1,113 @@
+"""Laws of contact clusters: how many are how large, and how contact localises with the offset."""
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from ..core.datasets import labelled_dataset
+from ..core.determined import follows_law
+from ..core.estimate import Estimate, rows_of
+from ..core.fitting import fit_line
+from ..core.limits import CONFIDENCE, RESOLVED_NODES
+from ..core.ranges import within
+
+_STATES = ("direction", "offset", "resolution", "normal_force")
+_OVER_OFFSETS = ("direction", "resolution", "normal_force")
+_TABLE = {
+    "cluster_area": (("resolution", "octave"), "mm2", "smallest cluster of an octave"),
+    "clusters_at_least": ((*_STATES, "octave"), "1", "contact clusters of cluster_area or more"),
+    "cluster_law_count": (
+        (*_STATES, "octave"),
+        "1",
+        "contact clusters of cluster_area or more by the power law fitted to their sizes",
+    ),
+    "cluster_law_followed": (
+        _STATES,
+        "1",
+        "whether cluster sizes lie as near to their power law as chance would have them",
+    ),
+    **{
+        f"morisita_by_chance_{end}": (
+            _STATES,
+            "1",
+            f"Morisita's index of as many random nodes, {words} end of 95 % by its scatter",
+        )
+        for end, words in (("low", "lower"), ("high", "upper"))
+    },
+    "morisita_used": (_STATES, "1", "state in the fit of morisita_exponent"),
+    **{
+        name: (_OVER_OFFSETS, *words)
+        for name, words in rows_of(
+            "morisita_exponent", "1", "x of Morisita's index I ~ v^x over all offsets v"
+        ).items()
+    },
+}
+
+
+def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.Dataset:
+    """Sizes of clusters beside their power law, and Morisita's index as a power of the offset.
+
+    Parameters
+    ----------
+    domains : xr.Dataset
+        With the numbers of :func:`domain.clusters.cluster_statistics` over (direction, offset,
+        resolution, normal_force).
+    nodes : (direction, offset, resolution, normal_force) ndarray
+        Nodes in contact; domains of fewer than `RESOLVED_NODES` are not fitted.
+    spacing : float
+        Of the scan, mm.
+
+    Returns
+    -------
+    xr.Dataset
+        ``cluster_area`` over (resolution, octave), mm2; ``clusters_at_least`` and, over the
+        octaves fitted, ``cluster_law_count``; ``cluster_law_followed``; what chance leaves of
+        ``morisita``; ``morisita_used`` and ``morisita_exponent``.
+    """
+    cell = (domains["resolution"] * spacing) ** 2
+    area = 2.0 ** domains["octave"] * cell
+    # Summed from the largest.
+    counts = domains["cluster_octaves"].transpose(..., "octave").values
+    offset, index = domains["offset"], domains["morisita"]
+    used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
+    exponent = xr.apply_ufunc(
+        _power,
+        offset,
+        index.where(used),
+        input_core_dims=[["offset"]] * 2,
+        output_core_dims=[[]] * 3,
+        vectorize=True,
+    )
+    # Random nodes have an index of 1 in the mean.
+    reach = special.ndtri((1 + CONFIDENCE) / 2) * domains["morisita_scatter"]
+    values = {
+        "cluster_area": area,
+        "clusters_at_least": np.cumsum(counts[..., ::-1], axis=-1)[..., ::-1],
+        "cluster_law_count": _law_count(domains, area),
+        "cluster_law_followed": follows_law(
+            domains["cluster_fit_n"], domains["cluster_fit_distance"]
+        ),
+        "morisita_by_chance_low": 1 - reach,
+        "morisita_by_chance_high": 1 + reach,
+        "morisita_used": used,
+        **Estimate(*exponent).columns("morisita_exponent"),
+    }
+    ordered = {
+        name: value.transpose(*_TABLE[name][0]).values if hasattr(value, "dims") else value
+        for name, value in values.items()
+    }
+    return labelled_dataset(_TABLE, ordered)
+
+
+def _law_count(domains, area):
+    """Clusters by the power law of their sizes, from the octave of the smallest one fitted on."""
+    smallest, largest = domains["cluster_fit_min"], domains["cluster_fit_max"]
+    first = area.where(within(area, 0.0, smallest)).max("octave")
+    law = domains["cluster_fit_n"] * (area / first) ** -domains["cluster_exponent"]
+    return law.where(within(area, first, largest))
+
+
+def _power(offset, index):
+    """Exponent of the index as a power of the offset, with its interval."""
+    known = np.isfinite(index)
+    return fit_line(np.log(offset[known]), np.log(index[known])).slope.ends
