@@ -161,8 +161,7 @@ def add_fitted(result: xr.Dataset) -> None:
         ``face_sigma_z``, ``face_hurst`` and ``scale_used``.
     """
     for name, (exponent, *_) in _OVER_LOADS.items():
-        ends = (result[f"{exponent}_b_{end}"] for end in ("min", "max"))
-        inside = within(result["side"], *ends)
+        inside = within(result["side"], result[f"{exponent}_b_min"], result[f"{exponent}_b_max"])
         fitted = result[exponent].notnull() & (result[name] > 0) & inside
         attrs = cf_attrs("1", f"size that {exponent} is fitted to")
         result[f"{name}_fitted"] = fitted.transpose(*result[name].dims).assign_attrs(attrs)

@@ -74,8 +74,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     ]
     handles.append(Line2D([], [], ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW))
     if any(np.isfinite(shown[exponent]).any() for _, exponent, _ in _CONTACT.values()):
-        style = {"color": "0.4", "lw": 0.8}
-        handles.append(Line2D([], [], label="line: fit (thin: undetermined)", **style))
+        label = "line: fit (thin: undetermined)"
+        handles.append(Line2D([], [], label=label, color="0.4", lw=0.8))
     handles.append(heading(BARS))
     legends.legend(handles=handles, loc="center left", labelspacing=0.4)
     headline(figure, subject.label)

@@ -48,7 +48,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     direction = str(laws["direction"].values)
     strength = subject["strength"].sel(contact_direction=direction)
     shown = laws.sel(share=float(laws["strength_share"]))
-    drawn = bool(np.isfinite(shown["similar_strength"]).all("normal_force").any())
+    drawn = bool(shown["similar_strength"].notnull().all("normal_force").any())
     # Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20.
     stated = bool(np.isfinite(strength["joint_wall_strength"]))
     beyond = stated and bool(np.isnan(laws["barton_roughness"]).all())
