@@ -59,12 +59,13 @@ def test_resolution_law_drawn_is_that_of_the_atlas(atlas, test_of):
     table = drawn(resolution_law, atlas).data
     fine = test_of.isel(surface=(test_of["of_arm"] == "R").values)
     assert len(table) == fine["corrected_share"].size
-    np.testing.assert_allclose(table["kappa"] * table["p_over_E_slope"], table["corrected_share"])
+    found = table["resolved_kappa"] * table["resolved_pressure"]
+    np.testing.assert_allclose(found, table["corrected_share"])
     # In the finest class the loads are those of the recipe; longer cut-offs have more of them.
-    finest = table[table["cut_off_nodes"] == table["cut_off_nodes"].min()]
-    np.testing.assert_allclose(finest["p_over_E_slope"], finest["reduced_pressure"])
-    coarse = table[table["cut_off_nodes"] == table["cut_off_nodes"].max()]
-    assert (coarse["p_over_E_slope"] > coarse["reduced_pressure"]).all()
+    finest = table[table["of_cut_off"] == table["of_cut_off"].min()]
+    np.testing.assert_allclose(finest["resolved_pressure"], finest["reduced_pressure"])
+    coarse = table[table["of_cut_off"] == table["of_cut_off"].max()]
+    assert (coarse["resolved_pressure"] > coarse["reduced_pressure"]).all()
 
 
 def test_geometry_drawn_is_that_of_the_atlas(atlas, test_of):
