@@ -243,4 +243,4 @@ def test_a_joint_that_was_not_slid_has_no_strength(atlas):
             strength[name] = values * np.nan
     changed["strength/sliding"] = xr.DataTree(strength)
     drawing = drawn(changed, "sliding", "strength")
-    assert drawing.data["peak_strength_valid"].all()
+    assert drawing.data["peak_strength_MPa"].isna().all()
