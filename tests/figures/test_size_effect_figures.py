@@ -42,10 +42,9 @@ def test_decision_drawn_is_that_of_the_atlas(atlas, test_of):
     assert len(table) == 2 * test_of["alpha"].size
     for _, row in table.iterrows():
         one = test_of.sel(arm=row["arm"], hurst=row["hurst"])
-        one = one.sel(reduced_pressure=row["p_over_E_slope"])
-        name = "box_delta" if row["estimator"] == "box counts" else "area_delta"
+        one = one.sel(reduced_pressure=row["reduced_pressure"])
         np.testing.assert_allclose(row["alpha"], one["alpha"])
-        np.testing.assert_allclose(row["eq6"], one[name] - 2)
+        np.testing.assert_allclose(row["eq6_exponent"], one[f"{row['delta_estimator']}_delta"] - 2)
         assert row["verdict"] == one["verdict"].item()
 
 

@@ -13,7 +13,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset
+from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
+from ..core.limits import WIDEST
 from ..mechanics.theory import (
     PERIODIC_AREAS,
     PERIODIC_SCATTER,
@@ -119,7 +121,47 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
         "cut_off": int(recipe["cut_off"]),
         "roll_off": float(recipe["roll_off"]),
     }
-    return with_resolution_law(result).assign_attrs(summary=summary(result))
+    result = with_comparisons(with_resolution_law(result))
+    return result.assign_attrs(summary=summary(result))
+
+
+def with_comparisons(result: xr.Dataset) -> xr.Dataset:
+    """Exponents that eq. 6 wants, and where contact domains differ from the bearing-area cut.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of :func:`size_effect_test`, without them.
+
+    Returns
+    -------
+    xr.Dataset
+        With ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) and its interval, and
+        ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
+        dimensions have intervals narrow enough to be compared, and whether these are disjoint.
+    """
+    dims = ("hurst", "reduced_pressure")
+    table: dict[str, tuple] = {}
+    values: dict[str, np.ndarray] = {}
+    for end in ("", "_low", "_high"):
+        ends = [result[f"{name}_delta{end}"].transpose(*dims).values - 2 for name in _ESTIMATORS]
+        words = f"exponent of A_r/A_0 over the side b by eq. 6{_ENDS[end]}"
+        table[f"eq6_exponent{end}"] = ((*dims, "delta_estimator"), "1", words)
+        values[f"eq6_exponent{end}"] = np.stack(ends, axis=-1)
+    domain, cut = (Estimate.read(result, name) for name in ("band_delta", "cut_delta"))
+    determined = (domain.width <= WIDEST) & (cut.width <= WIDEST)
+    beyond = determined & ((domain.low > cut.high) | (domain.high < cut.low))
+    table |= {
+        "domain_determined": (dims, "1", "dimensions of domain and cut are narrow enough"),
+        "domain_beyond_cut": (dims, "1", "dimension of the domain differs from its cut's"),
+    }
+    values |= {"domain_determined": determined, "domain_beyond_cut": beyond}
+    result = result.assign(labelled(table, values))
+    return result.assign_coords(delta_estimator=list(_ESTIMATORS))
+
+
+#: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
+_ESTIMATORS = ("area", "box")
 
 
 def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
