@@ -42,9 +42,12 @@ CURVES = {
     "Delta_sigma by areas": "delta_sigma_area",
 }
 #: Further columns that say what a row is about, no values themselves.
-COORDINATES = ("b_mm", "box_side_mm", "spacing_mm", "v_over_b", "order_q", "x_mm", "wavelength_mm")
-#: Columns that say what the numbers of a row are.
-WHAT = ("quantity", "estimator")
+COORDINATES = (
+    *("side_mm", "scale_side_mm", "share", "b_mm", "box_side_mm", "spacing_mm", "order_q"),
+    *("x_mm", "wavelength_mm"),
+)
+#: Columns that say what the numbers of a row are: those of a side are means over sub-windows.
+WHAT = ("quantity", "estimator", "side_mm")
 #: Tables have eight digits.
 DIGITS = 1e-6
 

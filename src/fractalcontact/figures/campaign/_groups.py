@@ -1,6 +1,5 @@
 """What the figures over specimens and groups share: words, colours, the load they are drawn at."""
 
-from collections.abc import Sequence
 from textwrap import fill
 
 import numpy as np
@@ -114,7 +113,7 @@ def values_range(values: np.ndarray, unit: str = "") -> str:
     return " to ".join(ends) + unit if ends else ""
 
 
-def least_and_largest(values: np.ndarray, labels: Sequence[str]) -> list[tuple[str, float]]:
+def least_and_largest(values: np.ndarray, labels: np.ndarray) -> list[tuple[str, float]]:
     """Least and largest of some values with the labels of their specimens, one if they are one."""
     known = np.flatnonzero(np.isfinite(values))
     if not known.size:

@@ -56,8 +56,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     legends_below(figure, *_legends(test))
     surfaces, size = test.sizes["seed"], test["size"].values[-1]
     headline(figure, f"means of {surfaces} surfaces of {size} nodes per side")
-    means = [f"mean_{name}" for name in _ESTIMATORS]
-    table = rows(test, *(of for name in means for of in (name, f"{name}_n")))
+    names = [f"mean_{name}{of}" for name in _ESTIMATORS for of in ("", "_n")]
+    table = rows(test, *names)
     return Drawing(figure, table, caption(__name__, **_words(test)))
 
 

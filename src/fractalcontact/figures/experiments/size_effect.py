@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import product
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -94,9 +95,13 @@ def _draw_arm(axes: Axes, test: xr.Dataset) -> None:
         found, wanted = (Estimate.read(one, name) for name in ("alpha", "eq6_exponent"))
         if found.known and wanted.known:
             colour = colour_of(i)
-            style = {"color": colour, "mfc": colour if filled else "white", "elinewidth": 0.7}
-            bars = {"xerr": reach(*wanted.ends), "yerr": reach(*found.ends)}
-            axes.errorbar(wanted.value, found.value, fmt=MARKERS[k], **bars, **style)
+            style: dict[str, Any] = {
+                "color": colour,
+                "mfc": colour if filled else "white",
+                "elinewidth": 0.7,
+            }
+            style |= {"xerr": reach(*wanted.ends), "yerr": reach(*found.ends)}
+            axes.errorbar(wanted.value, found.value, fmt=MARKERS[k], **style)
 
 
 def _classes(test: xr.Dataset) -> list:
