@@ -38,9 +38,7 @@ def test_every_specimen_stands_in_the_table_with_its_surface_dimension(atlas):
     assert table["specimen"].tolist() == NAMES
     for name, row in zip(NAMES, table.to_dict("records"), strict=True):
         surface = atlas[f"surface_dimension/{name}"]
-        assert row["delta_g_1"] == pytest.approx(
-            float(surface["recommended_dimension"]), nan_ok=True
-        )
+        assert row["delta_g"] == pytest.approx(float(surface["recommended_dimension"]), nan_ok=True)
     assert np.isnan(table["dilatancy_mm"][0])  # against a plane
 
 

@@ -179,12 +179,13 @@ def test_plateau_holds_every_direction_of_all_that_slides(atlas):
 
 def test_spread_of_the_composite_is_what_the_correlation_makes_it(atlas):
     # Exact but for the heights' changing with the place of the window.
-    slide = Slide.of(atlas, "sliding")
-    np.testing.assert_allclose(slide.expected[:, 0], 0, atol=1e-6)
-    near = slide.v < 0.3 * slide.v[-1]
-    np.testing.assert_allclose(slide.expected[:, near], slide.spread[:, near], rtol=0.2, atol=1e-6)
-    assert np.isnan(slide.ratio[:, 0]).all()
-    assert np.isfinite(slide.ratio[:, 1:]).all()
+    joint = atlas["joints/sliding"].to_dataset().transpose(..., "rigid_offset")
+    expected, spread = joint["composite_rms_expected"].values, joint["composite_rms"].values
+    np.testing.assert_allclose(expected[:, 0], 0, atol=1e-6)
+    near = joint["rigid_offset"].values < 0.3 * joint["rigid_offset"].values[-1]
+    np.testing.assert_allclose(expected[:, near], spread[:, near], rtol=0.2, atol=1e-6)
+    assert np.isnan(joint["dilatancy_over_rms"].values[:, 0]).all()
+    assert np.isfinite(joint["dilatancy_over_rms"].values[:, 1:]).all()
 
 
 # What every figure must be
@@ -307,15 +308,17 @@ def test_a_scan_has_no_roll_off_that_is_known(atlas):
 
 def test_rounding_of_flush_faces_does_not_stretch_decades(atlas):
     slide = Slide.of(atlas, "sliding")
-    flush = slide.expected.copy()
+    flush = slide.data["composite_rms_expected"].copy()
     flush[:, 0] = 1e-8
-    slides = [slide, replace(slide, v=20 * slide.v, expected=flush)]
+    farther = slide.data.assign(composite_rms_expected=flush)
+    farther = farther.assign_coords(rigid_offset=20 * slide.data["rigid_offset"])
+    slides = [slide, replace(slide, data=farther)]
     panels = Figure().subplots(1, 2, sharex=True)
     plateau._prepare(panels, slides)
     for n, one in enumerate(slides):
         plateau._draw_slide(panels, n, one)
     assert panels[0].get_yscale() == "log"
-    opened = slide.opened[:, 1:]
+    opened = slide.data["rigid_dilatancy"].values[:, 1:]
     assert panels[0].get_ylim()[0] > 0.1 * opened[opened > 0].min()
 
 

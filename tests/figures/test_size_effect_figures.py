@@ -42,10 +42,9 @@ def test_decision_drawn_is_that_of_the_atlas(atlas, test_of):
     assert len(table) == 2 * test_of["alpha"].size
     for _, row in table.iterrows():
         one = test_of.sel(arm=row["arm"], hurst=row["hurst"])
-        one = one.sel(reduced_pressure=row["p_over_E_slope"])
-        name = "box_delta" if row["estimator"] == "box counts" else "area_delta"
+        one = one.sel(reduced_pressure=row["reduced_pressure"])
         np.testing.assert_allclose(row["alpha"], one["alpha"])
-        np.testing.assert_allclose(row["eq6"], one[name] - 2)
+        np.testing.assert_allclose(row["eq6_exponent"], one[f"{row['delta_estimator']}_delta"] - 2)
         assert row["verdict"] == one["verdict"].item()
 
 
@@ -59,12 +58,13 @@ def test_resolution_law_drawn_is_that_of_the_atlas(atlas, test_of):
     table = drawn(resolution_law, atlas).data
     fine = test_of.isel(surface=(test_of["of_arm"] == "R").values)
     assert len(table) == fine["corrected_share"].size
-    np.testing.assert_allclose(table["kappa"] * table["p_over_E_slope"], table["corrected_share"])
+    found = table["resolved_kappa"] * table["resolved_pressure"]
+    np.testing.assert_allclose(found, table["corrected_share"])
     # In the finest class the loads are those of the recipe; longer cut-offs have more of them.
-    finest = table[table["cut_off_nodes"] == table["cut_off_nodes"].min()]
-    np.testing.assert_allclose(finest["p_over_E_slope"], finest["reduced_pressure"])
-    coarse = table[table["cut_off_nodes"] == table["cut_off_nodes"].max()]
-    assert (coarse["p_over_E_slope"] > coarse["reduced_pressure"]).all()
+    finest = table[table["of_cut_off"] == table["of_cut_off"].min()]
+    np.testing.assert_allclose(finest["resolved_pressure"], finest["reduced_pressure"])
+    coarse = table[table["of_cut_off"] == table["of_cut_off"].max()]
+    assert (coarse["resolved_pressure"] > coarse["reduced_pressure"]).all()
 
 
 def test_geometry_drawn_is_that_of_the_atlas(atlas, test_of):
@@ -84,9 +84,9 @@ def test_strength_drawn_is_that_of_the_atlas(atlas):
     assert len(scaled) == strength["scaled_strength_exponent"].size > 0
     for _, row in scaled.iterrows():
         one = strength.sel(hurst=row["hurst"], law=row["law"], reduced_pressure=0.05)
-        one = one.isel(fraction=int(np.argmin(abs(one["fraction_low"].values - row["low"]))))
-        np.testing.assert_allclose(row["value"], one["scaled_strength_exponent"])
-        np.testing.assert_allclose(row["by_v_alone"], one["predicted_exponent"])
+        one = one.sel(fraction=row["fraction"])
+        for name in ("scaled_strength_exponent", "predicted_exponent"):
+            np.testing.assert_allclose(row[name], one[name])
     for text in strength["overall"].values.ravel():
         assert text in drawing.caption
 

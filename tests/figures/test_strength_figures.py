@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 import xarray as xr
 from cases import representative
+from matplotlib.figure import Figure
 
+from fractalcontact.core.estimate import names_of
 from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style, save
-from fractalcontact.figures.kit.sizes import apart, plain_decades, roughness_words
+from fractalcontact.figures.kit.sizes import draw_over_size, plain_decades, roughness_words
 
 DRAWN = [
     ("sliding", "strength"),
@@ -36,7 +38,8 @@ def unstated(atlas):
         for specimen in changed[stage].children:
             dataset = changed[f"{stage}/{specimen}"].to_dataset()
             for name in dataset.data_vars:
-                if any(word in name for word in lost) and dataset[name].dtype.kind == "f":
+                stated = name != "strength_share" and dataset[name].dtype.kind == "f"
+                if any(word in name for word in lost) and stated:
                     dataset[name] = xr.full_like(dataset[name], np.nan)
             changed[f"{stage}/{specimen}"] = xr.DataTree(dataset)
     return changed
@@ -56,7 +59,11 @@ def test_short_axes_are_numbered_in_plain_words(atlas):
 
 def test_series_stand_apart_about_the_size_itself():
     b = np.array([1.0, 10.0])
-    places = np.array([apart(b, j, 3) for j in range(3)])
+    means = (("part", "normal_force"), np.ones((2, 3)))
+    laws = xr.Dataset({"side": ("part", b)} | dict.fromkeys(names_of("mean"), means))
+    axes = Figure().subplots()
+    draw_over_size(axes, laws, "mean")
+    places = np.array([line.get_xdata() for line in axes.lines if len(line.get_xdata())])
     np.testing.assert_allclose(places[1], b)
     np.testing.assert_allclose(places.mean(axis=0), b)
     assert (np.diff(places, axis=0) > 0).all()
@@ -69,34 +76,34 @@ def test_series_stand_apart_about_the_size_itself():
 def test_strength_drawn_is_that_of_the_atlas(atlas, specimen):
     table = drawn(atlas, specimen, "strength").data
     stored = atlas[f"strength/{specimen}"].to_dataset().isel(contact_direction=0)
-    over = table[table["curve"] == "over the offsets"]
-    for pressure, points in over.groupby("nominal_pressure_MPa"):
-        j = int(np.argmin(np.abs(stored["nominal_pressure"].values - pressure)))
-        for column, name in (
-            ("offset_mm", "midpoint"),
-            ("rigid_dilatancy_angle_deg", "rigid_dilatancy_angle"),
-        ):
-            np.testing.assert_array_equal(points[column], stored[name])
-        for column, name in (
-            ("dilatancy_angle_deg", "dilatancy_angle"),
-            ("shear_strength_MPa", "shear_strength"),
-        ):
-            np.testing.assert_array_equal(points[column], stored[name][:, j])
-    ends = table[table["curve"] == "peak and residual"]
-    np.testing.assert_array_equal(ends["peak_strength_MPa"], stored["peak_strength"])
-    np.testing.assert_array_equal(ends["barton_strength_MPa"], stored["barton_strength"])
+    panels = {which: table[table["panel"] == which] for which in "abc"}
+    rigid = panels["a"][panels["a"]["normal_force_N"].isna()]
+    np.testing.assert_array_equal(rigid["midpoint_mm"], stored["midpoint"])
+    np.testing.assert_array_equal(
+        rigid["rigid_dilatancy_angle_degree"], stored["rigid_dilatancy_angle"]
+    )
+    for panel, column, name in (
+        ("a", "midpoint_mm", "midpoint"),
+        ("a", "dilatancy_angle_degree", "dilatancy_angle"),
+        ("b", "shear_strength_MPa", "shear_strength"),
+    ):
+        for force, points in panels[panel].groupby("normal_force_N"):
+            values = stored.sel(normal_force=force)[name]
+            np.testing.assert_array_equal(points[column], values)
+    for name in ("peak_strength", "barton_strength"):
+        np.testing.assert_array_equal(panels["c"][f"{name}_MPa"], stored[name])
 
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair", "flat"])
 def test_sizes_drawn_are_those_of_the_atlas(atlas, specimen):
     table = drawn(atlas, specimen, "window_size").data
     laws = atlas[f"windows/{specimen}"].to_dataset()
-    face = table[table["surface"] == "face"]
-    np.testing.assert_array_equal(face["b_mm"], laws["scale_side"])
-    np.testing.assert_array_equal(face["mean_mm"], laws["face_sigma_z"])
-    closure = table[table["quantity"] == "interface_closure"]
+    face = table[table["panel"] == "a"].dropna(subset="face_sigma_z_mm")
+    np.testing.assert_array_equal(face["scale_side_mm"], laws["scale_side"])
+    np.testing.assert_array_equal(face["face_sigma_z_mm"], laws["face_sigma_z"])
+    closure = table[table["panel"] == "b"]
     expected = laws["interface_closure"].transpose("offset", "normal_force", "part").values.ravel()
-    np.testing.assert_array_equal(closure["mean_mm"], expected)
+    np.testing.assert_array_equal(closure["interface_closure_mm"], expected)
 
 
 def test_strength_by_size_is_that_of_the_atlas(atlas):
@@ -107,7 +114,7 @@ def test_strength_by_size_is_that_of_the_atlas(atlas):
     np.testing.assert_array_equal(similar["similar_slope"], stored)
     peak = table[table["at"] == "peak"]
     stored = laws["peak_strength"].transpose("normal_force", "part").values.ravel()
-    np.testing.assert_array_equal(peak["strength_MPa"], stored)
+    np.testing.assert_array_equal(peak["peak_strength_MPa"], stored)
 
 
 def test_the_right_axis_adds_the_basic_angle(atlas):
@@ -180,27 +187,25 @@ def test_drawn_twice_the_files_are_the_same(atlas, specimen, figure, tmp_path):
 def test_strengths_of_angles_held_at_their_bound_are_marked_and_compared_with_nothing(atlas):
     strength = atlas["strength/sliding"].to_dataset().isel(contact_direction=0)
     table = drawn(atlas, "sliding", "strength").data
-    over = table[table["curve"] == "over the offsets"]
-    held = over["friction_angle_deg"] > LARGEST_FRICTION_ANGLE
-    assert (over["held"].astype(bool) == held).all()
-    counts = over[held].groupby("nominal_pressure_MPa").size()
-    stored = strength["held_high"].values[
-        np.isin(strength["nominal_pressure"], over["nominal_pressure_MPa"])
-    ]
+    over = table[(table["panel"] == "a") & table["normal_force_N"].notna()]
+    held = over["friction_angle_degree"] > LARGEST_FRICTION_ANGLE
+    assert (over["shear_strength_valid"].astype(bool) == ~held).all()
+    counts = over[held].groupby("normal_force_N").size()
+    stored = strength["held_high"].sel(normal_force=over["normal_force_N"].unique())
     assert counts.sum() == stored.sum() > 0
     # Where any angle is held, the strength there is the largest that there can be.
-    peaks = table[table["curve"] == "peak and residual"].set_index("nominal_pressure_MPa")
-    assert (peaks["peak_held"].astype(bool).values == (strength["held_high"].values > 0)).all()
+    valid = table[table["panel"] == "c"]["peak_strength_valid"].astype(bool)
+    assert (valid.values == (strength["held_high"].values == 0)).all()
     none = "every peak is held at the bound" in drawn(atlas, "sliding", "strength").caption
-    assert none == peaks["peak_held"].all()
+    assert none == (not valid.any())
 
 
 def test_compliance_over_size_is_drawn_as_the_atlas_has_it(atlas):
     laws = atlas["windows/sliding"].to_dataset()
     table = drawn(atlas, "sliding", "window_size").data
-    rows = table[table["quantity"] == "interface_compliance"]
+    rows = table[table["panel"] == "c"]
     stored = laws["interface_compliance"].transpose("offset", "normal_force", "part").values
-    np.testing.assert_array_equal(rows["mean_mm_per_MPa"], stored.ravel())
+    np.testing.assert_array_equal(rows["interface_compliance_mm_per_MPa"], stored.ravel())
 
 
 def test_both_figures_of_strength_word_the_roughness_alike(atlas):
@@ -238,4 +243,4 @@ def test_a_joint_that_was_not_slid_has_no_strength(atlas):
             strength[name] = values * np.nan
     changed["strength/sliding"] = xr.DataTree(strength)
     drawing = drawn(changed, "sliding", "strength")
-    assert not drawing.data["peak_held"].fillna(False).any()
+    assert drawing.data["peak_strength_MPa"].isna().all()

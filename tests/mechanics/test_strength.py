@@ -21,6 +21,7 @@ from fractalcontact.mechanics.strength import (
     dilatancy_angle,
     from_flush,
     joint_strength,
+    judged_strengths,
     peak,
     residual,
     shear_strength,
@@ -320,3 +321,20 @@ def test_two_faces_need_no_flush_start():
 def test_everything_says_what_it_is(strength):
     for name, variable in strength.data_vars.items():
         assert {"units", "long_name"} <= set(variable.attrs), name
+
+
+def test_no_peak_of_a_joint_that_was_not_slid_was_held():
+    none = np.full(2, np.nan)
+    peaks = dict.fromkeys(("peak_offset", "peak_strength", "barton_strength"), none)
+    judged = judged_strengths({"midpoint": [], "friction_angle": np.empty((0, 2)), **peaks})
+    assert judged["peak_strength_valid"].all()
+    assert judged["shear_strength_valid"].shape == (0, 2)
+
+
+def test_a_peak_is_a_bound_only_where_its_own_angle_was_held():
+    angle = np.array([[75.0, 75.0], [60.0, 60.0]])
+    peaks = {"peak_offset": [1.0, 2.0], "peak_strength": [3.0, 2.0], "barton_strength": [2.0, 4.0]}
+    judged = judged_strengths({"midpoint": [1.0, 2.0], "friction_angle": angle, **peaks})
+    assert judged["peak_strength_valid"].tolist() == [False, True]
+    assert judged["shear_strength_valid"].tolist() == [[False, False], [True, True]]
+    assert judged["peak_over_barton"].tolist() == [1.5, 0.5]

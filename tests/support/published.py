@@ -39,13 +39,13 @@ CURVES = {
 }
 #: Further columns that say what a row is about, no values themselves.
 COORDINATES = (
-    *("b_mm", "box_side_mm", "mean_side_mm", "null_side_mm", "null_mean_side_mm", "spacing_mm"),
-    *("slope_side_mm", "gliding_side_mm", "order", "eq6_side_mm", "cluster_area_mm2", "octave"),
-    *("scale", "mean_scale", "null_scale", "null_mean_scale", "null_octave"),
-    *("v_over_b", "x_mm", "wavelength_mm"),
+    *("side_mm", "scale_side_mm", "share", "b_mm", "box_side_mm", "mean_side_mm", "null_side_mm"),
+    *("null_mean_side_mm", "spacing_mm", "slope_side_mm", "gliding_side_mm", "order"),
+    *("eq6_side_mm", "cluster_area_mm2", "octave", "scale", "mean_scale", "null_scale"),
+    *("null_mean_scale", "null_octave", "x_mm", "wavelength_mm"),
 )
-#: Columns that say what the numbers of a row are.
-WHAT = ("quantity", "estimator")
+#: Columns that say what the numbers of a row are: those of a side are means over sub-windows.
+WHAT = ("quantity", "estimator", "side_mm")
 #: Tables have eight digits.
 DIGITS = 1e-6
 

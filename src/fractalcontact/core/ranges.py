@@ -8,13 +8,13 @@ import numpy as np
 RELATIVE_ROUNDING = 1e-9
 
 
-def within(values: Any, low: float, high: float) -> Any:
+def within(values: Any, low: Any, high: Any) -> Any:
     """Which of some positive values lie in a range, its ends included whatever their last digits.
 
     Parameters
     ----------
     values : array_like or xr.DataArray
-    low, high : float
+    low, high : float or xr.DataArray
         Positive, or 0 and infinity.
 
     Returns

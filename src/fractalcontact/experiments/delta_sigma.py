@@ -107,6 +107,7 @@ def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
         )
     )
     _add_means(result)
+    add_mean_boxes(result)
     _add_trends(result)
     if "capped_loads" in recipe:
         result = result.merge(_capped(recipe, axes, factors, rtol))
@@ -129,6 +130,13 @@ _OF_SURFACES = {
         "boxes of side k s that the finest domain occupies over nodes in contact at k",
     ),
 }
+
+
+def add_mean_boxes(result: xr.Dataset) -> None:
+    """Add ``mean_boxes_per_node``, over the seeds."""
+    words = f"mean over seeds of {_OF_SURFACES['boxes_per_node'][2]}"
+    mean = result["boxes_per_node"].mean("seed")
+    result["mean_boxes_per_node"] = mean.assign_attrs(cf_attrs("1", words))
 
 
 def _uncapped(

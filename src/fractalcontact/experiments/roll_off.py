@@ -23,6 +23,7 @@ from ..mechanics.joint import (
     RIGID_SLIDE,
     direction_spacing,
     face_correlation,
+    over_spread,
     rigid_dilatancy,
 )
 from ..mechanics.plateau import relative_change, second_half
@@ -77,6 +78,7 @@ def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[in
     result = result.assign_coords(surface=list(SURFACES))
     result["seed"] = ("seed", list(seeds), cf_attrs("1", "seed of the surface"))
     add_trend(result)
+    add_means(result)
     result.attrs = {"roll_off": recipe["roll_off"], "window": window}
     return result
 
@@ -106,6 +108,51 @@ def add_trend(result: xr.Dataset) -> None:
         "trend": ("surface", "1", f"{LEVEL}, {RISING}, {FALLING}, or empty where none is certain"),
     }
     result.update(labelled(table, {"change": changes, "trend": np.array(trends)}))
+
+
+def add_means(result: xr.Dataset) -> None:
+    """Add means over the directions of each joint, and the first offset of the slope.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of :func:`roll_off_effect`: gets ``joint_dilatancy``, ``joint_rms``, ``joint_rms_expected``
+        and ``joint_dilatancy_over_rms`` over (surface, seed, rigid_offset).
+    """
+    order = ("surface", "seed", "direction", "rigid_offset")
+    slides = result.transpose(*order)
+    expected = slides["face_rms"] * np.sqrt(np.maximum(2 - 2 * slides["face_correlation"], 0))
+    opened, spread, expected = (
+        values.transpose(*order).mean("direction").values
+        for values in (slides["rigid_dilatancy"], slides["composite_rms"], expected)
+    )
+    v = result["rigid_offset"].values
+    values = {
+        "joint_dilatancy": opened,
+        "joint_rms": spread,
+        "joint_rms_expected": expected,
+        "joint_dilatancy_over_rms": over_spread(opened, spread),
+        "slope_offset_min": v[second_half(v)][0],
+    }
+    result.update(labelled(_MEANS, values))
+
+
+_OF_JOINTS = ("surface", "seed", "rigid_offset")
+_MEANS = {
+    "joint_dilatancy": (_OF_JOINTS, "mm", "rigid dilatancy, mean of the directions"),
+    "joint_rms": (
+        _OF_JOINTS,
+        "mm",
+        "standard deviation of the composite topography, mean of the directions",
+    ),
+    "joint_rms_expected": (
+        _OF_JOINTS,
+        "mm",
+        "the same by heights and correlation of the faces",
+    ),
+    "joint_dilatancy_over_rms": (_OF_JOINTS, "1", "rigid dilatancy over that deviation"),
+    "slope_offset_min": ((), "mm", "smallest offset that the slope is taken over"),
+}
 
 
 def _trend(change: float, low: float, high: float) -> str:

@@ -13,9 +13,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled, labelled_dataset
+from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
-from ..mechanics.theory import PERIODIC_AREAS, PERIODIC_SCATTER, PERIODIC_SLOPE, fudged_persson_area
+from ..core.limits import WIDEST
+from ..mechanics.theory import (
+    PERIODIC_AREAS,
+    PERIODIC_SCATTER,
+    PERIODIC_SLOPE,
+    fudged_persson_area,
+    persson_area,
+)
 from .size_decision import (
     FEWEST_ROLL_OFFS,
     UNKNOWN,
@@ -115,7 +123,94 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
         "cut_off": int(recipe["cut_off"]),
         "roll_off": float(recipe["roll_off"]),
     }
+    result = with_comparisons(with_resolution_law(result))
     return result.assign_attrs(summary=summary(result))
+
+
+def with_comparisons(result: xr.Dataset) -> xr.Dataset:
+    """Exponents that eq. 6 wants, and where contact domains differ from the bearing-area cut.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of :func:`size_effect_test`, without them.
+
+    Returns
+    -------
+    xr.Dataset
+        With ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) and its interval, and
+        ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
+        dimensions have intervals narrow enough to be compared, and whether these are disjoint.
+    """
+    dims = ("hurst", "reduced_pressure")
+    table: dict[str, tuple] = {}
+    values: dict[str, np.ndarray] = {}
+    for end in ("", "_low", "_high"):
+        ends = [result[f"{name}_delta{end}"].transpose(*dims).values - 2 for name in _ESTIMATORS]
+        words = f"exponent of A_r/A_0 over the side b by eq. 6{_ENDS[end]}"
+        table[f"eq6_exponent{end}"] = ((*dims, "delta_estimator"), "1", words)
+        values[f"eq6_exponent{end}"] = np.stack(ends, axis=-1)
+    domain, cut = (Estimate.read(result, name) for name in ("band_delta", "cut_delta"))
+    determined = (domain.width <= WIDEST) & (cut.width <= WIDEST)
+    beyond = determined & ((domain.low > cut.high) | (domain.high < cut.low))
+    table |= {
+        "domain_determined": (dims, "1", "dimensions of domain and cut are narrow enough"),
+        "domain_beyond_cut": (dims, "1", "dimension of the domain differs from its cut's"),
+    }
+    values |= {"domain_determined": determined, "domain_beyond_cut": beyond}
+    result = result.assign(labelled(table, values))
+    return result.assign_coords(delta_estimator=list(_ESTIMATORS))
+
+
+#: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
+_ESTIMATORS = ("area", "box")
+
+
+def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
+    """Area slopes of arm R over p / (E* h'_rms(s)), and the lines of Persson's theory beside.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of :func:`size_effect_test`, without them.
+
+    Returns
+    -------
+    xr.Dataset
+        With ``resolved_pressure`` and ``resolved_kappa`` (surface, reduced_pressure), NaN outside
+        arm R; ``theory_pressure``, ``theory_kappa`` and ``weakened_kappa_low`` and ``_high``
+        (theory,).
+    """
+    steepest, slope = _slope_of_loads(result), result["rms_slope"]
+    pressure = (result["reduced_pressure"] * steepest / slope).where(result["of_arm"] == "R")
+    pressure = pressure.transpose("surface", "reduced_pressure")
+    kappa = result["corrected_share"] / pressure
+    known = pressure.values[np.isfinite(pressure.values)]
+    p = np.geomspace(known.min(), known.max(), _CURVE_POINTS) if known.size else np.empty(0)
+    low, high = (fudged_persson_area(p, 1.0, 1.0, g) / p for g in _WEAKENED)
+    values = {
+        "resolved_pressure": pressure.values,
+        "resolved_kappa": kappa.transpose("surface", "reduced_pressure").values,
+        "theory_pressure": p,
+        "theory_kappa": persson_area(p, 1.0, 1.0) / p,
+        "weakened_kappa_low": low,
+        "weakened_kappa_high": high,
+    }
+    return result.assign(labelled(_RESOLUTION, values))
+
+
+#: Parts g of the elastic energy that computations without adhesion want, and points of a curve.
+_WEAKENED, _CURVE_POINTS = (0.45, 0.42), 60
+_OF_STATES = ("surface", "reduced_pressure")
+_WEAKENED_WORDS = "A_r/A_0 over pressure by Persson's theory with its elastic energy times g"
+_RESOLUTION = {
+    "resolved_pressure": (_OF_STATES, "1", "p / (E* h'_rms(s)) of the surface's own cut-off s"),
+    "resolved_kappa": (_OF_STATES, "1", "area slope kappa, corrected area, over that pressure"),
+    "theory_pressure": ("theory", "1", "p / (E* h'_rms) of the theories' curves"),
+    "theory_kappa": ("theory", "1", "A_r/A_0 over pressure by Persson's theory"),
+    "weakened_kappa_low": ("theory", "1", f"{_WEAKENED_WORDS} = {_WEAKENED[0]:g}"),
+    "weakened_kappa_high": ("theory", "1", f"{_WEAKENED_WORDS} = {_WEAKENED[1]:g}"),
+}
 
 
 def _table() -> dict[str, tuple]:

@@ -14,6 +14,7 @@ from ..core.datasets import labelled, labelled_dataset
 from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
+from ..core.mean_plane import without_mean_plane
 from ..core.settings import SpecimenSettings
 from ..core.window import faces, nominal_area, window_slices
 from ..surface.specimen import largest_offset
@@ -341,7 +342,62 @@ def _describe_slide(
             "rigid_offset": ("rigid_offset", offsets, cf_attrs("mm", "shear offset v")),
         },
     )
-    return result.assign(rigid_plateaus(offsets, dilatancy, directions))
+    result = result.assign(rigid_plateaus(offsets, dilatancy, directions))
+    return with_spreads(result, specimen)
+
+
+def with_spreads(joint: xr.Dataset, specimen: xr.Dataset) -> xr.Dataset:
+    """Rigid dilatancy over the spread of the composite topography, and the spread expected.
+
+    Parameters
+    ----------
+    joint : xr.Dataset
+        ``rigid_dilatancy``, ``composite_rms`` and ``face_correlation`` (direction, rigid_offset),
+        ``uncorrelated_offset`` (direction).
+    specimen : xr.Dataset
+
+    Returns
+    -------
+    xr.Dataset
+        With ``dilatancy_over_rms`` (NaN where faces are flush), ``composite_rms_expected`` from
+        the heights of both faces and their correlation, and ``mean_uncorrelated_offset``.
+    """
+    window = window_slices(specimen)
+    lower, upper = (float(np.std(without_mean_plane(z[window]))) for z in faces(specimen))
+    square = lower**2 + upper**2 - 2 * joint["face_correlation"].values * lower * upper
+    lost = joint["uncorrelated_offset"].values
+    lost = lost[np.isfinite(lost)]
+    values = {
+        "dilatancy_over_rms": over_spread(joint["rigid_dilatancy"], joint["composite_rms"]),
+        "composite_rms_expected": np.sqrt(np.maximum(square, 0)),
+        "mean_uncorrelated_offset": float(lost.mean()) if lost.size else np.nan,
+    }
+    return joint.assign(labelled(_SPREADS, values))
+
+
+def over_spread(opened: ArrayLike, spread: ArrayLike) -> np.ndarray:
+    """delta_r / sigma_z; NaN where faces are flush."""
+    opened, spread = np.asarray(opened), np.asarray(spread)
+    return np.divide(opened, spread, out=np.full(spread.shape, np.nan), where=spread > 0)
+
+
+_SPREADS = {
+    "dilatancy_over_rms": (
+        ("direction", "rigid_offset"),
+        "1",
+        "rigid dilatancy over the standard deviation of the composite topography",
+    ),
+    "composite_rms_expected": (
+        ("direction", "rigid_offset"),
+        "mm",
+        "standard deviation of the composite topography by heights and correlation of the faces",
+    ),
+    "mean_uncorrelated_offset": (
+        (),
+        "mm",
+        "offset where the faces lose all correlation, mean of the directions that reach it",
+    ),
+}
 
 
 def _automatic_offsets(specimen, directions):

@@ -246,6 +246,8 @@ _QUANTITIES = {
     "shear_strength": ("MPa", "shear strength tau"),
     "held_high": ("1", f"intervals whose angle was held at {LARGEST_FRICTION_ANGLE:g} degrees"),
     "held_low": ("1", "intervals whose angle was held at 0"),
+    "shear_strength_valid": ("1", "angle not held at its upper bound: the strength is a result"),
+    "peak_strength_valid": ("1", "angle of the peak not held at its upper bound"),
     "peak_strength": ("MPa", "largest shear strength over the offsets"),
     "peak_offset": ("mm", "offset where it is first reached"),
     "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets"),
@@ -253,6 +255,7 @@ _QUANTITIES = {
     **rows_of("residual_angle", "degree", "mean dilatancy angle beyond half of the largest offset"),
     "residual_n": ("1", "intervals beyond half of the largest offset"),
     "barton_strength": ("MPa", "peak strength by Barton's law"),
+    "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law"),
     "scaled_roughness": ("1", "JRC_n for the window's length; none above 20"),
     "scaled_wall_strength": ("MPa", "JCS_n for the window's length"),
     "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n"),
@@ -313,10 +316,39 @@ def _one_direction(
     roughness = profile_roughness(specimen, direction)
     side = window_sides(specimen)[sliding_axis(direction)]
     values |= _by_barton(roughness["jrc_used"].item(), material, side, pressure)
+    values |= judged_strengths(values)
     table = {name: (_dims(name, of_name), *FIELDS[name]) for name, of_name in values.items()}
     result = roughness.assign(labelled(table, values))
     result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
     return result
+
+
+def judged_strengths(values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
+    """Which strengths are results and no bounds, and how the peaks stand to Barton's.
+
+    Parameters
+    ----------
+    values : mapping of str to array_like
+        ``midpoint`` (n,), ``friction_angle`` (n, load), ``peak_strength``, ``peak_offset`` and
+        ``barton_strength`` (load,) of one direction.
+    """
+    midpoint, angle, peak_offset, peaks, barton = (
+        np.asarray(values[name])
+        for name in (
+            "midpoint",
+            "friction_angle",
+            "peak_offset",
+            "peak_strength",
+            "barton_strength",
+        )
+    )
+    held = angle > LARGEST_FRICTION_ANGLE
+    at_peak = np.equal.outer(midpoint, peak_offset)
+    return {
+        "shear_strength_valid": ~held,
+        "peak_strength_valid": ~(held & at_peak).any(axis=0),
+        "peak_over_barton": peaks / barton,
+    }
 
 
 def _curves_with_rigid(

@@ -147,6 +147,27 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
         usable = usable_sizes(nodes.values, fewest) & positive.values
         values = values.where(xr.DataArray(usable, dims=("part", *dims[2:])))
         add_size_exponents(result, exponent, values, places, words)
+    add_fitted(result)
+
+
+def add_fitted(result: xr.Dataset) -> None:
+    """Which means an exponent goes through, into ``result``: ``NAME_fitted`` for each law.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Means over ``part``, exponents with the range of b that they were fitted over, and
+        ``face_sigma_z``, ``face_hurst`` and ``scale_used``.
+    """
+    for name, (exponent, *_) in _OVER_LOADS.items():
+        inside = within(result["side"], result[f"{exponent}_b_min"], result[f"{exponent}_b_max"])
+        fitted = result[exponent].notnull() & (result[name] > 0) & inside
+        attrs = cf_attrs("1", f"size that {exponent} is fitted to")
+        result[f"{name}_fitted"] = fitted.transpose(*result[name].dims).assign_attrs(attrs)
+    fitted = result["scale_used"] & result["face_sigma_z"].notnull()
+    fitted &= result["face_hurst"].notnull()
+    attrs = cf_attrs("1", "size that H of the lower face is fitted to")
+    result["face_sigma_z_fitted"] = fitted.assign_attrs(attrs)
 
 
 def _add_hurst(

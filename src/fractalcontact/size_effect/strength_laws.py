@@ -1,12 +1,16 @@
 """Shear strength over the side b of a joint, at one v and at one v/b (sect. 5)."""
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
+from ..core.estimate import Estimate
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
+from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_HELD
 from ..core.settings import Friction
 from ..mechanics.strength import (
     FIELDS,
@@ -48,7 +52,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
         ``similar_strength`` and ``similar_slope`` (d delta/dv, not held), ``similar_held`` (the
         fraction of sub-windows whose angle was held there) and their exponents (share, load).
-        ``share`` holds the fractions v/b.
+        ``share`` holds the fractions v/b. Besides those of :func:`with_slope_angles`.
 
     Notes
     -----
@@ -112,9 +116,51 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         "held_share": mean_interval(peak(midpoint, held)[0], axis=1).value,
         "similar_held": mean_interval(_at_fractions(offset, side.values, held), axis=2).value,
     }
-    return result.assign(
+    result = result.assign(
         labelled(_HELD, of_held) | labelled(_BARTON, _by_barton(states, material, roughness))
     )
+    return with_slope_angles(result.assign_coords(nominal_pressure=states["nominal_pressure"]))
+
+
+def with_slope_angles(laws: xr.Dataset) -> xr.Dataset:
+    """Strengths at one v/b as limit slope angles, and over that of the whole window (Fig. 11).
+
+    Parameters
+    ----------
+    laws : xr.Dataset
+        ``similar_strength`` with its interval, ``similar_held`` and ``barton_scaled_strength``.
+
+    Returns
+    -------
+    xr.Dataset
+        With ``limit_slope_angle``, ``relative_strength`` and ``similar_strength_valid`` (share,
+        part, normal_force), and ``barton_slope_angle`` (part, normal_force).
+    """
+    pressure = laws["nominal_pressure"].values
+    dims = ("share", *_DIMS[::2])
+    strength = Estimate.read(laws.transpose(*dims, ...), "similar_strength")
+    angle = strength.mapped(partial(slope_angle, pressure=pressure))
+    # Part 1 is the whole window.
+    relative = strength.mapped(lambda values: values / strength.value[:, :1])
+    by_barton = slope_angle(laws["barton_scaled_strength"].values, pressure)
+    valid = ~(laws["similar_held"].transpose(*dims).values > MOSTLY_HELD)
+    words = "shear strength at one v/b over that of the whole window"
+    return laws.assign(
+        angle.variables("limit_slope_angle", dims, "degree", "limit slope angle atan(tau/sigma_0)")
+        | relative.variables("relative_strength", dims, "1", words)
+        | labelled(_ANGLES, {"barton_slope_angle": by_barton, "similar_strength_valid": valid})
+    )
+
+
+def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
+    """Limit slope angle atan(tau / sigma_0), degrees: a block on a plane so steep just slides.
+
+    Parameters
+    ----------
+    strength, pressure : array_like
+        MPa.
+    """
+    return np.degrees(np.arctan(np.asarray(strength) / pressure))
 
 
 _DIMS = ("part", "window", "normal_force")
@@ -146,6 +192,19 @@ _BARTON = {
         ("part", "normal_force"),
         "MPa",
         "peak strength by Barton's law with JRC_n and JCS_n of each size",
+    ),
+}
+
+_ANGLES = {
+    "barton_slope_angle": (
+        ("part", "normal_force"),
+        "degree",
+        "limit slope angle by Barton's law with JRC_n and JCS_n of each size",
+    ),
+    "similar_strength_valid": (
+        ("share", "part", "normal_force"),
+        "1",
+        "the angle of at most half of the sub-windows was held",
     ),
 }
 

@@ -139,6 +139,7 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
         differ by up to 5 % are one), (group_name, pressure): ``NAME_mean`` with its 95 % interval
         (Student's t over specimens: NaN of one alone), ``NAME_deviation`` between specimens,
         ``NAME_n`` of them, and ``NAME_error``, the median half-width of their own intervals.
+        Besides what :func:`with_common_pressure` gives.
     """
     names = sorted(rows)
     most = max((rows[name].sizes["load"] for name in names), default=0)
@@ -156,7 +157,38 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     values["group"] = np.array(groups, dtype=object)
     values["label"] = np.array([str(rows[name].attrs["label"]) for name in names], dtype=object)
     side_by_side = labelled_dataset(table, values, {"specimen": names})
-    return side_by_side.merge(_group_statistics(side_by_side))
+    return with_common_pressure(side_by_side.merge(_group_statistics(side_by_side)))
+
+
+def with_common_pressure(comparison: xr.Dataset) -> xr.Dataset:
+    """Pressure under which most specimens are loaded, and every quantity of each under it.
+
+    Parameters
+    ----------
+    comparison : xr.Dataset
+        Of :func:`compare_specimens`.
+
+    Returns
+    -------
+    xr.Dataset
+        With ``common_pressure`` (MPa; of several the largest; NaN without any) and
+        ``NAME_at_common_pressure`` (specimen,) with its interval, NaN where a specimen was not
+        loaded so.
+    """
+    counts = comparison[["stiffness_n", "delta_sigma_n"]].sum("group_name")
+    values = (counts["stiffness_n"] + counts["delta_sigma_n"]).values[::-1]
+    pressures = comparison["pressure"].values[::-1]
+    common = float(pressures[np.argmax(values)]) if len(pressures) else np.nan
+    words = {"units": "MPa", "long_name": "nominal pressure under which most specimens are loaded"}
+    result = comparison.assign(common_pressure=((), common, words))
+    compared = compared_pressures(comparison["nominal_pressure"].values)
+    for name, (unit, long_name) in UNDER_LOAD.items():
+        estimate = Estimate.read(comparison.transpose("specimen", "load", ...), name)
+        under = estimate.mapped(lambda ends: _at(np.array([common]), compared, ends)[:, 0])
+        under_words = f"{long_name}, under the common pressure"
+        of = f"{name}_at_common_pressure"
+        result = result.assign(under.variables(of, "specimen", unit, under_words))
+    return result
 
 
 def _filled(values, n):

@@ -1,13 +1,12 @@
 """What the figures over specimens and groups share: words, colours, the load they are drawn at."""
 
-from collections.abc import Sequence
 from textwrap import fill
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from ...core.estimate import DIMENSION, SIZE, Estimate
+from ...core.estimate import DIMENSION, SIZE, Estimate, names_of
 from ...core.labels import printable
 from ..kit.drawing import label_short_span
 from ..kit.empty import say_empty
@@ -85,26 +84,26 @@ def settle_axis(axes: Axes, name: str, *, drawn: bool) -> None:
         axes.set_ylim(*BETWEEN[name])
 
 
-def common_pressure(comparison: xr.Dataset) -> int:
-    """Number of the nominal pressure under which most specimens are; of several, the largest."""
-    counts = comparison[["stiffness_n", "delta_sigma_n"]].sum("group_name")
-    values = (counts["stiffness_n"] + counts["delta_sigma_n"]).values
-    return int(len(values) - 1 - np.argmax(values[::-1]))
+def under_common_pressure(comparison: xr.Dataset) -> xr.Dataset:
+    """Quantities of specimens and groups under the pressure that most are loaded by."""
+    under = comparison.sel(pressure=float(comparison["common_pressure"]))
+    for name in AXES:
+        of = f"{name}_at_common_pressure"
+        if of in comparison:
+            ends = dict(zip(names_of(of), names_of(name), strict=True))
+            under = under.drop_vars(ends.values()).rename(ends)
+    return under.drop_dims("load")
 
 
-def means_in_words(comparison: xr.Dataset, name: str, state: xr.Dataset, unit: str = "") -> str:
-    """Means of the first groups with their intervals: "rough 2.41 [2.38, 2.44] of 50"."""
+def means_of_groups(under: xr.Dataset, name: str, unit: str = "") -> list[str]:
+    """Means of the groups with their intervals: "rough 2.41 [2.38, 2.44] of 50"."""
+    means = Estimate.read(under, f"{name}_mean", scale=SIZE if unit else DIMENSION)
     found = []
-    for group, label in zip(state["group_name"].values, _plain(comparison), strict=True):
-        one = state.sel(group_name=group)
-        value, low, high = Estimate.read(one, f"{name}_mean").ends
-        n = int(one[f"{name}_n"])
-        words = Estimate(value, low, high, scale=SIZE if unit else DIMENSION).text(unit)
-        if n == 1:
-            words = short(value)
-        found.append(f"{label} {words} of {n}")
-    more = len(found) - MOST_NAMED
-    return "; ".join(found[:MOST_NAMED]) + (f"; {more} more groups" if more > 0 else "")
+    for i, group in enumerate(under["group_name"].values):
+        n = int(under[f"{name}_n"][i])
+        words = means[i].text(unit) if n > 1 else short(means.value[i])
+        found.append(f"{printable(group, LONGEST)} {words} of {n}")
+    return found
 
 
 def values_range(values: np.ndarray, unit: str = "") -> str:
@@ -114,15 +113,10 @@ def values_range(values: np.ndarray, unit: str = "") -> str:
     return " to ".join(ends) + unit if ends else ""
 
 
-def range_in_words(values: np.ndarray, labels: Sequence[str], unit: str = "") -> str:
-    """Least and largest of some values with their specimens: "2.13 (one) to 2.51 (other)"."""
+def least_and_largest(values: np.ndarray, labels: np.ndarray) -> list[tuple[str, float]]:
+    """Least and largest of some values with the labels of their specimens, one if they are one."""
     known = np.flatnonzero(np.isfinite(values))
     if not known.size:
-        return "known of none"
+        return []
     ends = dict.fromkeys(known[[np.argmin(values[known]), np.argmax(values[known])]].tolist())
-    words = (f"{short(values[i])}{unit} ({printable(labels[i], 2 * LONGEST)})" for i in ends)
-    return " to ".join(words)
-
-
-def _plain(comparison: xr.Dataset) -> Sequence[str]:
-    return [printable(name, LONGEST) for name in comparison["group_name"].values]
+    return [(printable(labels[i], 2 * LONGEST), float(values[i])) for i in ends]

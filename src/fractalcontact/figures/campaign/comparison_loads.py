@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...statements.comparison import UNDER_LOAD, compared_pressures
+from ..kit.caption import caption
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -18,21 +17,23 @@ from ..kit.drawing import (
     Drawing,
     colour_of,
     entries,
-    group,
     heading,
     letter,
 )
+from ..kit.panel import rows
 from ..kit.points import reach
-from ..kit.words import NOMINAL_PRESSURE, SUPPLEMENTARY, pressure_label
+from ..kit.words import NOMINAL_PRESSURE, pressure_label
 from ._groups import (
+    AXES,
+    MOST_NAMED,
     TITLES,
     alone,
-    common_pressure,
     group_labels,
-    means_in_words,
-    range_in_words,
+    least_and_largest,
+    means_of_groups,
     settle_axis,
     specimen_labels,
+    under_common_pressure,
     values_range,
 )
 
@@ -42,6 +43,8 @@ NEEDS = ("study_comparison",)
 KEY = "comparison"
 ORDER = 7
 
+#: What each specimen has under every load.
+_UNDER_LOAD = tuple(AXES)[1:]
 #: Specimens up to which each has its own line.
 MOST_LINES = 40
 #: Groups that are drawn; the others stand in the table.
@@ -52,22 +55,34 @@ _LETTERS = 42
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Mean of each group with its interval and the spread of its specimens."""
-    comparison = group(atlas, "study_comparison", "study")
+    comparison = atlas["study_comparison/study"].to_dataset()
+    under = under_common_pressure(comparison)
+    pressure = float(under["pressure"])
     figure = Figure(figsize=(WIDTH, 5.4))
     by_specimen = alone(comparison)
     panels = figure.subplots(2, 2, sharex=True)
-    for axes, name, which in zip(panels.ravel(), UNDER_LOAD, "abcd", strict=True):
+    for axes, name, which in zip(panels.ravel(), _UNDER_LOAD, "abcd", strict=True):
         (_draw_alone if by_specimen else _draw_quantity)(axes, comparison, name)
         ends = ""
         if by_specimen and name == "stiffness":
-            where = pressure_label(float(comparison["pressure"][common_pressure(comparison)]))
-            ends = values_range(_stiffness_quoted(comparison), f" MPa/mm at {where}")
+            unit = f" MPa/mm at {pressure_label(pressure)}"
+            ends = values_range(under["stiffness"].values, unit)
         letter(axes, which, f"{TITLES[name]}: {ends}" if ends else TITLES[name])
     for axes in panels[1]:
         axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
     shown = [*entries(panels[0, 0]), *_marks(comparison, by_specimen=by_specimen)]
     figure.legend(handles=shown, loc="outside lower center", ncols=3)
-    return Drawing(figure, _table(comparison), _caption(comparison))
+    statistics = ("mean", "deviation", "error", "n")
+    names = [f"{name}_{of}" for name in _UNDER_LOAD for of in statistics]
+    words = caption(
+        __name__,
+        alone=by_specimen,
+        pressure=pressure,
+        ends=least_and_largest(under["stiffness"].values, comparison["label"].values),
+        means=means_of_groups(under, "stiffness", "MPa/mm"),
+        most=MOST_NAMED,
+    )
+    return Drawing(figure, rows(comparison, *names), words)
 
 
 def _draw_alone(axes, comparison, name):
@@ -141,39 +156,3 @@ def _draw_specimens(axes, comparison, name):
         if (of_group := str(specimen["group"].values)) in groups:
             colour = colour_of(groups.index(of_group) + 1)
             axes.plot(specimen["nominal_pressure"], specimen[name], color=colour, lw=0.4, alpha=0.5)
-
-
-def _table(comparison: xr.Dataset):
-    """Statistics of every group under every pressure, with the specimens they are of."""
-    names = [
-        name for name in comparison.data_vars if comparison[name].dims == ("group_name", "pressure")
-    ]
-    table = comparison[names].to_dataframe().reset_index()
-    units = {name: comparison[name].attrs["units"].replace("/", "_per_") for name in names}
-    renamed = {name: f"{name}_{units[name]}" for name in names}
-    return table.rename(columns={**renamed, "group_name": "group", "pressure": "pressure_MPa"})
-
-
-def _stiffness_quoted(comparison):
-    """Tangent stiffness of each specimen under the pressure of the comparison, (n,); or NaN."""
-    values = comparison[["stiffness", "nominal_pressure"]]
-    compared = compared_pressures(values["nominal_pressure"].values)
-    here = np.isclose(compared, float(comparison["pressure"][common_pressure(comparison)]))
-    at = np.where(here, values["stiffness"].values, np.nan)
-    return np.where(np.isfinite(at).any(axis=1), np.nansum(at, axis=1), np.nan)
-
-
-def _caption(comparison):
-    number = common_pressure(comparison)
-    state = comparison.isel(pressure=number)
-    if alone(comparison):
-        where = pressure_label(float(comparison["pressure"][number]))
-        words = range_in_words(_stiffness_quoted(comparison), comparison["label"].values, " MPa/mm")
-        return (
-            f"{SUPPLEMENTARY} Each specimen at the offset of its contact maps (dilatancy: the "
-            f"largest). Tangent stiffness under {where}: {words}."
-        )
-    drawn = "bars the 95 % interval of the mean, bands one standard deviation between specimens"
-    means = means_in_words(comparison, "stiffness", state, "MPa/mm")
-    where = pressure_label(float(comparison["pressure"][number]))
-    return f"{SUPPLEMENTARY} Means of groups, {drawn}. Stiffness under {where}: {means}."

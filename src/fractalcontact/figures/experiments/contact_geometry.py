@@ -1,6 +1,7 @@
 """Geometry of the contact domain between the cut-offs, beside its null models."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -8,21 +9,22 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import Estimate, names_of
+from ...core.estimate import Estimate
 from ...core.limits import WIDEST
 from ...experiments.size_decision import PROBABILITY
+from ..kit.caption import caption
 from ..kit.drawing import (
     WIDTH,
     Drawing,
     colour_of,
     entries,
-    group,
     heading,
     legends_below,
     letter,
 )
+from ..kit.panel import rows
 from ..kit.points import reach
-from ..kit.words import SUPPLEMENTARY, number
+from ..kit.words import number
 from ._reduced_pressure import load_axis
 
 TITLE = "Dimension of the contact domain beside its null models"
@@ -49,11 +51,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
     A panel for each Hurst exponent of arm R and, below, for each construction of arm G.
     """
-    test = group(atlas, "size_effect", "surfaces")
+    test = atlas["size_effect/surfaces"].to_dataset()
     hursts, constructions = test["hurst"].values, test["construction"].values
-    rows = 2 if constructions.size else 1
-    figure = Figure(figsize=(WIDTH, 0.9 + 2.5 * rows))
-    parts = np.ravel(figure.subfigures(rows, 1, squeeze=False))
+    lines = 2 if constructions.size else 1
+    figure = Figure(figsize=(WIDTH, 0.9 + 2.5 * lines))
+    parts = np.ravel(figure.subfigures(lines, 1, squeeze=False))
     letters = iter("abcdefghijkl")
     panels = np.atleast_1d(parts[0].subplots(1, len(hursts), sharey=True))
     for axes, hurst in zip(panels, hursts, strict=True):
@@ -78,7 +80,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         legends_below(parts[1], entries(others[0]))
     else:
         legends_below(figure, handles[:2], [_bars(test), *handles[2:]])
-    return Drawing(figure, _table(test), _caption(test))
+    tables = [rows(test, *(name for name, *_ in curves)) for curves in (_CURVES, _OTHERS)]
+    table = pd.concat(tables, ignore_index=True)
+    return Drawing(figure, table, caption(__name__, **_words(test)))
 
 
 def _bars(test) -> Line2D:
@@ -111,29 +115,18 @@ def _draw_curves(axes, one, curves, *, colours, of="") -> None:
     axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
 
 
-def _table(test) -> pd.DataFrame:
-    """One row a Hurst exponent, load and (of arm G) construction."""
-    tables = []
-    for curves in (_CURVES, _OTHERS):
-        columns = [of for name, *_ in curves for of in names_of(name)]
-        tables.append(test[columns].to_dataframe().reset_index())
-    return pd.concat(tables, ignore_index=True)
-
-
-def _caption(test) -> str:
-    low, high = (test[f"band_delta_{end}"] for end in ("low", "high"))
-    known = ((high - low) <= WIDEST) & ((test["cut_delta_high"] - test["cut_delta_low"]) <= WIDEST)
-    beyond = known & ((low > test["cut_delta_high"]) | (high < test["cut_delta_low"]))
-    return (
-        f"{SUPPLEMENTARY} Correlation dimension of contact domains, {_count(test)} synthetic "
-        f"surfaces of each H. It differs from the bearing-area cut's beyond both intervals at "
-        f"{int(beyond.sum())} of {known.size} states ({known.size - int(known.sum())} "
-        f"undetermined, hollow), and rises with load from {_span(test, 0)} to {_span(test, -1)}."
-    )
-
-
-def _span(test, load: int) -> str:
-    """Dimensions of the contact domains of all H under one load."""
-    values = test["band_delta"].isel(reduced_pressure=load).values
-    ends = (number(end) for end in (np.nanmin(values), np.nanmax(values)))
-    return "–".join(dict.fromkeys(ends))
+def _words(test) -> dict[str, Any]:
+    """How many states differ from the cut, and the dimensions under least and largest load."""
+    known = test["domain_determined"]
+    domain = test["band_delta"]
+    ends = [domain.isel(reduced_pressure=load).values for load in (0, -1)]
+    return {
+        "surfaces": _count(test),
+        "beyond": int(test["domain_beyond_cut"].sum()),
+        "states": known.size,
+        "undetermined": int((~known).sum()),
+        "spans": [
+            dict.fromkeys(number(end) for end in (np.nanmin(values), np.nanmax(values)))
+            for values in ends
+        ],
+    }

@@ -8,20 +8,21 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import Estimate, names_of
+from ...core.estimate import Estimate
+from ..kit.caption import caption
 from ..kit.drawing import (
     LINES,
     MARKERS,
     WIDTH,
     Drawing,
     colour_of,
-    group,
     heading,
     headline,
     legends_below,
     letter,
 )
-from ..kit.words import PAPER, number
+from ..kit.panel import rows
+from ..kit.words import number
 
 TITLE = "Do A_r(s) and box counting give one Delta_sigma: their difference on synthetic surfaces"
 SUBJECT = "study"
@@ -31,12 +32,11 @@ ORDER = 31
 
 #: Ends of the axis of differences: intervals of two surfaces would go far beyond.
 _DIFFERENCES = (-0.35, 0.85)
-_NAMES = ("delta_sigma_area", "delta_sigma_box")
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Difference over size, boxes per node over resolution, and both where the material yields."""
-    test = group(atlas, "dimension_test", "surfaces")
+    test = atlas["dimension_test/surfaces"].to_dataset()
     capped = "capped_pressure" in test.dims
     figure = Figure(figsize=(WIDTH, 3.7))
     panels = figure.subplots(1, 2 + capped)
@@ -46,7 +46,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         _draw_capped(panels[2], test, "c")
     legends_below(figure, *_legends(test))
     headline(figure, f"means of {test.sizes['seed']} surfaces")
-    return Drawing(figure, _table(test), _caption(test))
+    return Drawing(figure, _table(test), caption(__name__, **_words(test)))
 
 
 def _shown(test):
@@ -81,7 +81,7 @@ def _draw_boxes(axes, test, which):
     k = test["resolution"].values
     for i in range(test.sizes["dimension"]):
         for n, j in enumerate(_shown(test)):
-            ratio = largest["boxes_per_node"].isel(dimension=i, reduced_pressure=j).mean("seed")
+            ratio = largest["mean_boxes_per_node"].isel(dimension=i, reduced_pressure=j)
             style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
             axes.plot(k, ratio, **style)
     axes.axhline(1, color="0.5", lw=0.8, ls=LINES[2])
@@ -139,54 +139,30 @@ def _legends(test):
 
 
 def _table(test):
-    ends = (*names_of(""), "_n")
-    free = test[[f"mean_difference{end}" for end in ends]].to_dataframe().reset_index()
-    ratio = test["boxes_per_node"].mean("seed").to_dataframe().reset_index()
     tables = [
-        table.rename(columns={"reduced_pressure": "p_over_E_slope"}).assign(branch=branch)
-        for table, branch in ((free, "elastic"), (ratio, "boxes and pre-fractals"))
+        rows(test, "mean_difference", "mean_difference_n", branch="elastic"),
+        rows(test, "mean_boxes_per_node", branch="boxes and pre-fractals"),
     ]
     if "capped_pressure" in test.dims:
-        names = [f"capped_mean_{name}{end}" for name in _NAMES for end in ends]
-        capped = test[names].to_dataframe().reset_index()
-        capped.columns = [
-            "F_over_H_A0" if column == "capped_pressure" else column.removeprefix("capped_")
-            for column in capped.columns
-        ]
-        tables.append(capped.assign(branch="with hardness"))
+        names = [f"capped_mean_{name}" for name in ("delta_sigma_area", "delta_sigma_box")]
+        counts = [f"{name}_n" for name in names]
+        tables.append(rows(test, *names, *counts, branch="with hardness"))
     return pd.concat(tables, ignore_index=True)
 
 
-def _caption(test):
-    return (
-        f"After Figs. 8 and 9 of {PAPER}. Delta_sigma by A_r(s) less that by box counting, the "
-        "lightest and the heaviest load drawn. "
-        f"{_difference_words(test)} {_capped_words(test)}"
-    ).strip()
-
-
-def _difference_words(test):
-    """Whether the two estimates agree, at all sizes and loads."""
-    mean = test["mean_difference"].values
-    low, high = (test[f"mean_difference_{end}"].values for end in ("low", "high"))
-    known = np.isfinite(low)
-    if not known.any():
-        return "Too few values to compare the two."
-    agree = int(((low <= 0) & (high >= 0))[known].sum())
-    return (
-        f"At all loads their difference is {number(mean[known].min())} to "
-        f"{number(mean[known].max())}; zero lies in {agree} of {int(known.sum())} intervals."
-    )
-
-
-def _capped_words(test):
-    """Where box counting tends as the material yields."""
-    if "capped_pressure" not in test.dims:
-        return ""
-    last = test.isel(capped_pressure=-1)
-    values = last["capped_mean_delta_sigma_box"].values
-    known = values[np.isfinite(last["capped_mean_delta_sigma_box_low"].values)]
-    if not known.size:
-        return ""
-    ends = " to ".join(dict.fromkeys((number(known.min()), number(known.max()))))
-    return f"Where the material yields box counting reaches {ends}."
+def _words(test):
+    """Range of the difference, in how many intervals zero lies, where box counting tends."""
+    difference = Estimate.read(test, "mean_difference")
+    known = np.isfinite(difference.low)
+    agree = (difference.low <= 0) & (difference.high >= 0) & known
+    yielded = np.array([])
+    if "capped_pressure" in test.dims:
+        last = Estimate.read(test.isel(capped_pressure=-1), "capped_mean_delta_sigma_box")
+        yielded = last.value[np.isfinite(last.low)]
+    return {
+        "difference": difference.value[known].tolist(),
+        "agree": int(agree.sum()),
+        "yielded": dict.fromkeys(number(end) for end in (min(yielded), max(yielded)))
+        if yielded.size
+        else {},
+    }

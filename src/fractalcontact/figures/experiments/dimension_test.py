@@ -7,20 +7,20 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import Estimate, names_of
+from ...core.estimate import Estimate
+from ..kit.caption import caption
 from ..kit.drawing import (
     COLOURS,
     MARKERS,
     WIDTH,
     Drawing,
-    group,
     heading,
     headline,
     label_short_span,
     legends_below,
     letter,
 )
-from ..kit.words import PAPER, number
+from ..kit.panel import rows
 
 TITLE = "Delta_sigma of synthetic surfaces over the load, by both estimators"
 SUBJECT = "study"
@@ -45,7 +45,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
     Its data have every size.
     """
-    test = group(atlas, "dimension_test", "surfaces")
+    test = atlas["dimension_test/surfaces"].to_dataset()
     figure = Figure(figsize=(WIDTH, 3.6))
     panels = np.atleast_1d(figure.subplots(1, test.sizes["dimension"], sharey=True))
     for which, axes, dimension in zip("abcdefgh", panels, test["dimension"].values, strict=False):
@@ -56,7 +56,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     legends_below(figure, *_legends(test))
     surfaces, size = test.sizes["seed"], test["size"].values[-1]
     headline(figure, f"means of {surfaces} surfaces of {size} nodes per side")
-    return Drawing(figure, _table(test), _caption(test))
+    names = [f"mean_{name}{of}" for name in _ESTIMATORS for of in ("", "_n")]
+    table = rows(test, *names)
+    return Drawing(figure, table, caption(__name__, **_words(test)))
 
 
 def _draw_loads(axes, test, dimension, which):
@@ -97,40 +99,19 @@ def _legends(test):
     return lines, theory
 
 
-def _table(test):
-    names = [of for name in _ESTIMATORS for of in (*names_of(f"mean_{name}"), f"mean_{name}_n")]
-    return (
-        test[names]
-        .to_dataframe()
-        .reset_index()
-        .rename(columns={"reduced_pressure": "p_over_E_slope"})
-    )
-
-
-def _caption(test):
-    return (
-        f"After Figs. 8 and 9 of {PAPER}. Delta_sigma of {test.sizes['seed']} synthetic surfaces "
-        f"per case by A_r(s), box counting and pairs. {_paper_words(test)}"
-    ).strip()
-
-
-def _paper_words(test):
-    """The paper's Fig. 8 beside what is found at its dimension, at the largest size."""
-    wanted = test.attrs["paper_dimension"]
-    if not np.isclose(test["dimension"].values, wanted).any():
-        return ""
-    one = test.sel(dimension=wanted, method="nearest").isel(size=-1)
-    ranges = []
-    for name, words in (
-        ("delta_sigma_area", "by A_r(s)"),
-        ("delta_sigma_box", "by box counting"),
-        ("delta_pairs", "by pairs"),
-    ):
-        values = one[f"mean_{name}"].values
-        known = values[np.isfinite(values)]
-        if known.size:
-            ranges.append(f"{number(known.min())} to {number(known.max())} {words}")
-    return (
-        f"The paper has {test.attrs['paper_delta_sigma']:g} at Delta_g = {wanted:g}, here "
-        f"means are {', '.join(ranges)}. "
-    )
+def _words(test):
+    """The paper's value beside what is found at its dimension, at the largest size."""
+    paper = test.attrs["paper_dimension"]
+    words = {
+        "surfaces": test.sizes["seed"],
+        "paper_dimension": paper,
+        "paper_value": test.attrs["paper_delta_sigma"],
+        "means": {},
+    }
+    if np.isclose(test["dimension"].values, paper).any():
+        one = test.sel(dimension=paper, method="nearest").isel(size=-1)
+        names = zip(_ESTIMATORS, ("by A_r(s)", "by box counting", "by pairs"), strict=True)
+        found = {by: one[f"mean_{name}"].values for name, by in names}
+        known = {by: values[np.isfinite(values)].tolist() for by, values in found.items()}
+        words["means"] = {by: values for by, values in known.items() if values}
+    return words

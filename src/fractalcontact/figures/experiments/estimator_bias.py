@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.estimate import names_of
+from ..kit.caption import caption
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -16,12 +16,11 @@ from ..kit.drawing import (
     Drawing,
     colour_of,
     entries,
-    group,
     heading,
     legends_below,
     letter,
 )
-from ..kit.words import SUPPLEMENTARY
+from ..kit.panel import rows
 
 TITLE = "Bias, scatter and coverage of the estimators of the surface dimension"
 SUBJECT = "study"
@@ -37,7 +36,7 @@ PROMISED = 0.9
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Bias with scatter, and coverage, by H, size, roll-off and estimator."""
-    bias = group(atlas, "estimator_bias", "surfaces")
+    bias = atlas["estimator_bias/surfaces"].to_dataset()
     sizes, roll_offs = bias["size"].values, bias["roll_off"].values
     figure = Figure(figsize=(WIDTH, 0.8 + 4.8 * len(sizes)))
     panels = figure.subplots(
@@ -71,7 +70,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         "estimators side by side",
         fontsize=9,
     )
-    return Drawing(figure, _table(bias), _caption(bias))
+    table = rows(bias, "bias", "slope_bias", "scatter", "rms_error", "half_width", "coverage")
+    return Drawing(figure, table, caption(__name__, **_words(bias)))
 
 
 def _legends(of_bias, of_coverage, start):
@@ -141,63 +141,29 @@ def _set_ends(axes, bias):
     axes.set_xlim(-0.5, bias.sizes["hurst"] - 0.5)
 
 
-def _table(bias):
-    """One row an estimator, H and size."""
-    columns = [
-        "bias",
-        *names_of("bias")[1:],
-        "slope_bias",
-        "scatter",
-        "rms_error",
-        "half_width",
-        "coverage",
-    ]
-    return bias[columns].to_dataframe().reset_index()
-
-
-def _caption(bias):
+def _words(bias):
+    """Errors and coverage of the estimators where their bias is known, and on rougher surfaces."""
     start = bias.attrs["from_hurst"]
-    opening = (
-        f"{SUPPLEMENTARY} Bias and coverage of the estimators of Delta_g = 3 - H on "
-        f"{bias.sizes['seed']} synthetic surfaces of each kind."
-    )
     known = bias.sel(estimator=bias["worst_bias"].notnull())
-    if not known.sizes["estimator"]:
-        return f"{opening} No H of {start:g} or more is among them."
-    errors = known["overall_error"].to_series()
-    least = known["least_coverage"].to_series()
-    name = bias.attrs["recommended"]
-    return (
-        f"{opening} From H = {start:g}, {_name(name)} (recommended) has an rms error of "
-        f"{errors[name]:.3f}, {_place(errors, name)}; its intervals hold H in "
-        f"{_at_least(least[name])}, those of the worst estimator in "
-        f"{100 * least.min():.0f} %.{_rough_words(bias, start)}"
-    )
-
-
-def _at_least(share):
-    """A share that is the least of several, in percent."""
-    return "100 %" if share >= 0.995 else f"{100 * share:.0f} % or more"
-
-
-def _place(errors, name):
-    """Which of all rms errors one is."""
-    rank = int((errors < errors[name]).sum())
-    return "the least" if rank == 0 else f"{_name(errors.idxmin())} {errors.min():.3f}"
+    names = [_name(name) for name in known["estimator"].values]
+    errors = dict(zip(names, known["overall_error"].values.tolist(), strict=True))
+    least = dict(zip(names, known["least_coverage"].values.tolist(), strict=True))
+    rough = bias["coverage"].where(bias["hurst"] < start).min(["hurst", "size", "roll_off"])
+    rough = rough.values[rough.notnull().values]
+    return {
+        "seeds": bias.sizes["seed"],
+        "start": start,
+        "name": _name(bias.attrs["recommended"]),
+        "errors": errors,
+        "best": min(errors, key=errors.__getitem__, default=""),
+        "least": least,
+        "worst": min(least.values(), default=np.nan),
+        "promised": PROMISED,
+        "rough": rough.tolist(),
+        "failing": int((rough < PROMISED).sum()),
+    }
 
 
 def _name(estimator):
     """An estimator in words."""
     return str(estimator).replace("_", " ")
-
-
-def _rough_words(bias, start):
-    """The warning where intervals hold H less often than promised on rougher surfaces."""
-    rough = bias["coverage"].where(bias["hurst"] < start)
-    if not bool(rough.notnull().any()):
-        return ""
-    lowest = rough.min(["hurst", "size", "roll_off"])
-    failing = int((lowest < PROMISED).sum())
-    if not failing:
-        return f" On rougher surfaces they reach {100 * PROMISED:.0f} % too."
-    return f" On rougher surfaces {failing} fall to {100 * float(rough.min()):.0f} %."

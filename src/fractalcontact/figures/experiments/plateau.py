@@ -1,23 +1,20 @@
 """Plateau of rigid dilatancy: synthetic joints with and without a roll-off, and the study's."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.labels import printable
-from ...core.mean_plane import without_mean_plane
+from ...core.subject import Subject, configuration_of
 from ...core.units import quantity
-from ...core.verdicts import FALLING, LEVEL, RISING
-from ...core.window import faces, window_slices
-from ...experiments.roll_off import SURFACES
-from ...mechanics.plateau import second_half
+from ..kit.caption import caption
 from ..kit.drawing import (
     LINE,
     LINES,
@@ -25,16 +22,15 @@ from ..kit.drawing import (
     Drawing,
     colour_of,
     entries,
-    group,
     heading,
     label_in_lines,
     legends_below,
     letter,
-    settings_of,
 )
+from ..kit.panel import rows
 from ..kit.sizes import plain_decades
 from ..kit.verdicts import CIRCULAR_SHORT, row_of
-from ..kit.words import PAPER, short
+from ..kit.words import short
 
 TITLE = "Rigid dilatancy of all joints: does a plateau need a roll-off of the spectrum?"
 SUBJECT = "study"
@@ -54,13 +50,8 @@ WIDE = 5
 #: Inches that a label's lines are broken for, so that a column of the legend holds them.
 COLUMN = 4
 
-#: Trends of the synthetic joints in words; without one nothing is certain.
-_TRENDS = {
-    LEVEL: "reaches a plateau",
-    RISING: "keeps rising",
-    FALLING: "falls",
-    "": "shows no trend",
-}
+#: Kind of the synthetic joints whose spectrum is flat above a wavelength.
+WITH_ROLL_OFF = "with_roll_off"
 
 #: The second half of the offsets, over which slopes are taken.
 _SECOND_HALF = {"lw": 3}
@@ -68,115 +59,102 @@ _ROLL_OFF, _UNCORRELATED = "v", "o"
 _MARK = {"mfc": "white", "ms": 6, "zorder": 3}
 
 
+#: Variables of a specimen, and those of the synthetic joints that correspond.
+_DRAWN = {
+    "rigid_dilatancy": "joint_dilatancy",
+    "composite_rms": "joint_rms",
+    "composite_rms_expected": "joint_rms_expected",
+    "dilatancy_over_rms": "joint_dilatancy_over_rms",
+}
+
+
 @dataclass(frozen=True)
 class Slide:
-    """Dilatancy of one specimen, or of many synthetic joints, as they slide, mm.
+    """Dilatancy of one specimen, or of many synthetic joints, as they slide.
 
     Attributes
     ----------
     label : str
-    rows : list of str
-        Directions of the specimen, or seeds of the synthetic joints: what means and bands are over.
-    v : (n,) ndarray
-        Offsets.
-    opened, spread : (rows, n) ndarray
-        Rigid dilatancy delta_r, and standard deviation sigma_z of the composite topography.
-    expected : (rows, n) ndarray
-        sigma_z from the heights of the faces and their correlation.
-    correlation : (rows, n) ndarray
-        Of the two faces.
-    face : float
-        Standard deviation sigma of a face in the window.
+    data : xr.Dataset
+        Variables of :data:`_DRAWN` over (direction_or_seed, rigid_offset): means and bands are
+        over the first.
     roll_off : float or None
         Wavelength above which the spectrum is flat; NaN for a scan, None where there is none.
     uncorrelated : float
-        Offset where the faces lose all correlation, mean of the directions; NaN if not reached.
+        Offset where the faces lose all correlation; NaN if not reached.
     matched : bool
         Whether the upper face is the match of the lower one, so that sliding begins flush.
-    slope : tuple of float
-        Of many synthetic joints: slope of delta_r over the second half of v with its 95 % interval.
+    slope : Estimate or None
+        Of many synthetic joints: slope of delta_r from ``since`` on.
+    since : float
     trend : str
         Of many synthetic joints, as the stage ``roll_off`` has it.
     """
 
     label: str
-    rows: list
-    v: np.ndarray
-    opened: np.ndarray
-    spread: np.ndarray
-    expected: np.ndarray
-    correlation: np.ndarray
-    face: float
+    data: xr.Dataset
     roll_off: float | None
-    uncorrelated: float
-    matched: bool
-    slope: tuple[float, float, float] | None = None
+    uncorrelated: float = np.nan
+    matched: bool = True
+    slope: Estimate | None = None
+    since: float = np.inf
     trend: str = ""
 
     @classmethod
     def of(cls, atlas: DataTree, name: str) -> "Slide":
         """The slide of a specimen of the atlas."""
-        joint = group(atlas, "joints", name)
-        specimen = group(atlas, "specimens", name)
-        window = window_slices(specimen)
-        lower, upper = (float(np.std(without_mean_plane(z[window]))) for z in faces(specimen))
-        rho = joint["face_correlation"].values
-        square = lower**2 + upper**2 - 2 * rho * lower * upper
-        lost = joint["uncorrelated_offset"].values
+        subject = Subject.of(atlas, name)
+        joint = subject["joints"]
         return cls(
-            label=settings_of(atlas, name)["label"],
-            rows=joint["direction"].values.tolist(),
-            v=joint["rigid_offset"].values,
-            opened=joint["rigid_dilatancy"].values,
-            spread=joint["composite_rms"].values,
-            expected=np.sqrt(np.maximum(square, 0)),
-            correlation=rho,
-            face=float(np.sqrt((lower**2 + upper**2) / 2)),
+            label=subject.label,
+            data=_over_rows(joint[list(_DRAWN)], "direction"),
             roll_off=_roll_off(atlas, name),
-            uncorrelated=float(lost[np.isfinite(lost)].mean())
-            if np.isfinite(lost).any()
-            else np.nan,
-            matched=specimen.attrs["opposite"] == "match",
+            uncorrelated=float(joint["mean_uncorrelated_offset"]),
+            matched=subject["specimens"].attrs["opposite"] == "match",
         )
 
     @classmethod
-    def synthetic(cls, atlas: DataTree, surface: str) -> "Slide":
+    def synthetic(cls, joints: xr.Dataset) -> "Slide":
         """Slides of synthetic joints with, or without, a roll-off; means of their directions."""
-        joints = group(atlas, "roll_off", "surfaces")
-        joints = joints.sel(surface=surface).transpose("seed", "direction", "rigid_offset")
-        expected = joints["face_rms"] * np.sqrt(np.maximum(2 - 2 * joints["face_correlation"], 0))
-        roll_off = float(joints.attrs["roll_off"]) if surface == "with_roll_off" else None
+        rolled = joints["surface"].item() == WITH_ROLL_OFF
+        roll_off = float(joints.attrs["roll_off"]) if rolled else None
         words = f"with a roll-off at {short(roll_off)} mm" if roll_off else "without a roll-off"
-        names = ("rigid_dilatancy", "composite_rms", "face_correlation")
-        opened, spread, correlation = (joints[name].mean("direction").values for name in names)
+        data = joints[list(_DRAWN.values())].rename({new: old for old, new in _DRAWN.items()})
+        data = data.drop_vars("surface").assign_coords(
+            seed=[f"seed {n}" for n in data["seed"].values]
+        )
         return cls(
             label=f"{joints.sizes['seed']} synthetic joints {words}",
-            rows=[f"seed {seed}" for seed in joints["seed"].values],
-            v=joints["rigid_offset"].values,
-            opened=opened,
-            spread=spread,
-            expected=expected.mean("direction").values,
-            correlation=correlation,
-            face=float(np.sqrt(np.mean(joints["face_rms"].values ** 2))),
+            data=_over_rows(data, "seed"),
             roll_off=roll_off,
-            uncorrelated=np.nan,
-            matched=True,
-            slope=Estimate.read(joints, "slope").ends,
+            slope=Estimate.read(joints, "slope", scale=EXPONENT),
+            since=float(joints["slope_offset_min"]),
             trend=joints["trend"].item(),
         )
 
     @property
-    def ratio(self) -> np.ndarray:
-        """delta_r / sigma_z; NaN where faces are flush."""
-        return np.divide(
-            self.opened, self.spread, out=np.full(self.spread.shape, np.nan), where=self.spread > 0
-        )
+    def v(self) -> np.ndarray:
+        """Offsets (n,), mm."""
+        return self.data["rigid_offset"].values
+
+    @property
+    def ratios(self) -> np.ndarray:
+        """delta_r / sigma_z (n,), mean of directions or seeds; none where faces are flush."""
+        means = self.data["dilatancy_over_rms"].mean("direction_or_seed", skipna=False).values
+        return means[(self.v > 0) & np.isfinite(means)]
+
+
+def _over_rows(data, rows):
+    data = data.rename({rows: "direction_or_seed"})
+    return data.transpose("direction_or_seed", "rigid_offset")
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Dilatancy, and its ratio to the spread of the composite topography, for all that slides."""
-    synthetic = [Slide.synthetic(atlas, surface) for surface in SURFACES]
-    sliding = [name for name in names if settings_of(atlas, name)["opposite"] != "flat"]
+    joints = atlas["roll_off/surfaces"].to_dataset()
+    synthetic = [Slide.synthetic(joints.sel(surface=s)) for s in joints["surface"].values]
+    settings = configuration_of(atlas)["settings"]
+    sliding = [name for name in names if settings[name]["opposite"] != "flat"]
     slides = synthetic + [Slide.of(atlas, name) for name in sliding]
     figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
     panels = figure.subplots(1, 2, sharex=True)
@@ -193,12 +171,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     figure.set_figheight(figure.get_figheight() + LINE * lines)
     legends_below(figure, entries(panels[0]), _marks())
     table = pd.concat([_table(slide) for slide in slides], ignore_index=True)
-    return Drawing(figure, table, _caption(slides, _verdicts(atlas, sliding)))
+    return Drawing(figure, table, caption(__name__, **_words(atlas, sliding, slides)))
 
 
 def _roll_off(atlas, name):
     """Roll-off of an embedded surface, mm: None if it has none, NaN for a scan."""
-    embedded = json.loads(atlas.attrs["configuration"])["study"].get("embedded", {})
+    embedded = configuration_of(atlas)["study"].get("embedded", {})
     if name not in embedded:
         return np.nan
     stated = embedded[name].get("roll_off")
@@ -222,10 +200,9 @@ def _without_repeats(slides):
 def _alike(slide, other):
     """Whether one slide is the other, or begins as it does."""
     n = min(slide.v.size, other.v.size)
-    return slide.rows == other.rows and all(
-        np.array_equal(getattr(slide, name)[..., :n], getattr(other, name)[..., :n])
-        for name in ("v", "opened", "spread")
-    )
+    names = ["rigid_dilatancy", "composite_rms"]
+    one, two = (each.data[names].isel(rigid_offset=slice(n)) for each in (slide, other))
+    return one.equals(two)
 
 
 def _draw_slide(panels, n, slide):
@@ -235,32 +212,29 @@ def _draw_slide(panels, n, slide):
     v = slide.v[shown]
     label = label_in_lines(slide.label, width=COLUMN)
     if slide.slope is not None:
-        label += f"\nslope {_slope_words(*slide.slope)}"
-    for axes, values in zip(panels, (slide.opened, slide.ratio), strict=True):
+        words = f"{slide.slope.text()} mm/mm" if slide.slope.known else "too few offsets"
+        label += f"\nslope {words}"
+    for axes, name in zip(panels, ("rigid_dilatancy", "dilatancy_over_rms"), strict=True):
         if axes is panels[1] and not slide.matched:
             continue  # its dilatancy counts from faces that were apart already
-        values = values[:, shown]
+        values = slide.data[name].values[:, shown]
         mean, low, high = values.mean(axis=0), values.min(axis=0), values.max(axis=0)
         if axes.get_yscale() == "log":
             mean, low, high = (np.where(y > 0, y, np.nan) for y in (mean, low, high))
         axes.fill_between(v, low, high, color=colour, alpha=0.15, lw=0)
         axes.plot(v, mean, color=colour, ls=line, label=label)
-    if slide.slope is not None:
-        half = second_half(slide.v)
-        mean = slide.opened[:, half].mean(axis=0)
-        panels[0].plot(slide.v[half], mean, color=colour, **_SECOND_HALF)
+    opened = slide.data["rigid_dilatancy"].mean("direction_or_seed").values
+    half = slide.v >= slide.since
+    panels[0].plot(slide.v[half], opened[half], color=colour, **_SECOND_HALF)
     for at, marker in ((slide.roll_off, _ROLL_OFF), (slide.uncorrelated, _UNCORRELATED)):
         if at is not None and slide.v[0] <= at <= slide.v[-1]:
-            height = np.interp(at, slide.v, slide.opened.mean(axis=0))
+            height = np.interp(at, slide.v, opened)
             panels[0].plot(at, height, marker, color=colour, **_MARK)
 
 
 def _mark_ends(axes, slides):
     """Lines at the least and the largest ratio of a mean, which the caption states."""
-    ratios = _mean_ratios(slides)
-    if not ratios.size:
-        return
-    for end, va in ((ratios.min(), "top"), (ratios.max(), "bottom")):
+    for end, va in zip(_least_and_largest(slides), ("top", "bottom"), strict=False):
         axes.axhline(end, color="0.4", lw=0.8, ls=(0, (1, 2)))
         axes.text(0.02, end, short(end), transform=axes.get_yaxis_transform(), va=va)
 
@@ -312,73 +286,31 @@ def _start_at_zero(panels):
 
 def _table(slide):
     """Every direction of one specimen, or every synthetic joint."""
-    rows, n = slide.opened.shape
-    return pd.DataFrame(
-        {
-            "specimen": slide.label,
-            "direction_or_seed": np.repeat(slide.rows, n),
-            "offset_mm": np.tile(slide.v, rows),
-            "rigid_dilatancy_mm": slide.opened.ravel(),
-            "composite_rms_mm": slide.spread.ravel(),
-            "composite_rms_expected_mm": slide.expected.ravel(),
-            "dilatancy_over_rms": slide.ratio.ravel(),
-            "roll_off_mm": np.nan if slide.roll_off is None else slide.roll_off,
-            "uncorrelated_offset_mm": slide.uncorrelated,
-        }
-    )
+    table = rows(slide.data, *_DRAWN, specimen=slide.label)
+    roll_off = np.nan if slide.roll_off is None else slide.roll_off
+    return table.assign(roll_off_mm=roll_off, mean_uncorrelated_offset_mm=slide.uncorrelated)
 
 
-def _caption(slides, verdicts):
-    synthetic = slides[: len(SURFACES)]
-    words = (
-        f"After Figs. 6a and 7a of {PAPER}. Rigid dilatancy delta_r, alone and over the spread "
-        f"sigma_z of the composite topography. {_explanation(synthetic, slides)}"
-    )
-    return f"{words} The paper's plateaus: {verdicts}." if verdicts else words
+def _least_and_largest(slides):
+    """Ends of delta_r / sigma_z over all slides that begin flush; empty without one."""
+    ratios = np.concatenate([slide.ratios for slide in slides if slide.matched])
+    return [ratios.min(), ratios.max()] if ratios.size else []
 
 
-def _verdicts(atlas, names):
-    """Verdicts on the plateaus that the paper has of a material, specimen by specimen."""
+def _words(atlas, names, slides):
+    """Trends of the synthetic joints, and verdicts on the plateaus that the paper has."""
     said: dict[str, list[str]] = {}
     for name in names:
         for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
             if row is not None:
                 mark = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
-                label = settings_of(atlas, name)["label"]
-                said.setdefault(row["verdict"].item(), []).append(
-                    f"{printable(label, LONGEST_IN_CAPTION)}{mark}"
-                )
-    few = sum(map(len, said.values())) <= MOST_NAMED
-    return "; ".join(
-        f"{verdict} for {', '.join(of) if few else f'{len(of)} specimens'}"
-        for verdict, of in said.items()
-    )
-
-
-def _explanation(synthetic, slides):
-    """Whether delta_r follows sigma_z, and what the roll-off does to both."""
-    with_it, without = synthetic
-    return (
-        f"With a roll-off delta_r of synthetic joints {_TRENDS[with_it.trend]}, without it "
-        f"{_TRENDS[without.trend]} (slopes: legend); delta_r / sigma_z stays "
-        f"{_span(_mean_ratios(slides))}."
-    )
-
-
-def _mean_ratios(slides):
-    """delta_r / sigma_z of all slides, means of their rows, at all offsets."""
-    drawn = [slide.ratio.mean(axis=0)[slide.v > 0] for slide in slides if slide.matched]
-    ratios = np.concatenate(drawn)
-    return ratios[np.isfinite(ratios)]
-
-
-def _slope_words(slope, low, high):
-    """Slope of delta_r over the second half of v, with its interval."""
-    if not np.isfinite(slope):
-        return "too few offsets"
-    return f"{Estimate(slope, low, high, scale=EXPONENT).text()} mm/mm"
-
-
-def _span(values, joint=" to "):
-    """The least and the most of some numbers, once if they read alike."""
-    return joint.join(dict.fromkeys((short(np.min(values)), short(np.max(values)))))
+                label = printable(Subject.of(atlas, name).label, LONGEST_IN_CAPTION)
+                said.setdefault(row["verdict"].item(), []).append(f"{label}{mark}")
+    with_it, without = (slide.trend for slide in slides if slide.slope is not None)
+    return {
+        "with_it": with_it,
+        "without": without,
+        "ratios": dict.fromkeys(short(end) for end in _least_and_largest(slides)),
+        "verdicts": said,
+        "named": sum(map(len, said.values())) <= MOST_NAMED,
+    }

@@ -1,9 +1,10 @@
 """The decision on eq. 6 at a glance: exponent of the contact area over the size, and prediction."""
 
 from collections.abc import Sequence
+from itertools import product
+from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,18 +14,18 @@ from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ...experiments.size_decision import NO_EFFECT, PROBABILITY, REFUTED, UPHELD
+from ..kit.caption import caption
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
     Drawing,
     colour_of,
-    group,
     heading,
     legends_below,
     letter,
 )
+from ..kit.panel import rows
 from ..kit.points import reach
-from ..kit.words import SUPPLEMENTARY, number
 
 TITLE = "Size effect of the contact area on synthetic surfaces: measured against eq. 6"
 SUBJECT = "study"
@@ -39,23 +40,27 @@ _ARMS = {
     "S3": "surfaces without a roll-off",
     "W": "windows of surfaces without a roll-off",
 }
-#: Estimators of Delta_sigma: variable, words, filled.
-_ESTIMATORS = (("area_delta", "$A_r(s)$", True), ("box_delta", "box counts", False))
+#: Estimators of Delta_sigma: name, words, filled.
+_ESTIMATORS = (("area", "$A_r(s)$", True), ("box", "box counts", False))
+#: Of the table, for every class, load and estimator.
+_COLUMNS = (
+    *("alpha", "eq6_exponent", "central_alpha", "theory_alpha", "verdict"),
+    "no_size_effect",
+)
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """alpha of every class and load against what eq. 6 wants by both estimators."""
-    test = group(atlas, "size_effect", "surfaces")
+    test = atlas["size_effect/surfaces"].to_dataset()
     arms = test["arm"].values
     columns = min(len(arms), 2)
-    rows = -(-len(arms) // columns)
-    figure = Figure(figsize=(WIDTH, 1.1 + 3 * rows))
-    panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
-    table = _table(test)
+    lines = -(-len(arms) // columns)
+    figure = Figure(figsize=(WIDTH, 1.1 + 3 * lines))
+    panels = figure.subplots(lines, columns, sharey=True, squeeze=False)
     for axes in panels.ravel()[len(arms) :]:
         axes.remove()
     for which, axes, arm in zip("abcd", panels.ravel(), arms, strict=False):
-        _draw_arm(axes, table[table["arm"] == arm], test)
+        _draw_arm(axes, test.sel(arm=arm))
         title = _ARMS[str(arm)]
         if len(arms) > 1:
             letter(axes, which, title)
@@ -66,53 +71,37 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.set_ylabel(r"exponent found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$ (1)")
     bars = heading(f"bars: {100 * PROBABILITY:.0f} % intervals")
     legends_below(figure, [*_classes(test), bars], _loads(test), _lines())
-    return Drawing(figure, table, _caption(test))
+    classes, flat = test["overall"], test["no_size_effect"]
+    words = caption(
+        __name__,
+        classes=classes.size,
+        refuted=int((classes == REFUTED).sum()),
+        supported=int((classes == UPHELD).sum()),
+        largest=float(np.nanmax(abs(test["alpha"].values))),
+        limit=NO_EFFECT,
+        flat=int(flat.sum()),
+        cases=flat.size,
+    )
+    return Drawing(figure, rows(test, *_COLUMNS), words)
 
 
-def _table(test: xr.Dataset) -> pd.DataFrame:
-    """One row a class, load and estimator: alpha and the prediction, with their intervals."""
-    rows = []
-    for arm in test["arm"].values:
-        for hurst in test["hurst"].values:
-            for load in test["reduced_pressure"].values:
-                one = test.sel(arm=arm, hurst=hurst, reduced_pressure=load)
-                for name, words, _ in _ESTIMATORS:
-                    predicted = Estimate.read(one, name).mapped(lambda delta: delta - 2)
-                    rows.append(
-                        {
-                            "arm": arm,
-                            "hurst": hurst,
-                            "p_over_E_slope": load,
-                            "estimator": words.strip("$"),
-                            **Estimate.read(one, "alpha").columns("alpha"),
-                            **predicted.columns("eq6"),
-                            "central_alpha": float(one["central_alpha"]),
-                            "theory_alpha": float(one["theory_alpha"]),
-                            "verdict": str(one["verdict"].values),
-                            "no_size_effect": bool(one["no_size_effect"]),
-                        }
-                    )
-    return pd.DataFrame(rows)
-
-
-def _draw_arm(axes: Axes, table: pd.DataFrame, test: xr.Dataset) -> None:
+def _draw_arm(axes: Axes, test: xr.Dataset) -> None:
     """Points of one arm: colours are Hurst exponents, markers loads, hollow ones box counts."""
     axes.axhspan(-NO_EFFECT, NO_EFFECT, color="0.88", lw=0, zorder=0)
     axes.axline((0, 0), slope=1, color="k", lw=1.2, ls="--")
-    hursts, loads = list(test["hurst"].values), list(test["reduced_pressure"].values)
-    for _, row in table.dropna(subset=["alpha", "eq6"]).iterrows():
-        colour = colour_of(hursts.index(row["hurst"]))
-        filled = row["estimator"] == _ESTIMATORS[0][1].strip("$")
-        axes.errorbar(
-            row["eq6"],
-            row["alpha"],
-            xerr=reach(*Estimate.read(row, "eq6").ends),
-            yerr=reach(*Estimate.read(row, "alpha").ends),
-            fmt=MARKERS[loads.index(row["p_over_E_slope"])],
-            color=colour,
-            mfc=colour if filled else "white",
-            elinewidth=0.7,
-        )
+    places = product(range(test.sizes["hurst"]), range(test.sizes["reduced_pressure"]), _ESTIMATORS)
+    for i, k, (estimator, _, filled) in places:
+        one = test.isel(hurst=i, reduced_pressure=k).sel(delta_estimator=estimator)
+        found, wanted = (Estimate.read(one, name) for name in ("alpha", "eq6_exponent"))
+        if found.known and wanted.known:
+            colour = colour_of(i)
+            style: dict[str, Any] = {
+                "color": colour,
+                "mfc": colour if filled else "white",
+                "elinewidth": 0.7,
+            }
+            style |= {"xerr": reach(*wanted.ends), "yerr": reach(*found.ends)}
+            axes.errorbar(wanted.value, found.value, fmt=MARKERS[k], **style)
 
 
 def _classes(test: xr.Dataset) -> list:
@@ -149,17 +138,3 @@ def _lines() -> list:
         Line2D([], [], color="k", lw=1.2, ls="--", label="eq. 6 would lie here"),
         Patch(color="0.88", label=rf"no size effect: $|\alpha|$ < {NO_EFFECT:g}"),
     ]
-
-
-def _caption(test: xr.Dataset) -> str:
-    classes = test["overall"]
-    refuted = int((classes == REFUTED).sum())
-    supported = int((classes == UPHELD).sum())
-    flat = int(test["no_size_effect"].sum())
-    largest = float(np.nanmax(abs(test["alpha"].values)))
-    return (
-        f"{SUPPLEMENTARY} Exponent alpha of the contact area over the side b, and eq. 6's. "
-        f"Eq. 6 is refuted for {refuted} of {classes.size} classes and supported for "
-        f"{supported}: |alpha| is at most {number(largest)}, shown below "
-        f"{NO_EFFECT:g} in {flat} of {test['no_size_effect'].size} cases (H, pressure)."
-    )

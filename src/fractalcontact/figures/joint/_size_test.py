@@ -9,12 +9,12 @@ import pandas as pd
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from xarray import DataTree
 
 from ...core.determined import is_determined
 from ...core.estimate import Estimate
 from ...core.verdicts import AGREES, FLATTER, NOT_TESTED, STEEPER
-from ..kit.drawing import COLOURS, entries, group, label_short_span
+from ..kit.drawing import COLOURS, entries, label_short_span
+from ..kit.panel import rows
 from ..kit.words import place, pressure_label
 
 #: How each estimate of Delta_sigma is drawn where eq. 6 takes it, and how it is named.
@@ -32,13 +32,6 @@ _KEY_WIDTH = 44
 DECIDED = (AGREES, FLATTER, STEEPER)
 #: Verdicts and their reasons: of the well-conditioned form, of eq. 6's own, and of both.
 JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
-
-
-def size_test_of(atlas: DataTree, name: str) -> xr.Dataset:
-    """Size test of a specimen with what was predicted of its whole window."""
-    laws = group(atlas, "windows", name)
-    predicted = [of for of in laws if {"predictor", "dilatancy_load"} & set(laws[of].dims)]
-    return group(atlas, "size_test", name).assign({of: laws[of] for of in predicted})
 
 
 def place_of(test: xr.Dataset) -> str:
@@ -210,41 +203,11 @@ def load_axis(axes: Axes, test: xr.Dataset) -> None:
     label_short_span(axes.xaxis)
 
 
-def load_columns(test: xr.Dataset, force: float) -> dict[str, float | bool]:
-    """Columns that say which load is meant, the same in every table of the size test.
-
-    Parameters
-    ----------
-    test : xr.Dataset
-    force : float
-        One of the loads of the test, N.
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    KeyError
-        If the test has no such load.
-    """
-    load = test[["nominal_pressure", "beyond_study"]]
-    load = load.sel(normal_force=force, method="nearest", tolerance=1e-6 * force)
-    return {
-        "load_N": force,
-        "nominal_pressure_MPa": float(load["nominal_pressure"]),
-        "beyond_study": bool(load["beyond_study"]),
-    }
+def rows_of_loads(test: xr.Dataset, *names: str, **constants: Any) -> pd.DataFrame:
+    """Rows of variables of the size test, each with its load and whether that is the study's."""
+    return rows(test.transpose("normal_force", ...), *names, "beyond_study", **constants)
 
 
-def predicted_table(test: xr.Dataset, i: int, common: dict) -> pd.DataFrame:
-    """What eq. 6 predicts under the i-th load by every estimate, and the verdicts on it."""
-    return pd.DataFrame(
-        {
-            "quantity": "predicted_slope",
-            **common,
-            "estimator": test["estimator"].values,
-            **Estimate.read(test.isel(normal_force=i), "predicted_slope").columns("slope"),
-            **{name: test[name].values[:, i] for name in JUDGED},
-        }
-    )
+def rows_predicted(test: xr.Dataset) -> pd.DataFrame:
+    """What eq. 6 predicts under each load by every estimator, and the verdicts on it."""
+    return rows_of_loads(test, "predicted_slope", *JUDGED, panel="b")

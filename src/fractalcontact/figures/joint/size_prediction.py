@@ -5,7 +5,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.estimate import Estimate
+from ...core.subject import Subject
+from ..kit.caption import caption
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -16,12 +17,11 @@ from ..kit.drawing import (
     label_short_span,
     legends_below,
     letter,
-    settings_of,
 )
 from ..kit.empty import say_empty
 from ..kit.sizes import plain_decades
-from ..kit.words import SUPPLEMENTARY, short
-from ._size_test import grey_beyond, load_columns, place_of, size_test_of
+from ..kit.words import short
+from ._size_test import grey_beyond, place_of, rows_of_loads
 
 TITLE = "Closure and contact area of the whole window, predicted from its parts"
 SUBJECT = "specimen"
@@ -35,11 +35,7 @@ PREDICTORS = {
     "eq6_box_sizes": "eq. 6, occupied windows",
     "no_size_effect": "no size effect",
 }
-_QUANTITIES = {
-    "closure": ("normal_force", r"closure $w_\mathrm{int}$"),
-    "area": ("normal_force", "contact area $A_r/A_0$"),
-    "strength": ("dilatancy_load", r"strength $\tau$"),
-}
+_QUANTITIES = {"closure": r"closure $w_\mathrm{int}$", "area": "contact area $A_r/A_0$"}
 
 #: What the bars at the load of the caption are, and how far they stand apart.
 _BARS = "95 % intervals there, side by side"
@@ -51,7 +47,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
     Its data also have the strength.
     """
-    test = size_test_of(atlas, name)
+    subject = Subject.of(atlas, name)
+    test = subject["size_test"]
     figure = Figure(figsize=(WIDTH, 3.7))
     panels = figure.subplots(1, 2)
     load = _load_said(test)
@@ -61,13 +58,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     # First those of this window, then eq. 6's, then all else.
     columns = handles[:5:4], handles[1:4], handles[5:]
     legends_below(figure, *columns, columnspacing=3)
-    headline(figure, settings_of(atlas, name)["label"], place_of(test))
-    return Drawing(figure, _table(test), _caption(test, load))
+    headline(figure, subject.label, place_of(test))
+    table = _table(test, subject["windows"])
+    return Drawing(figure, table, caption(__name__, **_words(test, load)))
 
 
 def _draw_errors(axes, test, quantity, which, load):
     """Predicted over solved values of the whole window."""
-    words = _QUANTITIES[quantity][1]
+    words = _QUANTITIES[quantity]
     pressure = test["nominal_pressure"].values
     drawn = False
     closure, area = (test[f"{name}_error"] for name in ("closure", "area"))
@@ -114,23 +112,23 @@ def _draw_errors(axes, test, quantity, which, load):
     label_short_span(axes.xaxis)
 
 
-def _table(test):
-    tables = [pd.DataFrame({"quantity": [], "load_N": [], "predictor": []})]
-    for quantity, (dim, _) in _QUANTITIES.items():
-        if f"direct_{quantity}" not in test:
-            continue
-        for j, force in enumerate(test[dim].values):
-            columns = {
-                "quantity": f"predicted_{quantity}",
-                **load_columns(test, force),
-                "predictor": test["predictor"].values,
-            }
-            predicted = Estimate.read(test, f"predicted_{quantity}")
-            columns |= predicted[:, j].columns("predicted")
-            columns["direct"] = float(test[f"direct_{quantity}"][j])
-            columns["unit"] = test[f"direct_{quantity}"].attrs["units"]
-            tables.append(pd.DataFrame(columns))
-    return pd.concat(tables[1:] or tables, ignore_index=True)
+def _table(test, laws):
+    """Predictions for the whole window, and what was solved; of strength where it slides."""
+    tables = [
+        rows_of_loads(test, f"predicted_{name}", f"direct_{name}", quantity=name)
+        for name in _QUANTITIES
+    ]
+    if "predicted_strength" in laws:
+        strength = laws.drop_dims("normal_force").drop_vars("nominal_pressure", errors="ignore")
+        strength = strength.rename(dilatancy_load="normal_force")
+        of_study = test["beyond_study"].sel(
+            normal_force=strength["normal_force"].values, method="nearest"
+        )
+        of_study = of_study.assign_coords(normal_force=strength["normal_force"])
+        strength = strength.assign(beyond_study=of_study)
+        columns = ("predicted_strength", "direct_strength")
+        tables.append(rows_of_loads(strength, *columns, quantity="strength"))
+    return pd.concat(tables, ignore_index=True)
 
 
 def _load_said(test):
@@ -144,49 +142,34 @@ def _load_said(test):
     return int(np.flatnonzero(of_study if of_study.any() else known)[-1])
 
 
-def _caption(test, load):
-    words = f"{SUPPLEMENTARY} Predictions for the whole window from parts, over what is solved."
-    if load is None:
-        return f"{words} {_drawn_words(test)}"
-    here = test.isel(normal_force=load).sel(predictor=list(PREDICTORS))
-    beyond = ", beyond the study's loads," if bool(here["beyond_study"]) else ""
-    pressure = short(float(here["nominal_pressure"]))
-    closure, area = (_range_words(1 + here[f"{name}_error"]) for name in ("closure", "area"))
-    return (
-        f"{words} At {pressure} MPa{beyond} (dotted) predictions of closure are, best and worst, "
-        f"{closure}; of contact area {area}."
-    )
-
-
-def _drawn_words(test):
-    """Range of what is drawn where no load has every prediction: within the study's, else all."""
+def _words(test, load):
+    """Best and worst prediction at the load that the caption speaks of, else ranges of all."""
+    errors = {"closure": "closure_error", "contact area": "area_error"}
+    if load is not None:
+        here = test.isel(normal_force=load).sel(predictor=list(PREDICTORS))
+        found = {words: _best_and_worst(1 + here[error]) for words, error in errors.items()}
+        pressure = float(here["nominal_pressure"])
+        return {"pressure": pressure, "beyond": bool(here["beyond_study"]), "found": found}
+    # Within the study's loads, else beyond them.
     of_study = test.where(~test["beyond_study"].astype(bool))
-    errors = [f"{quantity}_error" for quantity in ("closure", "area")]
-    inside = any(np.isfinite(of_study[error]).any() for error in errors)
-    where = "Within the study's loads" if inside else "Beyond the study's loads"
-    found = []
-    for error, words in zip(errors, ("closure", "contact area"), strict=True):
-        ratios = (1 + (of_study if inside else test)[error].sel(predictor=list(PREDICTORS))).values
-        known = ratios[np.isfinite(ratios)]
-        if known.size:
-            ends = " to ".join(dict.fromkeys(short(end, 2) for end in (known.min(), known.max())))
-            found.append(f"{ends} times the solved {words}")
-    if not found:
-        return "No load lets any of them predict closure or contact area."
-    return f"{where} those drawn give {' and '.join(found)}; no load has all of them."
+    inside = any(np.isfinite(of_study[error]).any() for error in errors.values())
+    drawn = (of_study if inside else test).sel(predictor=list(PREDICTORS))
+    ratios = {words: 1 + drawn[error].values for words, error in errors.items()}
+    known = {words: ratio[np.isfinite(ratio)].tolist() for words, ratio in ratios.items()}
+    found = {words: values for words, values in known.items() if values}
+    return {"pressure": np.nan, "beyond": not inside, "found": found}
 
 
-def _range_words(ratios):
-    """Best and worst ratio of predicted and solved, each with its predictor."""
+def _best_and_worst(ratios):
+    """Best and worst ratio of predicted and solved, each with all its predictors."""
     away = abs(np.log(ratios.values))
-    ends = (int(away.argmin()), int(away.argmax()))
     names = [PREDICTORS[key].replace("$", "") for key in ratios["predictor"].values]
-    found = []
-    for i in dict.fromkeys(ends):
-        # Two predictors may be one here.
-        same = [name for name, one in zip(names, away, strict=True) if np.isclose(one, away[i])]
-        found.append(f"{short(float(ratios[i]))} ({', '.join(same)})")
-    return " and ".join(found)
+    return {
+        float(ratios[i]): [
+            name for name, one in zip(names, away, strict=True) if np.isclose(one, away[i])
+        ]
+        for i in (int(away.argmin()), int(away.argmax()))
+    }
 
 
 def _ends_words(test, quantity, load):

@@ -6,7 +6,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import DIMENSION, Estimate, names_of
+from ...core.estimate import DIMENSION, Estimate
+from ...core.subject import Subject
+from ..kit.caption import caption
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -14,14 +16,12 @@ from ..kit.drawing import (
     headline,
     legends_below,
     letter,
-    settings_of,
     spread,
 )
 from ..kit.empty import say_empty
 from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades, size_axis
-from ..kit.verdicts import claim, sentences
-from ..kit.words import SUPPLEMENTARY, number, pressure_label
+from ..kit.verdicts import claim
 from ._size_test import (
     ESTIMATORS,
     MOST_LOADS,
@@ -31,13 +31,12 @@ from ._size_test import (
     draw_predictions,
     first_loads,
     load_axis,
-    load_columns,
     load_marker,
     place_of,
-    predicted_table,
     pressure_words,
+    rows_of_loads,
+    rows_predicted,
     size_legends,
-    size_test_of,
 )
 
 TITLE = "Eq. 6 in its own form: pressure that gives parts of the window the sigma* of the whole"
@@ -48,7 +47,8 @@ ORDER = 171
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """sigma_0 at equal sigma* over b under some loads, and its slope over the load."""
-    test = size_test_of(atlas, name)
+    subject = Subject.of(atlas, name)
+    test = subject["size_test"]
     fitted = first_loads(test, "slope")
     loads = fitted[spread(len(fitted), MOST_LOADS)]
     figure = Figure(figsize=(WIDTH, 4.1))
@@ -57,21 +57,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_slopes(slopes, test, loads)
     others, laws = size_legends(slopes)
     legends_below(figure, measured + others, laws)
-    headline(figure, settings_of(atlas, name)["label"], place_of(test))
-    judged = deciding(test).any() and "by the size test, at equal sigma_0"
-    caption = sentences(
-        f"{SUPPLEMENTARY} Nominal pressure that gives parts of the window the sigma* of the whole, "
-        "over their side b.",
-        _found_words(test),
-        claim(
-            atlas,
-            name,
-            "size_effect_follows",
-            numbers=False,
-            why=judged or "no load decides by A_r/A_0 at equal sigma_0",
-        ),
-    )
-    return Drawing(figure, _table(test), caption)
+    headline(figure, subject.label, place_of(test))
+    judged = "by the size test, at equal sigma_0"
+    why = judged if deciding(test).any() else "no load decides by A_r/A_0 at equal sigma_0"
+    said = claim(atlas, name, "size_effect_follows", numbers=False, why=why)
+    return Drawing(figure, _table(test), caption(__name__, claim=said, **_words(test)))
 
 
 def _draw_equal(axes, test, loads):
@@ -114,47 +104,32 @@ def _draw_slopes(axes, test, loads):
 
 
 def _table(test):
-    tables = []
-    for i, force in enumerate(test["normal_force"].values):
-        common = load_columns(test, force)
-        equal = {
-            "quantity": "equal_pressure",
-            **common,
-            "b_mm": test["side"].values,
-            "value_MPa": test["equal_pressure"].values[i],
-            "median_window_MPa": test["window_pressure"].values[i],
-            "windows": test["windows"].values,
-        }
-        equal |= {
-            name: test[name].values[i]
-            for name in ("windows_below", "windows_above", "windows_unknown")
-        }
-        ends = {name: [float(test[name][i])] for name in (*names_of("slope"), "slope_n")}
-        tables += [
-            pd.DataFrame(equal),
-            pd.DataFrame({"quantity": "slope", **common, **ends}),
-            predicted_table(test, i, common),
-        ]
+    windows = ("windows", "windows_below", "windows_above", "windows_unknown")
+    tables = [
+        rows_of_loads(test, "equal_pressure", "window_pressure", "side", *windows, panel="a"),
+        rows_of_loads(test, "slope", "slope_n", panel="b"),
+        rows_predicted(test),
+    ]
     return pd.concat(tables, ignore_index=True)
 
 
-def _found_words(test):
+def _words(test):
     """Best known slope of the study's loads beside eq. 6's; how many are well conditioned."""
     known = np.isfinite(test["slope"].values)
-    if not known.any():
-        return "Parts hold too few nodes in contact."
     sure = known & test["well_conditioned"].values.astype(bool)
+    counts = {"known": int(known.sum()), "hollow": int(known.sum() - sure.sum())}
+    if not known.any():
+        return counts
     loads = first_loads(test, "slope")
     loads = loads[sure[loads]] if sure[loads].any() else loads
     width = Estimate.read(test, "slope").width[loads]
     best = test.isel(normal_force=loads[np.argmin(np.where(np.isfinite(width), width, np.inf))])
-    wanted = [
-        f"{number(best['predicted_slope'].sel(estimator=estimator))} by {words.replace('$', '')}"
+    predicted = {
+        words.replace("$", ""): float(best["predicted_slope"].sel(estimator=estimator))
         for estimator, (_, words) in ESTIMATORS.items()
-        if np.isfinite(best["predicted_slope"].sel(estimator=estimator))
-    ]
-    measured = Estimate.read(best, "slope", scale=DIMENSION).text()
-    beside = f", eq. 6 has {', '.join(wanted)}" if wanted else ""
-    found = f"At {pressure_label(float(best['nominal_pressure']))} the slope is {measured}{beside}."
-    hollow = int(known.sum() - sure.sum())
-    return f"{found} Hollow slopes ({hollow} of {int(known.sum())}) decide nothing."
+    }
+    return counts | {
+        "pressure": float(best["nominal_pressure"]),
+        "slope": Estimate.read(best, "slope", scale=DIMENSION),
+        "predicted": {words: slope for words, slope in predicted.items() if np.isfinite(slope)},
+    }

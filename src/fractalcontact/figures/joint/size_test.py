@@ -7,6 +7,8 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
+from ...core.subject import Subject
+from ..kit.caption import caption
 from ..kit.drawing import (
     WIDTH,
     Drawing,
@@ -14,13 +16,11 @@ from ..kit.drawing import (
     headline,
     legends_below,
     letter,
-    settings_of,
     spread,
 )
 from ..kit.empty import say_empty
 from ..kit.sizes import draw_bars, plain_decades, size_axis
-from ..kit.verdicts import claim, sentences
-from ..kit.words import SUPPLEMENTARY
+from ..kit.verdicts import claim
 from ._size_test import (
     MOST_LOADS,
     draw_laws,
@@ -28,13 +28,12 @@ from ._size_test import (
     draw_predictions,
     first_loads,
     load_axis,
-    load_columns,
     load_marker,
     place_of,
-    predicted_table,
     pressure_words,
+    rows_of_loads,
+    rows_predicted,
     size_legends,
-    size_test_of,
     verdict_reason,
 )
 
@@ -52,7 +51,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
     Its data also have the exponents of the compliance and of the mean gap.
     """
-    test = size_test_of(atlas, name)
+    subject = Subject.of(atlas, name)
+    test = subject["size_test"]
     fitted = first_loads(test, "area_exponent_low")
     loads = fitted[spread(len(fitted), MOST_LOADS)]
     figure = Figure(figsize=(WIDTH, 3.9))
@@ -61,14 +61,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_exponents(exponents, test, loads)
     others, laws = size_legends(exponents)
     legends_below(figure, measured + others, laws)
-    headline(figure, settings_of(atlas, name)["label"], place_of(test))
-    caption = sentences(
-        f"{SUPPLEMENTARY} Contact area of parts of the window over side b at equal sigma_0; its "
-        "exponent.",
-        claim(atlas, name, "size_effect_follows", why=verdict_reason(test)),
-        _few_words(test),
+    headline(figure, subject.label, place_of(test))
+    words = caption(
+        __name__,
+        claim=claim(atlas, name, "size_effect_follows", why=verdict_reason(test)),
+        measured=bool(np.isfinite(test["area_exponent_low"]).any()),
+        effect=bool(test["size_effect"].any()),
     )
-    return Drawing(figure, _table(test), caption)
+    return Drawing(figure, _table(test), words)
 
 
 def _draw_area(axes, test, loads):
@@ -107,43 +107,12 @@ def _draw_exponents(axes, test, loads):
 
 
 def _table(test):
-    tables = []
-    for i, force in enumerate(test["normal_force"].values):
-        common = load_columns(test, force)
-        tables += [_equal_pressure_table(test, i, common), predicted_table(test, i, common)]
+    means = ("area_fraction", "interface_compliance", "mean_gap")
+    exponents = [of for name in _EXPONENTS for of in (name, f"{name}_n")]
+    of_sizes = (*means, "side", "least_nodes", "central_load")
+    tables = [
+        rows_of_loads(test, *of_sizes, panel="a"),
+        rows_of_loads(test, *exponents, panel="b"),
+        rows_predicted(test),
+    ]
     return pd.concat(tables, ignore_index=True)
-
-
-def _equal_pressure_table(test, i, common):
-    """Contact over b at one sigma_0, and the exponents."""
-    means = [
-        {
-            "quantity": name,
-            **common,
-            "b_mm": test["side"].values,
-            "unit": test[name].attrs["units"],
-            **{
-                words: test[f"{name}{end}"].values[i]
-                for end, words in (("", "mean"), ("_low", "mean_low"), ("_high", "mean_high"))
-            },
-            "fewest_nodes": test["least_nodes"].values[i],
-            "central_load": test["central_load"].values[i],
-        }
-        for name in ("area_fraction", "interface_compliance", "mean_gap")
-    ]
-    exponents = [
-        {
-            "quantity": name,
-            **common,
-            **Estimate.read(test, name)[i].columns("slope"),
-            "slope_n": [float(test[f"{name}_n"][i])],
-        }
-        for name in _EXPONENTS
-    ]
-    return pd.concat([pd.DataFrame(rows) for rows in means + exponents], ignore_index=True)
-
-
-def _few_words(test):
-    """That there is nothing to measure the exponent with."""
-    known = np.isfinite(Estimate.read(test, "area_exponent").low).any()
-    return "" if known else "Parts hold too few nodes in contact."

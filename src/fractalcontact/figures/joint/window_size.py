@@ -1,66 +1,49 @@
 """Roughness (eq. 2), closure and compliance (sect. 5) against the size of the window."""
 
-from typing import NamedTuple
-
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
-from ...core.ranges import within
-from ...mechanics.states import chosen_offset
-from ..kit.drawing import (
-    MARKERS,
-    WEAK,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    group,
-    heading,
-    headline,
-    letter,
-    settings_of,
-)
+from ...core.subject import Subject
+from ..kit.caption import caption
+from ..kit.drawing import WEAK, WIDTH, Drawing, entries, heading, headline
 from ..kit.empty import say_empty
+from ..kit.panel import Panel, table_of
 from ..kit.points import draw_points
-from ..kit.sizes import along_size, draw_bars, interval_text, logarithmic, size_axis
-from ..kit.verdicts import claim, sentences
-from ..kit.words import opening, place, pressure_label
+from ..kit.sizes import (
+    BARS,
+    draw_bars,
+    draw_over_size,
+    draw_power_law,
+    logarithmic,
+    series,
+    size_axis,
+)
+from ..kit.verdicts import claim
+from ..kit.words import place, pressure_label
 
 TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
 SUBJECT = "specimen"
-NEEDS = ("windows", "statements")
+NEEDS = ("closure", "windows", "statements")
 ORDER = 90
 
-
-class Quantity(NamedTuple):
-    """What a panel draws of the contact of sub-windows: variables, letter and words."""
-
-    name: str
-    exponent: str
-    letter: str
-    words: str
-    label: str
-
-
-CLOSURE = Quantity(
-    "interface_closure",
-    "closure_exponent",
-    "b",
-    "closure",
-    r"interface closure $w_\mathrm{int}$ (mm)",
-)
-COMPLIANCE = Quantity(
-    "interface_compliance",
-    "compliance_exponent",
-    "c",
-    "compliance",
-    r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)",
-)
-
+#: Of the contact of sub-windows: variable, exponent and axis.
+_CONTACT = {
+    "b": ("interface_closure", "closure_exponent", r"interface closure $w_\mathrm{int}$ (mm)"),
+    "c": (
+        "interface_compliance",
+        "compliance_exponent",
+        r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)",
+    ),
+}
+#: Heads of the legend, by panel.
+_HEADS = {
+    "a": "(a) exponents with 95 % intervals",
+    "b": r"(b) $w_\mathrm{int} \sim b^x$ at nominal pressure",
+    "c": r"(c) $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0 \sim b^x$",
+}
 #: Points that no exponent goes through: beyond the range of eq. 2, or of few nodes in contact.
 _HOLLOW = "hollow: not fitted (out of range, few nodes)"
 
@@ -68,204 +51,101 @@ _HOLLOW = "hollow: not fitted (out of range, few nodes)"
 def draw(atlas: DataTree, name: str) -> Drawing:
     """sigma_z, closure and compliance of the interface against the side b of sub-windows.
 
-    Its data are the means over sub-windows with their intervals.
+    Its data are the means over sub-windows with their intervals; those of contact at all offsets.
     """
-    settings = settings_of(atlas, name)
-    laws = group(atlas, "windows", name)
-    offsets = laws["offset"].values
-    flat = str(laws["direction"].values) == "none"
-    mapped = int(np.argmin(np.abs(offsets - chosen_offset(settings["map_offset"], offsets))))
-    shown = [] if flat else [mapped]
+    subject = Subject.of(atlas, name)
+    laws = subject["windows"]
+    shown = laws.sel(offset=subject.offset, method="nearest")
+    where = place(subject.direction, float(shown["offset"]))
 
     figure = Figure(figsize=(WIDTH, 5.8))
-    (roughness, closure), (compliance, legends) = figure.subplots(2, 2)
-    _draw_roughness(roughness, laws, shown)
-    for axes, quantity in ((closure, CLOSURE), (compliance, COMPLIANCE)):
-        _draw_contact(axes, laws, mapped, quantity)
+    *places, legends = figure.subplots(2, 2).flat
+    titles = ("roughness", f"closure, {where}", f"compliance, {where}")
+    a, b, c = panels = [Panel(*one) for one in zip(places, "abc", titles, strict=True)]
+    _draw_roughness(a, shown, subject.direction != "none")
+    for panel in (b, c):
+        _draw_contact(panel, shown)
+        quantity, exponent, _ = _CONTACT[panel.which]
+        every = laws.transpose("offset", "normal_force", "part", ...)
+        panel.keep(every, quantity, "side", "windows", exponent)
     legends.axis("off")
     handles = [
-        entry
-        for axes, words in (
-            (roughness, "(a) exponents with 95 % intervals"),
-            (closure, r"(b) $w_\mathrm{int} \sim b^x$ at nominal pressure"),
-            (compliance, r"(c) $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0 \sim b^x$"),
-        )
-        for entry in (heading(words), *entries(axes))
+        entry for panel in panels for entry in (heading(_HEADS[panel.which]), *entries(panel.axes))
     ]
-    fits = [laws[quantity.exponent].values[mapped] for quantity in (CLOSURE, COMPLIANCE)]
-    fit = Line2D([], [], color="0.4", label="line: fit (thin: undetermined)", lw=0.8)
-    lines = [fit] if np.isfinite(fits).any() else []
-    handles += [
-        Line2D([], [], ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW),
-        *lines,
-        heading("bars: 95 % intervals; none of the whole window"),
-    ]
+    handles.append(Line2D([], [], ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW))
+    if any(np.isfinite(shown[exponent]).any() for _, exponent, _ in _CONTACT.values()):
+        label = "line: fit (thin: undetermined)"
+        handles.append(Line2D([], [], label=label, color="0.4", lw=0.8))
+    handles.append(heading(BARS))
     legends.legend(handles=handles, loc="center left", labelspacing=0.4)
-    headline(figure, settings["label"])
-    table = pd.concat(
-        [
-            _roughness_table(laws, shown),
-            *(_contact_table(laws, quantity) for quantity in (CLOSURE, COMPLIANCE)),
-        ],
-        ignore_index=True,
-    )
-    force = float(group(atlas, "statements", name).attrs["force"])
-    judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
-    exponents = bool(np.isfinite(laws["compliance_exponent"]).any())
-    larger = claim(
-        atlas,
-        name,
-        "larger_samples_close_more",
-        why=f"at {pressure_label(float(judged))}, filled sizes alone" if exponents else "",
-    )
-    return Drawing(figure, table, sentences(_caption(laws), _closure_words(laws), larger))
+    headline(figure, subject.label)
+    return Drawing(figure, table_of(*panels), caption(__name__, **_words(atlas, name, laws)))
 
 
-def _draw_roughness(axes, laws, shown):
-    b = laws["scale_side"].values
+def _draw_roughness(panel, laws, slides):
+    """sigma_z of the face and, of a joint that slides, of the gap; eq. 2 through the face's."""
+    axes, b = panel.axes, laws["scale_side"].values
+    fitted = laws["face_sigma_z_fitted"].values
+    shown = {"face_sigma_z": ("face: $\\sigma_z \\sim b^H$, $H$", "face_hurst", "k", "o")}
+    if slides:
+        shown["sigma_z_all"] = ("gap of both faces: $H$", "hurst", "0.65", "D")
+    for name, (words, law, colour, marker) in shown.items():
+        means = Estimate.read(laws, name)
+        style = {"color": colour, "marker": marker}
+        draw_bars(axes, b, *means.ends, colour)
+        draw_points(axes, b, means.value, fitted, **style)
+        exponent = Estimate.read(laws, law, scale=EXPONENT).text()
+        axes.plot([], [], **style | _face(fitted), ls="none", label=f"{words} = {exponent}")
+        panel.keep(laws, name, "scale_side", "scale_n", "scale_used", "face_sigma_z_fitted")
+    expected = Estimate.read(laws, "expected_hurst", scale=EXPONENT)
     face = laws["face_sigma_z"].values
-    used = laws["scale_used"].values & np.isfinite(face) & np.isfinite(float(laws["face_hurst"]))
-    hurst = interval_text(laws, "face_hurst")
-    style = {"color": "k", "marker": "o"}
-    _with_intervals(axes, b, laws, "face_sigma_z", (), used, **style)
-    face_mark = style | _hollow(used)
-    axes.plot([], [], **face_mark, ls="none", label=rf"face: $\sigma_z \sim b^H$, $H$ = {hurst}")
-    for i in shown:
-        style = {"color": "0.65", "marker": "D"}
-        _with_intervals(axes, b, laws, "sigma_z_all", (i,), used, **style)
-        label = f"gap of both faces: $H$ = {interval_text(laws, 'hurst', i)}"
-        axes.plot([], [], **style | _hollow(used), ls="none", label=label)
-    expected = float(laws["expected_hurst"])
-    if np.isfinite(expected) and used.any():
-        ends = b[used][[0, -1]]
-        middle = np.exp(np.mean(np.log(b[used])))
-        level = np.exp(np.mean(np.log(face[used])))
-        label = rf"eq. 2: $H = 3-\Delta_g$ = {interval_text(laws, 'expected_hurst')}"
-        axes.plot(ends, level * (ends / middle) ** expected, color="k", ls="--", label=label)
+    if expected.known and fitted.any():
+        style = {"color": "k", "ls": "--", "label": rf"eq. 2: $H = 3-\Delta_g$ = {expected.text()}"}
+        draw_power_law(axes, b[fitted], face[fitted], expected.value, **style)
     size_axis(axes, b, "sub-windows")
     if (face > 0).any():
-        drawn = [face, *laws["sigma_z_all"].values[shown]]
-        logarithmic(axes, np.concatenate(drawn))
+        logarithmic(axes, np.concatenate([laws[name].values for name in shown]))
     axes.set_ylabel(r"roughness $\sigma_z$ about the own plane (mm)")
-    letter(axes, "a", "roughness")
 
 
-def _draw_contact(axes, laws, mapped, quantity):
+def _draw_contact(panel, laws):
     """Closure or compliance over b under every pressure, with the power law of each."""
-    b = laws["side"].values
+    axes, b = panel.axes, laws["side"].values
+    name, law, label = _CONTACT[panel.which]
+    fitted = laws[f"{name}_fitted"]
+    draw_over_size(axes, laws, name, filled=fitted, apart=0)
+    exponents = Estimate.read(laws, law, scale=EXPONENT)
     for j, pressure in enumerate(laws["nominal_pressure"].values):
-        style = {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
-        law = quantity.exponent
-        exponent = Estimate.read(laws, law, scale=EXPONENT)[mapped, j]
-        weak = WEAK if exponent.known and not exponent.determined else {}
-        values = laws[quantity.name].values[:, mapped, j]
-        fitted = np.zeros(b.shape, bool)
+        exponent, inside = exponents[j], fitted.isel(normal_force=j).values
         if exponent.known:
-            b_min, b_max = (float(laws[f"{law}_b_{end}"][mapped, j]) for end in ("min", "max"))
-            fitted = (values > 0) & within(b, b_min, b_max)
-            level = np.exp(np.mean(np.log(values[fitted]) - exponent.value * np.log(b[fitted])))
-            line = {"color": style["color"], "linewidth": 0.8} | weak
-            axes.plot(b[fitted], level * b[fitted] ** exponent.value, **line)
-        _with_intervals(axes, b, laws, quantity.name, (mapped, j), fitted, **style)
-        label = f"{pressure_label(pressure)}: $x$ = {exponent.text()}"
-        axes.plot([], [], **style | _hollow(fitted), ls="none", label=label)
+            line = {"color": series(j)["color"], "linewidth": 0.8}
+            line |= {} if exponent.determined else WEAK
+            values = laws[name].isel(normal_force=j).values[inside]
+            draw_power_law(axes, b[inside], values, exponent.value, **line)
+        words = f"{pressure_label(pressure)}: $x$ = {exponent.text()}"
+        axes.plot([], [], **series(j) | _face(inside), ls="none", label=words)
     size_axis(axes, b, "sub-windows")
-    values = laws[quantity.name].values[:, mapped]
-    if (values > 0).any():
-        logarithmic(axes, values)
+    if (laws[name] > 0).any():
+        logarithmic(axes, laws[name].values)
     else:
         say_empty(axes, "no size holds ten nodes in contact", ticks=False)
-    axes.set_ylabel(quantity.label)
-    where = place(str(laws["direction"].values), float(laws["offset"][mapped]))
-    letter(axes, quantity.letter, f"{quantity.words}, {where}")
+    axes.set_ylabel(label)
 
 
-def _hollow(fitted):
+def _face(fitted):
     """Face of the marker in a legend: white where no symbol drawn is filled."""
     return {} if fitted.any() else {"mfc": "white"}
 
 
-def _with_intervals(axes, b, laws, name, index, fitted, **style):
-    """Means over sub-windows and their 95 % intervals; hollow where not ``fitted``.
-
-    ``index`` follows the dimension of b.
-    """
-    mean, low, high = along_size(laws, name, index)
-    draw_bars(axes, b, mean, low, high, style["color"])
-    draw_points(axes, b, mean, fitted, **style)
-
-
-def _roughness_table(laws, shown):
-    def rows(surface, offset, name, index):
-        mean, low, high = along_size(laws, name, index)
-        return pd.DataFrame(
-            {
-                "quantity": "sigma_z",
-                "surface": surface,
-                "offset_mm": offset,
-                "b_mm": laws["scale_side"].values,
-                "windows": laws["scale_n"].values,
-                "fitted": laws["scale_used"].values,
-                "mean_mm": mean,
-                "low_mm": low,
-                "high_mm": high,
-            }
-        )
-
-    tables = [rows("face", np.nan, "face_sigma_z", ())]
-    tables += [rows("composite", float(laws["offset"][i]), "sigma_z_all", (i,)) for i in shown]
-    return pd.concat(tables, ignore_index=True)
-
-
-def _contact_table(laws, quantity):
-    name, law = quantity.name, quantity.exponent
-    unit = "mm" if quantity is CLOSURE else "mm_per_MPa"
-    tables = [
-        pd.DataFrame(
-            {
-                "quantity": name,
-                "offset_mm": float(laws["offset"][i]),
-                "nominal_pressure_MPa": float(laws["nominal_pressure"][j]),
-                "b_mm": laws["side"].values,
-                "windows": laws["windows"].values,
-                f"mean_{unit}": laws[name].values[:, i, j],
-                f"low_{unit}": laws[f"{name}_low"].values[:, i, j],
-                f"high_{unit}": laws[f"{name}_high"].values[:, i, j],
-                **Estimate.read(laws, law)[i, j].columns("exponent"),
-            }
-        )
-        for i in range(laws.sizes["offset"])
-        for j in range(laws.sizes["normal_force"])
-    ]
-    return pd.concat(tables, ignore_index=True)
-
-
-# -- caption ---------------------------------------------------------------------------------------
-
-
-def _caption(laws):
-    return (
-        f"{opening('eq. 2 and section 5')} Roughness sigma_z, closure and compliance of "
-        f"sub-windows against their side b. {_hurst_words(laws)}"
-    )
-
-
-def _hurst_words(laws):
-    """H of the face, beside that expected of its dimension."""
-    hurst, expected = (
-        Estimate.read(laws, f"{of}_hurst", scale=EXPONENT) for of in ("face", "expected")
-    )
-    if not hurst.known:
-        return "No fit of eq. 2: fewer than three sizes lie in its range."
-    words = f"H = {hurst.text()}"
-    if not expected.known:
-        return f"{words}."
-    agree = hurst.low <= expected.high and expected.low <= hurst.high
-    verb = "agrees" if agree else "disagrees"
-    return f"{words} {verb} with 3 - Delta_g = {expected.text()}."
-
-
-def _closure_words(laws):
-    """That no exponent of the closure could be fitted."""
-    known = bool(np.isfinite(laws["closure_exponent"]).any())
-    return "" if known else "No exponent: too few sizes hold ten nodes in contact."
+def _words(atlas, name, laws):
+    """What the caption says: H beside that of eq. 2, and whether larger windows close more."""
+    force = float(atlas[f"statements/{name}"].attrs["force"])
+    judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
+    fitted = np.isfinite(laws["compliance_exponent"]).any()
+    why = f"at {pressure_label(float(judged))}, filled sizes alone" if fitted else ""
+    return {
+        "hurst": Estimate.read(laws, "face_hurst", scale=EXPONENT),
+        "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
+        "closure": bool(np.isfinite(laws["closure_exponent"]).any()),
+        "claim": claim(atlas, name, "larger_samples_close_more", why=why),
+    }

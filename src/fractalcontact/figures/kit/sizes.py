@@ -1,24 +1,23 @@
 """What the figures of strength and of the size b share: axes, bars of intervals, exponents."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
-from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
-from ...core.fitting import FEWEST_POINTS
 from ...core.limits import JRC_RANGE, JRC_SAMPLING, LARGEST_FRICTION_ANGLE
+from .drawing import MARKERS, colour_of
 from .points import draw_points
-from .verdicts import claim
 from .words import length_unit, short
 
-#: Where more than this fraction of the sub-windows had their angle held, a marker is left open.
-MOSTLY = 0.5
 #: What such a marker says.
 HELD = f"hollow: friction angle of most held at {LARGEST_FRICTION_ANGLE:g}°, no result"
-#: How :func:`apart` is declared in a legend.
+#: What the legends of :func:`draw_over_size` declare.
+BARS = "bars: 95 % intervals; none of the whole window"
 SHIFTED = "pressures at one $b$ are drawn side by side"
 #: Why no strength is drawn.
 NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
@@ -26,8 +25,6 @@ NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no off
 _TICKS = ((3.0, (1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)), (10.0, (1, 2, 3, 5, 7)), (300.0, (1, 2, 5)))
 #: The frame ends at this part of the smallest mean; a bar as much shorter leaves it for certain.
 _MARGIN, _OUT_OF_FRAME = 3.0, 1e-3
-#: Pressures at one b are set apart by this part of b, so that their bars do not hide each other.
-_APART = 0.03
 
 
 def plain_decades(axis: Axis) -> None:
@@ -51,17 +48,6 @@ def size_axis(axes: Axes, b: np.ndarray, of: str) -> None:
     axes.set_xlabel(f"side $b$ of the {of} ({name})")
 
 
-def share_shown(laws: xr.Dataset, name: str) -> int:
-    """Index of the smallest v/b at which all sizes have a value, else most of them."""
-    known = np.isfinite(laws[name].values).all(axis=2).sum(axis=1)
-    return int(np.argmax(known))
-
-
-def share_words(laws: xr.Dataset, share: int) -> str:
-    """A v/b in per cent."""
-    return f"{short(100 * float(laws['share'][share]))} %"
-
-
 def roughness_words(strength: xr.Dataset) -> str:
     """JRC of the scan, and whether the law of scale keeps it within Barton's.
 
@@ -81,58 +67,59 @@ def roughness_words(strength: xr.Dataset) -> str:
     return words
 
 
-def draw_means(
-    axes: Axes, b: np.ndarray, mean: np.ndarray, held: np.ndarray, colour: str, marker: str
+def draw_over_size(
+    axes: Axes,
+    laws: xr.Dataset,
+    name: str,
+    *,
+    filled: xr.DataArray | None = None,
+    apart: float = 0.03,
 ) -> None:
-    """Means over sub-windows against b; open where most of the sub-windows had their angle held."""
-    draw_points(axes, b, mean, ~(held > MOSTLY), color=colour, marker=marker)
-
-
-def strength_verdict(atlas: DataTree, name: str, laws: xr.Dataset, share: int) -> str:
-    """A sentence on the fall of strength with size, with the numbers that can be counted.
+    """Means over sub-windows against b, side by side for the pressures, and their intervals.
 
     Parameters
     ----------
-    atlas : DataTree
-        With the stage ``statements``.
-    name : str
-        The specimen.
+    axes : matplotlib.axes.Axes
     laws : xr.Dataset
-        Stage ``windows``.
-    share : int
-        Index of the v/b drawn.
+        Over ``part`` and ``normal_force``.
+    name : str
+    filled : xr.DataArray (part, normal_force), optional
+        Means that are results; all, without it.
+    apart : float, optional
+        Part of b by which neighbouring pressures stand apart.
     """
-    held, drawn = points_held(laws, share)
-    bound = f"friction angle held at {LARGEST_FRICTION_ANGLE:g} degrees at {held} of {drawn} points"
-    mostly = 2 * held > drawn
-    why = bound if mostly else ""
-    return claim(atlas, name, "strength_falls_with_size", numbers=not mostly, why=why)
+    b, loads = laws["side"].values, laws.sizes["normal_force"]
+    for j in range(loads):
+        one = laws.isel(normal_force=j)
+        beside = b * (1 + apart * (j - (loads - 1) / 2))
+        means = Estimate.read(one, name)
+        trusted = np.ones(b.shape, bool) if filled is None else filled.isel(normal_force=j)
+        draw_points(axes, beside, means.value, trusted, **series(j))
+        draw_bars(axes, beside, *means.ends, colour_of(j + 1))
 
 
-def points_held(laws: xr.Dataset, share: int) -> tuple[int, int]:
-    """How many mean strengths at a v/b are hollow, being mostly held, and how many are drawn."""
-    drawn = np.isfinite(laws["similar_strength"].values[share])
-    hollow = drawn & (laws["similar_held"].values[share] > MOSTLY)
-    return int(hollow.sum()), int(drawn.sum())
+def series(j: int) -> dict[str, Any]:
+    """Colour and marker of the j-th pressure."""
+    return {"color": colour_of(j + 1), "marker": MARKERS[j % len(MARKERS)]}
 
 
-def cases_words(laws: xr.Dataset, share: int) -> str:
-    """What a verdict on strength counts as cases, where it does; empty where points are counted.
-
-    A case is a pressure at a v/b that enough sizes have.
-    """
-    held, drawn = points_held(laws, share)
-    sizes = np.isfinite(laws["similar_strength"].transpose("share", "part", ...).values).sum(axis=1)
-    judged = np.flatnonzero((sizes >= FEWEST_POINTS).any(axis=1)).tolist()
-    if 2 * held > drawn or not judged:
-        return ""
-    places = ", ".join(share_words(laws, i) for i in judged)
-    return f"cases: every pressure at $v/b$ = {places}; drawn: {share_words(laws, share)}"
+def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
+    """Entries of a legend: the power of b under each pressure, "of" what it is."""
+    held = (laws["similar_held"] > 0).any("part").values & ("strength" in name)
+    exponents = Estimate.read(laws, name, scale=EXPONENT)
+    for j, pressure in enumerate(laws["nominal_pressure"].values):
+        exponent = exponents[j].text()
+        words = f"{exponent} (held)" if held[j] and not exponents[j].known else exponent
+        label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x$ = {words}"
+        axes.plot([], [], ls="none", label=label, **series(j))
 
 
-def apart(b: np.ndarray, j: int, n: int) -> np.ndarray:
-    """The sides b, moved a little sideways for the j-th of n series."""
-    return b * (1 + _APART * (j - (n - 1) / 2))
+def draw_power_law(
+    axes: Axes, b: np.ndarray, values: np.ndarray, exponent: float, **style: Any
+) -> None:
+    """A power of b with a known exponent through the middle of some values on logarithmic axes."""
+    level = np.exp(np.mean(np.log(values) - exponent * np.log(b)))
+    axes.plot(b, level * b**exponent, **style)
 
 
 def draw_bars(
@@ -155,14 +142,3 @@ def logarithmic(axes: Axes, values: np.ndarray) -> None:
         bottom = min(bottom, 0.95 * places[places <= smallest].max())
     axes.set_ylim(bottom=bottom)
     plain_decades(axes.yaxis)
-
-
-def along_size(laws: xr.Dataset, name: str, index: tuple[int, ...]) -> list[np.ndarray]:
-    """Mean, low and high of a quantity along b, at an index of its other dimensions."""
-    size = "scale" if "scale" in laws[name].dims else "part"
-    return list(Estimate.read(laws.transpose(size, ...), name)[(slice(None), *index)].ends)
-
-
-def interval_text(laws: xr.Dataset, name: str, index: int | tuple[int, ...] = ()) -> str:
-    """A fitted number with its interval, at an index."""
-    return Estimate.read(laws, name, scale=EXPONENT)[index].text()

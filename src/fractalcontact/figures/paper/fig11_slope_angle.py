@@ -1,49 +1,31 @@
 """Fig. 11: the limit slope angle against the size of the joint."""
 
 import textwrap
-from functools import partial
 
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
 from xarray import DataTree
 
-from ...core.estimate import Estimate
-from ..kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    group,
-    headline,
-    legends_below,
-    letter,
-    settings_of,
-)
+from ...core.subject import Subject
+from ..kit.caption import caption
+from ..kit.drawing import WIDTH, Drawing, entries, headline, legends_below, letter
 from ..kit.empty import say_empty
+from ..kit.panel import rows
 from ..kit.points import hollow_entry
 from ..kit.sizes import (
+    BARS,
     HELD,
-    MOSTLY,
     NO_STRENGTH,
     SHIFTED,
-    along_size,
-    apart,
-    cases_words,
-    draw_bars,
-    draw_means,
-    interval_text,
+    draw_over_size,
+    name_exponents,
     plain_decades,
     roughness_words,
-    share_shown,
-    share_words,
+    series,
     size_axis,
-    strength_verdict,
 )
-from ..kit.verdicts import sentences
-from ..kit.words import opening, place, short
+from ..kit.verdicts import claim
+from ..kit.words import percent, place
 
 TITLE = "Fig. 11: limit slope angle against the size of the joint, computed"
 SUBJECT = "joint"
@@ -61,147 +43,75 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
     Its data are the angles at every v/b.
     """
-    settings = settings_of(atlas, name)
-    laws = group(atlas, "windows", name)
-    share = share_shown(laws, "similar_strength")
+    subject = Subject.of(atlas, name)
+    laws = subject["windows"]
+    direction = str(laws["direction"].values)
+    strength = subject["strength"].sel(contact_direction=direction)
+    shown = laws.sel(share=float(laws["strength_share"]))
+    drawn = bool(shown["similar_strength"].notnull().all("normal_force").any())
+    # Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20.
+    stated = bool(np.isfinite(strength["joint_wall_strength"]))
+    beyond = stated and bool(np.isnan(laws["barton_roughness"]).all())
+    share, roughness = float(shown["share"]), roughness_words(strength)
+
     figure = Figure(figsize=(WIDTH, 4.4))
     angle, ratio = figure.subplots(1, 2)
-    drawn = bool(np.isfinite(laws["similar_strength"].values[share]).all(axis=1).any())
-    strength = group(atlas, "strength", name)
-    strength = strength.sel(contact_direction=str(laws["direction"].values))
-    beyond = _beyond_barton(settings, laws, strength)
-    _draw_angle(angle, laws, share, drawn, beyond.rstrip(".").replace(", for", ",\nfor"))
-    _draw_ratio(ratio, laws, share, drawn)
-    headline(figure, settings["label"], place(str(laws["direction"].values)))
+    notes = [f"The law of Barton and Bandis is not drawn: {roughness}"] if beyond else []
+    letter(angle, "a", f"angle at $v$ = {percent(share)} of $b$")
+    letter(ratio, "b", r"strength $\tau$ over that of the whole window")
+    _draw_angle(angle, shown, drawn, notes)
+    _draw_ratio(ratio, shown, drawn)
+    headline(figure, subject.label, place(direction))
     if drawn:
         legends_below(figure, entries(angle), entries(ratio), columnspacing=2)
-    falls = strength_verdict(atlas, name, laws, share)
-    caption = _caption(laws, share, drawn, falls, beyond)
-    return Drawing(figure, _table(laws), caption)
+    said = claim(atlas, name, "strength_falls_with_size")
+    values = {"share": share, "drawn": drawn, "beyond": beyond, "roughness": roughness}
+    table = rows(
+        laws.transpose("share", "normal_force", "part", ...),
+        *("limit_slope_angle", "side", "windows", "similar_held", "barton_slope_angle"),
+        *("relative_strength", "similar_strength_exponent"),
+    )
+    return Drawing(figure, table, caption(__name__, claim=said, **values))
 
 
-def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
-    """Limit slope angle atan(tau / sigma_0), degrees: a block on a plane so steep just slides.
-
-    Parameters
-    ----------
-    strength, pressure : array_like
-        MPa.
-    """
-    return np.degrees(np.arctan(np.asarray(strength) / pressure))
-
-
-def _draw_angle(axes, laws, share, drawn, beyond):
-    b, pressures = laws["side"].values, laws["nominal_pressure"].values
-    for j, pressure in enumerate(pressures):
-        colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
-        ends = along_size(laws.isel(share=share), "similar_strength", (j,))
-        mean, low, high = (slope_angle(values, pressure) for values in ends)
-        beside = apart(b, j, len(pressures))
-        draw_means(axes, beside, mean, laws["similar_held"].values[share, :, j], colour, marker)
-        draw_bars(axes, beside, mean, np.maximum(low, 0), high, colour)
-        barton = slope_angle(laws["barton_scaled_strength"].values[:, j], pressure)
-        axes.plot(b, barton, color=colour, lw=0.8, ls="--")
-    if (laws["similar_held"].values[share] > MOSTLY).any():
+def _draw_angle(axes, laws, drawn, notes):
+    b = laws["side"].values
+    draw_over_size(axes, laws, "limit_slope_angle", filled=laws["similar_strength_valid"])
+    for j in range(laws.sizes["normal_force"]):
+        barton = laws["barton_slope_angle"].isel(normal_force=j)
+        axes.plot(b, barton, color=series(j)["color"], lw=0.8, ls="--")
+    if not laws["similar_strength_valid"].all():
         hollow_entry(axes, HELD)
     if np.isfinite(laws["barton_scaled_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
-    axes.plot([], [], " ", label=SHIFTED)
-    for words in filter(None, (drawn and cases_words(laws, share), beyond)):
+    for words in (SHIFTED, *notes):
         axes.plot([], [], " ", label=textwrap.fill(words, _LINE))
     size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)
     axes.set_ylabel(r"limit slope angle $\arctan(\tau/\sigma_0)$ (degrees)")
-    letter(axes, "a", f"angle at $v$ = {share_words(laws, share)} of $b$")
     if not drawn:
         say_empty(axes, NO_STRENGTH, ticks=False)
 
 
-def _draw_ratio(axes, laws, share, drawn):
+def _draw_ratio(axes, laws, drawn):
     """tau / tau of the whole window, beside the exponent quoted for shear tests."""
-    b, pressures = laws["side"].values, laws["nominal_pressure"].values
-    for j, pressure in enumerate(pressures):
-        values, *ends = along_size(laws.isel(share=share), "similar_strength", (j,))
-        colour, marker = colour_of(j + 1), MARKERS[j % len(MARKERS)]
-        held = laws["similar_held"].values[share, :, j]
-        beside = apart(b, j, len(pressures))
-        draw_means(axes, beside, values / values[0], held, colour, marker)
-        draw_bars(axes, beside, *(one / values[0] for one in (values, *ends)), colour)
-        exponent = interval_text(laws, "similar_strength_exponent", (share, j))
-        exponent = exponent.replace("no fit", "no fit (held)") if (held > 0).any() else exponent
-        label = rf"$\sigma_0$ = {short(pressure)} MPa: $\tau\sim b^x$, $x$ = {exponent}"
-        axes.plot([], [], color=colour, marker=marker, ls="none", label=label)
+    b = laws["side"].values
     slope = QUOTED_DELTA - 2
-    label = f"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work\nof the same school"
+    draw_over_size(axes, laws, "relative_strength", filled=laws["similar_strength_valid"])
+    name_exponents(axes, laws, "similar_strength_exponent", r"\tau")
     if drawn:
+        label = f"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work\nof the same school"
         axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
-    axes.plot([], [], " ", label="bars: 95 % intervals;\nnone of the whole window")
+    axes.plot([], [], " ", label=textwrap.fill(BARS, _LINE - 10))
     size_axis(axes, b, "joint")
-    axes.set_yscale("log")
     axes.set_ylabel(r"$\tau$ / $\tau$ of the whole window (1)")
-    letter(axes, "b", r"strength $\tau$ over that of the whole window")
-    ratio = laws["similar_strength"].values[share] / laws["similar_strength"].values[share, 0]
+    ratio = laws["relative_strength"].values
     known = ratio[np.isfinite(ratio) & (ratio > 0)]
     # The whole window may have no strength where its parts have.
     if not (drawn and known.size):
-        axes.set_yscale("linear")
         say_empty(axes, "no strength to compare", ticks=False)
         return
+    axes.set_yscale("log")
     quoted = (b.min() / b[0]) ** slope
     axes.set_ylim(0.7 * min(known.min(), 1), 1.4 * max(known.max(), quoted))
     plain_decades(axes.yaxis)
-
-
-def _table(laws):
-    tables = []
-    for i, share in enumerate(laws["share"].values):
-        for j, pressure in enumerate(laws["nominal_pressure"].values):
-            tables.append(
-                pd.DataFrame(
-                    {
-                        "v_over_b": share,
-                        "nominal_pressure_MPa": pressure,
-                        "b_mm": laws["side"].values,
-                        "windows": laws["windows"].values,
-                        **Estimate.read(laws, "similar_strength")[i, :, j]
-                        .mapped(partial(slope_angle, pressure=pressure))
-                        .columns("angle_deg"),
-                        "held_share": laws["similar_held"].values[i, :, j],
-                        "barton_angle_deg": slope_angle(
-                            laws["barton_scaled_strength"].values[:, j], pressure
-                        ),
-                        **Estimate.read(laws, "similar_strength_exponent")[i, j].columns(
-                            "similar_strength_exponent"
-                        ),
-                    }
-                )
-            )
-    return pd.concat(tables, ignore_index=True)
-
-
-# -- caption ---------------------------------------------------------------------------------------
-
-
-def _caption(laws, share, drawn, falls, beyond):
-    first = opening("Fig. 11")
-    if not drawn:
-        return sentences(
-            first,
-            "No angle can be given: it needs a basic friction angle and fitting offsets.",
-            falls,
-        )
-    return sentences(
-        f"{first} Computed limit slope angle and relative strength of sub-windows at "
-        f"v = {share_words(laws, share)} of their side b.",
-        falls,
-        beyond,
-    )
-
-
-def _beyond_barton(settings, laws, strength):
-    """Whether Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20."""
-    stated = np.isfinite(settings["material"]["joint_wall_strength"])
-    beyond = stated & np.isnan(laws["barton_roughness"]).all()
-    return (
-        f"The law of Barton and Bandis is not drawn: {roughness_words(strength)}." if beyond else ""
-    )
