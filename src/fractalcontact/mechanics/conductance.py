@@ -34,9 +34,6 @@ def add_conductance(curves: xr.Dataset, e_star: float) -> None:
     )
     with np.errstate(divide="ignore"):
         resolved = np.log(conductance.where(curves["resolved"])).transpose(..., "normal_force")
-    curves["conductance_fitted"] = (np.isfinite(resolved)).assign_attrs(
-        cf_attrs("1", "load used in the power law of the conductance")
-    )
     pressure = np.log(curves["nominal_pressure"].values)
     rows = resolved.transpose(*_CURVES, "normal_force").values
     fits = [fit_line(pressure, row) for row in rows.reshape(-1, len(pressure))]
@@ -46,6 +43,10 @@ def add_conductance(curves: xr.Dataset, e_star: float) -> None:
     )
     words = "exponent of conductance against pressure"
     curves.update(exponent.variables("conductance_exponent", _CURVES, "1", words))
+    fitted = np.isfinite(resolved) & np.isfinite(curves["conductance_exponent"])
+    curves["conductance_fitted"] = fitted.assign_attrs(
+        cf_attrs("1", "load used in the power law of the conductance")
+    )
     words = "conductance at 1 MPa by that power law"
     curves.update(at_one.mapped(np.exp).variables("unit_conductance", _CURVES, "mm-1", words))
     for name, end in zip(("low", "high"), np.exp(exponent.over), strict=True):
