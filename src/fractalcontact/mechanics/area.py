@@ -234,7 +234,7 @@ def add_area_offset(result: xr.Dataset, map_offset: float | None) -> None:
     map_offset : float or None
         mm.
     """
-    rough = np.isfinite(result["reduced_pressure"]).all("normal_force")
+    rough = result["reduced_pressure"].notnull().all("normal_force")
     offsets = result["offset"].values
     chosen = [
         chosen_offset(map_offset, offsets[of_one] if of_one.any() else offsets)

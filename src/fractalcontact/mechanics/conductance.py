@@ -33,7 +33,7 @@ def add_conductance(curves: xr.Dataset, e_star: float) -> None:
         cf_attrs("mm-1", "conductance of the interface per nominal area and conductivity")
     )
     with np.errstate(divide="ignore"):
-        resolved = np.log(conductance.where(curves["resolved"])).transpose(..., "normal_force")
+        resolved = xr.apply_ufunc(np.log, conductance.where(curves["resolved"]))
     pressure = np.log(curves["nominal_pressure"].values)
     rows = resolved.transpose(*_CURVES, "normal_force").values
     fits = [fit_line(pressure, row) for row in rows.reshape(-1, len(pressure))]

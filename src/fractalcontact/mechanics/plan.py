@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import Dims, labelled_dataset
 from ..core.tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
 from .states import forces_of
 
@@ -121,7 +121,7 @@ def solve_plan(
     )
 
 
-_COLUMNS = {
+_COLUMNS: dict[str, tuple[Dims, str, str]] = {
     "choice": ("choice", "1", "quantity"),
     "value": ("choice", "1", "value"),
     "reason": ("choice", "1", "reason"),
@@ -131,7 +131,7 @@ _COLUMNS = {
 
 #: Of what the errors are that limit the accuracy of the closure.
 _OF_SOLVER, _OF_GRID = "interface closure", "interface closure, by the grid (same surface)"
-_LIMITS = {
+_LIMITS: dict[str, tuple[Dims, str, str]] = {
     "closure_error_of_solver": ((), "1", "largest solver error of a closure, a fraction of it"),
     "closure_error_of_grid": ((), "1", "largest error of a closure by the grid, a fraction of it"),
     "accuracy_limited_by": ((), "1", "solver or grid, whose error of a closure is larger"),

@@ -44,7 +44,7 @@ def stated_errors(closure: xr.Dataset, domains: xr.Dataset, direction: str) -> x
         name: stage.sel(direction=direction).sel(resolution=stage["resolution"].min())
         for name, stage in (("closure", closure), ("domains", domains))
     }
-    found = {"median_error": [], "largest_error": [], "offsets_with_error": []}
+    found: dict[str, list[list[float]]] = {name: [] for name in _TABLE if _TABLE[name][0] == _EACH}
     for stage, variable, key, relative in _ERRORS.values():
         states = finest[stage]
         size = abs(states[variable]) if relative else xr.ones_like(states[variable])

@@ -166,7 +166,7 @@ def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
     words = [f"{', '.join(missing)} of the cells missing"]
     if "outlier_count" in specimen.attrs:
         treated = {"keep": "kept", "mask": "masked", "fill": "filled"}
-        how = treated.get(specimen.attrs.get("outliers"), "")
+        how = treated.get(str(specimen.attrs.get("outliers")), "")
         words.append(f"{specimen.attrs['outlier_count']} outliers {how}".rstrip())
     if filled := specimen.attrs.get("filled_count"):
         words.append(f"{filled} cells filled")

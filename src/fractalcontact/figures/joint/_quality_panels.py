@@ -134,7 +134,8 @@ def draw_spectrum(axes: Axes, quality: xr.Dataset, face: str) -> None:
     found = quality.sel(face=face)
     for axis, marker in zip(AXIS_COLOURS, "os", strict=True):
         of_axis, colour = found.sel(axis=axis), AXIS_COLOURS[axis]
-        waves, style = of_axis["wavelength"].values, {"color": colour, "lw": 0.9}
+        waves = of_axis["wavelength"].values
+        style: dict[str, Any] = {"color": colour, "lw": 0.9}
         hollow = {"color": colour, "ms": 2.5, "mfc": "none", "mew": 0.7}
         axes.loglog(waves, of_axis["spectrum"].values, marker, **hollow)
         axes.loglog(waves, of_axis["spectrum_model"].values, **style)

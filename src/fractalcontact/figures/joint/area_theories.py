@@ -46,9 +46,17 @@ _FAN = 0.52, 0.9, 0.05
 _GREY = "0.45"
 #: Of the means of kappa, corrected and raw: prefix of the name, words, face, place at the edge.
 _MEANS = (("corrected_", "corrected", COLOURS[0], 0.05), ("", "raw", "white", 0.02))
-#: Columns of the table.
-_COLUMNS = ("reduced_pressure", "area_share", "area_corrected_share", "kappa", "corrected_kappa")
-_COLUMNS += ("fitted", "corrected_fitted", "corrected_light", *(name for name, *_ in THEORIES))
+#: Columns of the table, which has those of the theories besides.
+_COLUMNS = (
+    "reduced_pressure",
+    "area_share",
+    "area_corrected_share",
+    "kappa",
+    "corrected_kappa",
+    "fitted",
+    "corrected_fitted",
+    "corrected_light",
+)
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -71,7 +79,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         figure, subject.label, place(subject.direction, float(law["offset"]) if slides else None)
     )
     return Drawing(
-        figure, rows(law, *_COLUMNS), caption(__name__, **_words(atlas, name, laws, law))
+        figure,
+        rows(law, *_COLUMNS, *(name for name, *_ in THEORIES)),
+        caption(__name__, **_words(atlas, name, laws, law)),
     )
 
 

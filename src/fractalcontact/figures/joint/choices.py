@@ -34,8 +34,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes.set_ylim(height / LINE_HEIGHT, 0)
     draw_rows(axes, texts, lines, COLUMNS, HEADS, 0.4)
     headline(figure, subject.label, place(subject.direction))
-    words = {key: plan[key].item() for key in plan.data_vars if not plan[key].dims}
-    return Drawing(figure, table, caption(__name__, **words, **plan.attrs))
+    states = {key: plan.attrs[key] for key in ("states", "states_solved")}
+    words = {str(key): plan[key].item() for key in plan.data_vars if not plan[key].dims}
+    return Drawing(figure, table, caption(__name__, **words, **states))
 
 
 def _table(plan):

@@ -48,8 +48,8 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
     panels[0].set_ylim(-0.05, 2.05)
     legends_below(figure, entries(panels[1]), _marks(series))
     headline(figure, "bars: 95 % intervals; after each name the number of its maps")
-    words = {"thresholds": threshold_words(series), "trends": _trends(series)}
-    return Drawing(figure, table_of(series), caption(__name__, **words))
+    said = caption(__name__, thresholds=threshold_words(series), trends=_trends(series))
+    return Drawing(figure, table_of(series), said)
 
 
 def _marks(series):
