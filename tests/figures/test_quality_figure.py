@@ -49,7 +49,7 @@ def with_specimen(atlas, name, change):
     change(specimen)
     changed[f"specimens/{name}"] = xr.DataTree(specimen)
     quality = changed[f"quality/{name}"].to_dataset()
-    changed[f"quality/{name}"] = xr.DataTree(quality.assign(statements(specimen, quality)))
+    changed[f"quality/{name}"] = xr.DataTree(quality.assign_attrs(statements(specimen, quality)))
     return changed
 
 

@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..core.datasets import Dims, labelled_dataset
 from ..core.tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
-from .states import forces_of
+from .states import SOLVER_ERROR, forces_of
 
 
 def solved_loads(
@@ -132,7 +132,7 @@ _COLUMNS: dict[str, tuple[Dims, str, str]] = {
 #: Of what the errors are that limit the accuracy of the closure.
 _OF_SOLVER, _OF_GRID = "interface closure", "interface closure, by the grid (same surface)"
 _LIMITS: dict[str, tuple[Dims, str, str]] = {
-    "closure_error_of_solver": ((), "1", "largest solver error of a closure, a fraction of it"),
+    "closure_error_of_solver": ((), "1", f"largest {SOLVER_ERROR} of a closure, a fraction of it"),
     "closure_error_of_grid": ((), "1", "largest error of a closure by the grid, a fraction of it"),
     "accuracy_limited_by": ((), "1", "solver or grid, whose error of a closure is larger"),
 }

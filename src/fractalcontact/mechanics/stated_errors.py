@@ -4,6 +4,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.labels import cf_attrs
+from .states import SOLVER_ERROR
 
 #: Change of the closure by twice the spacing, which is no solver error: of another surface.
 SPACING = "closure: change by twice the spacing"
@@ -16,10 +18,11 @@ _ERRORS = {
     "Delta_sigma by box counting": ("domains", "delta_sigma", "delta_sigma_error", False),
     SPACING: ("closure", "interface_closure", "closure_spacing_error", True),
 }
+_WORDS = f"{SOLVER_ERROR} of a quantity, or change by twice the spacing"
 _EACH = ("quantity", "normal_force")
 _TABLE = {
-    "median_error": (_EACH, "1", "median over the offsets of the error of a quantity"),
-    "largest_error": (_EACH, "1", "largest over the offsets of the error of a quantity"),
+    "median_error": (_EACH, "1", f"median over the offsets: {_WORDS}"),
+    "largest_error": (_EACH, "1", f"largest over the offsets: {_WORDS}"),
     "offsets_with_error": (_EACH, "1", "offsets whose error is known"),
     "error_kind": ("quantity", "1", "relative, a fraction of the quantity, or absolute"),
     "error_is_by_solver": ("quantity", "1", "whether errors are the solver's, else by the spacing"),
@@ -57,5 +60,9 @@ def stated_errors(closure: xr.Dataset, domains: xr.Dataset, direction: str) -> x
         "error_kind": ["relative" if one[-1] else "absolute" for one in _ERRORS.values()],
         "error_is_by_solver": [name != SPACING for name in _ERRORS],
     }
-    coords = {"quantity": list(_ERRORS), "normal_force": closure["normal_force"]}
+    words = cf_attrs("1", "quantity whose errors are stated")
+    coords = {
+        "quantity": ("quantity", list(_ERRORS), words),
+        "normal_force": closure["normal_force"],
+    }
     return labelled_dataset(_TABLE, values, coords)

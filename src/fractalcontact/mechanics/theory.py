@@ -98,12 +98,12 @@ def persson_line(least: float, most: float) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        ``line_pressure`` and ``persson_kappa`` over (line_point,).
+        ``line_pressure`` and ``persson_line`` over (line_point,).
     """
     pressure = np.geomspace(least, most, LINE_POINTS)
     words = {
         "line_pressure": (pressure, "p / (E* h'_rms) of the theory's line"),
-        "persson_kappa": (persson_area(pressure, 1.0, 1.0) / pressure, "area slope by Persson"),
+        "persson_line": (persson_area(pressure, 1.0, 1.0) / pressure, "area slope by Persson"),
     }
     table = {
         name: ("line_point", values, cf_attrs("1", text)) for name, (values, text) in words.items()

@@ -53,8 +53,9 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`.
         `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
         cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
-        ("scan", "window"): where they overlap, and their gap. Attribute ``warning``: what reading
-        the files and this found, in sentences, "" if all is well.
+        ("scan", "window"): where they overlap, and their gap. Attributes: ``warning``, what
+        reading the files and this found, in sentences, "" if all is well; what
+        :func:`roughness.quality_words.statements` says.
 
     Notes
     -----
@@ -92,7 +93,7 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
     result.attrs["warning"] = "; ".join(filter(None, warnings))
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
-    return result.assign(statements(specimen, result))
+    return result.assign_attrs(statements(specimen, result))
 
 
 _POINTS = {

@@ -6,7 +6,6 @@ import math
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled
 from ..core.estimate import Estimate
 from ..core.labels import height_unit, length_words, percent, plain
 from .fractal_range import NO_POWER_LAW
@@ -173,26 +172,24 @@ def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
     return ", ".join(filter(None, [*words, suspect_words(specimen)]))
 
 
-_STATEMENTS = {
-    "noise_statement": ("face", "1", "noise floor in words"),
-    "range_statement": ("face", "1", "filter, roll-off, steps and misfit in words; empty if none"),
-    "cells_statement": ((), "1", "cells missing, outlying, filled and suspicious in words"),
-    "overlap_statement": ((), "1", "where two faces overlap in words; empty of one face"),
-}
-
-
-def statements(specimen: xr.Dataset, quality: xr.Dataset) -> dict[str, tuple]:
-    """What is said of a scan, as variables of the stage ``quality``.
+def statements(specimen: xr.Dataset, quality: xr.Dataset) -> dict[str, str]:
+    """What is said of a scan, as attributes of the stage ``quality``.
 
     Parameters
     ----------
     specimen, quality : Dataset
+
+    Returns
+    -------
+    dict of str to str
+        ``lower_face`` and, if there is one, ``upper_face``: noise floor, and what else the spectra
+        show; ``cells``; ``overlap``, empty of one face. Each a clause.
     """
-    faces = quality["face"].values
-    values = {
-        "noise_statement": [noise_words(quality, face) for face in faces],
-        "range_statement": [range_words(quality, face) for face in faces],
-        "cells_statement": cells_words(specimen, quality),
-        "overlap_statement": overlap_words(specimen, quality),
+    of_faces = {
+        f"{face}_face": "; ".join(
+            filter(None, (noise_words(quality, face), range_words(quality, face)))
+        )
+        for face in quality["face"].values
     }
-    return labelled(_STATEMENTS, values)
+    cells, overlap = cells_words(specimen, quality), overlap_words(specimen, quality)
+    return of_faces | {"cells": cells, "overlap": overlap}

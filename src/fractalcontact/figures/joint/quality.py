@@ -91,7 +91,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(panels, subject.label)
     style = {"va": "top", "fontsize": 7, "linespacing": 1.2, "parse_math": False}
     below.text(0.01, 1, "\n".join(lines), **style)
-    words = {key: quality[f"{key}_statement"].item() for key in ("cells", "overlap")}
+    words = {key: quality.attrs[key] for key in ("cells", "overlap")}
     words |= {"warnings": len(warnings), "pair": bool(pair)}
     return Drawing(figure, pd.concat(table, ignore_index=True), caption(__name__, **words))
 
@@ -99,12 +99,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _text_lines(specimen, quality, faces, warnings):
     """What was done and found, broken into lines; the warnings first."""
     paragraphs = [f"WARNING: {warning}." for warning in warnings]
-    for face in faces:
-        of_face = quality.sel(face=face)
-        said = (of_face[f"{key}_statement"].item() for key in ("noise", "range"))
-        paragraphs.append(f"{face.capitalize()} face: {'; '.join(filter(None, said))}.")
-    paragraphs.append(f"{quality['cells_statement'].item()}.")
-    if overlap := quality["overlap_statement"].item():
+    paragraphs += [f"{face.capitalize()} face: {quality.attrs[f'{face}_face']}." for face in faces]
+    paragraphs.append(f"{quality.attrs['cells']}.")
+    if overlap := quality.attrs["overlap"]:
         mean, sd = (float(quality[f"gap_{key}"].sel(region="window")) for key in ("mean", "sd"))
         paragraphs.append(f"Gap in the window: mean {mean:.3g} mm, sd {sd:.3g} mm; {overlap}.")
     paragraphs += history(specimen, faces)

@@ -17,8 +17,8 @@ def kappa_lines(axes: Axes, stage: xr.Dataset, colours: Mapping[str, str] | None
     axes : matplotlib.axes.Axes
         Its x is p / (E* h'_rms), on a logarithmic axis, its y kappa.
     stage : xr.Dataset
-        With Persson's line, and attributes ``persson_kappa``, ``bush_gibson_thomas_kappa`` and
-        ``computed_kappa``.
+        With ``line_pressure`` and ``persson_line``; attributes ``persson_kappa``,
+        ``bush_gibson_thomas_kappa`` and ``computed_kappa``.
     colours : mapping of str to str, optional
         Of ``bush`` and of ``persson``.
     """
@@ -33,6 +33,6 @@ def kappa_lines(axes: Axes, stage: xr.Dataset, colours: Mapping[str, str] | None
     axes.fill_between(pressure, low, high, color="0.85", lw=0, zorder=0, label=label)
     light = number(stage.attrs["persson_kappa"], 3)
     label = rf"Persson: $\sqrt{{8/\pi}}$ = {light} at light load"
-    kappa = stage["persson_kappa"].values
+    kappa = stage["persson_line"].values
     axes.plot(pressure, kappa, "-.", color=colours["persson"], lw=1, label=label)
     axes.set_xscale("log")
