@@ -107,8 +107,8 @@ def _with_totals(budget):
     named = xr.concat([errors, *totals], "source", data_vars="minimal").transpose(
         "quantity", "source", "normal_force"
     )
-    named["error"].attrs["units"] = "1"  # each quantity has its own
-    return named.assign(drawn=(named["error"] > 0).any("normal_force"))
+    error = named["error"].assign_attrs(units="1")  # each quantity has its own
+    return named.assign(error=error, drawn=(error > 0).any("normal_force"))
 
 
 def _table(errors):
