@@ -119,6 +119,22 @@ def test_totals_are_root_sums_of_squares(one):
         np.testing.assert_allclose(budget[name], fraction.transpose(*budget[name].dims))
 
 
+def test_the_largest_source_has_no_larger_beside_it(one):
+    _, _, budget, _ = one
+    groups = {
+        "largest_source": OF_SURFACE,
+        "largest_source_of_population": ("counting", "window"),
+    }
+    for name, sources in groups.items():
+        largest = budget["error"].sel(source=list(sources)).max("source")
+        named = budget[name].values != ""
+        np.testing.assert_array_equal(named, np.isfinite(largest.values))
+        for i, j in np.argwhere(named):
+            source = budget[name].values[i, j]
+            assert source in sources
+            assert budget["error"].sel(source=source)[i, j] == largest[i, j]
+
+
 def test_an_undetermined_dimension_has_no_small_error(one):
     loading, _, budget, _ = one
     (offset,) = loading.offsets

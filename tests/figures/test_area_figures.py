@@ -12,7 +12,13 @@ from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.figures.experiments import area_slope as slope_figure
 from fractalcontact.figures.joint import area_theories
 from fractalcontact.figures.kit.drawing import print_style, save, settings_of
-from fractalcontact.mechanics.area import FULL_CONTACT, area_laws, joint_statistics
+from fractalcontact.mechanics.area import (
+    FULL_CONTACT,
+    add_area_offset,
+    area_laws,
+    joint_statistics,
+)
+from fractalcontact.mechanics.area_theories import add_comparison
 
 SPECIMENS = ("sliding", "flat", "pair")
 RECIPE = {
@@ -33,7 +39,8 @@ def with_area(atlas):
             atlas[f"{stage}/{name}"].to_dataset() for stage in ("specimens", "joints", "closure")
         )
         e_star = settings_of(atlas, name)["material"]["e_star"]
-        laws = area_laws(curves, joint_statistics(specimen, joint), e_star, 2.2)
+        offset = settings_of(atlas, name)["map_offset"]
+        laws = area_laws(curves, joint_statistics(specimen, joint), e_star, 2.2, offset)
         whole[f"area/{name}"] = xr.DataTree(laws)
     whole["area_slope/surfaces"] = xr.DataTree(area_slope(RECIPE))
     return whole
@@ -88,7 +95,7 @@ def test_points_are_those_of_the_atlas(with_area, name):
     for column in ("kappa", "corrected_kappa", "persson_share", "majumdar_bhushan_share"):
         np.testing.assert_array_equal(table[column], laws[column])
     nominal = curve["normal_force"] / curve["nominal_pressure"]
-    np.testing.assert_allclose(table["corrected_share"], curve["area_corrected"] / nominal)
+    np.testing.assert_allclose(table["area_corrected_share"], curve["area_corrected"] / nominal)
 
 
 def test_offset_of_the_maps_is_drawn(with_area):
@@ -133,6 +140,7 @@ def test_kappa_is_judged_by_the_theories(with_area, value, words):
     def set_mean(laws):
         for key, ending in ((value, ""), (value - 0.1, "_low"), (value + 0.1, "_high")):
             laws[f"corrected_mean_kappa{ending}"] = laws["mean_kappa"] * 0 + key
+        add_comparison(laws)
         return laws
 
     assert words in drawn(changed(with_area, "area/sliding", set_mean), "sliding").caption
@@ -153,6 +161,7 @@ def test_exponent_is_judged_by_its_interval(with_area, low, high, words):
         for name, value in (("_low", low), ("", (low + high) / 2), ("_high", high)):
             laws[f"corrected_exponent{name}"] = laws["rms_slope"] * 0 + value
         laws["no_corrected_law"] = xr.full_like(laws["no_corrected_law"], "")
+        add_comparison(laws)
         return laws
 
     assert words in drawn(changed(with_area, "area/sliding", set_exponent), "sliding").caption
@@ -170,6 +179,8 @@ def test_flush_faces_are_passed_over_and_if_there_are_no_others_said_to_be(with_
             for name, reason in (("law", FULL_CONTACT), ("mean_kappa", "the faces are flush")):
                 laws[f"no_{prefix}{name}"] = laws[f"no_{prefix}{name}"].astype(object)
                 laws[f"no_{prefix}{name}"][{"offset": slice(0, count)}] = reason
+        add_comparison(laws)
+        add_area_offset(laws, 0.4)
         return laws
 
     count = 3  # all up to the offset of the maps

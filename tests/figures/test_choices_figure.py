@@ -25,16 +25,16 @@ def test_stated_errors_are_the_largest_of_the_atlas(atlas, name):
     curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0).sel(resolution=1)
     worst = (curves["area_error"] / curves["area"]).max("offset")
     area = drawing.data[drawing.data["quantity"] == "real contact area"]
-    np.testing.assert_allclose(area["largest"], worst.values)
+    np.testing.assert_allclose(area["largest_error"], worst.values)
     # A dimension may be 0: its error is no fraction of it.
     domains = atlas[f"domains/{name}"].to_dataset().isel(direction=0).sel(resolution=1)
-    dimension = drawing.data[drawing.data["kind"] == "absolute"]
+    dimension = drawing.data[drawing.data["error_kind"] == "absolute"]
     known = domains["delta_sigma_error"].max("offset").dropna("normal_force")
-    np.testing.assert_allclose(dimension["largest"], known.values)
+    np.testing.assert_allclose(dimension["largest_error"], known.values)
     assert (
-        not drawing.data.loc[drawing.data["kind"] == "relative", "quantity"]
+        not drawing.data.loc[drawing.data["error_kind"] == "relative", "quantity"]
         .str.contains("Delta")
         .any()
     )
     halved = bool(np.isfinite(curves["closure_spacing_error"]).any())
-    assert ("twice the spacing changes the closure by" in drawing.caption) == halved
+    assert ("Twice the spacing changes the closure by" in drawing.caption) == halved

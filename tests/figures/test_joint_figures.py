@@ -12,12 +12,14 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from fractalcontact.core.fitting import fit_line
+from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.experiments import plateau
 from fractalcontact.figures.experiments.plateau import Slide
 from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.drawing import offset_axis, print_style, save
+from fractalcontact.mechanics.conductance import add_conductance
 
 SLIDING = ("sliding", "pair")
 DRAWN = [
@@ -98,6 +100,7 @@ def test_conductance_drawn_is_that_of_the_atlas(atlas, name):
             np.log(fitted["nominal_pressure_MPa"]), np.log(fitted["conductance_per_mm"])
         )
         np.testing.assert_allclose(points["conductance_exponent"].iloc[0], line.slope.value)
+        np.testing.assert_allclose(curve["unit_conductance"], np.exp(line.intercept.value))
 
 
 @pytest.mark.parametrize("name", representative(SLIDING))
@@ -261,32 +264,30 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
 
 
 @pytest.mark.parametrize(
-    ("ends", "words"),
+    ("verdict", "words"),
     representative(
         [
-            ((0.9, 0.97), "as theory has it"),
-            ((0.5, 0.6), "(5 below, 0 above)"),
-            ((1.2, 1.4), "(0 below, 5 above)"),
+            (WITHIN, "Every interval reaches theory's"),
+            (BELOW, "(5 below, 0 above)"),
+            (ABOVE, "(0 below, 5 above)"),
         ]
     ),
 )
-def test_conductance_is_judged_by_its_intervals(atlas, ends, words):
-    changed = with_changes(
-        atlas,
-        "closure/sliding",
-        conductance_exponent=np.mean(ends),
-        conductance_exponent_low=ends[0],
-        conductance_exponent_high=ends[1],
-    )
+def test_conductance_is_judged_by_its_intervals(atlas, verdict, words):
+    changed = atlas.copy()
+    curves = changed["closure/sliding"].to_dataset()
+    curves["conductance_beside_theory"] = xr.full_like(curves["conductance_beside_theory"], verdict)
+    changed["closure/sliding"] = xr.DataTree(curves)
     assert words in drawn(changed, "conductance", "sliding").caption
 
 
 def test_a_conductance_without_a_fit_is_still_drawn(atlas):
-    nothing = dict.fromkeys(
-        [f"conductance_{key}" for key in ("exponent", "pressure_low", "pressure_high")], np.nan
-    )
-    caption = drawn(with_changes(atlas, "closure/flat", **nothing), "conductance", "flat").caption
-    assert "Too few pressures" in caption
+    curves = atlas["closure/flat"].to_dataset()
+    curves["resolved"] = xr.zeros_like(curves["resolved"])
+    add_conductance(curves, 1.0)
+    changed = atlas.copy()
+    changed["closure/flat"] = xr.DataTree(curves)
+    assert "Too few pressures" in drawn(changed, "conductance", "flat").caption
 
 
 def test_synthetic_joints_are_drawn_with_every_seed(atlas):

@@ -5,7 +5,9 @@ import pytest
 import xarray as xr
 from print_size import faults
 
+from fractalcontact.domain.map_series import with_series
 from fractalcontact.domain.measured_map import read_contact_map
+from fractalcontact.domain.pressure_trend import pressure_trend
 from fractalcontact.figures.draw import draw_figure, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.figures.kit.measured import measured_series, threshold_words
@@ -38,13 +40,14 @@ def maps(tmp_path_factory):
 @pytest.fixture
 def with_maps(atlas, maps):
     both = atlas.copy()
-    for name, one in maps.items():
+    for name, one in with_series(maps).items():
         both[f"contact_maps/{name}"] = xr.DataTree(one)
     return both
 
 
 def only_maps(maps):
-    return xr.DataTree.from_dict({f"/contact_maps/{name}": one for name, one in maps.items()})
+    placed = with_series(maps)
+    return xr.DataTree.from_dict({f"/contact_maps/{name}": one for name, one in placed.items()})
 
 
 def drawn(atlas, figure, subject=()):
@@ -134,7 +137,10 @@ def test_every_map_is_drawn_with_its_cells(maps):
 
 
 def test_a_caption_states_the_trend_of_a_series(maps):
-    trend = measured_series(only_maps(maps))[0].trend
+    series = measured_series(only_maps(maps))[0]
+    trend = pressure_trend(
+        series.pressure, series.values("delta_sigma"), series.values("delta_sigma_random")
+    )
     caption = drawn(only_maps(maps), "map_trend").caption
     assert f"films (4): {trend.line.slope:.2f}" in caption
     assert f"({trend.verdict})" in caption

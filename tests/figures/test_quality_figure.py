@@ -16,6 +16,7 @@ from fractalcontact.figures.draw import draw_figures
 from fractalcontact.figures.joint.quality import draw
 from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.roughness.quality import scan_quality
+from fractalcontact.roughness.quality_words import statements
 
 SPECIMENS = ("sliding", "flat", "pair")
 STRANGE_NAMES = (f"two\nlines\x1b[31m{180 * 'x'}$b$^_{{\\.csv", f"{200 * 'x'}.csv", "a$b$^_{\\.npy")
@@ -47,6 +48,8 @@ def with_specimen(atlas, name, change):
     specimen = changed[f"specimens/{name}"].to_dataset()
     change(specimen)
     changed[f"specimens/{name}"] = xr.DataTree(specimen)
+    quality = changed[f"quality/{name}"].to_dataset()
+    changed[f"quality/{name}"] = xr.DataTree(quality.assign_attrs(statements(specimen, quality)))
     return changed
 
 
@@ -125,8 +128,8 @@ def test_overlap_and_the_load_on_it_are_drawn_and_said(atlas):
     assert "warning" in drawing.caption
     table = drawing.data
     gap = (specimen["upper"] - specimen["lower"]).values
-    assert table.query("panel == 'gap'")["cells"].sum() == np.isfinite(gap).sum()
-    assert table.query("panel == 'gap' and gap_mm < 0")["cells"].sum() == 1
+    assert table.query("panel == 'gap'")["gap_cells"].sum() == np.isfinite(gap).sum()
+    assert table.query("panel == 'gap' and gap_mm < 0")["gap_cells"].sum() == 1
     assert (table.query("panel == 'load share'")["suspect_load_share"] == 0.75).all()
 
 

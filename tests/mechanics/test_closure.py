@@ -5,7 +5,9 @@ import pytest
 import xarray as xr
 
 from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.settings import Solver
+from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics.closure import (
     bulk_settlement,
@@ -13,6 +15,7 @@ from fractalcontact.mechanics.closure import (
     elastic_dilatancy,
     full_contact_warning,
 )
+from fractalcontact.mechanics.conductance import beside_theory
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.load_curve import closure_at_force
 from fractalcontact.mechanics.loading import JointLoading
@@ -54,6 +57,15 @@ def test_conductance_of_hertzian_contact():
     assert exponent == pytest.approx(np.polyfit(np.log(forces), np.log(expected), 1)[0], abs=0.02)
     low, high = (curves[f"conductance_exponent_{end}"].item() for end in ("low", "high"))
     assert low < exponent < high
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "words"),
+    [(0.9, 0.97, WITHIN), (0.5, 0.6, BELOW), (1.2, 1.4, ABOVE), (np.nan, np.nan, "")],
+)
+def test_exponents_of_conductance_are_judged_by_their_intervals(low, high, words):
+    exponent = Estimate(np.array([(low + high) / 2]), np.array([low]), np.array([high]))
+    assert beside_theory(exponent) == [words]
 
 
 def test_flush_faces_do_not_close_nor_open():

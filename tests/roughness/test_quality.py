@@ -152,6 +152,25 @@ def test_the_worse_face_decides():
     assert "upper face" in found.attrs["ended_by"]
 
 
+def test_the_distribution_of_the_gap_holds_all_cells_and_parts_those_that_overlap():
+    lower, upper = rough(64), rough(64, seed=2) + 0.2
+    upper[:9] = np.nan
+    specimen = make_specimen(scan(lower), scan(upper))
+    found = scan_quality(specimen, [1])
+    gap = (specimen["upper"] - specimen["lower"]).values
+    assert found["gap_cells"].sum() == np.isfinite(gap).sum()
+    assert 0.0 in found["gap_edge"]
+    overlapping = found["gap_cells"].where(found["gap"] < 0, 0).sum()
+    assert overlapping == (gap < 0).sum() > 0
+
+
+def test_noise_floors_are_levels_of_the_spectra_of_white_noise(noisy):
+    noise = noisy["noise_rms"].sel(face="lower")
+    np.testing.assert_allclose(noisy["noise_floor"].sel(face="lower"), noise**2 * SPACING)
+    radial = noisy["radial_noise_floor"].sel(face="lower")
+    assert radial == pytest.approx(float(noise.min()) ** 2 * SPACING**2)
+
+
 def test_scan_lines_are_separated_from_isotropic_noise(noisy):
     found = quality(scan(rough(256) + 0.1 * white((256, 1))))
     assert "more along y: scan lines along x are shifted" in noise_words(found, "lower")

@@ -25,11 +25,13 @@ MADE_OF_SPECIMEN = [
 ]
 
 #: What is stated at an absolute length or force: Tse and Cruden's JRC takes its steps in mm, and
-#: Barton's strength follows it; a spectrum at a wave of 1 mm; an area at 1 N; a spacing in words.
+#: Barton's strength follows it; a spectrum at a wave of 1 mm; an area at 1 N; a conductance at
+#: 1 MPa; a spacing in words.
 ABSOLUTE = {
     *("step", "z2", "jrc", "jrc_used", "jrc_note", "barton_roughness", "barton_strength"),
     *("scaled_roughness", "scaled_wall_strength", "barton_scaled_strength", "line_level"),
     *("unit_area", "unit_area_low", "unit_area_high", "value"),
+    *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
 }
 #: What depends on the order in which nodes are gone through: random nodes are drawn row by row.
 OF_ORDER = re.compile(r"residual|energy_error|iterations|.*_random.*|.*_departure")

@@ -1,6 +1,6 @@
 """Error budget: the error of every published quantity, split by where it comes from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -31,6 +31,8 @@ from .refinement import (
 #: window is a sample of, and the change of the surface with its resolution, which is in no total.
 OF_SURFACE = ("solver", "numerical", "estimator")
 OF_POPULATION = ("counting", "window", "registration")
+#: Of these only the larger is in a total: a spread over windows holds that of counting.
+_OF_WINDOW = ("counting", "window")
 SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution")
 
 #: Numerical errors of states that are not refined, in errors interpolated between those that are:
@@ -58,6 +60,12 @@ _TABLE = {
         "error of the number as that of the surface the window is cut from, half-width at 95 %",
     ),
     "relative_total_of_population": (_ALL, "1", "that error, fraction of the quantity"),
+    "largest_source": (_ALL, "1", "source of the largest error of the number for this surface"),
+    "largest_source_of_population": (
+        _ALL,
+        "1",
+        "source of the larger error from the window: its contacts counted, or other windows",
+    ),
     "limit": (_ALL, _UNIT, "value extrapolated to zero spacing of the same surface"),
     "observed_order": (_ALL, "1", "observed order of convergence of the same surface"),
     "finest_spacing": ("normal_force", "mm", "finest spacing solved; NaN where interpolated"),
@@ -172,6 +180,8 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
         "relative_total": total / size,
         "total_of_population": of_population,
         "relative_total_of_population": of_population / size,
+        "largest_source": _largest(errors, OF_SURFACE),
+        "largest_source_of_population": _largest(errors, _OF_WINDOW),
         "limit": found.limit,
         "observed_order": found.order,
         "finest_spacing": np.where(found.finest > 1, side / found.finest, np.nan),
@@ -197,6 +207,16 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     for name, words in (("quantity", "published quantity"), ("source", "source of error")):
         budget[name].attrs = cf_attrs("1", words)
     return budget
+
+
+def _largest(errors: Mapping[str, np.ndarray], sources: Sequence[str]) -> np.ndarray:
+    """Name of the source of the largest error (quantity, normal_force); empty where none is known.
+
+    The first of equal ones.
+    """
+    each = np.stack([errors[source] for source in sources])
+    largest = np.argmax(np.where(np.isnan(each), -np.inf, each), axis=0)
+    return np.where(np.isnan(each).all(axis=0), "", np.array(sources)[largest])
 
 
 def over_loads(

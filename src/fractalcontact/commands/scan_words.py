@@ -5,8 +5,9 @@ import json
 import numpy as np
 import xarray as xr
 
+from ..core.labels import length_words
 from ..core.limits import STEEP_TILT
-from ..roughness.quality_words import length_words, overlap_words
+from ..roughness.quality_words import overlap_words
 
 #: Outliers this many reliefs away are hardly spikes of an instrument.
 FAR_OUT = 3.0

@@ -103,3 +103,21 @@ def loads_of(some: int, total: int) -> str:
     if some in (0, total):
         return "every load" if some else "no load"
     return f"{some} of {total} loads"
+
+
+#: Lengths from here on, mm, are said in metres.
+_METRES = 1e4
+
+
+def length_words(length: float) -> str:
+    """A length in mm in the unit that suits it: three digits, no power of ten."""
+    unit, size = height_unit(abs(length))
+    return f"{plain(float(length) / size)} {unit}"
+
+
+def height_unit(height: float) -> tuple[str, float]:
+    """Unit that suits a height in mm: its name, and how many mm it is."""
+    units = (("mm", 1.0), ("µm", 1e-3), ("nm", 1e-6), ("pm", 1e-9), ("fm", 1e-12))
+    if height >= _METRES:
+        return "m", 1e3
+    return next((unit for unit in units if height >= 0.1 * unit[1] or height == 0), units[2])

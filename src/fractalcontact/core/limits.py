@@ -52,3 +52,9 @@ GOOD_FIT = 0.02
 
 #: Probability covered by every interval the package states.
 CONFIDENCE = 0.95
+
+#: Exponents of conductance against pressure that theories and experiments give: Persson's and
+#: Greenwood and Williamson's are 1, Cooper, Mikic and Yovanovich (Int. J. Heat Mass Transf. 12
+#: (1969) 279) and most tests 0.95. Windows that hold few hills show lower ones (Pastewka et al.,
+#: Phys. Rev. E 87 (2013) 062809).
+CONDUCTANCE_EXPONENTS = (0.95, 1.0)

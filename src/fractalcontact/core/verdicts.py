@@ -39,3 +39,6 @@ AMBIGUOUS, NOT_TESTED = "ambiguous", "not tested"
 NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a real mean pressure"
 #: Why there is no Delta_sigma from the area where its stage gives no reason.
 TOO_FEW_RESOLUTIONS = "too few resolutions were solved under this load with nodes enough in contact"
+
+#: On where an estimate lies beside the values that theories give.
+BELOW, WITHIN, ABOVE = "below", "within", "above"

@@ -1,48 +1,69 @@
-"""Series of measured contact maps: their order, and the table of their numbers."""
+"""Series of measured contact maps: their order, and how the dimension goes with pressure."""
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Mapping
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
-from ..core.estimate import names_of
+from ..core.datasets import labelled
+from ..core.estimate import rows_of
 from ..core.labels import natural_key
+from .pressure_trend import pressure_trend
 
-#: Columns of the table, and the variables of a map that they hold.
-_COLUMNS = {
-    "load_N": "force",
-    "nominal_pressure_MPa": "nominal_pressure",
-    "nominal_area_mm2": "nominal_area",
-    "area_mm2": "area",
-    "area_share": "area_share",
-    **{name: name for name in names_of("delta_sigma")},
-    "least_over_thresholds": "delta_sigma_least",
-    "most_over_thresholds": "delta_sigma_most",
-    **dict(zip(names_of("random_cells"), names_of("delta_sigma_random"), strict=True)),
-    "verdict": "null_verdict",
-    "reason": "reason",
+#: What a map has of its series. A map alone is a series of one.
+_TABLE = {
+    "series_number": ("1", "place of the series, or of the map alone, among them"),
+    "number_in_series": ("1", "place of the map in its series, by pressure"),
+    **rows_of("pressure_slope", "1", "Delta_sigma over the series, per decade of pressure"),
+    **rows_of(
+        "pressure_slope_beyond_random",
+        "1",
+        "Delta_sigma less that of random cells over the series, per decade of pressure",
+    ),
+    "pressure_trend": ("1", "how Delta_sigma goes with pressure over the series"),
+    "pressure_trend_beyond_random": ("1", "whether it goes otherwise than that of random cells"),
 }
 
 
-class MapSeries(NamedTuple):
-    """Maps that belong together, or a single one.
+def with_series(maps: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Measured maps with their places in their series, and the trend of the series.
 
-    Attributes
+    Parameters
     ----------
-    label : str
-        Of the series, or of its only map.
-    names : tuple of str
-        Of its maps, in the order of their pressure; those of unknown pressure last.
+    maps : mapping of str to xr.Dataset
+        As :func:`domain.measured_map.read_contact_map` gives them, by name.
+
+    Returns
+    -------
+    dict of str to xr.Dataset
+        With the variables of :data:`_TABLE`.
     """
+    found = {}
+    for number, names in enumerate(series_of_maps(maps)):
+        pressure, value, random = (
+            [float(maps[name][key]) for name in names]
+            for key in ("nominal_pressure", "delta_sigma", "delta_sigma_random")
+        )
+        trend = pressure_trend(pressure, value, random)
+        of_series = {
+            "series_number": number,
+            **trend.line.slope.columns("pressure_slope"),
+            **trend.departure.slope.columns("pressure_slope_beyond_random"),
+            "pressure_trend": trend.verdict,
+            "pressure_trend_beyond_random": trend.beyond_random,
+        }
+        for place, name in enumerate(names):
+            table = {key: ((), *words) for key, words in _TABLE.items()}
+            values = of_series | {"number_in_series": place}
+            found[name] = maps[name].assign(labelled(table, values))
+    return found
 
-    label: str
-    names: tuple[str, ...]
 
+def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[tuple[str, ...]]:
+    """Names of the maps of each series, then of the maps alone.
 
-def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[MapSeries]:
-    """Series of maps, then single maps; what no pressure orders is by name, numbers as numbers.
+    Those of a series are in the order of their pressure, those of unknown pressure last; what no
+    pressure orders is by name, numbers as numbers.
 
     Parameters
     ----------
@@ -53,36 +74,15 @@ def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[MapSeries]:
     for name in sorted(maps, key=natural_key):
         if maps[name].attrs["series"]:
             members.setdefault(maps[name].attrs["series"], []).append(name)
-    found = [
-        MapSeries(label, tuple(sorted(names, key=lambda name: _pressure(maps[name]))))
-        for label, names in sorted(members.items(), key=lambda one: natural_key(one[0]))
+    series = [
+        tuple(sorted(members[label], key=lambda name: _pressure(maps[name])))
+        for label in sorted(members, key=natural_key)
     ]
     alone = sorted((name for name in maps if not maps[name].attrs["series"]), key=natural_key)
-    return found + [MapSeries(maps[name].attrs["label"], (name,)) for name in alone]
+    return series + [(name,) for name in alone]
 
 
 def _pressure(one):
     """Nominal pressure, MPa; infinite where no load is stated."""
     pressure = float(one["nominal_pressure"])
     return pressure if np.isfinite(pressure) else np.inf
-
-
-def map_table(names: Sequence[str], maps: Sequence[xr.Dataset]) -> pd.DataFrame:
-    """Table of measured maps, one row each: load, area and dimension, with the nulls.
-
-    Parameters
-    ----------
-    names : sequence of str
-    maps : sequence of xr.Dataset
-    """
-    rows = [
-        {
-            "map": name,
-            "series": one.attrs["series"],
-            "label": one.attrs["label"],
-            "threshold": one.attrs["threshold"],
-            **{column: one[variable].item() for column, variable in _COLUMNS.items()},
-        }
-        for name, one in zip(names, maps, strict=True)
-    ]
-    return pd.DataFrame(rows)

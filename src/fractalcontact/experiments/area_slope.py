@@ -77,7 +77,7 @@ def area_slope(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
         "dimension": float(recipe["dimension"]),
         "roll_off_share": float(recipe["roll_off_share"]),
     } | theory.KAPPA_ATTRS
-    return result
+    return result.assign(theory.persson_line(loads.min(), loads.max()))
 
 
 def _labelled(

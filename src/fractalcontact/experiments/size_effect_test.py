@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset
-from ..core.estimate import Estimate
+from ..core.estimate import Estimate, rows_of
 from ..core.labels import cf_attrs
 from ..core.limits import WIDEST
 from ..mechanics.theory import (
@@ -26,6 +26,7 @@ from ..mechanics.theory import (
 )
 from .size_decision import (
     FEWEST_ROLL_OFFS,
+    PROBABILITY,
     UNKNOWN,
     Decision,
     Exponent,
@@ -143,13 +144,19 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
         dimensions have intervals narrow enough to be compared, and whether these are disjoint.
     """
     dims = ("hurst", "reduced_pressure")
-    table: dict[str, tuple] = {}
-    values: dict[str, np.ndarray] = {}
-    for end in ("", "_low", "_high"):
-        ends = [result[f"{name}_delta{end}"].transpose(*dims).values - 2 for name in _ESTIMATORS]
-        words = f"exponent of A_r/A_0 over the side b by eq. 6{_ENDS[end]}"
-        table[f"eq6_exponent{end}"] = ((*dims, "delta_estimator"), "1", words)
-        values[f"eq6_exponent{end}"] = np.stack(ends, axis=-1)
+    found = result.transpose(*dims, ...)
+    each = [Estimate.read(found, f"{name}_delta").mapped(lambda d: d - 2) for name in _ESTIMATORS]
+    value, low, high = (
+        np.stack(ends, axis=-1) for ends in zip(*(one.ends for one in each), strict=True)
+    )
+    wanted = Estimate(value, low, high)
+    words = "exponent of A_r/A_0 over the side b by eq. 6"
+    level = f"{100 * PROBABILITY:g} %"
+    rows = rows_of("eq6_exponent", "1", words, level)
+    table: dict[str, tuple] = {
+        name: ((*dims, "delta_estimator"), *row) for name, row in rows.items()
+    }
+    values: dict[str, np.ndarray] = wanted.columns("eq6_exponent")
     domain, cut = (Estimate.read(result, name) for name in ("band_delta", "cut_delta"))
     determined = (domain.width <= WIDEST) & (cut.width <= WIDEST)
     beyond = determined & ((domain.low > cut.high) | (domain.high < cut.low))

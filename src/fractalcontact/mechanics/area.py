@@ -10,9 +10,9 @@ from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, LIGHT_LOAD, RESOLVED_NODES
 from ..roughness.dimension import slope_statistics
-from .area_theories import FLUSH, add_theories
+from .area_theories import FLUSH, add_comparison, add_theories
 from .joint import composite_topography, direction_spacing, offsets_of
-from .states import error_attrs
+from .states import chosen_offset, error_attrs
 
 #: Area that the cells along the edge of contact have too much, as a part of cell side times
 #: staircase perimeter. Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161.
@@ -161,7 +161,11 @@ def joint_statistics(specimen: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
 
 
 def area_laws(
-    curves: xr.Dataset, statistics: xr.Dataset, e_star: float, dimension: float
+    curves: xr.Dataset,
+    statistics: xr.Dataset,
+    e_star: float,
+    dimension: float,
+    map_offset: float | None = None,
 ) -> xr.Dataset:
     """How the real contact area grows with the force, and what the theories make of the surface.
 
@@ -176,6 +180,8 @@ def area_laws(
     dimension : float
         Delta_g of the surface, for Majumdar and Bhushan's law; NaN leaves that out, and
         ``no_majumdar_bhushan`` says why.
+    map_offset : float, optional
+        Of the contact maps, mm; as :func:`mechanics.states.chosen_offset` takes it.
 
     Returns
     -------
@@ -185,7 +191,8 @@ def area_laws(
         deviation of A_r/F from its geometric mean over the loads fitted; means of kappa at light
         load; ``no_law`` and ``no_mean_kappa``, reasons; the asperities. Over (direction, offset,
         load): ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and
-        the fractions A_r/A_0 of the theories. ``departure`` and the kappas have an ``_error``, the
+        the fractions A_r/A_0 of the theories; what :func:`mechanics.area_theories.add_comparison`
+        and :func:`add_area_offset` add. ``departure`` and the kappas have an ``_error``, the
         solver's.
 
     Notes
@@ -210,7 +217,31 @@ def area_laws(
     _add_laws(result, finest)
     _add_kappa(result, finest, e_star, node)
     add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
+    add_comparison(result)
+    add_area_offset(result, map_offset)
     return result.transpose("direction", "offset", "normal_force", ...)
+
+
+def add_area_offset(result: xr.Dataset, map_offset: float | None) -> None:
+    """Add the offset whose areas are reported: that of the contact maps.
+
+    Where the faces are flush there, it is the one chosen of those at which they are not.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        From :func:`area_laws`.
+    map_offset : float or None
+        mm.
+    """
+    rough = result["reduced_pressure"].notnull().all("normal_force")
+    offsets = result["offset"].values
+    chosen = [
+        chosen_offset(map_offset, offsets[of_one] if of_one.any() else offsets)
+        for of_one in rough.transpose("direction", "offset").values
+    ]
+    attrs = cf_attrs("mm", "offset whose areas are reported")
+    result["area_offset"] = "direction", chosen, attrs
 
 
 #: What is kept of a law A_r ~ F^m: name, field of the fit in logarithms, unit, long name.

@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.labels import cf_attrs
+from ..core.verdicts import ABOVE, BELOW, WITHIN
 from . import theory
 
 #: Faces whose composite topography is less steep than this are flush: the rest is rounding.
@@ -93,3 +94,30 @@ def add_theories(
     }
     result.update(labelled(_EXPONENTS, exponents))
     result.attrs |= {"e_star": float(e_star)} | theory.KAPPA_ATTRS
+
+
+def add_comparison(result: xr.Dataset) -> None:
+    """Add which theories the laws agree with, and Persson's kappa over the pressures of the laws.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Laws of the area over (direction, offset), with what :func:`add_theories` adds.
+    """
+    low, high = (result[f"corrected_exponent_{end}"] for end in ("low", "high"))
+    archard = result["archard_exponent"]
+    words = "whether Archard's exponent lies in the interval of that of the corrected area"
+    result["archard_fits"] = ((low <= archard) & (archard <= high)).assign_attrs(
+        cf_attrs("1", words)
+    )
+    kappa = result["corrected_mean_kappa"]
+    least, most = (result.attrs[f"{name}_kappa"] for name in ("persson", "bush_gibson_thomas"))
+    places = [np.isnan(kappa), kappa < least, kappa > most]
+    words = "where the mean kappa of the corrected area lies beside Persson's and Bush's"
+    result["kappa_beside_theories"] = kappa.copy(
+        data=np.select(places, ["", BELOW, ABOVE], WITHIN)
+    ).assign_attrs(cf_attrs("1", words))
+    fitted = result["reduced_pressure"].where(result["fitted"])
+    ends = (getattr(fitted, end)(["offset", "normal_force"]).values for end in ("min", "max"))
+    lines = [theory.persson_line(*pair) for pair in zip(*ends, strict=True)]
+    result.update(xr.concat(lines, result["direction"]))

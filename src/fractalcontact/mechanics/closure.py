@@ -7,11 +7,11 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.estimate import Estimate, names_of
-from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..elastic.halfspace import rectangle_mean_displacement
 from .closure_laws import add_closure_laws, at_twice
+from .conductance import add_conductance
 from .load_curve import left_out_misses
 from .separation import add_seated_closure, add_separation
 from .states import OF_STATES, OFFSETS, error_attrs
@@ -155,7 +155,7 @@ def closure_curves(
     area = window[0] * window[1]
     result = states[[*OF_STATES, *OFFSETS]].copy()
     _add_interface(result, bulk_settlement(states["normal_force"].values, e_star, *window), area)
-    _add_conductance(result, e_star)
+    add_conductance(result, e_star)
     _add_errors(result, area, e_star)
     add_separation(result, openings)
     add_seated_closure(result, seating_force)
@@ -292,33 +292,6 @@ def interface_stiffness(total: xr.DataArray, bulk: xr.DataArray) -> xr.DataArray
     """
     compliance = 1 / total - 1 / bulk
     return 1 / compliance.where(compliance > 0)
-
-
-def _add_conductance(curves: xr.Dataset, e_star: float) -> None:
-    """Conductance of the interface and its power of the pressure, into ``curves``.
-
-    Barber (Proc. R. Soc. A 459 (2003) 53): 1/R = 2/(E* (rho_1 + rho_2)) dF/dw. Two blocks of one
-    conductivity k = 1/rho, thermal or electrical, give h_c = k/E* d sigma_0/d w_int per nominal
-    area.
-    Loads at which fewer than `RESOLVED_NODES` touch are not fitted: they act on single cells.
-    """
-    curves["conductance"] = curves["interface_stiffness"] / e_star
-    curves["conductance"].attrs = cf_attrs(
-        "mm-1", "conductance of the interface per nominal area and conductivity of the material"
-    )
-    dims = ("direction", "offset", "resolution")
-    log_pressure = np.log(curves["nominal_pressure"].values)
-    with np.errstate(divide="ignore"):
-        resolved = curves["conductance"].where(curves["resolved"])
-        log_conductance = np.log(resolved.transpose(*dims, "normal_force").values)
-    shape = log_conductance.shape[:-1]
-    fits = [fit_line(log_pressure, row) for row in log_conductance.reshape(-1, len(log_pressure))]
-    exponent = Estimate.stack((fit.slope for fit in fits), shape)
-    words = "exponent of conductance against pressure"
-    curves.update(exponent.variables("conductance_exponent", dims, "1", words))
-    for name, pressure in zip(("low", "high"), np.exp(exponent.over), strict=True):
-        words = f"{name}est pressure of that fit"
-        curves[f"conductance_pressure_{name}"] = (dims, pressure, cf_attrs("MPa", words))
 
 
 def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:

@@ -6,6 +6,7 @@ asperities, the sum can pass the vertical, and what is stated as strength is hel
 :data:`core.limits.LARGEST_FRICTION_ANGLE` as in Barton's law. What was held is counted.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
+from ..core.labels import cf_attrs
 from ..core.limits import LARGEST_FRICTION_ANGLE
 
 #: What the functions take and return.
@@ -20,6 +21,9 @@ PERSSON_KAPPA = np.sqrt(8 / np.pi)
 BUSH_GIBSON_THOMAS_KAPPA = np.sqrt(2 * np.pi)
 #: Where the values computed in the literature for many hills at light load lie.
 COMPUTED_KAPPA = (2.1, 2.3)
+
+#: Points of a line of a theory.
+LINE_POINTS = 60
 
 #: The three as attributes of a dataset.
 KAPPA_ATTRS = {
@@ -81,6 +85,30 @@ def persson_area(pressure: Numbers, modulus: Numbers, rms_slope: Numbers) -> Num
     J. Chem. Phys. 115 (2001) 3840; this form in Manners & Greenwood, Wear 261 (2006) 600.
     """
     return special.erf(np.sqrt(2) * pressure / (modulus * rms_slope))
+
+
+def persson_line(least: float, most: float) -> xr.Dataset:
+    """Persson's kappa between two reduced pressures, as a line to draw.
+
+    Parameters
+    ----------
+    least, most : float
+        p / (E* h'_rms); NaN gives a line of NaN.
+
+    Returns
+    -------
+    xr.Dataset
+        ``line_pressure`` and ``persson_line`` over (line_point,).
+    """
+    pressure = np.geomspace(least, most, LINE_POINTS)
+    words = {
+        "line_pressure": (pressure, "p / (E* h'_rms) of the theory's line"),
+        "persson_line": (persson_area(pressure, 1.0, 1.0) / pressure, "area slope by Persson"),
+    }
+    table = {
+        name: ("line_point", values, cf_attrs("1", text)) for name, (values, text) in words.items()
+    }
+    return xr.Dataset(table)
 
 
 def fudged_persson_area(

@@ -20,8 +20,8 @@ import yaml
 
 from ..core.atomic import atomic_write
 from ..core.labels import printable
+from ..core.measured_maps import measured_maps
 from ..core.tables import write_table
-from ..domain.map_series import series_of_maps
 from ..study.atlas import group_names, read_atlas
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import JOINT, SPECIMEN
@@ -93,7 +93,7 @@ def write_result_page(place: Place) -> list[str]:
     specimens = [summarised(one, loads) for one in chosen]
     study = str(atlas.attrs["study"])
     curves = curves_table(study, chosen)
-    write_table(place.folder / SUMMARY, summary_table(study, specimens, _maps(atlas)))
+    write_table(place.folder / SUMMARY, summary_table(study, specimens, measured_maps(atlas)))
     write_table(place.folder / CURVES, curves)
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
@@ -225,7 +225,7 @@ def _index_values(
         "matrix": rows,
         "verdicts": counted([*rows, *together]),
         "together": together,
-        "maps": [printable(one.attrs["label"], _LONGEST) for one in _maps(atlas).values()],
+        "maps": [printable(one.attrs["label"], _LONGEST) for one in measured_maps(atlas).values()],
         "cards": cards_of(
             own,
             place.figures,
@@ -236,14 +236,6 @@ def _index_values(
         "curves": _records(curves),
         "pictures": _pictures(rows, place),
     }
-
-
-def _maps(atlas):
-    """Names and datasets of the measured contact maps, series by series."""
-    if "contact_maps" not in atlas.children:
-        return {}
-    maps = {name: node.to_dataset() for name, node in atlas["contact_maps"].children.items()}
-    return {name: maps[name] for series in series_of_maps(maps) for name in series.names}
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:

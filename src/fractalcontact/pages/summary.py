@@ -11,9 +11,9 @@ import xarray as xr
 from ..core import estimate
 from ..core.determined import decided_by_scan, determined
 from ..core.limits import WIDEST
+from ..core.measured_maps import map_table
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import spacing_of, window_sides
-from ..domain.map_series import map_table
 from ..mechanics.model_validity import Validity
 from .chosen import Chosen, finite
 from .common_loads import CommonLoad
@@ -331,7 +331,7 @@ def summary_table(
         Measured contact maps by name.
     """
     if maps and not specimens:
-        table = map_table(list(maps), list(maps.values()))
+        table = map_table(maps)
         return table.assign(study=study).set_index("study").reset_index()
     rows = []
     for one in specimens:

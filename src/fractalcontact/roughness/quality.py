@@ -14,10 +14,11 @@ import xarray as xr
 from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.estimate import NO_ESTIMATE, Estimate
-from ..core.window import cell_side, spacing_of, window_slices
-from ..surface.suspect import overlap_statistics
+from ..core.labels import cf_attrs
+from ..core.window import cell_side, spacing_of
+from .face_gap import REGIONS, gap_statistics
 from .fractal_range import FractalRange, find_fractal_range
-from .quality_words import AXES, file_warnings, interval_words
+from .quality_words import AXES, file_warnings, interval_words, statements
 from .scan_lines import ALTERNATION, alternations, scan_line_warnings
 from .spectra import STRIPS, profile_spectra, radial_spectrum
 
@@ -52,8 +53,9 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`.
         `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
         cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
-        ("scan", "window"): where they overlap, and their gap. Attribute ``warning``: what reading
-        the files and this found, in sentences, "" if all is well.
+        ("scan", "window"): where they overlap, and their gap. Attributes: ``warning``, what
+        reading the files and this found, in sentences, "" if all is well; what
+        :func:`roughness.quality_words.statements` says.
 
     Notes
     -----
@@ -78,8 +80,12 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         },
         coords={"face": faces, "axis": list(AXES)},
     )
+    floor = (result["noise_rms"].min("axis", skipna=False) ** 2 * np.prod(spacing)).assign_attrs(
+        cf_attrs("mm4", "noise floor of the radially averaged spectrum")
+    )
+    result["radial_noise_floor"] = floor
     if len(faces) == 2:
-        result = result.assign(_overlap(specimen)).assign_coords(region=list(REGIONS))
+        result = result.assign(gap_statistics(specimen)).assign_coords(region=list(REGIONS))
     side = cell_side(specimen)
     end = _range_end(result, side)
     result = result.assign(_compared_with_range(end, np.array(resolutions), side))
@@ -87,28 +93,7 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
     result.attrs["warning"] = "; ".join(filter(None, warnings))
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
-    return result
-
-
-#: Parts of a scan whose overlap is stated.
-REGIONS = ("scan", "window")
-
-_OVERLAP = {
-    "overlap_cells": ("region", "1", "cells where the upper face lies below the lower one"),
-    "overlap_fraction": ("region", "1", "fraction of the cells of both faces that overlap"),
-    "overlap_depth": ("region", "mm", "deepest overlap of the faces as scanned and registered"),
-    "gap_mean": ("region", "mm", "mean gap of the faces as scanned and registered"),
-    "gap_sd": ("region", "mm", "standard deviation of that gap"),
-}
-
-
-def _overlap(specimen):
-    """Where two faces overlap as they were scanned and registered, and their gap."""
-    found = overlap_statistics(specimen, window_slices(specimen))
-    keys = ("cells", "fraction", "depth", "gap_mean", "gap_sd")
-    return labelled(
-        _OVERLAP, {name: list(found[key]) for name, key in zip(_OVERLAP, keys, strict=True)}
-    )
+    return result.assign_attrs(statements(specimen, result))
 
 
 _POINTS = {
@@ -129,6 +114,7 @@ _RELIEF = {
     "percentile": ("percentile", "%", "fraction of cells below"),
     "height": (("face", "percentile"), "mm", "height"),
     "edge": ("edge", "mm", "edges of the bins of heights"),
+    "bin_height": ("bin", "mm", "middle of the bin of heights"),
     "density": (
         ("face", "bin"),
         "mm-1",
@@ -156,6 +142,7 @@ def _relief(heights):
         "percentile": list(PERCENTILES),
         "height": percentiles,
         "edge": edges,
+        "bin_height": (edges[1:] + edges[:-1]) / 2,
         "density": counts / (np.array([[z.size] for z in known]) * np.diff(edges)),
     }
     return labelled(_RELIEF, values)
@@ -232,6 +219,8 @@ _NUMBERS = {
     "line_level": (_AXIS, "mm3", "self-affine line at a wavelength of 1 mm"),
     "line_exponent": (_AXIS, "1", "exponent 1 + 2H of the self-affine line"),
     "form": (_AXIS, "1", "parts of the model of the spectrum"),
+    "self_affine_line": ((*_AXIS, "wave"), "mm3", "self-affine line at the wavelengths"),
+    "noise_floor": (_AXIS, "mm3", "noise floor of the spectrum of profiles"),
 }
 
 
@@ -255,12 +244,18 @@ def _profile_spectra(heights, spacing):
     for name, words in _ESTIMATES.items():
         each = chain.from_iterable(of_range(attrgetter(name)))
         estimates |= Estimate.stack(each, (len(ranges), len(AXES))).variables(name, _AXIS, *words)
+    level = np.array(of_range(lambda found: found.line[0]))
+    exponent = np.array(of_range(lambda found: found.line[1]))
+    noise = np.array(of_range(lambda found: found.noise_rms.value))
+    waves = profiles["wavelength"]
     numbers = {
+        "self_affine_line": level[..., np.newaxis] * waves ** exponent[..., np.newaxis],
+        "noise_floor": noise**2 * np.array(spacing[::-1]),
         "noise_limit": of_range(lambda found: found.noise_limit),
         "strips_left_out": of_range(lambda found: found.left_out),
         "misfit": of_range(lambda found: found.misfit),
-        "line_level": of_range(lambda found: found.line[0]),
-        "line_exponent": of_range(lambda found: found.line[1]),
+        "line_level": level,
+        "line_exponent": exponent,
         "form": of_range(_form_words),
     }
     return {

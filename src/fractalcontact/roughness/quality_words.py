@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.estimate import Estimate
-from ..core.labels import percent, plain
+from ..core.labels import height_unit, length_words, percent, plain
 from .fractal_range import NO_POWER_LAW
 from .spectra import STRIPS
 
@@ -16,8 +16,6 @@ AXES = ("x", "y")
 UNEQUAL = 2.0
 #: Below this exponent 1 + 2H no rock is known, and spikes and noise look alike.
 FLATTEST = 1.5
-#: Lengths from here on, mm, are said in metres.
-_METRES = 1e4
 
 
 def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> str:
@@ -26,20 +24,6 @@ def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> st
     unit, size = (unit, 1.0) if unit == "mm" else height_unit(value)
     interval = f" [{plain(low / size)}, {plain(high / size)}]" if math.isfinite(low) else ""
     return f"{plain(value / size)}{interval} {unit}"
-
-
-def length_words(length: float) -> str:
-    """A length in mm in the unit that suits it: three digits, no power of ten."""
-    unit, size = height_unit(abs(length))
-    return f"{plain(float(length) / size)} {unit}"
-
-
-def height_unit(height: float) -> tuple[str, float]:
-    """Unit that suits a height in mm: its name, and how many mm it is."""
-    units = (("mm", 1.0), ("µm", 1e-3), ("nm", 1e-6), ("pm", 1e-9), ("fm", 1e-12))
-    if height >= _METRES:
-        return "m", 1e3
-    return next((unit for unit in units if height >= 0.1 * unit[1] or height == 0), units[2])
 
 
 def noise_words(quality: xr.Dataset, face: str) -> str:
@@ -168,3 +152,44 @@ def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
         f"({percent(float(window['overlap_fraction']))}, up to "
         f"{length_words(float(window['overlap_depth']))} deep; {elsewhere})"
     )
+
+
+def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
+    """A clause on cells missing, outlying, filled and suspicious.
+
+    Parameters
+    ----------
+    specimen, quality : Dataset
+    """
+    missing = [f"{plain(100 * share, 2)} %" for share in quality["missing_share"].values]
+    words = [f"{', '.join(missing)} of the cells missing"]
+    if "outlier_count" in specimen.attrs:
+        treated = {"keep": "kept", "mask": "masked", "fill": "filled"}
+        how = treated.get(str(specimen.attrs.get("outliers")), "")
+        words.append(f"{specimen.attrs['outlier_count']} outliers {how}".rstrip())
+    if filled := specimen.attrs.get("filled_count"):
+        words.append(f"{filled} cells filled")
+    return ", ".join(filter(None, [*words, suspect_words(specimen)]))
+
+
+def statements(specimen: xr.Dataset, quality: xr.Dataset) -> dict[str, str]:
+    """What is said of a scan, as attributes of the stage ``quality``.
+
+    Parameters
+    ----------
+    specimen, quality : Dataset
+
+    Returns
+    -------
+    dict of str to str
+        ``lower_face`` and, if there is one, ``upper_face``: noise floor, and what else the spectra
+        show; ``cells``; ``overlap``, empty of one face. Each a clause.
+    """
+    of_faces = {
+        f"{face}_face": "; ".join(
+            filter(None, (noise_words(quality, face), range_words(quality, face)))
+        )
+        for face in quality["face"].values
+    }
+    cells, overlap = cells_words(specimen, quality), overlap_words(specimen, quality)
+    return of_faces | {"cells": cells, "overlap": overlap}

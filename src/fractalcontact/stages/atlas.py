@@ -9,6 +9,7 @@ import xarray as xr
 
 from ..core.netcdf import versions
 from ..core.settings import Material, read
+from ..domain.map_series import with_series
 from ..mechanics.model_validity import model_validity
 from ..statements.comparison import UNGROUPED, compare_specimens, specimen_row
 from ..statements.judge import judge
@@ -56,7 +57,8 @@ def join_stages(
     }
     compared = _compared(of_joints, configuration["settings"])
     models = _models(of_joints, configuration["settings"])
-    everything = {**stages, **models, **_judged(of_joints, configuration), **compared}
+    judged = _judged(of_joints, configuration)
+    everything = {**stages, **_maps(stages), **models, **judged, **compared}
     study = configuration["study"]["study"]
     return write_atlas(
         _without_remade_fields(everything),
@@ -120,7 +122,7 @@ def join_rows(
             differing.setdefault(words, []).extend(parts)
     compared = compare_specimens({name: row for name, (row, _) in rows.items()})
     return write_atlas(
-        {**stages, "study_comparison": {WHOLE: compared}},
+        {**stages, **_maps(stages), "study_comparison": {WHOLE: compared}},
         path,
         study=configuration["study"]["study"],
         configuration=configuration,
@@ -147,6 +149,12 @@ def _without_remade_fields(stages):
             composite=joint["composite"].where(xr.DataArray(drawn, dims="offset"))
         )
     return {**stages, "joints": joints} if joints else stages
+
+
+def _maps(stages):
+    """Measured contact maps with what they are in their series."""
+    maps = stages.get("contact_maps", {})
+    return {"contact_maps": with_series(maps)} if maps else {}
 
 
 def _models(of_joints, settings):

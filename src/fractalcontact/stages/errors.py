@@ -7,6 +7,7 @@ from ..core.settings import Solver, StateSettings
 from ..mechanics.loading import JointLoading
 from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread
+from ..mechanics.stated_errors import stated_errors
 from ..mechanics.states import with_pressure
 
 
@@ -38,7 +39,8 @@ def error_stages(
     loading = joint.at_map_offset()
     spread = registration_spread(loading)
     budget = error_budget(loading, closure, domains, registration_spread=spread)
+    plan = solve_plan(closure, dilatancy, settings, solver, budget)
     return {
         "error_budget": with_pressure(budget, joint.area),
-        "choices": solve_plan(closure, dilatancy, settings, solver, budget),
+        "choices": plan.merge(stated_errors(closure, domains, direction)),
     }

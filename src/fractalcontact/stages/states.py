@@ -77,6 +77,7 @@ def state_stages(
         joint_statistics(specimens, joints),
         e_star,
         best_dimension(surface_dimension).value,
+        settings.map_offset,
     )
     fields = domains_of(states)
     domains = analyse_domains(fields, spacing, fit_range=settings.box_range)

@@ -1,13 +1,11 @@
 """Area slope kappa of synthetic surfaces at light load, beside the theories."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...mechanics.theory import persson_area
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -20,6 +18,7 @@ from ..kit.drawing import (
     legends_below,
     letter,
 )
+from ..kit.kappa import kappa_lines
 from ..kit.words import SUPPLEMENTARY, number
 
 TITLE = "Real contact area of synthetic surfaces at light load, with and without a roll-off"
@@ -46,7 +45,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for which, axes, kind in zip("ab", panels, slopes["surface"].values, strict=True):
         chosen = slopes.sel(surface=kind)
         _draw_surfaces(axes, chosen)
-        kappa_lines(axes, slopes["reduced_pressure"].values, slopes.attrs)
+        kappa_lines(axes, slopes)
         share = f"1/{1 / slopes.attrs['roll_off_share']:.3g}"
         label_short_span(axes.xaxis)
         letter(axes, which, _TITLES[kind].format(share=share))
@@ -63,54 +62,6 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         fontsize=9,
     )
     return Drawing(figure, _table(slopes), _caption(slopes))
-
-
-def kappa_lines(
-    axes: Axes, loads: np.ndarray, attrs: Mapping, colours: Mapping[str, str] | None = None
-) -> None:
-    """Persson's and Bush, Gibson and Thomas' kappa, and the literature's values as a band.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Its x is p / (E* h'_rms), on a logarithmic axis, its y kappa.
-    loads : array_like
-        Between the smallest and largest of these the lines are drawn.
-    attrs : mapping
-        ``persson_kappa``, ``bush_gibson_thomas_kappa`` and ``computed_kappa``.
-    colours : mapping of str to str, optional
-        Of ``bush`` and of ``persson``.
-    """
-    colours = colours or {"bush": "0.2", "persson": "0.2"}
-    ends = np.geomspace(np.min(loads), np.max(loads), 60)
-    low, high = attrs["computed_kappa"]
-    bush = attrs["bush_gibson_thomas_kappa"]
-    axes.plot(
-        ends,
-        np.full(ends.shape, bush),
-        "--",
-        color=colours["bush"],
-        lw=1,
-        label=rf"Bush, Gibson and Thomas: $\sqrt{{2\pi}}$ = {number(bush, 3)}",
-    )
-    axes.fill_between(
-        ends,
-        low,
-        high,
-        color="0.85",
-        lw=0,
-        zorder=0,
-        label=f"computed values in the literature: {low:g} to {high:g}",
-    )
-    axes.plot(
-        ends,
-        persson_area(ends, 1.0, 1.0) / ends,
-        "-.",
-        color=colours["persson"],
-        lw=1,
-        label=rf"Persson: $\sqrt{{8/\pi}}$ = {number(attrs['persson_kappa'], 3)} at light load",
-    )
-    axes.set_xscale("log")
 
 
 def _draw_surfaces(axes, chosen):

@@ -11,8 +11,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ...core.labels import length_words
 from ...core.window import window_slices
-from ...roughness.quality_words import AXES, length_words
 from ..kit.drawing import COLOURS, label_short_span
 from ..kit.empty import say_empty
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
@@ -101,22 +101,24 @@ def draw_histogram(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> Non
     axes.set_ylim(top=(1.2 + 0.3 * len(faces)) * axes.get_ylim()[1])  # room for the words
 
 
-def profile(specimen: xr.Dataset, face: str, axis: str) -> tuple[np.ndarray, np.ndarray]:
-    """Place (mm) and height (mm) along one axis, through the middle of the window."""
+def profile(specimen: xr.Dataset, face: str, axis: str) -> xr.Dataset:
+    """Places and heights along one axis, through the middle of the window."""
     row, column = _middle(specimen)
     z = specimen[face].values
     z = z[row] if axis == "x" else z[:, column]
-    return (np.arange(z.size) + 0.5) * specimen.attrs[f"spacing_{axis}"], z
+    place = (np.arange(z.size) + 0.5) * specimen.attrs[f"spacing_{axis}"]
+    mm = {"units": "mm"}
+    return xr.Dataset({"place": ("node", place, mm), "height": ("node", z, mm)})
 
 
 def draw_profile(axes: Axes, specimen: xr.Dataset, faces: Sequence[str], axis: str) -> None:
     place_unit, place = length_unit(max(scan_extent(specimen)))
     profiles = {face: profile(specimen, face, axis) for face in faces}
-    heights = np.concatenate([z for _, z in profiles.values()])
+    heights = np.concatenate([one["height"] for one in profiles.values()])
     span = np.ptp(heights[np.isfinite(heights)]) if np.isfinite(heights).any() else 1.0
     unit, size = length_unit(span)
-    for face, (x, z) in profiles.items():
-        axes.plot(x / place, z / size, color=FACE_COLOURS[face], lw=0.7)
+    for face, one in profiles.items():
+        axes.plot(one["place"] / place, one["height"] / size, color=FACE_COLOURS[face], lw=0.7)
     cells = dict(zip("yx", window_slices(specimen), strict=True))[axis]
     spacing = specimen.attrs[f"spacing_{axis}"] / place
     axes.axvspan(cells.start * spacing, cells.stop * spacing, color=_WINDOW, zorder=0)
@@ -130,19 +132,17 @@ def draw_profile(axes: Axes, specimen: xr.Dataset, faces: Sequence[str], axis: s
 def draw_spectrum(axes: Axes, quality: xr.Dataset, face: str) -> None:
     """Spectra of profiles of one face with their models, floor and end; resolutions on top."""
     found = quality.sel(face=face)
-    for axis in AXES:
+    for axis, marker in zip(AXIS_COLOURS, "os", strict=True):
         of_axis, colour = found.sel(axis=axis), AXIS_COLOURS[axis]
-        waves, level = of_axis["wavelength"].values, of_axis["spectrum"].values
-        axes.loglog(waves, level, "os"[AXES.index(axis)], ms=2.5, color=colour, mfc="none", mew=0.7)
-        axes.loglog(waves, of_axis["spectrum_model"].values, color=colour, lw=0.9)
-        known = np.isfinite(waves)
-        if not known.any() or not any(of_axis["form"].values.ravel()):
-            continue
-        line = of_axis["line_level"].item() * waves ** of_axis["line_exponent"].item()
-        axes.loglog(waves, line, color=colour, lw=0.7, ls=":")
-        if np.isfinite(of_axis["noise_rms"]):
-            shortest = _spacing(quality, axis)
-            axes.axhline(of_axis["noise_rms"].item() ** 2 * shortest, color=colour, lw=0.8, ls="--")
+        waves = of_axis["wavelength"].values
+        style: dict[str, Any] = {"color": colour, "lw": 0.9}
+        hollow = {"color": colour, "ms": 2.5, "mfc": "none", "mew": 0.7}
+        axes.loglog(waves, of_axis["spectrum"].values, marker, **hollow)
+        axes.loglog(waves, of_axis["spectrum_model"].values, **style)
+        if np.isfinite(waves).any() and of_axis["form"].item():
+            axes.loglog(waves, of_axis["self_affine_line"].values, **style | {"lw": 0.7, "ls": ":"})
+            if np.isfinite(of_axis["noise_floor"]):
+                axes.axhline(of_axis["noise_floor"].item(), **style | {"lw": 0.8, "ls": "--"})
     _mark_range(axes, quality)
     measured = found["spectrum"].values[found["spectrum"].values > 0]
     if measured.size:
@@ -151,10 +151,6 @@ def draw_spectrum(axes: Axes, quality: xr.Dataset, face: str) -> None:
         say_empty(axes, "too small for a spectrum")
     axes.set(xlabel="wavelength (mm)", ylabel="spectrum of profiles (mm³)")
     label_short_span(axes.xaxis)
-
-
-def _spacing(quality, axis):
-    return quality.attrs[f"spacing_{axis}"]
 
 
 def _mark_range(axes, quality):
@@ -189,10 +185,9 @@ def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
         axes.loglog(
             waves, level, "o-", ms=2.5, mfc="none", mew=0.7, color=FACE_COLOURS[face], lw=0.8
         )
-        noise = found["noise_rms"].values
-        if np.isfinite(noise).all():
-            area = _spacing(quality, "x") * _spacing(quality, "y")
-            axes.axhline(np.min(noise) ** 2 * area, color=FACE_COLOURS[face], lw=0.8, ls="--")
+        if np.isfinite(found["radial_noise_floor"]):
+            floor = found["radial_noise_floor"].item()
+            axes.axhline(floor, color=FACE_COLOURS[face], lw=0.8, ls="--")
     _mark_range(axes, quality)
     if not np.isfinite(quality["radial_spectrum"]).any():
         say_empty(axes, "too small for a spectrum")
@@ -216,7 +211,7 @@ def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Artist]:
             lw=0.9,
             label=f"profiles along ${axis}$, model",
         )
-        for i, axis in enumerate(AXES)
+        for i, axis in enumerate(AXIS_COLOURS)
     ]
     entries.append(Line2D([], [], color="0.3", ls=":", lw=0.8, label="self-affine line"))
     if quality["noise_rms"].notnull().any():

@@ -6,11 +6,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.subject import Subject
 from ...core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
-from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, group, label_in_lines, settings_of
+from ..kit.caption import caption
+from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, label_in_lines
+from ..kit.panel import rows
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
 from ..kit.verdicts import CIRCULAR_SHORT
-from ..kit.words import force_label, opening
+from ..kit.words import force_label
 
 TITLE = "Statements of the paper, and whether they hold"
 SUBJECT = "specimen"
@@ -40,11 +43,13 @@ SYMBOL_LETTERS = 136
 
 def draw(atlas: DataTree, name: str) -> Drawing:
     """The statements, one row each."""
-    label = settings_of(atlas, name)["label"]
-    judged = group(atlas, "statements", name)
-    table = pd.DataFrame({key: judged[key].values for key in DATA})
-    figure = draw_table(table, label, float(judged.attrs["force"]))
-    return Drawing(figure, table, _caption(judged, table))
+    subject = Subject.of(atlas, name)
+    judged = subject["statements"]
+    table = rows(judged, *DATA)[list(DATA)]
+    force = float(judged.attrs["force"])
+    words = {"counts": table["verdict"].value_counts().to_dict(), "verdicts": tuple(SIGNS)}
+    words |= {"circular": int(table["circular"].sum()), "force": force}
+    return Drawing(draw_table(table, subject.label, force), table, caption(__name__, **words))
 
 
 def draw_table(table: pd.DataFrame, label: str, force: float) -> Figure:
@@ -94,22 +99,3 @@ def _texts(row):
         "verdict": verdict,
         "numbers": "; ".join(filter(None, reasons)),
     }
-
-
-def _caption(judged, table):
-    counts = table["verdict"].value_counts()
-    summary = ", ".join(
-        f"{counts[key]} {_noun(key, counts[key])}" for key in SIGNS if key in counts
-    )
-    circular = int(table["circular"].sum())
-    chosen = f" {circular} circular: the specimen was chosen for them." if circular else ""
-    return (
-        f"{opening('the statements')} Of {len(table)} "
-        f"statements {summary}.{chosen} The rules that judge them are ours, the paper gives "
-        f"none; load: {force_label(judged.attrs['force'])}."
-    )
-
-
-def _noun(verdict, count):
-    words = {HOLDS: "hold", PARTLY: "hold in part", FAILS: "do not hold"}
-    return verdict if count == 1 else words.get(verdict, verdict)

@@ -1,6 +1,6 @@
 """Measured contact maps, one by one or in series, for the figures that draw them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 from xarray import DataTree
 
 from ...core.estimate import names_of
-from ...domain.map_series import map_table, series_of_maps
-from ...domain.pressure_trend import Trend, pressure_trend
-from .drawing import COLOURS, MARKERS, group
+from ...core.measured_maps import map_table, measured_maps
+from .drawing import COLOURS, MARKERS
 from .points import reach
 from .words import short
 
@@ -31,7 +30,7 @@ class Series:
     names : tuple of str
         Of its maps, in the order of their pressure; those of unknown pressure last.
     maps : tuple of xr.Dataset
-        As :func:`domain.measured_map.read_contact_map` gives them.
+        As the atlas has them.
     number : int
         Its place among all series, which says its colour and marker.
     """
@@ -51,13 +50,6 @@ class Series:
         return self.values("nominal_pressure").astype(float)
 
     @property
-    def trend(self) -> Trend:
-        """How Delta_sigma goes with the pressure."""
-        return pressure_trend(
-            self.pressure, self.values("delta_sigma"), self.values("delta_sigma_random")
-        )
-
-    @property
     def legend(self) -> str:
         """Its label for a legend, with the number of its maps where there are several."""
         label = self.label if len(self.label) <= _LONGEST else f"{self.label[: _LONGEST - 1]}…"
@@ -72,13 +64,19 @@ class Series:
 
 def measured_series(atlas: DataTree) -> list[Series]:
     """Measured contact maps that were dropped in with the scans: series first, then single maps."""
-    if "contact_maps" not in atlas.children:
-        return []
-    maps = {name: group(atlas, "contact_maps", name) for name in atlas["contact_maps"].children}
+    series: dict[int, dict[str, xr.Dataset]] = {}
+    for name, one in measured_maps(atlas).items():
+        series.setdefault(int(one["series_number"]), {})[name] = one
     return [
-        Series(one.label, one.names, tuple(maps[name] for name in one.names), number)
-        for number, one in enumerate(series_of_maps(maps))
+        Series(_label(maps), tuple(maps), tuple(maps.values()), number)
+        for number, maps in series.items()
     ]
+
+
+def _label(maps: Mapping[str, xr.Dataset]) -> str:
+    """Label of a series, or of a map alone."""
+    first, *_ = maps.values()
+    return first.attrs["series"] or first.attrs["label"]
 
 
 def draw_series(
@@ -137,5 +135,6 @@ def threshold_words(series: Sequence[Series]) -> str:
 
 def table_of(series: Sequence[Series]) -> pd.DataFrame:
     """One row a map, series by series."""
-    names = [name for each in series for name in each.names]
-    return map_table(names, [one for each in series for one in each.maps])
+    return map_table(
+        {name: one for each in series for name, one in zip(each.names, each.maps, strict=True)}
+    )

@@ -16,7 +16,8 @@ from .points import draw_points, reach
 def column_of(data: xr.Dataset, name: Hashable) -> str:
     """A variable as a column of a table, named with its unit: "closure_mm"."""
     unit = data[name].attrs.get("units", "1")
-    return f"{name}" if unit == "1" else f"{name}_{unit.replace('/', '_per_').replace(' ', '_')}"
+    unit = unit.replace("mm-1", "per_mm").replace("/", "_per_").replace(" ", "_")
+    return f"{name}" if unit == "1" else f"{name}_{unit}"
 
 
 def rows(data: xr.Dataset, *names: str, **constants: Any) -> pd.DataFrame:
@@ -144,7 +145,8 @@ class Panel:
 
     def keep(self, data: xr.Dataset, *names: str, **constants: Any) -> None:
         """Add rows of what is drawn otherwise, as :func:`rows` makes them."""
-        self.records.append(rows(data, *names, panel=self.which, **constants))
+        which = {"panel": self.which} if self.which else {}
+        self.records.append(rows(data, *names, **which, **constants))
 
 
 def table_of(*panels: Panel) -> pd.DataFrame:

@@ -7,10 +7,11 @@ from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.verdicts import BEYOND_RANDOM
+from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, headline, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import measured_series, table_of, threshold_words
-from ..kit.words import SUPPLEMENTARY, percent, short
+from ..kit.words import percent, short
 
 TITLE = "Measured contact maps"
 SUBJECT = "study"
@@ -49,7 +50,16 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
     figure.legend(handles=_key(one for _, one in chosen), loc="outside lower center", ncols=3)
     shown = f"{len(chosen)} of {len(maps)} maps" if len(chosen) < len(maps) else f"{len(maps)} maps"
     headline(figure, f"{shown}, each with its nominal pressure; in brackets 95 % intervals")
-    return Drawing(figure, table_of(series), _caption(series, maps))
+    shares = [float(one["area_share"]) for _, one in maps]
+    words = {
+        "maps": len(maps),
+        "thresholds": threshold_words(series),
+        "least": min(shares),
+        "most": max(shares),
+        "different": sum(one["null_verdict"].item() == BEYOND_RANDOM for _, one in maps),
+        "warned": sum(bool(one.attrs["warning"]) for _, one in maps),
+    }
+    return Drawing(figure, table_of(series), caption(__name__, **words))
 
 
 def _key(maps):
@@ -72,25 +82,7 @@ def _title(name, one):
     name = name if len(name) <= _LONGEST else f"{name[: _LONGEST - 1]}…"
     pressure = float(one["nominal_pressure"])
     load = f"{short(pressure)} MPa" if np.isfinite(pressure) else "no load"
-    value, low, high = Estimate.read(one, "delta_sigma").ends
-    dimension = "no dimension"
-    if np.isfinite(value):
-        dimension = rf"$\Delta_\sigma$ = {Estimate(value, low, high, scale=DIMENSION).text()}"
+    dimension = Estimate.read(one, "delta_sigma", scale=DIMENSION)
+    words = rf"$\Delta_\sigma$ = {dimension.text()}" if dimension.known else "no dimension"
     share = percent(float(one["area_share"]))
-    return f"{name.replace('$', '')}\n{load}, $A_r/A_0$ = {share}\n{dimension}"
-
-
-def _caption(series, maps):
-    shares = [float(one["area_share"]) for _, one in maps]
-    different = sum(one["null_verdict"].item() == BEYOND_RANDOM for _, one in maps)
-    warned = sum(bool(one.attrs["warning"]) for _, one in maps)
-    words = (
-        f"{SUPPLEMENTARY} Cells in contact (black), "
-        f"{threshold_words(series)}; above each its nominal pressure, A_r/A_0 "
-        f"({percent(min(shares))} to {percent(max(shares))} in all) and Delta_sigma. The local "
-        f"slopes of the box counts differ from those of random cells in {different} of "
-        f"{len(maps)} maps; a bearing-area cut needs heights."
-    )
-    if warned:
-        words += f" {warned} have no contact all round and no outline stated: A_0 may be too large."
-    return words
+    return f"{name.replace('$', '')}\n{load}, $A_r/A_0$ = {share}\n{words}"

@@ -1,18 +1,16 @@
 """Dimension of measured contact maps against nominal pressure and against contact fraction."""
 
-from dataclasses import replace
-
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from ...core.estimate import DIMENSION
+from ...core.estimate import DIMENSION, Estimate
+from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, entries, headline, label_short_span, legends_below, letter
 from ..kit.empty import say_empty
 from ..kit.measured import draw_series, measured_series, table_of, threshold_words
-from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Dimension of measured contact maps against pressure"
 SUBJECT = "study"
@@ -50,7 +48,8 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
     panels[0].set_ylim(-0.05, 2.05)
     legends_below(figure, entries(panels[1]), _marks(series))
     headline(figure, "bars: 95 % intervals; after each name the number of its maps")
-    return Drawing(figure, table_of(series), _caption(series))
+    said = caption(__name__, thresholds=threshold_words(series), trends=_trends(series))
+    return Drawing(figure, table_of(series), said)
 
 
 def _marks(series):
@@ -63,24 +62,16 @@ def _marks(series):
     return marks
 
 
-def _caption(series):
-    """What is drawn, and of the longest series how the dimension goes with pressure."""
-    longest = sorted(series, key=lambda each: -len(each.maps))
-    words = " ".join(_trend_words(each) for each in longest[:_IN_WORDS])
-    return (
-        f"{SUPPLEMENTARY} Delta_sigma by box counting "
-        f"({threshold_words(series)}) beside as many random cells. {words}"
-    )
-
-
-def _trend_words(series):
-    trend, label = series.trend, series.legend
-    if not trend.line.slope.known:
-        return f"{label}: too few maps with loads for a trend."
-    line, departure = trend.line, trend.departure
-    slope = replace(line.slope, scale=DIMENSION).text()
-    words = f"{label}: {slope} a decade of pressure ({trend.verdict})"
-    if departure.slope.known:
-        less = replace(departure.slope, scale=DIMENSION).text()
-        words += f"; less that of random cells {less} ({trend.beyond_random})"
-    return f"{words}."
+def _trends(series):
+    """Of the longest series how the dimension goes with pressure."""
+    longest = sorted(series, key=lambda each: -len(each.maps))[:_IN_WORDS]
+    return [
+        {
+            "label": each.legend,
+            "verdict": str(each.maps[0]["pressure_trend"].values),
+            "beyond_random": str(each.maps[0]["pressure_trend_beyond_random"].values),
+            "slope": Estimate.read(each.maps[0], "pressure_slope", scale=DIMENSION),
+            "less": Estimate.read(each.maps[0], "pressure_slope_beyond_random", scale=DIMENSION),
+        }
+        for each in longest
+    ]

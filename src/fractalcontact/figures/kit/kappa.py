@@ -1,0 +1,38 @@
+"""Area slopes kappa of the theories, which two figures draw beside what they compute."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from .words import number
+
+
+def kappa_lines(axes: Axes, stage: xr.Dataset, colours: Mapping[str, str] | None = None) -> None:
+    """Persson's and Bush, Gibson and Thomas' kappa, and the literature's values as a band.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Its x is p / (E* h'_rms), on a logarithmic axis, its y kappa.
+    stage : xr.Dataset
+        With ``line_pressure`` and ``persson_line``; attributes ``persson_kappa``,
+        ``bush_gibson_thomas_kappa`` and ``computed_kappa``.
+    colours : mapping of str to str, optional
+        Of ``bush`` and of ``persson``.
+    """
+    colours = colours or {"bush": "0.2", "persson": "0.2"}
+    pressure = stage["line_pressure"].values
+    low, high = stage.attrs["computed_kappa"]
+    bush = stage.attrs["bush_gibson_thomas_kappa"]
+    label = rf"Bush, Gibson and Thomas: $\sqrt{{2\pi}}$ = {number(bush, 3)}"
+    constant = np.full(pressure.shape, bush)
+    axes.plot(pressure, constant, "--", color=colours["bush"], lw=1, label=label)
+    label = f"computed values in the literature: {low:g} to {high:g}"
+    axes.fill_between(pressure, low, high, color="0.85", lw=0, zorder=0, label=label)
+    light = number(stage.attrs["persson_kappa"], 3)
+    label = rf"Persson: $\sqrt{{8/\pi}}$ = {light} at light load"
+    kappa = stage["persson_line"].values
+    axes.plot(pressure, kappa, "-.", color=colours["persson"], lw=1, label=label)
+    axes.set_xscale("log")

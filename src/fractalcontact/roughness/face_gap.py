@@ -1,0 +1,64 @@
+"""Gap of two faces as scanned and registered: its distribution, and where the faces overlap."""
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled
+from ..core.window import window_slices
+from ..surface.suspect import overlap_statistics
+
+#: Bins of the distribution of the gap.
+GAP_BINS = 60
+#: Parts of a scan whose overlap is stated.
+REGIONS = ("scan", "window")
+
+_OVERLAP = {
+    "overlap_cells": ("region", "1", "cells where the upper face lies below the lower one"),
+    "overlap_fraction": ("region", "1", "fraction of the cells of both faces that overlap"),
+    "overlap_depth": ("region", "mm", "deepest overlap of the faces as scanned and registered"),
+    "gap_mean": ("region", "mm", "mean gap of the faces as scanned and registered"),
+    "gap_sd": ("region", "mm", "standard deviation of that gap"),
+}
+
+
+def _overlap(specimen):
+    found = overlap_statistics(specimen, window_slices(specimen))
+    keys = ("cells", "fraction", "depth", "gap_mean", "gap_sd")
+    return labelled(
+        _OVERLAP, {name: list(found[key]) for name, key in zip(_OVERLAP, keys, strict=True)}
+    )
+
+
+_GAPS = {
+    "gap_edge": ("gap_edge", "mm", "edges of the bins of the gap, one of them at zero"),
+    "gap": ("gap_bin", "mm", "middle of the bin of the gap"),
+    "gap_cells": ("gap_bin", "1", "cells whose gap lies in the bin"),
+}
+
+
+def _gap_histogram(specimen):
+    """Cells in bins of the gap over the whole scan."""
+    gap = (specimen["upper"] - specimen["lower"]).values
+    known = gap[np.isfinite(gap)]
+    low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)
+    width = ((high - low) or 1.0) / GAP_BINS
+    first, last = np.floor(low / width), np.ceil(high / width)
+    edges = width * np.arange(first, max(last, first + 1) + 1)
+    middles, counts = (edges[1:] + edges[:-1]) / 2, np.histogram(known, edges)[0]
+    return labelled(_GAPS, {"gap_edge": edges, "gap": middles, "gap_cells": counts})
+
+
+def gap_statistics(specimen: xr.Dataset) -> dict[str, tuple]:
+    """Overlap and gap by region of the scan, and the gap's distribution over the whole of it.
+
+    Parameters
+    ----------
+    specimen : Dataset
+        Of two faces, from :func:`surface.specimen.make_specimen`.
+
+    Returns
+    -------
+    dict
+        Variables, as ``xr.Dataset`` takes them.
+    """
+    return _overlap(specimen) | _gap_histogram(specimen)
