@@ -122,7 +122,7 @@ def add_means(result: xr.Dataset) -> None:
     order = ("surface", "seed", "direction", "rigid_offset")
     slides = result.transpose(*order)
     expected = slides["face_rms"] * np.sqrt(np.maximum(2 - 2 * slides["face_correlation"], 0))
-    opened, spread, expected = (
+    opened, spread, by_faces = (
         values.transpose(*order).mean("direction").values
         for values in (slides["rigid_dilatancy"], slides["composite_rms"], expected)
     )
@@ -130,7 +130,7 @@ def add_means(result: xr.Dataset) -> None:
     values = {
         "joint_dilatancy": opened,
         "joint_rms": spread,
-        "joint_rms_expected": expected,
+        "joint_rms_expected": by_faces,
         "joint_dilatancy_over_rms": over_spread(opened, spread),
         "slope_offset_min": v[second_half(v)][0],
     }

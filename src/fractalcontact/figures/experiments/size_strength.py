@@ -85,7 +85,7 @@ def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
     for law, i in product(test["law"].values, range(sides)):
         one = Estimate.read(test.sel(law=law).isel(side=i), "strength")
         shift = 1.06 ** (i - (sides - 1) / 2) * (1.0 if law == _ELASTIC else 1.03)
-        bars = {"yerr": reach(*one.ends), "elinewidth": 0.7}
+        bars: dict[str, Any] = {"yerr": reach(*one.ends), "elinewidth": 0.7}
         colour = colour_of(i + 1)
         axes.errorbar(middles * shift, one.value, fmt=MARKERS[i], **_points(law, colour), **bars)
     of_theory = test["theory_strength"].sel(law=_ELASTIC)
@@ -133,10 +133,10 @@ def _draw_exponents(axes: Axes, test: xr.Dataset) -> None:
         axes.plot(scaled, one["theory_exponent"], "x", color="0.6", ms=5, zorder=0)
     if fractions:
         axes.axvline(intervals + 0.5, color="0.6", lw=0.8)
-    ends = zip(test["interval_low"].values, test["interval_high"].values, strict=True)
-    parts = zip(test["fraction_low"].values, test["fraction_high"].values, strict=True)
-    labels = [f"{low:g} to {high:g}" for low, high in ends]
-    labels += [f"1/{1 / low:.4g} to 1/{1 / high:.4g}" for low, high in parts]
+    of_v = zip(test["interval_low"].values, test["interval_high"].values, strict=True)
+    of_b = zip(test["fraction_low"].values, test["fraction_high"].values, strict=True)
+    labels = [f"{low:g} to {high:g}" for low, high in of_v]
+    labels += [f"1/{1 / low:.4g} to 1/{1 / high:.4g}" for low, high in of_b]
     axes.set_xticks(places, ["all together", *labels], fontsize=7)
     axes.tick_params(axis="x", rotation=90)
 
