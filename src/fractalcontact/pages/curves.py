@@ -6,9 +6,10 @@ import numpy as np
 import pandas as pd
 
 from ..core.determined import determined
-from ..core.estimate import Estimate, names_of
-from .chosen import Chosen, finite
+from ..core.estimate import Estimate
+from ..core.subject import Subject
 from .summary import DIMENSION
+from .words import finite
 
 #: Of dimensions: an area has one of its own.
 DIMENSION_UNIT = "1"
@@ -30,7 +31,7 @@ COLUMNS = (
 )
 
 
-def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
+def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
     """Curves of specimens, one row a point; points that were not solved are left out.
 
     Interface closure, tangent stiffness and corrected area with the total error of this surface,
@@ -40,10 +41,10 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
     Parameters
     ----------
     study : str
-    chosen : list of Chosen
+    subjects : list of Subject
     """
     rows: list[dict[str, Any]] = []
-    for one in chosen:
+    for one in subjects:
         start = {
             "study": study,
             "specimen": one.name,
@@ -51,7 +52,8 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
             "direction": one.direction,
             "offset_mm": one.offset,
         }
-        enough = one.values("closure", "resolved")["resolved"].values.astype(bool)
+        states = one.states("closure")
+        enough, pressures = states["resolved"].values.astype(bool), states["nominal_pressure"]
         for quantity, unit, values, low, high in _quantities(one):
             says = [_says(unit, *ends) for ends in zip(values, low, high, strict=True)]
             rows += [
@@ -59,7 +61,7 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
                 | {
                     "quantity": quantity,
                     "unit": unit,
-                    "nominal_pressure_MPa": float(one.pressures[i]),
+                    "nominal_pressure_MPa": float(pressures[i]),
                     "value": float(values[i]),
                     "low": finite(low[i]),
                     "high": finite(high[i]),
@@ -77,10 +79,8 @@ def _says(unit, value, low, high):
 
 def _quantities(one):
     """Name, unit, values and ends of each curve over the loads."""
-    closure = one.values(
-        "closure", "interface_closure", "interface_stiffness", "area_corrected_share"
-    )
-    budget = one.stage("error_budget").sel(normal_force=one.forces, method="nearest")
+    closure = one.states("closure")
+    budget = one["error_budget"].sel(normal_force=one.forces, method="nearest")
     share = closure["area_corrected_share"].values
     of_values = (
         ("interface closure", "mm", closure["interface_closure"].values, "closure"),
@@ -91,5 +91,5 @@ def _quantities(one):
         error = abs(values) * budget["relative_total"].sel(quantity=name).values
         yield words, unit, values, values - error, values + error
     for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
-        found = one.values(stage, *names_of("delta_sigma"))
-        yield f"Delta_sigma {words}", DIMENSION_UNIT, *Estimate.read(found, "delta_sigma").ends
+        found = Estimate.read(one.states(stage), "delta_sigma")
+        yield f"Delta_sigma {words}", DIMENSION_UNIT, *found.ends

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from ..core.labels import printable
-from .chosen import Chosen, finite
-from .words import short, with_unit
+from ..core.subject import Subject
+from .words import finite, short, with_unit
 
 #: The material stated for one specimen alone has this name in its settings.
 _OWN = "own"
@@ -46,9 +46,9 @@ class Material:
         return f"{line}, hardness {with_unit(self.hardness, 'MPa')}"
 
 
-def material_of(chosen: Chosen) -> Material:
+def material_of(subject: Subject) -> Material:
     """The material that the study, or the sidecar of a specimen, states."""
-    stated = chosen.settings["material"]
+    stated = subject.settings["material"]
     return Material(
         name=str(stated["name"]),
         modulus=float(stated["modulus"]),

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from ..core.subject import Subject
 from .captions import symbols
-from .chosen import Chosen, finite
-from .words import percent
+from .words import finite, percent
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,12 @@ class Doubled:
     stiffness: float | None
 
 
-def doubled_spacing(chosen: Chosen) -> Doubled:
+def doubled_spacing(subject: Subject) -> Doubled:
     """What twice the spacing of a specimen makes of both stiffnesses."""
-    curves = chosen.stage("closure").sel(direction=chosen.direction)
-    curves = curves.sel(offset=chosen.offset, method="nearest")
+    curves = subject.along("closure").sel(offset=subject.offset, method="nearest")
     finest = curves["resolution"].values.min()
     change = curves["hyperbola_k_ni_change"].sel(resolution=finest)
-    tangent = curves["interface_stiffness"].isel(normal_force=chosen.map_load)
+    tangent = curves["interface_stiffness"].isel(normal_force=subject.reported.reference)
     tangent = tangent.reindex(resolution=[finest, 2 * finest])
     return Doubled(finite(change), finite(tangent[1] / tangent[0] - 1))
 

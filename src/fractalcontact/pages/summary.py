@@ -11,16 +11,16 @@ import xarray as xr
 from ..core import estimate
 from ..core.determined import decided_by_scan, determined
 from ..core.limits import WIDEST
+from ..core.subject import Subject
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import spacing_of, window_sides
 from ..domain.map_series import map_table
 from ..mechanics.model_validity import Validity
-from .chosen import Chosen, finite
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
-from .words import percent, with_unit
+from .words import finite, percent, with_unit
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -202,39 +202,41 @@ class Specimen:
         return next((load for load in self.loads if load.number == number), None)
 
 
-def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
+def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
     """The row of a specimen.
 
     Parameters
     ----------
-    chosen : Chosen
+    subject : Subject
     common : sequence of CommonLoad, optional
         Loads at which it is compared with others: quoted too.
     """
-    compared = {load.numbers[chosen.name] for load in common if chosen.name in load.numbers}
-    specimen = chosen.stage("specimens")
+    compared = {load.numbers[subject.name] for load in common if subject.name in load.numbers}
+    specimen = subject["specimens"]
     side_y, side_x = window_sides(specimen)
-    surface = chosen.stage("surface_dimension")
-    curve = chosen.values("closure")
+    surface = subject["surface_dimension"]
+    curve = subject.states("closure")
     dimension = estimate.Estimate.read(surface, "recommended_dimension").ends
     return Specimen(
-        name=chosen.name,
-        label=chosen.label,
+        name=subject.name,
+        label=subject.label,
         opposite=str(specimen.attrs["opposite"]),
-        material=material_of(chosen),
-        direction=chosen.direction,
-        offset=chosen.offset,
+        material=material_of(subject),
+        direction=subject.direction,
+        offset=subject.offset,
         window=(side_x, side_y),
         spacing=max(spacing_of(specimen)),
         delta_g=Estimate.between(dimension, str(surface["no_dimension"].item()), DIMENSION),
         estimator=str(surface["recommended"].item()).replace("_", " "),
-        rms_slope=finite(chosen.values("area", "rms_slope")["rms_slope"]),
+        rms_slope=finite(subject.states("area")["rms_slope"]),
         k_ni=_initial_stiffness(curve),
-        doubled=doubled_spacing(chosen),
+        doubled=doubled_spacing(subject),
         closure_law=str(curve["closure_law"].item()),
-        dilatancy=dilatancy_of(chosen),
-        loads=[_at_load(chosen, curve, i) for i in sorted(compared.union(chosen.quoted))],
-        lights=lights_of(chosen),
+        dilatancy=dilatancy_of(subject),
+        loads=[
+            _at_load(subject, curve, i) for i in sorted(compared.union(subject.reported.quoted))
+        ],
+        lights=lights_of(subject),
     )
 
 
@@ -245,49 +247,47 @@ def _initial_stiffness(curve):
     return Estimate(value, low, high, bool(says), why)
 
 
-def _at_load(chosen, curve, number):
+def _at_load(subject, curve, number):
     """What stands in the table under the load of this number."""
     state = {"normal_force": number}
     return AtLoad(
         number=number,
-        normal_force=float(chosen.forces[number]),
-        nominal_pressure=float(chosen.pressures[number]),
-        of_maps=number == chosen.map_load,
+        normal_force=float(subject.forces[number]),
+        nominal_pressure=float(curve["nominal_pressure"][number]),
+        of_maps=number == subject.reported.reference,
         contact_nodes=finite(curve["nodes"].isel(state)),
         suspect_share=finite(curve["suspect_load_share"].isel(state)),
-        model=validity_at(chosen, number),
-        quantities=quantities_at(chosen, number),
-        delta_sigma_boxes=_dimension(chosen, "domains", state),
-        delta_sigma_areas=_dimension(chosen, "scaling", state),
+        model=validity_at(subject, number),
+        quantities=quantities_at(subject, number),
+        delta_sigma_boxes=_dimension(subject, "domains", state),
+        delta_sigma_areas=_dimension(subject, "scaling", state),
     )
 
 
-def _dimension(chosen, stage, state):
+def _dimension(subject, stage, state):
     """Delta_sigma of a stage, with why there is none where the stage says it."""
-    names = ["delta_sigma", "delta_sigma_low", "delta_sigma_high"]
-    names += ["reason"] if "reason" in chosen.stage(stage) else []
-    found = chosen.values(stage, *names).isel(state)
+    found = subject.states(stage).isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
     if not note and np.isnan(float(found["delta_sigma"])):
         note = TOO_FEW_RESOLUTIONS
     return Estimate.of(found, "delta_sigma", note, **DIMENSION)
 
 
-def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
+def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
     """Quantities of the error budget under the load of this number.
 
     Parameters
     ----------
-    chosen : Chosen
+    subject : Subject
     number : int
         Among the loads of the study.
     """
-    budget = chosen.stage("error_budget")
-    force = chosen.forces[number]
+    budget = subject["error_budget"]
+    force = subject.forces[number]
     budget = budget.sel(normal_force=force, method="nearest")
     sources = [str(source) for source in budget["source"].values]
-    why = chosen.values("closure", "interface_stiffness_reason").isel(normal_force=number)
-    missing = {"stiffness": str(why["interface_stiffness_reason"].item())}
+    why = subject.states("closure")["interface_stiffness_reason"].isel(normal_force=number)
+    missing = {"stiffness": str(why.item())}
     found = {}
     for name in map(str, budget["quantity"].values):
         one = budget.sel(quantity=name)
@@ -305,12 +305,12 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
     return found
 
 
-def dilatancy_of(chosen: Chosen) -> Dilatancy:
+def dilatancy_of(subject: Subject) -> Dilatancy:
     """Level and slope of the rigid dilatancy over the second half of the offsets."""
-    joints = chosen.stage("joints")
-    if chosen.direction not in joints["direction"]:
+    joints = subject["joints"]
+    if subject.direction not in joints["direction"]:
         return Dilatancy("none")
-    along = joints.sel(direction=chosen.direction)
+    along = joints.sel(direction=subject.direction)
     kind = str(along["plateau_trend"].item())
     level, slope = (finite(along[f"plateau_{name}"]) for name in ("level", "slope"))
     return Dilatancy(kind or "none", level, slope)

@@ -1,6 +1,7 @@
 """Numbers in words, as the pages print them."""
 
 import math
+from typing import Any
 
 from ..core.labels import plain
 
@@ -15,6 +16,12 @@ _SCALED = {"mm": _LENGTHS, "MPa/mm": _STIFFNESS, "N": _FORCES, "MPa": _PRESSURES
 MISSING = "–"
 #: Ends of an interval that differ from even ones by less than this part of it are called even.
 _EVEN = 0.02
+
+
+def finite(value: Any) -> float | None:
+    """A number, or None where it is missing: JSON knows neither NaN nor infinity."""
+    number = float(value)
+    return number if math.isfinite(number) else None
 
 
 def short(value: float | None, digits: int = 3) -> str:

@@ -5,10 +5,12 @@ from collections.abc import Mapping
 import xarray as xr
 
 from ..accuracy.error_budget import error_budget
+from ..core.labels import cf_attrs
 from ..mechanics.loading import JointLoading
 from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread
 from ..mechanics.states import with_pressure
+from ..study.configuration import solver_settings
 
 
 def error_stages(
@@ -43,5 +45,15 @@ def error_stages(
     budget = error_budget(loading, closure, domains, registration_spread=spread)
     return {
         "error_budget": with_pressure(budget, joint.area),
-        "choices": solve_plan(closure, dilatancy, settings, solver, budget),
+        "choices": solve_plan(closure, dilatancy, settings, solver, budget).assign(asked(solver)),
     }
+
+
+def asked(solver: Mapping) -> dict[str, tuple]:
+    """Error of the closure that the study asks for, as ``xr.Dataset`` takes it.
+
+    All states, at full cost, ask nothing of the grid: the usual error stands for it.
+    """
+    accuracy = solver["accuracy"] or solver_settings({}, "")["accuracy"]
+    words = cf_attrs("1", "error of the closure that the study asks for, a fraction")
+    return {"closure_accuracy": ((), accuracy["closure"], words)}
