@@ -4,17 +4,14 @@ What is suspicious is found in :mod:`surface.suspect` and :mod:`surface.cleaning
 composite topography is where either of its two cells is.
 """
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from ..core.determined import decided_by_scan
 from ..core.directions import axis_and_sign
 from ..core.limits import RESOLVED_NODES
-from ..core.window import nominal_area, window_slices
-from .states import chosen_offset, forces_of
+from ..core.reported import Reported
+from ..core.window import window_slices
 
 
 def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
@@ -126,32 +123,28 @@ def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
     return (2 * (decisive & counted).sum("normal_force") >= states) & (states > 0)
 
 
-def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: Mapping[str, Any]) -> str:
+def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     """Warning where errors of the scans carry the load that decides a number, "" if nowhere.
 
     Parameters
     ----------
     curves : xr.Dataset
         From :func:`mechanics.closure.closure_curves`.
-    specimen : xr.Dataset
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
+    reported : Reported
 
     Returns
     -------
     str
-        On the first direction at the finest resolution: the offsets at which suspicious cells carry
+        On the reported direction and resolution: the offsets at which suspicious cells carry
         more than half of the map load, and those at which they do so in half of the states fitted.
     """
-    finest = curves.sel(resolution=curves["resolution"].min()).isel(direction=0)
-    (force,) = forces_of([settings["map_load"]], nominal_area(specimen))
-    at_map = chosen_offset(settings["map_offset"], finest["offset"].values)
-    mapped = finest["suspect_load_share"].sel(normal_force=force, method="nearest")
+    finest = reported.curves(curves)
+    mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)
     parts = []
     worst = float(mapped.max())
     if decided_by_scan(worst):
         where = _offset_words(mapped["offset"].values[decided_by_scan(mapped.values)])
-        at_maps = decided_by_scan(float(mapped.sel(offset=at_map)))
+        at_maps = decided_by_scan(float(mapped.sel(offset=reported.offset)))
         maps = ", the contact maps among them" if at_maps else ""
         parts.append(f"up to {worst:.0%} of the map load (v = {where} mm{maps})")
     fitted = fits_undetermined(finest)

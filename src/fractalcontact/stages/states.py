@@ -67,9 +67,10 @@ def state_stages(
         ),
         seating_force=_seating_force(settings, area),
     )
-    warnings = (load_warning(curves, specimens, settings), full_contact_warning(curves))
+    reported = _reported(curves, settings, area)
+    warnings = (load_warning(curves, reported), full_contact_warning(curves))
     curves.attrs["warning"] = "; ".join(filter(None, warnings))
-    curves.update(_reported(curves, settings, area).variables())
+    curves.update(reported.variables())
     dilatancy = elastic_dilatancy(curves, joints)
     laws = area_laws(
         curves,
