@@ -39,6 +39,7 @@ from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
 from fractalcontact.pages.summary import summarised
 from fractalcontact.pages.words import with_unit
+from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
 from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.figure_list import figures_of
@@ -334,7 +335,7 @@ def test_page_summary_and_figure_quote_one_verdict_on_the_elastic_model(results,
 def test_specimens_are_compared_at_one_nominal_pressure(results, atlas):
     """Each choice of the page is one pressure, within 5 %, and has all that were solved there."""
     subjects = [Subject.of(atlas, name) for name in NAMES]
-    loads = common_loads(subjects)
+    loads = common_loads(subjects, atlas["study_comparison/study"].to_dataset())
     assert [load.pressure for load in loads] == pytest.approx([1, 125, 250])
     for load in loads:
         for one in subjects:
@@ -366,7 +367,9 @@ class Solved:
 def test_pressures_that_differ_by_their_windows_alone_are_one():
     twin = Solved("twin", [2.5, 25, 75], [0, 1], 1)
     other = Solved("other", [7.6, 25.4, 76.2], [1, 2], 2)
-    loads = common_loads([twin, other])
+    pressures = [one.curves["nominal_pressure"].values for one in (twin, other)]
+    compared = {"compared_pressure": (("specimen", "load"), compared_pressures(pressures))}
+    loads = common_loads([twin, other], xr.Dataset(compared, {"specimen": ["twin", "other"]}))
     assert [load.numbers for load in loads] == [
         {"twin": 0},
         {"twin": 1, "other": 1},

@@ -58,6 +58,7 @@ NEEDS = (
     "elastic_model",
     "statements",
     "study_statements",
+    "study_comparison",
     "contact_maps",
 )
 #: Time that all members of an archive have, so that the same tables are the same archive.
@@ -106,7 +107,7 @@ def write_result_page(place: Place) -> list[str]:
     """
     atlas = read_atlas(place.atlas, without=STAGES.keys() - set(NEEDS))
     subjects = [Subject.of(atlas, name) for name in specimens_of(atlas)]
-    loads = common_loads(subjects)
+    loads = common_loads(subjects, _comparison(atlas))
     specimens = [summarised(one, loads) for one in subjects]
     study = str(atlas.attrs["study"])
     curves = curves_table(study, subjects)
@@ -253,6 +254,12 @@ def _index_values(
         "curves": _records(curves),
         "pictures": _pictures(rows, place),
     }
+
+
+def _comparison(atlas):
+    """Specimens side by side; None where there is one."""
+    several = "study_comparison" in atlas.children
+    return atlas["study_comparison/study"].to_dataset() if several else None
 
 
 def _maps(atlas):

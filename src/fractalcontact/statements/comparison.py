@@ -126,7 +126,8 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     -------
     xr.Dataset
         The variables of the rows over (specimen,) and (specimen, load), NaN behind the last load of
-        specimens that have fewer; ``group`` and ``label`` of each. And of each quantity, over
+        specimens that have fewer; ``compared_pressure`` from :func:`compared_pressures`, ``group``
+        and ``label`` of each. And of each quantity, over
         (group_name,) and, under every nominal pressure that is a load of any (those that
         differ by up to 5 % are one), (group_name, pressure): ``NAME_mean`` with its 95 % interval
         (Student's t over specimens: NaN of one alone), ``NAME_deviation`` between specimens,
@@ -137,14 +138,20 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     groups = [str(rows[name].attrs["group"]) for name in names]
     table = _table(("specimen",)) | {
         "nominal_pressure": (("specimen", "load"), "MPa", "nominal pressure sigma_0 = F/A_0"),
+        "compared_pressure": (
+            ("specimen", "load"),
+            "MPa",
+            f"nominal pressure under which specimens are compared, one within {ALIKE:.0%}",
+        ),
         "group": ("specimen", "1", "group of the specimen"),
         "label": ("specimen", "1", "label of the specimen"),
     }
     values: dict = {
         name: np.array([_filled(rows[one][name].values, most) for one in names])
         for name in table
-        if name not in ("group", "label")
+        if name not in ("group", "label", "compared_pressure")
     }
+    values["compared_pressure"] = compared_pressures(values["nominal_pressure"])
     values["group"] = np.array(groups, dtype=object)
     values["label"] = np.array([str(rows[name].attrs["label"]) for name in names], dtype=object)
     side_by_side = labelled_dataset(table, values, {"specimen": names})
@@ -214,7 +221,7 @@ _STATISTICS = {
 
 def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
     groups = sorted(set(rows["group"].values))
-    rounded = compared_pressures(rows["nominal_pressure"].values)
+    rounded = rows["compared_pressure"].values
     known = np.unique(rounded[np.isfinite(rounded)])
     pressures = (
         known[np.concatenate([[True], np.diff(known) > 1e-9 * known[1:]])] if known.size else known

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.estimate import Estimate, names_of
-from ...statements.comparison import ONCE, QUANTITIES, compared_pressures
+from ...statements.comparison import ONCE, QUANTITIES
 from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, group, letter
 from ..kit.points import reach
 from ..kit.words import SUPPLEMENTARY, pressure_label
@@ -67,8 +67,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
 def _values_at(comparison: xr.Dataset, pressure: float) -> pd.DataFrame:
     """Every specimen with its quantities under one pressure, NaN where it was not loaded so."""
-    rounded = compared_pressures(comparison["nominal_pressure"].values)
-    same = np.isclose(rounded, pressure, rtol=1e-9)
+    same = np.isclose(comparison["compared_pressure"].values, pressure, rtol=1e-9)
 
     def at_pressure(found):
         known = np.where(same, found, np.nan)

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import Estimate
-from ...statements.comparison import UNDER_LOAD, compared_pressures
+from ...statements.comparison import UNDER_LOAD
 from ..kit.drawing import (
     LINES,
     MARKERS,
@@ -156,10 +156,9 @@ def _table(comparison: xr.Dataset):
 
 def _stiffness_quoted(comparison):
     """Tangent stiffness of each specimen under the pressure of the comparison, (n,); or NaN."""
-    values = comparison[["stiffness", "nominal_pressure"]]
-    compared = compared_pressures(values["nominal_pressure"].values)
-    here = np.isclose(compared, float(comparison["pressure"][common_pressure(comparison)]))
-    at = np.where(here, values["stiffness"].values, np.nan)
+    quoted = float(comparison["pressure"][common_pressure(comparison)])
+    here = np.isclose(comparison["compared_pressure"].values, quoted)
+    at = np.where(here, comparison["stiffness"].values, np.nan)
     return np.where(np.isfinite(at).any(axis=1), np.nansum(at, axis=1), np.nan)
 
 
