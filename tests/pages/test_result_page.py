@@ -37,7 +37,7 @@ from fractalcontact.pages.matrix import (
 from fractalcontact.pages.opening import opening_of
 from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
-from fractalcontact.pages.summary import summarised
+from fractalcontact.pages.summary import summarised, why
 from fractalcontact.pages.words import with_unit
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
@@ -395,12 +395,12 @@ def test_k_ni_is_as_determined_as_the_atlas_says(results, atlas):
     table = pd.read_csv(results / "summary.csv").set_index("specimen")
     ends = {f"hyperbola_k_ni{end}": x for end, x in (("", 100.0), ("_low", 1.0), ("_high", 1e4))}
     for name in NAMES:
-        for determined, why in ((True, ""), (False, "it is told so")):
-            told = {"hyperbola_k_ni_determined": determined, "hyperbola_k_ni_reason": why}
+        for determined, reason in ((True, ""), (False, "it is told so")):
+            told = {"hyperbola_k_ni_determined": determined, "hyperbola_k_ni_reason": reason}
             changed = with_told(atlas, f"closure/{name}", **ends, **told)
             found = summarised(Subject.of(changed, name)).k_ni
             assert (found.value, found.low, found.high) == (100, 1, 1e4)
-            assert (found.determined, found.why) == (determined, why)
+            assert (found.determined, why(found)) == (determined, reason)
         row = table.loc[[name]].iloc[0]
         known = Subject.of(atlas, name).states("closure")
         assert row["k_ni_MPa_per_mm_determined"] == known["hyperbola_k_ni_determined"].item()
@@ -475,18 +475,18 @@ def test_verdicts_of_several_specimens_are_counted(verdicts, words):
         ([0.5], "larger for 1 and smaller for none of 1 specimen (+50 %): it falls"),
         ([0.021, 2.8], "larger for 2 and smaller for none of 2 specimens (+2.1 % to +280 %): it f"),
         (
-            [-0.1, -0.2, None],
+            [-0.1, -0.2, np.nan],
             "none and smaller for 2 of 2 specimens (−20 % to −10 %): it rises",
         ),
         ([-0.1, 0.2], "larger for 1 and smaller for 1 of 2 specimens (−10 % to +20 %): it has no"),
     ],
 )
 def test_which_way_k_ni_goes_with_the_spacing_follows_from_the_data(changes, words):
-    found = spacing_words([Doubled(change, None) for change in changes])
+    found = spacing_words([Doubled(change, np.nan) for change in changes])
     assert words in found
     assert "tangent" not in found
     assert "changes by −3.3 %." in spacing_words([Doubled(0.1, -0.033)])
-    assert spacing_words([Doubled(None, 0.1)]) == ""
+    assert spacing_words([Doubled(np.nan, 0.1)]) == ""
 
 
 def test_the_page_states_what_twice_the_spacing_changes(results, atlas):
@@ -500,7 +500,7 @@ def test_the_page_states_what_twice_the_spacing_changes(results, atlas):
         assert one.stiffness == pytest.approx(tangent[1] / tangent[0] - 1)
         initial = curves["hyperbola_k_ni"].values
         change = initial[1] / initial[0] - 1
-        assert one.k_ni == (pytest.approx(change) if np.isfinite(change) else None)
+        assert one.k_ni == pytest.approx(change, nan_ok=True)
     index = (results / "index.html").read_text(encoding="utf-8")
     assert spacing_words(found) in index
     assert "for design" not in index

@@ -5,14 +5,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..core.determined import determined
-from ..core.estimate import Estimate
+from ..core.estimate import DIMENSION, Estimate
 from ..core.subject import Subject
-from .summary import DIMENSION
-from .words import finite
-
-#: Of dimensions: an area has one of its own.
-DIMENSION_UNIT = "1"
 
 #: Columns of the file, which the page of another study reads.
 COLUMNS = (
@@ -54,31 +48,30 @@ def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
         }
         states = one.states("closure")
         enough, pressures = states["resolved"].values.astype(bool), states["nominal_pressure"]
-        for quantity, unit, values, low, high in _quantities(one):
-            says = [_says(unit, *ends) for ends in zip(values, low, high, strict=True)]
+        for quantity, unit, found in _quantities(one):
             rows += [
                 start
                 | {
                     "quantity": quantity,
                     "unit": unit,
                     "nominal_pressure_MPa": float(pressures[i]),
-                    "value": float(values[i]),
-                    "low": finite(low[i]),
-                    "high": finite(high[i]),
-                    "resolved": bool(enough[i] and says[i]),
+                    "value": float(found.value[i]),
+                    "low": float(found.low[i]),
+                    "high": float(found.high[i]),
+                    "resolved": bool(enough[i] and _says(found[i])),
                 }
-                for i in np.flatnonzero(np.isfinite(values))
+                for i in np.flatnonzero(found.known)
             ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def _says(unit, value, low, high):
+def _says(found):
     """Whether the interval of a dimension determines it; of other quantities it is an error."""
-    return unit != DIMENSION_UNIT or determined(value, low, high, **DIMENSION)
+    return found.scale != DIMENSION or found.determined
 
 
 def _quantities(one):
-    """Name, unit, values and ends of each curve over the loads."""
+    """Name, unit and estimates of each curve over the loads."""
     closure = one.states("closure")
     budget = one["error_budget"].sel(normal_force=one.forces, method="nearest")
     share = closure["area_corrected_share"].values
@@ -89,7 +82,7 @@ def _quantities(one):
     )
     for words, unit, values, name in of_values:
         error = abs(values) * budget["relative_total"].sel(quantity=name).values
-        yield words, unit, values, values - error, values + error
+        yield words, unit, Estimate(values, values - error, values + error)
     for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
-        found = Estimate.read(one.states(stage), "delta_sigma")
-        yield f"Delta_sigma {words}", DIMENSION_UNIT, *found.ends
+        found = Estimate.read(one.states(stage), "delta_sigma", scale=DIMENSION)
+        yield f"Delta_sigma {words}", "1", found

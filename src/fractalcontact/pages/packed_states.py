@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.determined import decided_by_scan, determined
+from ..core.determined import decided_by_scan
+from ..core.estimate import DIMENSION, Estimate
 from ..core.labels import cf_attrs
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import cell_side
 from ..domain.count_law import LawTerms, law_count
 from ..mechanics.overlap import overlapping_nodes, suspect_nodes
-from .summary import DIMENSION
 
 #: Order of the dimensions of all that is packed; one-dimensional coordinates stand apart.
 ORDER = (
@@ -233,7 +233,7 @@ def _add_undetermined(numbers, stages):
         stage, variable = key.split("/")
         names = [_bound_of(variable, ending) for ending in ("", "_low", "_high")]
         says = xr.apply_ufunc(
-            lambda *ends: determined(*ends, **DIMENSION),
+            lambda *ends: Estimate(*ends, scale=DIMENSION).determined,
             *(stages[stage][name] for name in names),
             vectorize=True,
         )

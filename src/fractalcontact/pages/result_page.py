@@ -14,11 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 import yaml
 
 from ..core.atomic import atomic_write
+from ..core.estimate import Estimate
 from ..core.labels import printable
 from ..core.subject import Subject, configuration_of, specimens_of
 from ..core.tables import write_table
@@ -37,10 +39,10 @@ from .material import opposite_words
 from .matrix import Row, counted, matrix_of, of_study
 from .opening import opening_of
 from .spacing import spacing_words
-from .summary import AtLoad, Estimate, Quantity, Specimen, summarised, summary_table
+from .summary import AtLoad, Quantity, Specimen, summarised, summary_table, why
 from .templating import write_page
 from .thumbnails import relief_thumbnail
-from .words import duration, interval, measured, percent, short, undetermined, with_unit
+from .words import MISSING, duration, interval, measured, percent, short, undetermined, with_unit
 
 #: Stages that the pages read; the fields of contact, the largest, are not among them.
 NEEDS = (
@@ -110,8 +112,9 @@ def write_result_page(place: Place) -> list[str]:
     loads = common_loads(subjects, _comparison(atlas))
     specimens = [summarised(one, loads) for one in subjects]
     study = str(atlas.attrs["study"])
-    curves = curves_table(study, subjects)
-    write_table(place.folder / SUMMARY, summary_table(study, specimens, _maps(atlas)))
+    curves = _finite(curves_table(study, subjects))
+    summary = _finite(summary_table(study, specimens, _maps(atlas)))
+    write_table(place.folder / SUMMARY, summary)
     write_table(place.folder / CURVES, curves)
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
@@ -161,6 +164,8 @@ def _head(place, atlas):
         "uncertain": lambda found: interval(found.value, found.low, found.high),
         "sort_value": _sort_value,
         "note_of": _note_of,
+        "why": why,
+        "shown": _shown,
         "in_paper": _in_paper,
     }
 
@@ -172,11 +177,11 @@ def _as_typed(path):
 
 def _estimate(found):
     """A number with its interval in words, as figures print it."""
-    if found.value is None:
-        return short(None)
+    if not found.known:
+        return MISSING
     if not found.determined:
         return undetermined(interval(found.value, found.low, found.high))
-    ends = f" [{measured(found.low)}, {measured(found.high)}]" if found.low is not None else ""
+    ends = f" [{measured(found.low)}, {measured(found.high)}]" if np.isfinite(found.low) else ""
     return measured(found.value) + ends
 
 
@@ -194,14 +199,18 @@ def _sort_value(state: AtLoad | None, name: str) -> float | str:
         return ""
     if isinstance(found, Quantity) and state.decided_by_scan:
         return ""
-    value = found.value if isinstance(found, Estimate | Quantity) else found
-    return "" if value is None else value
+    return _shown(found.value if isinstance(found, Estimate | Quantity) else found)
+
+
+def _shown(value: float) -> float | str:
+    """A number as an attribute of the page: empty where it is missing."""
+    return value if np.isfinite(value) else ""
 
 
 def _note_of(state: AtLoad | None, name: str) -> str:
     """Why an estimate is missing, or what to know of it."""
     found = None if state is None else _quoted(state, name)
-    return found.why if isinstance(found, Estimate) else ""
+    return why(found) if isinstance(found, Estimate) else ""
 
 
 def _in_paper(figures):
@@ -268,6 +277,11 @@ def _maps(atlas):
         return {}
     maps = {name: node.to_dataset() for name, node in atlas["contact_maps"].children.items()}
     return {name: maps[name] for series in series_of_maps(maps) for name in series.names}
+
+
+def _finite(table: pd.DataFrame) -> pd.DataFrame:
+    """A table in which what is infinite is missing: spreadsheets and scripts know no infinity."""
+    return table.mask(table.isin([np.inf, -np.inf]))
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:

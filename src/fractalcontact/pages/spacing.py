@@ -1,5 +1,6 @@
 """What twice the spacing makes of the stiffness: whether k_ni rises or falls with finer scans."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -7,7 +8,7 @@ from markupsafe import Markup
 
 from ..core.subject import Subject
 from .captions import symbols
-from .words import finite, percent
+from .words import percent
 
 
 @dataclass(frozen=True)
@@ -16,14 +17,14 @@ class Doubled:
 
     Attributes
     ----------
-    k_ni : float or None
-        Of k_ni, as a fraction of it; None where twice the spacing was not solved, or nothing fits.
-    stiffness : float or None
+    k_ni : float
+        Of k_ni, as a fraction of it; NaN where twice the spacing was not solved, or nothing fits.
+    stiffness : float
         Of the tangent stiffness under the load of the maps.
     """
 
-    k_ni: float | None
-    stiffness: float | None
+    k_ni: float
+    stiffness: float
 
 
 def doubled_spacing(subject: Subject) -> Doubled:
@@ -33,7 +34,7 @@ def doubled_spacing(subject: Subject) -> Doubled:
     change = curves["hyperbola_k_ni_change"].sel(resolution=finest)
     tangent = curves["interface_stiffness"].isel(normal_force=subject.reported.reference)
     tangent = tangent.reindex(resolution=[finest, 2 * finest])
-    return Doubled(finite(change), finite(tangent[1] / tangent[0] - 1))
+    return Doubled(float(change), float(tangent[1] / tangent[0] - 1))
 
 
 def spacing_words(found: Sequence[Doubled]) -> Markup:
@@ -44,7 +45,7 @@ def spacing_words(found: Sequence[Doubled]) -> Markup:
     found : sequence of Doubled
         Of all specimens.
     """
-    initial = [one.k_ni for one in found if one.k_ni is not None]
+    initial = [one.k_ni for one in found if math.isfinite(one.k_ni)]
     if not initial:
         return Markup("")
     larger, smaller = sum(one > 0 for one in initial), sum(one < 0 for one in initial)
@@ -53,7 +54,7 @@ def spacing_words(found: Sequence[Doubled]) -> Markup:
         f"{smaller or 'none'} of {len(initial)} specimen{'s' if len(initial) > 1 else ''} "
         f"({_range(initial)}): {_verdict(larger, smaller)}"
     )
-    tangent = [one.stiffness for one in found if one.stiffness is not None]
+    tangent = [one.stiffness for one in found if math.isfinite(one.stiffness)]
     if tangent:
         text += f"; the tangent stiffness under the load of the maps changes by {_range(tangent)}"
     return symbols(f"{text}.")
