@@ -39,6 +39,7 @@ from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
 from fractalcontact.pages.summary import summarised, why
 from fractalcontact.pages.words import with_unit
+from fractalcontact.roughness.quality_words import overlap_words
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
 from fractalcontact.study.atlas import read_atlas, write_atlas
@@ -278,6 +279,10 @@ def test_lights_follow_what_the_stages_say(atlas):
         name: {one.key: one.word for one in lights_of(Subject.of(atlas, name))} for name in NAMES
     }
     assert words["flat.1"]["faces"] == "not asked"
+    pair = Subject.of(atlas, "pair")
+    note = overlap_words(pair["specimens"], pair["quality"])
+    assert pair["quality"]["overlap_note"].item() == note
+    assert next(one for one in lights_of(pair) if one.key == "faces").reason.endswith(note)
     for name in NAMES:
         subject = Subject.of(atlas, name)
         nodes = subject.state("closure")["nodes"].item()

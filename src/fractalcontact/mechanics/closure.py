@@ -11,7 +11,7 @@ from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..elastic.halfspace import rectangle_mean_displacement
-from .closure_laws import add_closure_laws
+from .closure_laws import add_closure_laws, at_twice
 from .load_curve import left_out_misses
 from .separation import add_seated_closure, add_separation
 from .states import OF_STATES, OFFSETS, error_attrs
@@ -237,6 +237,9 @@ def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
         curves[f"{name}_error"].attrs = error_attrs(curves[name].attrs)
     curves["closure_spacing_error"] = _spacing_error(curves["closure"])
     _add_compliance(curves)
+    curves["interface_stiffness_change"] = at_twice(curves["interface_stiffness"]).assign_attrs(
+        cf_attrs("1", "interface stiffness at twice the spacing over that at this one, less one")
+    )
 
 
 def _add_compliance(curves: xr.Dataset) -> None:

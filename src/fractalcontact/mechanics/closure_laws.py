@@ -266,7 +266,7 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
     forces = np.where(fitted, force, np.nan)
     undetermined = [undetermined_stiffness(hyperbola, law) for hyperbola, _, law in fits.flat]
     of_curves = {
-        "hyperbola_k_ni_change": _changes(curves["hyperbola_k_ni"]),
+        "hyperbola_k_ni_change": at_twice(curves["hyperbola_k_ni"]).transpose(*_DIMS).values,
         "hyperbola_k_ni_determined": np.array([not why for why in undetermined]),
         "hyperbola_k_ni_reason": np.array(undetermined),
         "closure_law": np.array([fit[2].name for fit in fits.flat]),
@@ -300,8 +300,14 @@ def _extreme(which: np.ufunc, forces: np.ndarray) -> np.ndarray:
     return which.reduce(forces, axis=-1)
 
 
-def _changes(values: xr.DataArray) -> np.ndarray:
-    """What twice the spacing makes of a value, relative to it; NaN where it was not solved."""
+def at_twice(values: xr.DataArray) -> xr.DataArray:
+    """What twice the spacing makes of values, relative to them; NaN where it was not solved.
+
+    Parameters
+    ----------
+    values : xr.DataArray
+        Over ``resolution`` among others.
+    """
     resolutions = values["resolution"].values
     twice = values.reindex(resolution=2 * resolutions).assign_coords(resolution=resolutions)
-    return (twice / values - 1).transpose(*_DIMS).values
+    return (twice / values - 1).transpose(*values.dims)

@@ -9,6 +9,7 @@ import xarray as xr
 
 from ..core.determined import decided_by_scan
 from ..core.directions import axis_and_sign
+from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..core.reported import Reported
 from ..core.window import window_slices
@@ -65,6 +66,36 @@ def overlapping_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.nd
     window = window_slices(specimen)
     overlap = specimen["overlap"].values.astype(bool)
     return overlap[slid_window(window, direction, cells)] | overlap[window]
+
+
+def node_marks(specimen: xr.Dataset, joint: xr.Dataset) -> dict[str, tuple]:
+    """What nodes of the composite topographies are made of, as ``xr.Dataset`` takes it.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+        From :func:`surface.specimen.make_specimen`.
+    joint : xr.Dataset
+        From :func:`mechanics.joint.describe_joint`.
+
+    Returns
+    -------
+    dict
+        ``node_mark`` (direction, offset, y_1, x_1) at the scan's own spacing: 2 where the faces
+        overlap as scanned, 1 on otherwise suspicious cells, 0 elsewhere.
+    """
+    marks = [
+        [
+            np.where(
+                overlapping_nodes(specimen, direction, n), 2, suspect_nodes(specimen, direction, n)
+            )
+            for n in joint["offset_cells"].sel(contact_direction=direction).values.tolist()
+        ]
+        for direction in joint["contact_direction"].values.tolist()
+    ]
+    words = "cells below a node: 2 in the overlap of the faces, 1 otherwise suspicious, 0 sound"
+    dims = ("direction", "offset", "y_1", "x_1")
+    return {"node_mark": (dims, np.array(marks, np.int8), cf_attrs("1", words))}
 
 
 def slid_window(window: tuple[slice, slice], direction: str, cells: int) -> tuple[slice, slice]:

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
+from ..core.validity import Validity
 from ..core.verdicts import GOOD, IN_PART, NOT_ASKED, POOR
-from ..mechanics.model_validity import Validity
-from ..roughness.quality_words import overlap_words
 
 #: A sign for each, so that no colour is needed.
 SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_ASKED: "–"}
@@ -80,7 +79,7 @@ def _faces(subject):
     key, title = "faces", "Fit of the faces"
     if not _is_pair(subject):
         return Light(key, title, NOT_ASKED, "one face was scanned: there is nothing to fit")
-    overlap = overlap_words(subject["specimens"], subject["quality"])
+    overlap = str(subject["quality"]["overlap_note"].item())
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:
         return Light(key, title, POOR, f"{load}; {overlap}")

@@ -115,7 +115,7 @@ def _model(found: _At, under: str) -> Markup | None:
     known = [(one, at) for one, at in found if at.model.verdict in _MODEL]
     if not known:
         return None
-    shares = [at.nominal_pressure / at.model.pressure for _, at in known]
+    shares = [at.contact_share for _, at in known]
     text = (
         f"{under} {_range(shares, percent)} of the window is in contact, at a real mean pressure "
         f"of {_range([at.model.pressure for _, at in known], _pressure)}: {_tested(known)}"

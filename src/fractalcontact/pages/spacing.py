@@ -29,12 +29,10 @@ class Doubled:
 
 def doubled_spacing(subject: Subject) -> Doubled:
     """What twice the spacing of a specimen makes of both stiffnesses."""
-    curves = subject.along("closure").sel(offset=subject.offset, method="nearest")
-    finest = curves["resolution"].values.min()
-    change = curves["hyperbola_k_ni_change"].sel(resolution=finest)
-    tangent = curves["interface_stiffness"].isel(normal_force=subject.reported.reference)
-    tangent = tangent.reindex(resolution=[finest, 2 * finest])
-    return Doubled(float(change), float(tangent[1] / tangent[0] - 1))
+    state = subject.state("closure")
+    return Doubled(
+        *(float(state[f"{of}_change"]) for of in ("hyperbola_k_ni", "interface_stiffness"))
+    )
 
 
 def spacing_words(found: Sequence[Doubled]) -> Markup:

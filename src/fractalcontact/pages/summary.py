@@ -11,10 +11,10 @@ import xarray as xr
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, Estimate
 from ..core.subject import Subject
+from ..core.validity import Validity
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import spacing_of, window_sides
 from ..domain.map_series import map_table
-from ..mechanics.model_validity import Validity
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
@@ -101,6 +101,8 @@ class AtLoad:
     ----------
     number : int
         Of the load among those of the study.
+    contact_share : float
+        Corrected A_r/A_0.
     model : Validity
         Whether the elastic model is valid, with the real mean pressure.
     """
@@ -110,6 +112,7 @@ class AtLoad:
     nominal_pressure: float
     of_maps: bool
     contact_nodes: float
+    contact_share: float
     suspect_share: float
     model: Validity
     quantities: dict[str, Quantity]
@@ -237,6 +240,7 @@ def _at_load(subject, curve, number):
         nominal_pressure=float(curve["nominal_pressure"][number]),
         of_maps=number == subject.reported.reference,
         contact_nodes=float(curve["nodes"].isel(state)),
+        contact_share=float(curve["area_corrected_share"].isel(state)),
         suspect_share=float(curve["suspect_load_share"].isel(state)),
         model=validity_at(subject, number),
         quantities=quantities_at(subject, number),

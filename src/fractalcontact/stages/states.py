@@ -12,7 +12,7 @@ from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..mechanics.contact_fields import contact_fields
-from ..mechanics.overlap import load_warning
+from ..mechanics.overlap import load_warning, node_marks
 from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
     chosen_offset,
@@ -87,7 +87,9 @@ def state_stages(
         "dilatancy": dilatancy,
         "area": laws,
         "domains": domains,
-        "contact": contact_fields(fields, parts, joints, settings, area),
+        "contact": contact_fields(fields, parts, joints, settings, area).assign(
+            node_marks(specimens, joints)
+        ),
         "scaling": scaling_over_resolutions(
             curves, domains, spacing, fit_range=settings["scaling_range"]
         ),

@@ -153,7 +153,7 @@ def refinement_changes_little(joint: Joint) -> Finding:
     """Change of the closure from twice the scan's spacing to the spacing itself."""
     curves = joint.along("closure")
     curves = curves.sel(resolution=curves["resolution"].min())
-    change = np.abs(curves["closure_spacing_error"] / curves["closure"]).values
+    change = np.abs((curves["closure_spacing_error"] / curves["closure"]).values)
     change = change[np.isfinite(change)]
     if not change.size:
         return Finding(UNDETERMINED, "no state solved at two spacings")

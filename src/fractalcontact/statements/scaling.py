@@ -210,7 +210,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     order = ("share", "normal_force")
     exponent = Estimate.read(windows.transpose(*order, ...), "similar_strength_exponent")
     value, low, high = exponent.ends
-    sizes = np.isfinite(windows["similar_strength"]).sum("part").transpose(*order).values
+    sizes = windows["similar_strength"].notnull().sum("part").transpose(*order).values
     held = (windows["similar_held"] > 0).any("part").transpose(*order).values
     cases = sizes >= FEWEST_POINTS
     if not cases.any():

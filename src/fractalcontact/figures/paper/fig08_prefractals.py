@@ -7,9 +7,9 @@ from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
 from ...core.limits import CORRECTED_NODES
+from ...core.validity import Validity
 from ...core.verdicts import USUAL
 from ...domain.renormalisation import RESOLUTION
-from ...mechanics.model_validity import Validity
 from ..kit.domains import Loading, fall_reason
 from ..kit.drawing import (
     COLOURS,
