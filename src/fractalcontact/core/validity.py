@@ -58,7 +58,8 @@ class Validity(NamedTuple):
     def of(cls, state: xr.Dataset) -> "Validity":
         """The verdict on one state of the stage ``elastic_model``."""
         limits = Limits(*(state[name].item() for name in Limits._fields))
-        return cls(*(state[name].item() for name in cls._fields[:-1]), limits)
+        verdict, pressure, reason = (state[name].item() for name in cls._fields[:-1])
+        return cls(verdict, pressure, reason, limits)
 
     @property
     def capped(self) -> bool:
