@@ -281,7 +281,7 @@ def test_lights_follow_what_the_stages_say(atlas):
     assert words["flat.1"]["faces"] == "not asked"
     pair = Subject.of(atlas, "pair")
     note = overlap_words(pair["specimens"], pair["quality"])
-    assert pair["quality"]["overlap_note"].item() == note
+    assert pair["quality"].attrs["overlap"] == note
     assert next(one for one in lights_of(pair) if one.key == "faces").reason.endswith(note)
     for name in NAMES:
         subject = Subject.of(atlas, name)

@@ -79,7 +79,7 @@ def _faces(subject):
     key, title = "faces", "Fit of the faces"
     if not _is_pair(subject):
         return Light(key, title, NOT_ASKED, "one face was scanned: there is nothing to fit")
-    overlap = str(subject["quality"]["overlap_note"].item())
+    overlap = str(subject["quality"].attrs["overlap"])
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:
         return Light(key, title, POOR, f"{load}; {overlap}")

@@ -14,7 +14,6 @@ import xarray as xr
 from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.estimate import NO_ESTIMATE, Estimate
-from ..core.labels import cf_attrs
 from ..core.window import cell_side, spacing_of, window_slices
 from ..surface.suspect import overlap_statistics
 from .fractal_range import FractalRange, find_fractal_range
@@ -53,8 +52,9 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`.
         `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
         cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
-        ("scan", "window"): where they overlap, and their gap; `overlap_note` says where. Attribute
-        ``warning``: what reading the files and this found, in sentences, "" if all is well.
+        ("scan", "window"): where they overlap, and their gap. Attributes: ``warning``, what
+        reading the files and this found, in sentences, "" if all is well; ``overlap``, a clause on
+        where the faces overlap, "" of one face.
 
     Notes
     -----
@@ -81,13 +81,13 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     )
     if len(faces) == 2:
         result = result.assign(_overlap(specimen)).assign_coords(region=list(REGIONS))
-        result["overlap_note"] = ((), overlap_words(specimen, result), _OVERLAP_NOTE)
     side = cell_side(specimen)
     end = _range_end(result, side)
     result = result.assign(_compared_with_range(end, np.array(resolutions), side))
     result.attrs = {"ended_by": end.reason}
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
     result.attrs["warning"] = "; ".join(filter(None, warnings))
+    result.attrs["overlap"] = overlap_words(specimen, result)
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result
 
@@ -102,9 +102,6 @@ _OVERLAP = {
     "gap_mean": ("region", "mm", "mean gap of the faces as scanned and registered"),
     "gap_sd": ("region", "mm", "standard deviation of that gap"),
 }
-
-
-_OVERLAP_NOTE = cf_attrs("1", "where the faces overlap as scanned, in a clause")
 
 
 def _overlap(specimen):
