@@ -12,13 +12,13 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
 from fractalcontact.core.fitting import fit_line
+from fractalcontact.core.subject import Subject
 from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
 from fractalcontact.figures.kit.drawing import DPI, print_style, save, spread
 from fractalcontact.figures.kit.maps import MISSING
 from fractalcontact.figures.kit.relief import shaded
 from fractalcontact.figures.kit.words import force_label, force_unit, length_unit
 from fractalcontact.mechanics.joint import composite_topography
-from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.summary import summarised
 from fractalcontact.study.figure_list import figures_of
 
@@ -445,11 +445,11 @@ def test_plateaus_are_those_of_the_atlas(atlas):
 
 @pytest.mark.parametrize("specimen", ["sliding", "flat", "pair"])
 def test_figure_and_page_call_the_same_k_ni_undetermined(atlas, specimen):
-    known = summarised(Chosen(atlas, specimen)).k_ni
+    known = summarised(Subject.of(atlas, specimen)).k_ni
     figure = drawn(atlas, specimen, "fig04_05_closure").figure
     legend = " ".join(text.get_text() for text in figure.axes[-1].get_legend().get_texts())
-    drawn_one = known.value is not None
-    assert ("bars 95 %:\nundetermined, " in legend) == (drawn_one and not known.determined)
+    wanted = known.known and not known.determined
+    assert ("bars 95 %:\nundetermined, " in legend) == wanted
 
 
 def test_every_k_ni_of_the_closure_curves_is_as_determined_as_the_atlas_says(atlas):

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from samples import scan_of
 
 from fractalcontact.core.limits import RESOLVED_NODES
+from fractalcontact.core.reported import Reported
 from fractalcontact.core.window import window_slices
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.overlap import (
@@ -123,13 +124,17 @@ def curves(share, nodes=20):
     )
 
 
+def warned_of(curves):
+    reported = Reported.choose(curves, direction="E", offset=0.0, loads=[], reference=6400.0)
+    return load_warning(curves, reported)
+
+
 def test_a_warning_stands_where_more_than_half_of_a_deciding_load_rests_on_errors():
-    specimen = made(faces())
-    assert load_warning(curves([[1, 0.4, 0.3], [1, 0, 0]]), specimen, SETTINGS) == ""
-    words = load_warning(curves([[1, 0.9, 0.8], [1, 0, 0]]), specimen, SETTINGS)
+    assert warned_of(curves([[1, 0.4, 0.3], [1, 0, 0]])) == ""
+    words = warned_of(curves([[1, 0.9, 0.8], [1, 0, 0]]))
     assert "80% of the map load (v = 0 mm, the contact maps among them)" in words
     assert "in the states fitted (v = 0 mm)" in words
-    words = load_warning(curves([[0.9, 0.9, 0.1], [0, 0, 0]]), specimen, SETTINGS)
+    words = warned_of(curves([[0.9, 0.9, 0.1], [0, 0, 0]]))
     assert "map load" not in words
     assert "states fitted" in words
 

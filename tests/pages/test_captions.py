@@ -2,7 +2,8 @@
 
 import pytest
 
-from fractalcontact.pages.captions import symbols, take_apart, without_opening
+from fractalcontact.pages.captions import symbols, take_apart
+from fractalcontact.pages.sentences import without_opening
 
 LABEL = "Dr. Who's joint. 2.1 (A_r) <b>bold</b>"
 CAPTION = (
@@ -44,6 +45,19 @@ def test_warnings_that_the_page_states_are_left_out(joined):
 def test_a_table_is_headed_by_its_count():
     found = take_apart("After the statements of X (1999): a joint. Of 27 statements 12 hold. Ours.")
     assert found.finding == "Of 27 statements 12 hold."
+
+
+def test_a_caption_in_parts_is_read_as_it_stands():
+    """No sentence is sought in it: its heading keeps its numbers, its lines their labels."""
+    heading, shown, *found = (
+        "It rises by 3.1 [2, 4].",
+        f"{LABEL}. (a) Closure.",
+        "One. Two.",
+        "End.",
+    )
+    parts = take_apart("\n".join([heading, "", shown, *found]) + "\n", LABEL)
+    assert (parts.finding, parts.text, parts.rest) == (heading, [shown], found)
+    assert take_apart(f"\n\n{shown}\n").finding == ""
 
 
 def test_nothing_found_is_no_heading():

@@ -56,7 +56,7 @@ def atlas_file(tmp_path_factory):
             parts[stage][name] = dataset
     path = tmp_path_factory.mktemp("tiny") / "atlas.nc"
     parts["specimens"]["pair"].attrs["label"] = HOSTILE
-    write_atlas(parts, path, study="tiny", configuration={})
+    write_atlas(parts, path, study="tiny", configuration={"settings": settings})
     return path
 
 

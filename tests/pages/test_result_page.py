@@ -6,6 +6,7 @@ import re
 import shutil
 import zipfile
 from html.parser import HTMLParser
+from types import SimpleNamespace
 from urllib.parse import unquote, urlsplit
 
 import numpy as np
@@ -19,9 +20,9 @@ from page_study import HOSTILE, STUDY
 from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.core.claims import claims_of
+from fractalcontact.core.subject import Subject
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.pages.chosen import Chosen
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.lights import lights_of, validity_at
@@ -36,8 +37,10 @@ from fractalcontact.pages.matrix import (
 from fractalcontact.pages.opening import opening_of
 from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
-from fractalcontact.pages.summary import summarised
+from fractalcontact.pages.summary import summarised, why
 from fractalcontact.pages.words import with_unit
+from fractalcontact.roughness.quality_words import overlap_words
+from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
 from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.figure_list import figures_of
@@ -201,12 +204,14 @@ def test_the_page_prints_the_numbers_of_the_summary(results, pages):
 def test_curves_are_those_of_the_atlas(results, atlas):
     table = pd.read_csv(results / "curves.csv")
     for name in ("pair", "flat.1"):
-        chosen = Chosen(atlas, name)
-        states = chosen.values("closure")
+        subject = Subject.of(atlas, name)
+        states = subject.states("closure")
         drawn = table[(table["specimen"] == name) & (table["quantity"] == "interface closure")]
         known = np.isfinite(states["interface_closure"].values)
         np.testing.assert_allclose(drawn["value"], states["interface_closure"].values[known])
-        np.testing.assert_allclose(drawn["nominal_pressure_MPa"], chosen.pressures[known])
+        np.testing.assert_allclose(
+            drawn["nominal_pressure_MPa"], subject["closure"]["nominal_pressure"].values[known]
+        )
         assert (drawn["low"].dropna() <= drawn["value"][drawn["low"].notna()]).all()
         few = states["nodes"].values[known] < 10
         assert (drawn["resolved"].values == ~few).all()
@@ -270,25 +275,31 @@ def test_every_statement_leads_to_a_figure_that_its_specimen_has(atlas):
 
 def test_lights_follow_what_the_stages_say(atlas):
     """A pair whose faces overlap, few nodes, a grid too coarse; and the same without them."""
-    words = {name: {one.key: one.word for one in lights_of(Chosen(atlas, name))} for name in NAMES}
+    words = {
+        name: {one.key: one.word for one in lights_of(Subject.of(atlas, name))} for name in NAMES
+    }
     assert words["flat.1"]["faces"] == "not asked"
+    pair = Subject.of(atlas, "pair")
+    note = overlap_words(pair["specimens"], pair["quality"])
+    assert pair["quality"].attrs["overlap"] == note
+    assert next(one for one in lights_of(pair) if one.key == "faces").reason.endswith(note)
     for name in NAMES:
-        chosen = Chosen(atlas, name)
-        nodes = chosen.values("closure", "nodes")["nodes"].values[chosen.map_load]
+        subject = Subject.of(atlas, name)
+        nodes = subject.state("closure")["nodes"].item()
         wanted = "good" if nodes >= 30 else "in part" if nodes >= 10 else "poor"
         assert words[name]["nodes"] == wanted
-        budget = chosen.stage("error_budget").sel(quantity="closure")
-        error = budget["relative_error"].sel(source="numerical").values[chosen.map_load]
+        budget = subject["error_budget"].sel(quantity="closure")
+        error = budget["relative_error"].sel(source="numerical").values[subject.reported.reference]
         wanted = "good" if error <= 0.01 else "in part" if error <= 0.1 else "poor"
         assert words[name]["grid"] == wanted
     changed = atlas.copy()
     changed["closure/pair"].attrs["warning"] = "suspicious cells carry all"
-    assert {one.key: one.word for one in lights_of(Chosen(changed, "pair"))}["faces"] == "poor"
+    assert {one.key: one.word for one in lights_of(Subject.of(changed, "pair"))}["faces"] == "poor"
     changed["closure/flat.1"].attrs["warning"] = "spikes carry all"
-    assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "poor"
+    assert {one.key: one.word for one in lights_of(Subject.of(changed, "flat.1"))}["scan"] == "poor"
     changed["closure/flat.1"].attrs["warning"] = ""
     changed["quality/flat.1"].attrs["warning"] = ""
-    assert {one.key: one.word for one in lights_of(Chosen(changed, "flat.1"))}["scan"] == "good"
+    assert {one.key: one.word for one in lights_of(Subject.of(changed, "flat.1"))}["scan"] == "good"
 
 
 def test_page_summary_and_figure_quote_one_verdict_on_the_elastic_model(results, pages):
@@ -296,17 +307,17 @@ def test_page_summary_and_figure_quote_one_verdict_on_the_elastic_model(results,
     atlas = read_atlas(results / "atlas.nc")
     table = pd.read_csv(results / "summary.csv")
     for name in NAMES:
-        chosen = Chosen(atlas, name)
-        found = validity_at(chosen, chosen.map_load)
-        (light,) = [one for one in lights_of(chosen) if one.key == "model"]
+        subject = Subject.of(atlas, name)
+        found = validity_at(subject, subject.reported.reference)
+        (light,) = [one for one in lights_of(subject) if one.key == "model"]
         assert light.word == found.verdict
         assert light.reason.startswith(found.reason)
         rows = table[table["specimen"] == name]
         assert set(rows["light_model"]) == {found.verdict}
         (row,) = rows[rows["load_of_maps"]].itertuples()
         assert row.elastic_model == found.verdict
-        sigma_n = Chosen(atlas, name).values("scaling", "sigma_n")["sigma_n"].values
-        at = [int(np.argmin(abs(chosen.forces - force))) for force in rows["normal_force_N"]]
+        sigma_n = Subject.of(atlas, name).states("scaling")["sigma_n"].values
+        at = [int(np.argmin(abs(subject.forces - force))) for force in rows["normal_force_N"]]
         np.testing.assert_allclose(rows["real_pressure_MPa"], sigma_n[at], rtol=1e-7)
         few = rows["contact_nodes"].values < 30
         assert (rows["real_pressure_MPa"].isna().values == few).all()
@@ -328,13 +339,15 @@ def test_page_summary_and_figure_quote_one_verdict_on_the_elastic_model(results,
 
 def test_specimens_are_compared_at_one_nominal_pressure(results, atlas):
     """Each choice of the page is one pressure, within 5 %, and has all that were solved there."""
-    chosen = [Chosen(atlas, name) for name in NAMES]
-    loads = common_loads(chosen)
+    subjects = [Subject.of(atlas, name) for name in NAMES]
+    loads = common_loads(subjects, atlas["study_comparison/study"].to_dataset())
     assert [load.pressure for load in loads] == pytest.approx([1, 125, 250])
     for load in loads:
-        for one in chosen:
-            assert one.pressures[load.numbers[one.name]] == pytest.approx(load.pressure, rel=0.05)
-    assert main_load(loads, chosen).pressure == pytest.approx(125)
+        for one in subjects:
+            assert one["closure"]["nominal_pressure"].values[
+                load.numbers[one.name]
+            ] == pytest.approx(load.pressure, rel=0.05)
+    assert main_load(loads, subjects).pressure == pytest.approx(125)
     text = (results / "index.html").read_text(encoding="utf-8")
     assert text.count(" selected>125 MPa (2 of 2)") == 1
 
@@ -342,20 +355,26 @@ def test_specimens_are_compared_at_one_nominal_pressure(results, atlas):
 class Solved:
     """What :func:`common_loads` reads of a specimen."""
 
-    def __init__(self, name, pressures, quoted, map_load, unsolved=()):
-        self.name, self.pressures, self.quoted = name, np.array(pressures), quoted
-        self.map_load, self.unsolved = map_load, list(unsolved)
+    def __init__(self, name, pressures, quoted, reference, unsolved=()):
+        closure = np.ones(len(pressures))
+        closure[list(unsolved)] = np.nan
+        values = {"nominal_pressure": np.array(pressures), "closure": closure}
+        self.name, self.curves = name, xr.Dataset({k: ("load", v) for k, v in values.items()})
+        self.reported = SimpleNamespace(quoted=quoted, reference=reference)
 
-    def values(self, *names):
-        closure = np.ones(len(self.pressures))
-        closure[self.unsolved] = np.nan
-        return {"closure": xr.DataArray(closure)}
+    def __getitem__(self, stage):
+        return self.states(stage)
+
+    def states(self, stage):
+        return self.curves
 
 
 def test_pressures_that_differ_by_their_windows_alone_are_one():
     twin = Solved("twin", [2.5, 25, 75], [0, 1], 1)
     other = Solved("other", [7.6, 25.4, 76.2], [1, 2], 2)
-    loads = common_loads([twin, other])
+    pressures = [one.curves["nominal_pressure"].values for one in (twin, other)]
+    compared = {"compared_pressure": (("specimen", "load"), compared_pressures(pressures))}
+    loads = common_loads([twin, other], xr.Dataset(compared, {"specimen": ["twin", "other"]}))
     assert [load.numbers for load in loads] == [
         {"twin": 0},
         {"twin": 1, "other": 1},
@@ -390,25 +409,25 @@ def test_k_ni_is_as_determined_as_the_atlas_says(results, atlas):
     table = pd.read_csv(results / "summary.csv").set_index("specimen")
     ends = {f"hyperbola_k_ni{end}": x for end, x in (("", 100.0), ("_low", 1.0), ("_high", 1e4))}
     for name in NAMES:
-        for determined, why in ((True, ""), (False, "it is told so")):
-            told = {"hyperbola_k_ni_determined": determined, "hyperbola_k_ni_reason": why}
+        for determined, reason in ((True, ""), (False, "it is told so")):
+            told = {"hyperbola_k_ni_determined": determined, "hyperbola_k_ni_reason": reason}
             changed = with_told(atlas, f"closure/{name}", **ends, **told)
-            found = summarised(Chosen(changed, name)).k_ni
+            found = summarised(Subject.of(changed, name)).k_ni
             assert (found.value, found.low, found.high) == (100, 1, 1e4)
-            assert (found.determined, found.why) == (determined, why)
+            assert (found.determined, why(found)) == (determined, reason)
         row = table.loc[[name]].iloc[0]
-        known = Chosen(atlas, name).values("closure")
+        known = Subject.of(atlas, name).states("closure")
         assert row["k_ni_MPa_per_mm_determined"] == known["hyperbola_k_ni_determined"].item()
         assert row["k_ni_reason"] == known["hyperbola_k_ni_reason"].item()
 
 
 def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):
     told = {"plateau_trend": "falling", "plateau_level": 0.7, "plateau_slope": -0.2}
-    found = summarised(Chosen(with_told(atlas, "joints/pair", **told), "pair")).dilatancy
+    found = summarised(Subject.of(with_told(atlas, "joints/pair", **told), "pair")).dilatancy
     assert (found.kind, found.level, found.slope) == ("falling", 0.7, -0.2)
     none = with_told(atlas, "joints/pair", plateau_trend="", plateau_level=np.nan)
-    assert summarised(Chosen(none, "pair")).dilatancy.kind == "none"
-    assert summarised(Chosen(atlas, "flat.1")).dilatancy.kind == "none"
+    assert summarised(Subject.of(none, "pair")).dilatancy.kind == "none"
+    assert summarised(Subject.of(atlas, "flat.1")).dilatancy.kind == "none"
 
 
 def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
@@ -417,7 +436,7 @@ def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
     told = {"verdict": "in part", "reason": "it is told so", "pressure": 7.0, "good_to": 5.0}
     for name in NAMES:
         changed = with_told(atlas, f"elastic_model/{name}", **told)
-        specimen = summarised(Chosen(changed, name))
+        specimen = summarised(Subject.of(changed, name))
         assert {(at.model.verdict, at.model.reason) for at in specimen.loads} == {
             ("in part", "it is told so")
         }
@@ -470,32 +489,32 @@ def test_verdicts_of_several_specimens_are_counted(verdicts, words):
         ([0.5], "larger for 1 and smaller for none of 1 specimen (+50 %): it falls"),
         ([0.021, 2.8], "larger for 2 and smaller for none of 2 specimens (+2.1 % to +280 %): it f"),
         (
-            [-0.1, -0.2, None],
+            [-0.1, -0.2, np.nan],
             "none and smaller for 2 of 2 specimens (−20 % to −10 %): it rises",
         ),
         ([-0.1, 0.2], "larger for 1 and smaller for 1 of 2 specimens (−10 % to +20 %): it has no"),
     ],
 )
 def test_which_way_k_ni_goes_with_the_spacing_follows_from_the_data(changes, words):
-    found = spacing_words([Doubled(change, None) for change in changes])
+    found = spacing_words([Doubled(change, np.nan) for change in changes])
     assert words in found
     assert "tangent" not in found
     assert "changes by −3.3 %." in spacing_words([Doubled(0.1, -0.033)])
-    assert spacing_words([Doubled(None, 0.1)]) == ""
+    assert spacing_words([Doubled(np.nan, 0.1)]) == ""
 
 
 def test_the_page_states_what_twice_the_spacing_changes(results, atlas):
     """As the caption of the closure figure has it."""
-    found = [doubled_spacing(Chosen(atlas, name)) for name in NAMES]
+    found = [doubled_spacing(Subject.of(atlas, name)) for name in NAMES]
     for name, one in zip(NAMES, found, strict=True):
-        chosen = Chosen(atlas, name)
-        curves = chosen.stage("closure").sel(direction=chosen.direction)
-        curves = curves.sel(offset=chosen.offset, method="nearest")
-        tangent = curves["interface_stiffness"].isel(normal_force=chosen.map_load).values
+        subject = Subject.of(atlas, name)
+        curves = subject["closure"].sel(direction=subject.direction)
+        curves = curves.sel(offset=subject.offset, method="nearest")
+        tangent = curves["interface_stiffness"].isel(normal_force=subject.reported.reference).values
         assert one.stiffness == pytest.approx(tangent[1] / tangent[0] - 1)
         initial = curves["hyperbola_k_ni"].values
         change = initial[1] / initial[0] - 1
-        assert one.k_ni == (pytest.approx(change) if np.isfinite(change) else None)
+        assert one.k_ni == pytest.approx(change, nan_ok=True)
     index = (results / "index.html").read_text(encoding="utf-8")
     assert spacing_words(found) in index
     assert "for design" not in index

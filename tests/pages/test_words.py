@@ -2,6 +2,7 @@
 
 import base64
 import io
+import math
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ from fractalcontact.pages.words import (
         (0.9996, "1", "1.00"),
         (1.234e-7, "1.23e−07", "1.23e−07"),
         (-9.0e-6, "−9e−06", "−9.00e−06"),
-        (None, "–", "–"),
+        (math.inf, "–", "–"),
         (float("nan"), "–", "–"),
     ],
 )
@@ -47,7 +48,7 @@ def test_units_suit_the_number():
     assert with_unit(2760, "MPa/mm") == "2.76 GPa/mm"
     assert with_unit(30000, "N") == "30 kN"
     assert with_unit(1.3, "1") == "1.3"
-    assert with_unit(None, "mm") == "–"
+    assert with_unit(math.nan, "mm") == "–"
     assert percent(0.0469) == "4.7 %"
     assert [duration(s) for s in (47, 192, 7500)] == ["47 s", "3 min 12 s", "2 h 5 min"]
 
@@ -55,12 +56,12 @@ def test_units_suit_the_number():
 def test_what_is_undetermined_is_shown_with_its_error():
     assert undetermined(interval(0.96, 0.02, 1.9)) == "undetermined (0.960 ± 0.94)"
     assert undetermined(interval(212, 49.1, 914)) == "undetermined (212 [49.1, 914])"
-    assert undetermined(interval(1.4, None, None)) == "undetermined (1.40, error not known)"
-    assert interval(None, None, None) == "–"
+    assert undetermined(interval(1.4, math.nan, math.nan)) == "undetermined (1.40, error not known)"
+    assert interval(math.nan, math.nan, math.nan) == "–"
 
 
 def quantity(unit="mm", value=2.0, *, absolute=False, **sources):
-    surface = sum((v or 0) ** 2 for k, v in sources.items() if k != "window") ** 0.5
+    surface = sum(v**2 for k, v in sources.items() if k != "window" and v == v) ** 0.5
     errors = {"surface": surface, "population": 1.0}
     why = dict.fromkeys(sources, "why")
     return Quantity("closure", "closure", unit, absolute, value, errors, sources, why)
@@ -75,7 +76,7 @@ class OneLoad:
 
 
 def test_parts_of_a_bar_are_squares_and_fill_it():
-    (bar,) = bars_of(OneLoad(quantity(solver=0.3, numerical=0.4, estimator=None, window=9.0)))
+    (bar,) = bars_of(OneLoad(quantity(solver=0.3, numerical=0.4, estimator=math.nan, window=9.0)))
     shares = {part.source: part.share for part in bar.parts}
     assert shares == pytest.approx({"solver": 36, "numerical": 64, "estimator": 0, "window": 0})
     assert sum(shares.values()) == pytest.approx(100)

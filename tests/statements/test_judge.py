@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.reported import Reported
 from fractalcontact.core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED, VERDICTS
 from fractalcontact.mechanics.plateau import rigid_plateaus
 from fractalcontact.statements import closure, nulls, scaling
@@ -159,11 +160,19 @@ def stages(**changes):
     specimen = xr.Dataset(
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
     )
+    reported = Reported.choose(
+        xr.Dataset(coords=coords),
+        direction="W",
+        offset=SETTINGS["map_offset"],
+        loads=[],
+        reference=SETTINGS["map_load"][0],
+    )
     return {
         "specimens": specimen,
         "joints": slid,
         "closure": xr.Dataset(
             {
+                **reported.variables(),
                 "interface_compliance": (dims, states("compliance")[1]),
                 "area_corrected": states("area"),
                 "nodes": states("nodes"),
@@ -482,7 +491,7 @@ def test_every_offset_belongs_to_one_part_of_the_sliding(length, uncorrelated):
 
 def test_flush_faces_are_left_out():
     joint = Joint(stages(), SETTINGS)
-    assert not joint.initial[joint.offset == 0].any()
+    assert not joint.initial[joint.offsets == 0].any()
 
 
 def test_a_variable_that_is_missing_is_an_error():

@@ -5,13 +5,14 @@ slopes. One function judges it, once, for the atlas: the stage ``elastic_model``
 page, its summary and the caption of Fig. 8 quote.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
 from ..core.settings import Material
+from ..core.validity import Limits, Validity, pressure_words
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_ASKED, POOR, STRENGTH, USUAL
 
 #: Rms slope of the composite topography up to which half-spaces are a fair model of its faces, and
@@ -30,78 +31,6 @@ LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
-
-
-class Limits(NamedTuple):
-    """Pressures that bound the elastic model of a material, and what they follow from.
-
-    Attributes
-    ----------
-    criterion : str
-        :data:`HARDNESS`, :data:`STRENGTH` or, where neither is stated, :data:`USUAL`.
-    strength_low, strength_high : float
-        Ends of that strength, MPa; one value where it is stated.
-    good_to, poor_from : float
-        Real mean pressures up to which the model is good, and from which it is poor, MPa.
-    """
-
-    criterion: str
-    strength_low: float
-    strength_high: float
-    good_to: float
-    poor_from: float
-
-    @property
-    def words(self) -> str:
-        """Criterion and its strength: "joint wall strength (80 MPa)"."""
-        if self.criterion != USUAL:
-            return f"{self.criterion} ({_pressure(self.strength_low)})"
-        ends = f"{self.strength_low:.3g} to {self.strength_high:.3g}"
-        return f"{USUAL}, none being stated (E/1000 to E/200: {ends} MPa)"
-
-
-class Validity(NamedTuple):
-    """A verdict on the elastic model, and what decides it.
-
-    Attributes
-    ----------
-    verdict : str
-        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_ASKED`.
-    pressure : float
-        Real mean pressure that is judged, MPa; NaN where there is none.
-    reason : str
-        One line on pressure and slope.
-    limits : Limits
-    """
-
-    verdict: str
-    pressure: float
-    reason: str
-    limits: Limits
-
-    @classmethod
-    def of(cls, state: xr.Dataset) -> "Validity":
-        """The verdict on one state of the stage ``elastic_model``."""
-        limits = Limits(*(state[name].item() for name in Limits._fields))
-        verdict, pressure, reason = (state[name].item() for name in _OF_STATES)
-        return cls(verdict, pressure, reason, limits)
-
-    @property
-    def capped(self) -> bool:
-        """Whether a stated hardness caps the pressure, which then is no test of the model."""
-        return self.limits.criterion == HARDNESS
-
-    @property
-    def stated(self) -> bool:
-        """Whether a strength or a hardness was stated, and judges the pressure."""
-        return self.limits.criterion != USUAL
-
-    @property
-    def sentence(self) -> str:
-        """Reason and verdict, for a caption."""
-        verdict = "good in part" if self.verdict == IN_PART else self.verdict
-        return f"{self.reason}: elastic model {verdict}."
-
 
 #: Verdicts of the states, over (direction, offset, load): unit and long name.
 _OF_STATES = {
@@ -180,7 +109,7 @@ def elastic_model_validity(pressure: float, rms_slope: float, material: Material
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
     verdict = max(by_pressure, by_slope, key=(GOOD, IN_PART, POOR).index)
     place = _place(pressure, by_pressure, limits)
-    reason = f"sigma_n = {_pressure(pressure)}, {place} the {limits.words}"
+    reason = f"sigma_n = {pressure_words(pressure)}, {place} the {limits.words}"
     if limits.criterion == HARDNESS:
         reason += ", which caps it: not a test of the model"
     if np.isfinite(rms_slope):
@@ -217,8 +146,3 @@ def material_limits(material: Material) -> Limits:
     modulus = float(material.modulus)
     low, high = modulus / LARGEST_RATIO, modulus / LEAST_RATIO
     return Limits(USUAL, low, high, low, CONFINED * high)
-
-
-def _pressure(pressure):
-    """A pressure in MPa, so that it can be compared with the strength beside it."""
-    return f"{float(f'{pressure:.3g}'):g} MPa"

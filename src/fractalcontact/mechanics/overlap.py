@@ -9,10 +9,10 @@ import xarray as xr
 
 from ..core.determined import decided_by_scan
 from ..core.directions import axis_and_sign
+from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES
-from ..core.settings import ContactSettings
-from ..core.window import nominal_area, window_slices
-from .states import chosen_offset, forces_of
+from ..core.reported import Reported
+from ..core.window import window_slices
 
 
 def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
@@ -66,6 +66,36 @@ def overlapping_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.nd
     window = window_slices(specimen)
     overlap = specimen["overlap"].values.astype(bool)
     return overlap[slid_window(window, direction, cells)] | overlap[window]
+
+
+def node_marks(specimen: xr.Dataset, joint: xr.Dataset) -> dict[str, tuple]:
+    """What nodes of the composite topographies are made of, as ``xr.Dataset`` takes it.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+        From :func:`surface.specimen.make_specimen`.
+    joint : xr.Dataset
+        From :func:`mechanics.joint.describe_joint`.
+
+    Returns
+    -------
+    dict
+        ``node_mark`` (direction, offset, y_1, x_1) at the scan's own spacing: 2 where the faces
+        overlap as scanned, 1 on otherwise suspicious cells, 0 elsewhere.
+    """
+    marks = [
+        [
+            np.where(
+                overlapping_nodes(specimen, direction, n), 2, suspect_nodes(specimen, direction, n)
+            )
+            for n in joint["offset_cells"].sel(contact_direction=direction).values.tolist()
+        ]
+        for direction in joint["contact_direction"].values.tolist()
+    ]
+    words = "cells below a node: 2 in the overlap of the faces, 1 otherwise suspicious, 0 sound"
+    dims = ("direction", "offset", "y_1", "x_1")
+    return {"node_mark": (dims, np.array(marks, np.int8), cf_attrs("1", words))}
 
 
 def slid_window(window: tuple[slice, slice], direction: str, cells: int) -> tuple[slice, slice]:
@@ -124,31 +154,28 @@ def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
     return (2 * (decisive & counted).sum("normal_force") >= states) & (states > 0)
 
 
-def load_warning(curves: xr.Dataset, specimen: xr.Dataset, settings: ContactSettings) -> str:
+def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     """Warning where errors of the scans carry the load that decides a number, "" if nowhere.
 
     Parameters
     ----------
     curves : xr.Dataset
         From :func:`mechanics.closure.closure_curves`.
-    specimen : xr.Dataset
-    settings : ContactSettings
+    reported : Reported
 
     Returns
     -------
     str
-        On the first direction at the finest resolution: the offsets at which suspicious cells carry
+        On the reported direction and resolution: the offsets at which suspicious cells carry
         more than half of the map load, and those at which they do so in half of the states fitted.
     """
-    finest = curves.sel(resolution=curves["resolution"].min()).isel(direction=0)
-    (force,) = forces_of([settings.map_load], nominal_area(specimen))
-    at_map = chosen_offset(settings.map_offset, finest["offset"].values)
-    mapped = finest["suspect_load_share"].sel(normal_force=force, method="nearest")
+    finest = reported.curves(curves)
+    mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)
     parts = []
     worst = float(mapped.max())
     if decided_by_scan(worst):
         where = _offset_words(mapped["offset"].values[decided_by_scan(mapped.values)])
-        at_maps = decided_by_scan(float(mapped.sel(offset=at_map)))
+        at_maps = decided_by_scan(float(mapped.sel(offset=reported.offset)))
         maps = ", the contact maps among them" if at_maps else ""
         parts.append(f"up to {worst:.0%} of the map load (v = {where} mm{maps})")
     fitted = fits_undetermined(finest)

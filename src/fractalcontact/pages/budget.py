@@ -1,5 +1,6 @@
 """One error bar a quantity, split by source."""
 
+import math
 from dataclasses import dataclass
 
 from .summary import Quantity, Specimen
@@ -50,9 +51,9 @@ def bars_of(specimen: Specimen) -> list[Bar]:
 
 def _bar(quantity: Quantity) -> Bar:
     known = {
-        source: error or 0.0
+        source: error
         for source, error in quantity.sources.items()
-        if source in OF_SURFACE and error is not None
+        if source in OF_SURFACE and math.isfinite(error)
     }
     squares = sum(error**2 for error in known.values())
     parts = [
@@ -78,6 +79,6 @@ def _bar(quantity: Quantity) -> Bar:
 
 def _words(quantity, source):
     error = quantity.sources[source]
-    if error is not None and not (error == 0 and quantity.reasons[source]):
+    if math.isfinite(error) and not (error == 0 and quantity.reasons[source]):
         return quantity.error_words(error)
     return quantity.reasons[source] or "not known"

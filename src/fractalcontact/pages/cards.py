@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from ..study.figure_list import Figure, all_figures
 from ..study.stages import JOINT, SPECIMEN, STAGES
-from .captions import symbols, take_apart, without_opening
+from .captions import symbols, take_apart
 
 #: Sections of a specimen's page, in order, by name and title.
 SECTIONS = {
@@ -102,7 +102,7 @@ def cards_of(
             Card(
                 name=name,
                 title=title,
-                heading=symbols(without_opening(parts.finding) or title),
+                heading=symbols(parts.finding or title),
                 text=[symbols(sentence) for sentence in parts.text],
                 numbers=[symbols(sentence) for sentence in parts.rest],
                 image=f"{start}.png",

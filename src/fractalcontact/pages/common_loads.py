@@ -4,12 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
-from .chosen import Chosen
-
-#: Pressures that differ by less than this fraction are one: loads are round numbers of N or MPa,
-#: and windows differ a little in area.
-ALIKE = 0.05
+from ..core.subject import Subject
 
 
 @dataclass(frozen=True)
@@ -21,7 +18,7 @@ class CommonLoad:
     key : str
         Its name on the page.
     pressure : float
-        MPa, the median of theirs.
+        MPa, as the comparison of specimens has it.
     numbers : dict of str to int
         Number of the load by specimen; those not solved there are left out.
     """
@@ -31,49 +28,48 @@ class CommonLoad:
     numbers: dict[str, int]
 
 
-def common_loads(chosen: Sequence[Chosen]) -> list[CommonLoad]:
+def common_loads(
+    subjects: Sequence[Subject], comparison: xr.Dataset | None = None
+) -> list[CommonLoad]:
     """Pressures quoted of any specimen, ascending, with the loads of all specimens there.
 
     Parameters
     ----------
-    chosen : sequence of Chosen
+    subjects : sequence of Subject
+    comparison : xr.Dataset, optional
+        Stage ``study_comparison``, with the pressure that each load is compared under; a single
+        specimen has none.
     """
-    quoted = sorted({float(one.pressures[i]) for one in chosen for i in one.quoted})
-    groups: list[list[float]] = []
-    for pressure in quoted:
-        if groups and pressure <= groups[-1][0] * (1 + ALIKE):
-            groups[-1].append(pressure)
-        else:
-            groups.append([pressure])
+    compared = {one.name: _compared(one, comparison) for one in subjects}
+    solved = {one.name: np.isfinite(one.states("closure")["closure"].values) for one in subjects}
+    quoted = sorted({float(compared[one.name][i]) for one in subjects for i in one.reported.quoted})
     found: list[CommonLoad] = []
-    for group in groups:
-        middle = float(np.median(group))
-        numbers = {one.name: i for one in chosen if (i := _number_at(one, middle)) is not None}
-        pressures = [one.pressures[numbers[one.name]] for one in chosen if one.name in numbers]
-        if pressures:
-            found.append(CommonLoad(f"p{len(found)}", float(np.median(pressures)), numbers))
+    for pressure in quoted:
+        places = {name: np.flatnonzero(compared[name] == pressure) for name in compared}
+        numbers = {name: int(at[0]) for name, at in places.items() if solved[name][at].any()}
+        if numbers:
+            found.append(CommonLoad(f"p{len(found)}", pressure, numbers))
     return found
 
 
-def _number_at(chosen, pressure):
-    """Number of the load nearest to a pressure whose closure is known, None where none is near."""
-    known = np.isfinite(chosen.values("closure", "closure")["closure"].values)
-    away = np.where(known, np.abs(np.log(chosen.pressures / pressure)), np.inf)
-    nearest = int(np.argmin(away))
-    return nearest if away[nearest] <= np.log1p(ALIKE) else None
+def _compared(subject, comparison):
+    """Pressures that its loads are compared under (n,), MPa."""
+    if comparison is None:
+        return subject["closure"]["nominal_pressure"].values
+    return comparison["compared_pressure"].sel(specimen=subject.name).values
 
 
-def main_load(loads: Sequence[CommonLoad], chosen: Sequence[Chosen]) -> CommonLoad | None:
+def main_load(loads: Sequence[CommonLoad], subjects: Sequence[Subject]) -> CommonLoad | None:
     """The load to show first: that of most specimens, then of most contact maps, then the largest.
 
     Parameters
     ----------
     loads : sequence of CommonLoad
-    chosen : sequence of Chosen
+    subjects : sequence of Subject
     """
 
     def rank(load):
-        maps = sum(load.numbers.get(one.name) == one.map_load for one in chosen)
+        maps = sum(load.numbers.get(one.name) == one.reported.reference for one in subjects)
         return len(load.numbers), maps, load.pressure
 
     return max(loads, key=rank, default=None)

@@ -5,13 +5,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..core.determined import determined
-from ..core.estimate import Estimate, names_of
-from .chosen import Chosen, finite
-from .summary import DIMENSION
-
-#: Of dimensions: an area has one of its own.
-DIMENSION_UNIT = "1"
+from ..core.estimate import DIMENSION, Estimate
+from ..core.subject import Subject
 
 #: Columns of the file, which the page of another study reads.
 COLUMNS = (
@@ -30,7 +25,7 @@ COLUMNS = (
 )
 
 
-def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
+def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
     """Curves of specimens, one row a point; points that were not solved are left out.
 
     Interface closure, tangent stiffness and corrected area with the total error of this surface,
@@ -40,10 +35,10 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
     Parameters
     ----------
     study : str
-    chosen : list of Chosen
+    subjects : list of Subject
     """
     rows: list[dict[str, Any]] = []
-    for one in chosen:
+    for one in subjects:
         start = {
             "study": study,
             "specimen": one.name,
@@ -51,36 +46,34 @@ def curves_table(study: str, chosen: list[Chosen]) -> pd.DataFrame:
             "direction": one.direction,
             "offset_mm": one.offset,
         }
-        enough = one.values("closure", "resolved")["resolved"].values.astype(bool)
-        for quantity, unit, values, low, high in _quantities(one):
-            says = [_says(unit, *ends) for ends in zip(values, low, high, strict=True)]
+        states = one.states("closure")
+        enough, pressures = states["resolved"].values.astype(bool), states["nominal_pressure"]
+        for quantity, unit, found in _quantities(one):
             rows += [
                 start
                 | {
                     "quantity": quantity,
                     "unit": unit,
-                    "nominal_pressure_MPa": float(one.pressures[i]),
-                    "value": float(values[i]),
-                    "low": finite(low[i]),
-                    "high": finite(high[i]),
-                    "resolved": bool(enough[i] and says[i]),
+                    "nominal_pressure_MPa": float(pressures[i]),
+                    "value": float(found.value[i]),
+                    "low": float(found.low[i]),
+                    "high": float(found.high[i]),
+                    "resolved": bool(enough[i] and _says(found[i])),
                 }
-                for i in np.flatnonzero(np.isfinite(values))
+                for i in np.flatnonzero(found.known)
             ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def _says(unit, value, low, high):
+def _says(found):
     """Whether the interval of a dimension determines it; of other quantities it is an error."""
-    return unit != DIMENSION_UNIT or determined(value, low, high, **DIMENSION)
+    return found.scale != DIMENSION or found.determined
 
 
 def _quantities(one):
-    """Name, unit, values and ends of each curve over the loads."""
-    closure = one.values(
-        "closure", "interface_closure", "interface_stiffness", "area_corrected_share"
-    )
-    budget = one.stage("error_budget").sel(normal_force=one.forces, method="nearest")
+    """Name, unit and estimates of each curve over the loads."""
+    closure = one.states("closure")
+    budget = one["error_budget"].sel(normal_force=one.forces, method="nearest")
     share = closure["area_corrected_share"].values
     of_values = (
         ("interface closure", "mm", closure["interface_closure"].values, "closure"),
@@ -89,7 +82,7 @@ def _quantities(one):
     )
     for words, unit, values, name in of_values:
         error = abs(values) * budget["relative_total"].sel(quantity=name).values
-        yield words, unit, values, values - error, values + error
+        yield words, unit, Estimate(values, values - error, values + error)
     for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
-        found = one.values(stage, *names_of("delta_sigma"))
-        yield f"Delta_sigma {words}", DIMENSION_UNIT, *Estimate.read(found, "delta_sigma").ends
+        found = Estimate.read(one.states(stage), "delta_sigma", scale=DIMENSION)
+        yield f"Delta_sigma {words}", "1", found

@@ -22,7 +22,6 @@ LONGEST_LABEL = 100
 #: Stages that the page shows.
 NEEDS = (
     "specimens",
-    "joints",
     "contact",
     "closure",
     "dilatancy",

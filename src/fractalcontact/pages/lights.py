@@ -7,12 +7,9 @@ import math
 from dataclasses import dataclass
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
-from ..core.units import share
+from ..core.subject import Subject
+from ..core.validity import Validity
 from ..core.verdicts import GOOD, IN_PART, NOT_ASKED, POOR
-from ..mechanics.model_validity import Validity
-from ..roughness.quality_words import overlap_words
-from ..study.configuration import ACCURACY, solver_settings
-from .chosen import Chosen, configuration_of
 
 #: A sign for each, so that no colour is needed.
 SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_ASKED: "–"}
@@ -43,55 +40,55 @@ class Light:
         return SIGNS[self.word]
 
 
-def lights_of(chosen: Chosen) -> list[Light]:
+def lights_of(subject: Subject) -> list[Light]:
     """The five lights of a specimen."""
-    return [_scan(chosen), _faces(chosen), _nodes(chosen), _grid(chosen), _model(chosen)]
+    return [_scan(subject), _faces(subject), _nodes(subject), _grid(subject), _model(subject)]
 
 
-def validity_at(chosen: Chosen, number: int) -> Validity:
+def validity_at(subject: Subject, number: int) -> Validity:
     """The verdict on the elastic model under the load of this number, with its real pressure."""
-    return Validity.of(chosen.values("elastic_model").isel(normal_force=number))
+    return Validity.of(subject.states("elastic_model").isel(normal_force=number))
 
 
-def warnings_of(chosen: Chosen) -> list[str]:
+def warnings_of(subject: Subject) -> list[str]:
     """What the stages warn of, each once: the scan, and the load on suspicious cells."""
-    found = (chosen.stage(stage).attrs.get("warning", "") for stage in ("quality", "closure"))
+    found = (subject[stage].attrs.get("warning", "") for stage in ("quality", "closure"))
     return [str(warning) for warning in found if warning]
 
 
-def _is_pair(chosen):
-    return int(chosen.stage("specimens").attrs["faces"]) == 2
+def _is_pair(subject):
+    return int(subject["specimens"].attrs["faces"]) == 2
 
 
-def _scan(chosen):
+def _scan(subject):
     """Of one face, what suspicious cells carry belongs to its scan."""
     quality, load = (
-        str(chosen.stage(stage).attrs.get("warning", "")) for stage in ("quality", "closure")
+        str(subject[stage].attrs.get("warning", "")) for stage in ("quality", "closure")
     )
-    found = [text for text in (quality, "" if _is_pair(chosen) else load) if text]
+    found = [text for text in (quality, "" if _is_pair(subject) else load) if text]
     if not found:
         reason = "all resolutions lie within the fractal range, suspicious cells carry little load"
         return Light("scan", "Scan", GOOD, reason)
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
-    below = chosen.stage("quality")["below_range"].values
-    word = POOR if below.all() or (load and not _is_pair(chosen)) else IN_PART
+    below = subject["quality"]["below_range"].values
+    word = POOR if below.all() or (load and not _is_pair(subject)) else IN_PART
     return Light("scan", "Scan", word, "; ".join(found))
 
 
-def _faces(chosen):
+def _faces(subject):
     key, title = "faces", "Fit of the faces"
-    if not _is_pair(chosen):
+    if not _is_pair(subject):
         return Light(key, title, NOT_ASKED, "one face was scanned: there is nothing to fit")
-    overlap = overlap_words(chosen.stage("specimens"), chosen.stage("quality"))
-    load = str(chosen.stage("closure").attrs.get("warning", ""))
+    overlap = str(subject["quality"].attrs["overlap"])
+    load = str(subject["closure"].attrs.get("warning", ""))
     if load:
         return Light(key, title, POOR, f"{load}; {overlap}")
-    touching = chosen.stage("quality").sel(region="window")["overlap_cells"].item()
+    touching = subject["quality"].sel(region="window")["overlap_cells"].item()
     return Light(key, title, IN_PART if touching else GOOD, overlap)
 
 
-def _nodes(chosen):
-    nodes = chosen.values("closure", "nodes")["nodes"].isel(normal_force=chosen.map_load).item()
+def _nodes(subject):
+    nodes = subject.state("closure")["nodes"].item()
     # A state that was not solved has none: the comparison is then false, as it should be.
     word = GOOD if nodes >= CORRECTED_NODES else IN_PART if nodes >= RESOLVED_NODES else POOR
     reason = (
@@ -101,14 +98,11 @@ def _nodes(chosen):
     return Light("nodes", "Enough nodes", word, reason)
 
 
-def _grid(chosen):
+def _grid(subject):
     """Numerical error of the closure beside what the study asks for."""
     key, title = "grid", "Converged in the grid"
-    accuracy = solver_settings(configuration_of(chosen.atlas)["study"], "study").accuracy
-    # All states, at full cost, says nothing of the grid: the usual accuracy is then compared.
-    asked = accuracy["closure"] if accuracy else share(ACCURACY["closure"], "closure")
-    budget = chosen.stage("error_budget").sel(quantity="closure")
-    here = budget.sel(normal_force=chosen.forces[chosen.map_load], method="nearest")
+    asked = float(subject["choices"]["closure_accuracy"])
+    here = subject.state("error_budget").sel(quantity="closure")
     error = float(here["relative_error"].sel(source="numerical"))
     if math.isnan(error):
         why = str(here["reason"].sel(source="numerical").item()) or "no finer grid was solved"
@@ -121,7 +115,7 @@ def _grid(chosen):
     return Light(key, title, word, reason)
 
 
-def _model(chosen):
-    found = validity_at(chosen, chosen.map_load)
+def _model(subject):
+    found = validity_at(subject, subject.reported.reference)
     reason = f"{found.reason}, under the load of the maps"
     return Light("model", "Validity of the elastic model", found.verdict, reason)

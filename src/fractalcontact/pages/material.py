@@ -1,9 +1,10 @@
 """What a specimen is taken to be made of, and what it is pressed against, in words."""
 
+import math
 from dataclasses import dataclass
 
 from ..core.labels import printable
-from .chosen import Chosen, finite
+from ..core.subject import Subject
 from .words import short, with_unit
 
 #: The material stated for one specimen alone has this name in its settings.
@@ -27,33 +28,33 @@ class Material:
     modulus : float
         E, MPa.
     poisson : float
-    hardness : float or None
-        At which the pressure is capped, MPa; None where none is stated.
+    hardness : float
+        At which the pressure is capped, MPa; infinite where none is stated.
     """
 
     name: str
     modulus: float
     poisson: float
-    hardness: float | None
+    hardness: float
 
     @property
     def words(self) -> str:
         """In a line: the name, E, Poisson's ratio and, if stated, the hardness."""
         name = "own material" if self.name == _OWN else f"material {printable(self.name)}"
         line = f"{name}: E = {with_unit(self.modulus, 'MPa')}, ν = {short(self.poisson)}"
-        if self.hardness is None:
+        if math.isinf(self.hardness):
             return line
         return f"{line}, hardness {with_unit(self.hardness, 'MPa')}"
 
 
-def material_of(chosen: Chosen) -> Material:
+def material_of(subject: Subject) -> Material:
     """The material that the study, or the sidecar of a specimen, states."""
-    stated = chosen.settings["material"]
+    stated = subject.settings["material"]
     return Material(
         name=str(stated["name"]),
         modulus=float(stated["modulus"]),
         poisson=float(stated["poisson"]),
-        hardness=finite(stated["hardness"]),
+        hardness=float(stated["hardness"]),
     )
 
 

@@ -3,6 +3,7 @@
 Numbers are those of the summary, verdicts those of the statements and of the elastic model.
 """
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 
@@ -72,7 +73,7 @@ def _closure(found: _At, under: str, total: int) -> Markup | None:
         Markup("{} ({}{})").format(with_unit(value, "mm"), one.name, _error(at))
         for value, one, at in closure
     ]
-    known = sum(at.quantities["closure"].value is not None for _, at in sure)
+    known = sum(at.quantities["closure"].known for _, at in sure)
     counted = f"all {total}" if known == total else f"{known} of {total}"
     whose = "" if total == 1 else f" of {counted} specimens"
     words = Markup(" to ").join(ends)
@@ -88,12 +89,12 @@ def _closure(found: _At, under: str, total: int) -> Markup | None:
 def _error(at):
     closure = at.quantities["closure"]
     error = closure.errors["surface"]
-    return "" if error is None else f", ± {closure.error_words(error)}"
+    return f", ± {closure.error_words(error)}" if math.isfinite(error) else ""
 
 
 def _ends(found, value_of):
     """Least and largest value with their specimens; one where there is one, none where none."""
-    known = [(value_of(at), one, at) for one, at in found if value_of(at) is not None]
+    known = [(value_of(at), one, at) for one, at in found if math.isfinite(value_of(at))]
     if not known:
         return []
     known.sort(key=lambda entry: entry[0])
@@ -114,7 +115,7 @@ def _model(found: _At, under: str) -> Markup | None:
     known = [(one, at) for one, at in found if at.model.verdict in _MODEL]
     if not known:
         return None
-    shares = [at.nominal_pressure / at.model.pressure for _, at in known]
+    shares = [at.contact_share for _, at in known]
     text = (
         f"{under} {_range(shares, percent)} of the window is in contact, at a real mean pressure "
         f"of {_range([at.model.pressure for _, at in known], _pressure)}: {_tested(known)}"
@@ -129,7 +130,7 @@ def _tested(known: _At) -> str:
     parts = []
     if tested:
         verdicts = _counted([at.model.verdict for _, at in tested], _MODEL)
-        slopes = [one.rms_slope for one, _ in tested if one.rms_slope is not None]
+        slopes = [one.rms_slope for one, _ in tested if math.isfinite(one.rms_slope)]
         uncapped = " whose pressure no hardness caps" if capped else ""
         parts.append(
             f"the elastic model is {verdicts}{uncapped} ({_limits(tested)}{_slopes(slopes)})"

@@ -7,19 +7,18 @@ and in base64.
 
 import base64
 import zlib
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..core.determined import decided_by_scan, determined
+from ..core.determined import decided_by_scan
+from ..core.estimate import DIMENSION, Estimate
 from ..core.labels import cf_attrs
+from ..core.subject import Subject
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import cell_side
-from ..mechanics.overlap import overlapping_nodes, suspect_nodes
-from .summary import DIMENSION
 
 #: Order of the dimensions of all that is packed; one-dimensional coordinates stand apart.
 ORDER = (
@@ -160,10 +159,8 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
         ``total/ROW`` are errors of all sources; ``undetermined/ROW``, and for the rows `of_joint`
         ``undetermined/by_scan``, say where the pages call a number undetermined.
     """
-    stages = {
-        stage: atlas[f"{stage}/{name}"].to_dataset()
-        for stage in ("closure", "dilatancy", "domains", "scaling", "contact", "specimens")
-    }
+    subject = Subject.of(atlas, name)
+    stages = dict(subject.stages)
     stages["dilatancy"] = stages["dilatancy"].rename(
         {"direction": "rigid_direction", "contact_direction": "direction"}
     )
@@ -185,12 +182,12 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
         "rows": [f"{stage}/{variable}" for stage, variable in STATE],
         "of_joint": OF_JOINT,
         "reasons": _reasons(stages),
-        "totals": _totals(atlas, name, numbers),
+        "totals": _totals(subject, numbers),
         "arrays": numbers.entries,
         "numbers": numbers.text(),
         "window": _window(stages["contact"], stages["specimens"]),
         "domains": _domains(stages["contact"]),
-        "marks": _marks(atlas[f"joints/{name}"].to_dataset(), stages["specimens"]),
+        "marks": _marks(stages["contact"]),
         "fields": _fields(stages["contact"]),
     }
 
@@ -218,7 +215,7 @@ def _add_undetermined(numbers, stages):
         stage, variable = key.split("/")
         names = [_bound_of(variable, ending) for ending in ("", "_low", "_high")]
         says = xr.apply_ufunc(
-            lambda *ends: determined(*ends, **DIMENSION),
+            lambda *ends: Estimate(*ends, scale=DIMENSION).determined,
             *(stages[stage][name] for name in names),
             vectorize=True,
         )
@@ -250,19 +247,17 @@ def _listed(words: xr.DataArray) -> dict[str, Any]:
     return {"words": different.tolist(), "places": places.tolist()}
 
 
-def _totals(atlas, name, numbers):
+def _totals(subject, numbers):
     """Errors of all sources at the offset of the maps, by the quantity that has them."""
-    if "error_budget" not in atlas.children or name not in atlas["error_budget"].children:
+    if "error_budget" not in subject.stages:
         return None
-    budget = atlas[f"error_budget/{name}"].to_dataset()
+    budget = subject["error_budget"]
     # Over the offsets delta = u + w_b: its error is that of the separation.
     sliding = {"dilatancy/elastic_dilatancy": "separation"}
     keys = TOTALS | (sliding if budget.attrs["direction"] != "none" else {})
-    closure = atlas[f"closure/{name}"].to_dataset()
-    area = float((closure["normal_force"] / closure["nominal_pressure"])[0])
     for key, quantity in keys.items():
         total = budget["total"].sel(quantity=quantity, drop=True)
-        total = total / area if key.endswith("_share") else total
+        total = total / subject.area if key.endswith("_share") else total
         total.attrs = cf_attrs(numbers.entries[key]["units"], "error of all sources")
         numbers.add("error_budget", "total", total, key=f"total/{key}")
     return {
@@ -300,28 +295,21 @@ def _domains(contact):
     return domains
 
 
-def _marks(joint, specimen):
+def _marks(contact):
     """Nodes on overlapping faces, and on otherwise suspicious cells, as bits by direction, offset.
 
     None where there is neither.
     """
-    marks = {"overlap": [], "suspect": []}
-    for direction in joint["contact_direction"].values.tolist():
-        cells = joint["offset_cells"].sel(contact_direction=direction).values.tolist()
-        overlap = [overlapping_nodes(specimen, direction, n) for n in cells]
-        suspect = [suspect_nodes(specimen, direction, n) for n in cells]
-        marks["overlap"].append(overlap)
-        marks["suspect"].append([s & ~o for s, o in zip(suspect, overlap, strict=True)])
-    if not any(_flat(cells) for cells in marks.values()):
+    marks = contact["node_mark"].transpose("direction", "offset", ...).values
+    if not marks.any():
         return None
     return {
-        kind: [[packed_bits(cells) if cells.any() else "" for cells in row] for row in rows]
-        for kind, rows in marks.items()
+        kind: [
+            [packed_bits(cells == mark) if (cells == mark).any() else "" for cells in row]
+            for row in marks
+        ]
+        for kind, mark in (("overlap", 2), ("suspect", 1))
     }
-
-
-def _flat(rows: Iterable) -> bool:
-    return any(cells.any() for row in rows for cells in row)
 
 
 def _fields(contact):

@@ -14,22 +14,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 import yaml
 
 from ..core.atomic import atomic_write
+from ..core.estimate import Estimate
 from ..core.labels import printable
 from ..core.measured_maps import measured_maps
+from ..core.subject import Subject, configuration_of, specimens_of
 from ..core.tables import write_table
 from ..study.atlas import group_names, read_atlas
 from ..study.figure_list import STUDY, all_figures
-from ..study.stages import JOINT, SPECIMEN
-from ..study.stages import STAGES as ALL_STAGES
+from ..study.stages import JOINT, SPECIMEN, STAGES
 from .budget import bars_of
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
-from .chosen import STAGES, Chosen, configuration_of, specimens_of
 from .common_loads import common_loads, main_load
 from .curves import curves_table
 from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
@@ -38,11 +39,30 @@ from .material import opposite_words
 from .matrix import Row, counted, matrix_of, of_study
 from .opening import opening_of
 from .spacing import spacing_words
-from .summary import AtLoad, Estimate, Quantity, Specimen, summarised, summary_table
+from .summary import AtLoad, Quantity, Specimen, summarised, summary_table, why
 from .templating import write_page
 from .thumbnails import relief_thumbnail
-from .words import duration, interval, measured, percent, short, undetermined, with_unit
+from .words import MISSING, duration, interval, measured, percent, short, undetermined, with_unit
 
+#: Stages that the pages read; the fields of contact, the largest, are not among them.
+NEEDS = (
+    "specimens",
+    "quality",
+    "surface_dimension",
+    "joints",
+    "closure",
+    "dilatancy",
+    "area",
+    "domains",
+    "scaling",
+    "error_budget",
+    "choices",
+    "elastic_model",
+    "statements",
+    "study_statements",
+    "study_comparison",
+    "contact_maps",
+)
 #: Time that all members of an archive have, so that the same tables are the same archive.
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Letters of a label in a table.
@@ -87,25 +107,26 @@ def write_result_page(place: Place) -> list[str]:
     list of str
         Specimens that have a page, ``pages/NAME.html``.
     """
-    atlas = read_atlas(place.atlas, without=ALL_STAGES.keys() - set(STAGES))
-    chosen = [Chosen(atlas, name) for name in specimens_of(atlas)]
-    loads = common_loads(chosen)
-    specimens = [summarised(one, loads) for one in chosen]
+    atlas = read_atlas(place.atlas, without=STAGES.keys() - set(NEEDS))
+    subjects = [Subject.of(atlas, name) for name in specimens_of(atlas)]
+    loads = common_loads(subjects, _comparison(atlas))
+    specimens = [summarised(one, loads) for one in subjects]
     study = str(atlas.attrs["study"])
-    curves = curves_table(study, chosen)
-    write_table(place.folder / SUMMARY, summary_table(study, specimens, measured_maps(atlas)))
+    curves = _finite(curves_table(study, subjects))
+    summary = _finite(summary_table(study, specimens, measured_maps(atlas)))
+    write_table(place.folder / SUMMARY, summary)
     write_table(place.folder / CURVES, curves)
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
     head = _head(place, atlas)
     groups = group_names(place.atlas)
-    rows = matrix_of(atlas, [one.name for one in chosen])
-    for one, specimen in zip(chosen, specimens, strict=True):
+    rows = matrix_of(atlas, [one.name for one in subjects])
+    for one, specimen in zip(subjects, specimens, strict=True):
         values = _specimen_values(place, one, specimen, rows, groups)
         path = place.folder / SPECIMEN_PAGE.format(specimen=one.name)
         write_page(path, "specimen.html", head | values)
-    reliefs = {one.name: relief_thumbnail(one.stage("specimens")) for one in chosen}
-    first = main_load(loads, chosen)
+    reliefs = {one.name: relief_thumbnail(one["specimens"]) for one in subjects}
+    first = main_load(loads, subjects)
     values = _index_values(place, atlas, specimens, rows, curves, groups) | {
         "reliefs": reliefs,
         "loads": loads,
@@ -114,7 +135,7 @@ def write_result_page(place: Place) -> list[str]:
         "over_spacing": spacing_words([one.doubled for one in specimens]),
     }
     write_page(place.folder / INDEX, "index.html", head | values)
-    return [one.name for one in chosen]
+    return [one.name for one in subjects]
 
 
 # -- what all pages have ---------------------------------------------------------------------------
@@ -143,6 +164,8 @@ def _head(place, atlas):
         "uncertain": lambda found: interval(found.value, found.low, found.high),
         "sort_value": _sort_value,
         "note_of": _note_of,
+        "why": why,
+        "shown": _shown,
         "in_paper": _in_paper,
     }
 
@@ -154,11 +177,11 @@ def _as_typed(path):
 
 def _estimate(found):
     """A number with its interval in words, as figures print it."""
-    if found.value is None:
-        return short(None)
+    if not found.known:
+        return MISSING
     if not found.determined:
         return undetermined(interval(found.value, found.low, found.high))
-    ends = f" [{measured(found.low)}, {measured(found.high)}]" if found.low is not None else ""
+    ends = f" [{measured(found.low)}, {measured(found.high)}]" if np.isfinite(found.low) else ""
     return measured(found.value) + ends
 
 
@@ -176,14 +199,18 @@ def _sort_value(state: AtLoad | None, name: str) -> float | str:
         return ""
     if isinstance(found, Quantity) and state.decided_by_scan:
         return ""
-    value = found.value if isinstance(found, Estimate | Quantity) else found
-    return "" if value is None else value
+    return _shown(found.value if isinstance(found, Estimate | Quantity) else found)
+
+
+def _shown(value: float) -> float | str:
+    """A number as an attribute of the page: empty where it is missing."""
+    return value if np.isfinite(value) else ""
 
 
 def _note_of(state: AtLoad | None, name: str) -> str:
     """Why an estimate is missing, or what to know of it."""
     found = None if state is None else _quoted(state, name)
-    return found.why if isinstance(found, Estimate) else ""
+    return why(found) if isinstance(found, Estimate) else ""
 
 
 def _in_paper(figures):
@@ -238,6 +265,17 @@ def _index_values(
     }
 
 
+def _comparison(atlas):
+    """Specimens side by side; None where there is one."""
+    several = "study_comparison" in atlas.children
+    return atlas["study_comparison/study"].to_dataset() if several else None
+
+
+def _finite(table: pd.DataFrame) -> pd.DataFrame:
+    """A table in which what is infinite is missing: spreadsheets and scripts know no infinity."""
+    return table.mask(table.isin([np.inf, -np.inf]))
+
+
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
     """Rows of a table for a script; missing numbers are None."""
     return table.astype(object).where(table.notna(), None).to_dict("records")
@@ -255,22 +293,22 @@ def _pictures(rows: Iterable[Row], place: Place) -> set[tuple[str, str]]:
 
 def _specimen_values(
     place: Place,
-    chosen: Chosen,
+    subject: Subject,
     specimen: Specimen,
     rows: list[Row],
     groups: Collection[str],
 ) -> dict[str, Any]:
     figures = all_figures()
     names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
-    warnings = warnings_of(chosen)
+    warnings = warnings_of(subject)
     cards = cards_of(
         names,
-        place.figures / chosen.name,
-        f"../figures/{chosen.name}",
+        place.figures / subject.name,
+        f"../figures/{subject.name}",
         atlas=_as_typed(place.atlas),
         groups=groups,
-        specimen=chosen.name,
-        label=chosen.label,
+        specimen=subject.name,
+        label=subject.label,
         warnings=warnings,
     )
     sections = [
@@ -279,11 +317,11 @@ def _specimen_values(
     ]
     return {
         "specimen": specimen,
-        "label": printable(chosen.label),
+        "label": printable(subject.label),
         "opposite": opposite_words(specimen.opposite),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "bars": bars_of(specimen),
-        "statements": [(row, row.cells[chosen.name]) for row in rows if chosen.name in row.cells],
+        "statements": [(row, row.cells[subject.name]) for row in rows if subject.name in row.cells],
         "drawn": {card.name for card in cards},
     }
 

@@ -1,12 +1,13 @@
 """What twice the spacing makes of the stiffness: whether k_ni rises or falls with finer scans."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from ..core.subject import Subject
 from .captions import symbols
-from .chosen import Chosen, finite
 from .words import percent
 
 
@@ -16,25 +17,22 @@ class Doubled:
 
     Attributes
     ----------
-    k_ni : float or None
-        Of k_ni, as a fraction of it; None where twice the spacing was not solved, or nothing fits.
-    stiffness : float or None
+    k_ni : float
+        Of k_ni, as a fraction of it; NaN where twice the spacing was not solved, or nothing fits.
+    stiffness : float
         Of the tangent stiffness under the load of the maps.
     """
 
-    k_ni: float | None
-    stiffness: float | None
+    k_ni: float
+    stiffness: float
 
 
-def doubled_spacing(chosen: Chosen) -> Doubled:
+def doubled_spacing(subject: Subject) -> Doubled:
     """What twice the spacing of a specimen makes of both stiffnesses."""
-    curves = chosen.stage("closure").sel(direction=chosen.direction)
-    curves = curves.sel(offset=chosen.offset, method="nearest")
-    finest = curves["resolution"].values.min()
-    change = curves["hyperbola_k_ni_change"].sel(resolution=finest)
-    tangent = curves["interface_stiffness"].isel(normal_force=chosen.map_load)
-    tangent = tangent.reindex(resolution=[finest, 2 * finest])
-    return Doubled(finite(change), finite(tangent[1] / tangent[0] - 1))
+    state = subject.state("closure")
+    return Doubled(
+        *(float(state[f"{of}_change"]) for of in ("hyperbola_k_ni", "interface_stiffness"))
+    )
 
 
 def spacing_words(found: Sequence[Doubled]) -> Markup:
@@ -45,7 +43,7 @@ def spacing_words(found: Sequence[Doubled]) -> Markup:
     found : sequence of Doubled
         Of all specimens.
     """
-    initial = [one.k_ni for one in found if one.k_ni is not None]
+    initial = [one.k_ni for one in found if math.isfinite(one.k_ni)]
     if not initial:
         return Markup("")
     larger, smaller = sum(one > 0 for one in initial), sum(one < 0 for one in initial)
@@ -54,7 +52,7 @@ def spacing_words(found: Sequence[Doubled]) -> Markup:
         f"{smaller or 'none'} of {len(initial)} specimen{'s' if len(initial) > 1 else ''} "
         f"({_range(initial)}): {_verdict(larger, smaller)}"
     )
-    tangent = [one.stiffness for one in found if one.stiffness is not None]
+    tangent = [one.stiffness for one in found if math.isfinite(one.stiffness)]
     if tangent:
         text += f"; the tangent stiffness under the load of the maps changes by {_range(tangent)}"
     return symbols(f"{text}.")

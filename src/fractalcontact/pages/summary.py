@@ -1,21 +1,20 @@
 """The summary of a study: what each specimen is and does, one row a specimen and pressure."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..core import estimate
-from ..core.determined import decided_by_scan, determined
-from ..core.limits import WIDEST
+from ..core.determined import decided_by_scan
+from ..core.estimate import DIMENSION, Estimate
 from ..core.measured_maps import map_table
+from ..core.subject import Subject
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import spacing_of, window_sides
 from ..mechanics.model_validity import Validity
-from .chosen import Chosen, finite
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
@@ -24,8 +23,6 @@ from .words import percent, with_unit
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
-#: Dimensions are determined as figures have it: 0 and 2 need no interval.
-DIMENSION: dict[str, Any] = {"span": 1.0, "widest": WIDEST, "exact": (0.0, 2.0)}
 #: Columns of the summary that are not called as the error budget calls their quantity.
 _COLUMNS = {"closure": "interface_closure"}
 
@@ -34,43 +31,22 @@ _WIDE = "its 95 % interval leaves nearly everything open"
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """A number with its 95 % interval.
+class Judged(Estimate):
+    """An estimate of which its stage says whether it is determined."""
 
-    Attributes
-    ----------
-    value, low, high : float or None
-        None where missing.
-    determined : bool
-        Whether the interval says something, as figures decide it.
-    note : str
-        Why it is missing, or what to know of it.
-    """
-
-    value: float | None
-    low: float | None
-    high: float | None
-    determined: bool
-    note: str = ""
-
-    @classmethod
-    def of(cls, found: xr.Dataset, name: str, note: str = "", **kind: Any) -> "Estimate":
-        """Variable ``name`` of a dataset with its ends; ``kind`` is handed to `determined`."""
-        return cls.between(estimate.Estimate.read(found, name).ends, note, kind)
-
-    @classmethod
-    def between(cls, ends: Sequence[float], note: str, kind: dict[str, Any]) -> "Estimate":
-        """From a value and the ends of its interval, NaN where missing."""
-        value, low, high = ends
-        says = determined(value, low, high, **kind)
-        return cls(finite(value), finite(low), finite(high), says, note)
+    says: bool = False
 
     @property
-    def why(self) -> str:
-        """Why it is missing or undetermined, or what to know of it."""
-        if self.note or self.determined or self.value is None:
-            return self.note
-        return _WIDE if self.low is not None else "its error is not known"
+    def determined(self) -> bool:
+        """As the stage says."""
+        return self.says
+
+
+def why(found: Estimate) -> str:
+    """Why an estimate is missing or undetermined, or what to know of it."""
+    if found.reason or found.determined or not found.known:
+        return str(found.reason)
+    return _WIDE if np.isfinite(found.low) else "its error is not known"
 
 
 @dataclass(frozen=True)
@@ -84,10 +60,10 @@ class Quantity:
     meaning, unit : str
     absolute : bool
         Whether its errors are stated in the unit alone, never as fractions of the value.
-    value : float or None
-    errors : dict of str to float or None
+    value : float
+    errors : dict of str to float
         Half-widths at 95 %, in the unit: of this surface, of its population.
-    sources : dict of str to float or None
+    sources : dict of str to float
         By source.
     reasons : dict of str to str
         Why a source has none.
@@ -99,15 +75,20 @@ class Quantity:
     meaning: str
     unit: str
     absolute: bool
-    value: float | None
-    errors: dict[str, float | None]
-    sources: dict[str, float | None]
+    value: float
+    errors: dict[str, float]
+    sources: dict[str, float]
     reasons: dict[str, str]
     missing: str = ""
 
-    def error_words(self, error: float | None) -> str:
+    @property
+    def known(self) -> bool:
+        """Whether there is a value."""
+        return math.isfinite(self.value)
+
+    def error_words(self, error: float) -> str:
         """An error in per cent of the value where the quantity has fractions, else in its unit."""
-        if error is None or self.absolute or not self.value:
+        if self.absolute or not self.known or self.value == 0:
             return with_unit(error, self.unit, 2)
         return percent(abs(error / self.value))
 
@@ -120,6 +101,8 @@ class AtLoad:
     ----------
     number : int
         Of the load among those of the study.
+    contact_share : float
+        Corrected A_r/A_0.
     model : Validity
         Whether the elastic model is valid, with the real mean pressure.
     """
@@ -128,27 +111,28 @@ class AtLoad:
     normal_force: float
     nominal_pressure: float
     of_maps: bool
-    contact_nodes: float | None
-    suspect_share: float | None
+    contact_nodes: float
+    contact_share: float
+    suspect_share: float
     model: Validity
     quantities: dict[str, Quantity]
     delta_sigma_boxes: Estimate
     delta_sigma_areas: Estimate
 
     @property
-    def real_pressure(self) -> float | None:
-        """Real mean pressure F / A_r, MPa; None where too few nodes touch."""
-        return finite(self.model.pressure)
+    def real_pressure(self) -> float:
+        """Real mean pressure F / A_r, MPa; NaN where too few nodes touch."""
+        return self.model.pressure
 
     @property
     def no_real_pressure(self) -> str:
         """Why there is no real mean pressure; empty where there is one."""
-        return NO_PRESSURE if self.real_pressure is None else ""
+        return "" if math.isfinite(self.real_pressure) else NO_PRESSURE
 
     @property
     def decided_by_scan(self) -> bool:
         """Whether suspicious cells of the scans carry most of the load: its numbers are theirs."""
-        return self.suspect_share is not None and bool(decided_by_scan(self.suspect_share))
+        return bool(decided_by_scan(self.suspect_share))
 
 
 @dataclass(frozen=True)
@@ -159,15 +143,15 @@ class Dilatancy:
     ----------
     kind : str
         "level", "rising", "falling"; "none" of what does not slide.
-    level : float or None
+    level : float
         Its mean, mm.
-    slope : float or None
+    slope : float
         mm/mm.
     """
 
     kind: str
-    level: float | None = None
-    slope: float | None = None
+    level: float = math.nan
+    slope: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -184,7 +168,7 @@ class Specimen:
     spacing: float
     delta_g: Estimate
     estimator: str
-    rms_slope: float | None
+    rms_slope: float
     k_ni: Estimate
     doubled: Doubled
     closure_law: str
@@ -202,92 +186,93 @@ class Specimen:
         return next((load for load in self.loads if load.number == number), None)
 
 
-def summarised(chosen: Chosen, common: Sequence[CommonLoad] = ()) -> Specimen:
+def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
     """The row of a specimen.
 
     Parameters
     ----------
-    chosen : Chosen
+    subject : Subject
     common : sequence of CommonLoad, optional
         Loads at which it is compared with others: quoted too.
     """
-    compared = {load.numbers[chosen.name] for load in common if chosen.name in load.numbers}
-    specimen = chosen.stage("specimens")
+    compared = {load.numbers[subject.name] for load in common if subject.name in load.numbers}
+    specimen = subject["specimens"]
     side_y, side_x = window_sides(specimen)
-    surface = chosen.stage("surface_dimension")
-    curve = chosen.values("closure")
-    dimension = estimate.Estimate.read(surface, "recommended_dimension").ends
+    surface = subject["surface_dimension"]
+    curve = subject.states("closure")
+    why_none = str(surface["no_dimension"].item())
     return Specimen(
-        name=chosen.name,
-        label=chosen.label,
+        name=subject.name,
+        label=subject.label,
         opposite=str(specimen.attrs["opposite"]),
-        material=material_of(chosen),
-        direction=chosen.direction,
-        offset=chosen.offset,
+        material=material_of(subject),
+        direction=subject.direction,
+        offset=subject.offset,
         window=(side_x, side_y),
         spacing=max(spacing_of(specimen)),
-        delta_g=Estimate.between(dimension, str(surface["no_dimension"].item()), DIMENSION),
+        delta_g=Estimate.read(surface, "recommended_dimension", reason=why_none, scale=DIMENSION),
         estimator=str(surface["recommended"].item()).replace("_", " "),
-        rms_slope=finite(chosen.values("area", "rms_slope")["rms_slope"]),
+        rms_slope=float(subject.states("area")["rms_slope"]),
         k_ni=_initial_stiffness(curve),
-        doubled=doubled_spacing(chosen),
+        doubled=doubled_spacing(subject),
         closure_law=str(curve["closure_law"].item()),
-        dilatancy=dilatancy_of(chosen),
-        loads=[_at_load(chosen, curve, i) for i in sorted(compared.union(chosen.quoted))],
-        lights=lights_of(chosen),
+        dilatancy=dilatancy_of(subject),
+        loads=[
+            _at_load(subject, curve, i) for i in sorted(compared.union(subject.reported.quoted))
+        ],
+        lights=lights_of(subject),
     )
 
 
 def _initial_stiffness(curve):
     """k_ni of the hyperbola: undetermined, with the reason, where the atlas says so."""
-    value, low, high = map(finite, estimate.Estimate.read(curve, "hyperbola_k_ni").ends)
-    says, why = (curve[f"hyperbola_k_ni_{name}"].item() for name in ("determined", "reason"))
-    return Estimate(value, low, high, bool(says), why)
+    says, reason = (curve[f"hyperbola_k_ni_{name}"].item() for name in ("determined", "reason"))
+    found = Estimate.read(curve, "hyperbola_k_ni")
+    return Judged(*found.ends, reason=reason, says=bool(says))
 
 
-def _at_load(chosen, curve, number):
+def _at_load(subject, curve, number):
     """What stands in the table under the load of this number."""
     state = {"normal_force": number}
     return AtLoad(
         number=number,
-        normal_force=float(chosen.forces[number]),
-        nominal_pressure=float(chosen.pressures[number]),
-        of_maps=number == chosen.map_load,
-        contact_nodes=finite(curve["nodes"].isel(state)),
-        suspect_share=finite(curve["suspect_load_share"].isel(state)),
-        model=validity_at(chosen, number),
-        quantities=quantities_at(chosen, number),
-        delta_sigma_boxes=_dimension(chosen, "domains", state),
-        delta_sigma_areas=_dimension(chosen, "scaling", state),
+        normal_force=float(subject.forces[number]),
+        nominal_pressure=float(curve["nominal_pressure"][number]),
+        of_maps=number == subject.reported.reference,
+        contact_nodes=float(curve["nodes"].isel(state)),
+        contact_share=float(curve["area_corrected_share"].isel(state)),
+        suspect_share=float(curve["suspect_load_share"].isel(state)),
+        model=validity_at(subject, number),
+        quantities=quantities_at(subject, number),
+        delta_sigma_boxes=_dimension(subject, "domains", state),
+        delta_sigma_areas=_dimension(subject, "scaling", state),
     )
 
 
-def _dimension(chosen, stage, state):
+def _dimension(subject, stage, state):
     """Delta_sigma of a stage, with why there is none where the stage says it."""
-    names = ["delta_sigma", "delta_sigma_low", "delta_sigma_high"]
-    names += ["reason"] if "reason" in chosen.stage(stage) else []
-    found = chosen.values(stage, *names).isel(state)
+    found = subject.states(stage).isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
     if not note and np.isnan(float(found["delta_sigma"])):
         note = TOO_FEW_RESOLUTIONS
-    return Estimate.of(found, "delta_sigma", note, **DIMENSION)
+    return Estimate.read(found, "delta_sigma", reason=note, scale=DIMENSION)
 
 
-def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
+def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
     """Quantities of the error budget under the load of this number.
 
     Parameters
     ----------
-    chosen : Chosen
+    subject : Subject
     number : int
         Among the loads of the study.
     """
-    budget = chosen.stage("error_budget")
-    force = chosen.forces[number]
+    budget = subject["error_budget"]
+    force = subject.forces[number]
     budget = budget.sel(normal_force=force, method="nearest")
     sources = [str(source) for source in budget["source"].values]
-    why = chosen.values("closure", "interface_stiffness_reason").isel(normal_force=number)
-    missing = {"stiffness": str(why["interface_stiffness_reason"].item())}
+    why = subject.states("closure")["interface_stiffness_reason"].isel(normal_force=number)
+    missing = {"stiffness": str(why.item())}
     found = {}
     for name in map(str, budget["quantity"].values):
         one = budget.sel(quantity=name)
@@ -296,23 +281,23 @@ def quantities_at(chosen: Chosen, number: int) -> dict[str, Quantity]:
             meaning=str(one["meaning"].item()),
             unit=str(one["unit"].item()),
             absolute=bool(one["absolute"]),
-            value=finite(one["published"]),
-            errors={which: finite(one[total]) for which, total in TOTALS.items()},
-            sources={source: finite(one["error"].sel(source=source)) for source in sources},
+            value=float(one["published"]),
+            errors={which: float(one[total]) for which, total in TOTALS.items()},
+            sources={source: float(one["error"].sel(source=source)) for source in sources},
             reasons={source: str(one["reason"].sel(source=source).item()) for source in sources},
             missing=missing.get(name, ""),
         )
     return found
 
 
-def dilatancy_of(chosen: Chosen) -> Dilatancy:
+def dilatancy_of(subject: Subject) -> Dilatancy:
     """Level and slope of the rigid dilatancy over the second half of the offsets."""
-    joints = chosen.stage("joints")
-    if chosen.direction not in joints["direction"]:
+    joints = subject["joints"]
+    if subject.direction not in joints["direction"]:
         return Dilatancy("none")
-    along = joints.sel(direction=chosen.direction)
+    along = joints.sel(direction=subject.direction)
     kind = str(along["plateau_trend"].item())
-    level, slope = (finite(along[f"plateau_{name}"]) for name in ("level", "slope"))
+    level, slope = (float(along[f"plateau_{name}"]) for name in ("level", "slope"))
     return Dilatancy(kind or "none", level, slope)
 
 
@@ -358,7 +343,7 @@ def _of_specimen(one):
         "delta_g_estimator": one.estimator,
         "rms_slope": one.rms_slope,
         **_columns("k_ni_MPa_per_mm", one.k_ni),
-        "k_ni_reason": one.k_ni.why,
+        "k_ni_reason": why(one.k_ni),
         "k_ni_change_at_twice_the_spacing": one.doubled.k_ni,
         "stiffness_change_at_twice_the_spacing": one.doubled.stiffness,
         "closure_law": one.closure_law,

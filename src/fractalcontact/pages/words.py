@@ -17,25 +17,25 @@ MISSING = "–"
 _EVEN = 0.02
 
 
-def short(value: float | None, digits: int = 3) -> str:
+def short(value: float, digits: int = 3) -> str:
     """Some digits of a number, without zeros at its end; a dash where it is missing."""
     return _number(value, digits, False)
 
 
-def measured(value: float | None, digits: int = 3) -> str:
+def measured(value: float, digits: int = 3) -> str:
     """Some digits of a number, all of them: 2.20; a dash where it is missing."""
     return _number(value, digits, True)
 
 
 def _number(value, digits, zeros):
-    if value is None or not math.isfinite(value):
+    if not math.isfinite(value):
         return MISSING
     return plain(value + 0.0, digits, limits=_PLAIN, zeros=zeros).replace("-", "−")
 
 
-def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
+def with_unit(value: float, unit: str, digits: int = 3) -> str:
     """A number in the unit that suits it: 12.3 µm for 0.0123 mm."""
-    if value is None or not math.isfinite(value):
+    if not math.isfinite(value):
         return MISSING
     rounded = abs(float(f"{value:.{digits}g}"))
     for least, name, size in _SCALED.get(unit, ()):
@@ -45,17 +45,17 @@ def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
     return number if unit == "1" else f"{number} {unit.replace('mm2', 'mm²')}"
 
 
-def percent(fraction: float | None, digits: int = 2) -> str:
+def percent(fraction: float, digits: int = 2) -> str:
     """A fraction in per cent."""
-    if fraction is None or not math.isfinite(fraction):
+    if not math.isfinite(fraction):
         return MISSING
     return f"{short(100 * fraction, digits)} %"
 
 
-def interval(value: float | None, low: float | None, high: float | None) -> str:
+def interval(value: float, low: float, high: float) -> str:
     """A value and its error: "0.96 ± 0.94", or its ends in brackets where they lie unevenly."""
-    if value is None or low is None or high is None:
-        return f"{measured(value)}, error not known" if value is not None else MISSING
+    if not math.isfinite(high - low):
+        return f"{measured(value)}, error not known" if math.isfinite(value) else MISSING
     up, down = high - value, value - low
     if abs(up - down) <= _EVEN * (high - low):
         return f"{measured(value)} ± {measured((up + down) / 2, 2)}"

@@ -18,7 +18,7 @@ from ..core.labels import cf_attrs
 from ..core.window import cell_side, spacing_of
 from .face_gap import REGIONS, gap_statistics
 from .fractal_range import FractalRange, find_fractal_range
-from .quality_words import AXES, file_warnings, interval_words, statements
+from .quality_words import AXES, file_warnings, interval_words, overlap_words, statements
 from .scan_lines import ALTERNATION, alternations, scan_line_warnings
 from .spectra import STRIPS, profile_spectra, radial_spectrum
 
@@ -54,8 +54,9 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
         cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
         ("scan", "window"): where they overlap, and their gap. Attributes: ``warning``, what
-        reading the files and this found, in sentences, "" if all is well; what
-        :func:`roughness.quality_words.statements` says.
+        reading the files and this found, in sentences, "" if all is well; ``overlap``, a clause on
+        where the faces overlap, "" of one face; what :func:`roughness.quality_words.statements`
+        says.
 
     Notes
     -----
@@ -92,6 +93,7 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     result.attrs = {"ended_by": end.reason}
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
     result.attrs["warning"] = "; ".join(filter(None, warnings))
+    result.attrs["overlap"] = overlap_words(specimen, result)
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result.assign_attrs(statements(specimen, result))
 

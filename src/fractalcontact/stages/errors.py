@@ -3,12 +3,15 @@
 import xarray as xr
 
 from ..accuracy.error_budget import error_budget
+from ..core.labels import cf_attrs
 from ..core.settings import Solver, StateSettings
+from ..core.units import share
 from ..mechanics.loading import JointLoading
 from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread
 from ..mechanics.stated_errors import stated_errors
 from ..mechanics.states import with_pressure
+from ..study.configuration import ACCURACY
 
 
 def error_stages(
@@ -42,5 +45,15 @@ def error_stages(
     plan = solve_plan(closure, dilatancy, settings, solver, budget)
     return {
         "error_budget": with_pressure(budget, joint.area),
-        "choices": plan.merge(stated_errors(closure, domains, direction)),
+        "choices": plan.merge(stated_errors(closure, domains, direction)).assign(asked(solver)),
     }
+
+
+def asked(solver: Solver) -> dict[str, tuple]:
+    """Error of the closure that the study asks for, as ``xr.Dataset`` takes it.
+
+    All states, at full cost, ask nothing of the grid: the usual error stands for it.
+    """
+    asks = solver.accuracy["closure"] if solver.accuracy else share(ACCURACY["closure"], "closure")
+    words = cf_attrs("1", "error of the closure that the study asks for, a fraction")
+    return {"closure_accuracy": ((), asks, words)}

@@ -15,7 +15,7 @@ from ..domain.renormalisation import extrapolated_pressure
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..mechanics.contact_fields import contact_fields
-from ..mechanics.overlap import load_warning
+from ..mechanics.overlap import load_warning, node_marks
 from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
     chosen_offset,
@@ -68,9 +68,10 @@ def state_stages(
         ),
         seating_force=_seating_force(settings, area),
     )
-    warnings = (load_warning(curves, specimens, settings), full_contact_warning(curves))
+    reported = _reported(curves, settings, area)
+    warnings = (load_warning(curves, reported), full_contact_warning(curves))
     curves.attrs["warning"] = "; ".join(filter(None, warnings))
-    curves.update(_reported(curves, settings, area).variables())
+    curves.update(reported.variables())
     dilatancy = elastic_dilatancy(curves, joints)
     laws = area_laws(
         curves,
@@ -89,7 +90,9 @@ def state_stages(
         "dilatancy": dilatancy,
         "area": laws,
         "domains": domains,
-        "contact": contact_fields(fields, parts, joints, settings, area),
+        "contact": contact_fields(fields, parts, joints, settings, area).assign(
+            node_marks(specimens, joints)
+        ),
         "scaling": scaling.merge(extrapolated_pressure(scaling, float(np.sqrt(area)))),
         "domain_measures": measures_of_map_states(mapped, spacing, settings.box_range),
     }

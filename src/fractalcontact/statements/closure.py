@@ -22,12 +22,12 @@ _COMPLIANCE = "compliance"
 
 def compliance_rises_at_first(joint: Joint) -> Finding:
     """Compliance of the interface up to the correlation length, as a power of v."""
-    return trend(joint.offset, joint.compliance, joint.initial, _COMPLIANCE, rising=True)
+    return trend(joint.offsets, joint.compliance, joint.initial, _COMPLIANCE, rising=True)
 
 
 def curves_overlap(joint: Joint) -> Finding:
     """Spread of the compliance of the interface beyond the correlation length, at every load."""
-    v = joint.offset[joint.between]
+    v = joint.offsets[joint.between]
 
     def spread(force):
         return level(joint.compliance_under(force)[joint.between], _COMPLIANCE, v)
@@ -43,7 +43,7 @@ def compliance_rises_again(joint: Joint) -> Finding:
     """
     before = joint.between
     if not before.any() and joint.initial.any():
-        before = joint.offset == joint.offset[joint.initial].max()
+        before = joint.offsets == joint.offsets[joint.initial].max()
     return under_every_load(joint, lambda force: _rise(joint, force, before))
 
 
@@ -54,11 +54,11 @@ def _rise(joint, force, before):
     before, after = before & known, joint.unrelated & known
     if not after.any() or not before.any():
         return Finding(UNDETERMINED, no_offsets("both before and after the faces lose correlation"))
-    spread = joint.stages["closure"]["composite_spread"].sel(direction=joint.direction).values
+    spread = joint.along("closure")["composite_spread"].values
     change, of_spread = (
         values[after].mean() / values[before].mean() - 1 for values in (compliance, spread)
     )
-    ends = joint.offset[before].max(), joint.offset[after].min()
+    ends = joint.offsets[before].max(), joint.offsets[after].min()
     return Finding(
         HOLDS if change > NEARLY else FAILS,
         f"compliance {100 * change:+.0f} %",
@@ -74,14 +74,14 @@ def composite_dimension_rises(joint: Joint) -> Finding:
     dimension it then has at every v, and flat where h is far above v. A dimension fitted over a
     fixed range of lags falls as v passes through that range, whatever the joint.
     """
-    joints = joint.stages["joints"]
+    joints = joint["joints"]
     dimension = joints["composite_dimension"].values
-    known = np.isfinite(dimension) & (joint.offset > 0)
+    known = np.isfinite(dimension) & (joint.offsets > 0)
     if not known.any():
         return Finding(
             ILL_POSED, "fixed by the range of lags fitted: flat above v, the face's below"
         )
-    v, fitted = joint.offset[known], dimension[known]
+    v, fitted = joint.offsets[known], dimension[known]
     low = float(joints["composite_fit_min"].min())
     high = float(joints["composite_fit_max"].max())
     return Finding(
@@ -103,7 +103,7 @@ def compliance_goes_with_dimension(joint: Joint) -> Finding:
 
 def larger_samples_close_more(joint: Joint) -> Finding:
     """Exponent of the compliance of the interface against the size of sub-windows."""
-    windows = joint.map_windows()
+    windows = joint.state("windows")
     exponent = Estimate.read(windows, "compliance_exponent")
     if not exponent.known:
         return Finding(UNDETERMINED, "fewer than two sizes of window with ten nodes in contact")
@@ -119,7 +119,7 @@ def larger_samples_close_more(joint: Joint) -> Finding:
 @of_the_area
 def area_is_linear(joint: Joint) -> Finding:
     """Exponent m of A_r ~ F^m at every offset, A_r corrected for the perimeter."""
-    law = joint.stages["area"].sel(direction=joint.direction)
+    law = joint.along("area")
     exponent = Estimate.read(law, "corrected_exponent")
     if not exponent.known.any():
         return Finding(UNDETERMINED, "no law of the area could be fitted")
@@ -140,20 +140,20 @@ def area_is_linear(joint: Joint) -> Finding:
 
 def area_falls(joint: Joint) -> Finding:
     """Contact area against offset, as a power of v."""
-    return trend(joint.offset, joint.area_fraction, joint.offset > 0, "A_r", rising=False)
+    return trend(joint.offsets, joint.area_fraction, joint.offsets > 0, "A_r", rising=False)
 
 
 def area_settles(joint: Joint) -> Finding:
     """Spread of the contact area beyond the correlation length."""
     beyond = joint.between | joint.unrelated
-    return level(joint.area_fraction[beyond], "A_r", joint.offset[beyond])
+    return level(joint.area_fraction[beyond], "A_r", joint.offsets[beyond])
 
 
 def refinement_changes_little(joint: Joint) -> Finding:
     """Change of the closure from twice the scan's spacing to the spacing itself."""
-    curves = joint.stages["closure"].sel(direction=joint.direction)
+    curves = joint.along("closure")
     curves = curves.sel(resolution=curves["resolution"].min())
-    change = np.abs(curves["closure_spacing_error"] / curves["closure"]).values
+    change = np.abs((curves["closure_spacing_error"] / curves["closure"]).values)
     change = change[np.isfinite(change)]
     if not change.size:
         return Finding(UNDETERMINED, "no state solved at two spacings")

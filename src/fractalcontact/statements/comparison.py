@@ -11,10 +11,10 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..core.estimate import Estimate, names_of, rows_of
+from ..core.estimate import Estimate, rows_of
 from ..core.intervals import t_quantile
+from ..core.reported import Reported
 from ..core.window import nominal_area
-from ..mechanics.states import chosen_offset
 
 #: What is compared, each with its 95 % interval: unit and long name; the first once a specimen,
 #: the others under every load.
@@ -62,14 +62,13 @@ def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Data
         solved; NaN where there is none. Attributes ``group``, ``label``, ``opposite``.
     """
     closure, surface = stages["closure"], stages["surface_dimension"]
-    direction = str(settings["contact_directions"][0])
-    offset = chosen_offset(settings["map_offset"], closure["offset"].values)
+    reported = Reported.read(closure)
     pressures = closure["normal_force"].values / nominal_area(stages["specimens"])
     found = {
         **Estimate.read(surface, "recommended_dimension").columns("delta_g"),
         **_stiffness(stages["error_budget"], pressures.size),
-        **_of_domains(stages["domains"], direction, offset),
-        **_dilatancy(stages["dilatancy"], direction, pressures.size),
+        **Estimate.read(reported.states(stages["domains"]), "delta_sigma").columns("delta_sigma"),
+        **_dilatancy(stages["dilatancy"], reported.direction, pressures.size),
         **_size_exponent(stages["size_test"], pressures),
     }
     table = _table() | {"nominal_pressure": ("load", "MPa", "nominal pressure sigma_0 = F/A_0")}
@@ -90,13 +89,6 @@ def _stiffness(budget, n_loads):
     if one.sizes["normal_force"] != n_loads:
         raise ValueError("the error budget has other loads than the closure")
     return _around("stiffness", one["published"].values, one["total"].values)
-
-
-def _of_domains(domains, direction, offset):
-    names = names_of("delta_sigma")
-    found = domains[names].sel(direction=direction).sel(offset=offset, method="nearest")
-    found = found.sel(resolution=found["resolution"].min())
-    return {name: found[name].values for name in names}
 
 
 def _dilatancy(dilatancy, direction, n_loads):
@@ -134,7 +126,8 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     -------
     xr.Dataset
         The variables of the rows over (specimen,) and (specimen, load), NaN behind the last load of
-        specimens that have fewer; ``group`` and ``label`` of each. And of each quantity, over
+        specimens that have fewer; ``compared_pressure`` from :func:`compared_pressures`, ``group``
+        and ``label`` of each. And of each quantity, over
         (group_name,) and, under every nominal pressure that is a load of any (those that
         differ by up to 5 % are one), (group_name, pressure): ``NAME_mean`` with its 95 % interval
         (Student's t over specimens: NaN of one alone), ``NAME_deviation`` between specimens,
@@ -146,14 +139,20 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     groups = [str(rows[name].attrs["group"]) for name in names]
     table = _table(("specimen",)) | {
         "nominal_pressure": (("specimen", "load"), "MPa", "nominal pressure sigma_0 = F/A_0"),
+        "compared_pressure": (
+            ("specimen", "load"),
+            "MPa",
+            f"nominal pressure under which specimens are compared, one within {ALIKE:.0%}",
+        ),
         "group": ("specimen", "1", "group of the specimen"),
         "label": ("specimen", "1", "label of the specimen"),
     }
     values: dict = {
         name: np.array([_filled(rows[one][name].values, most) for one in names])
         for name in table
-        if name not in ("group", "label")
+        if name not in ("group", "label", "compared_pressure")
     }
+    values["compared_pressure"] = compared_pressures(values["nominal_pressure"])
     values["group"] = np.array(groups, dtype=object)
     values["label"] = np.array([str(rows[name].attrs["label"]) for name in names], dtype=object)
     side_by_side = labelled_dataset(table, values, {"specimen": names})
@@ -254,7 +253,7 @@ _STATISTICS = {
 
 def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
     groups = sorted(set(rows["group"].values))
-    rounded = compared_pressures(rows["nominal_pressure"].values)
+    rounded = rows["compared_pressure"].values
     known = np.unique(rounded[np.isfinite(rounded)])
     pressures = (
         known[np.concatenate([[True], np.diff(known) > 1e-9 * known[1:]])] if known.size else known

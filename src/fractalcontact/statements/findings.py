@@ -1,19 +1,16 @@
 """What judges a statement: the joint's stages, verdicts, and rules that several share."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property, wraps
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.limits import LOOSELY, NEARLY, RESOLVED_NODES
+from ..core.subject import Subject
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
-from ..core.window import nominal_area
-from ..mechanics.states import chosen_offset, forces_of
 
 #: Why a joint under a hardness may be asked nothing of its contact area.
 BY_CONSTRUCTION = "A_r = F/H by construction: all that touches yields"
@@ -30,77 +27,34 @@ class Finding(NamedTuple):
     note: str = ""
 
 
-@dataclass(frozen=True)
-class Joint:
-    """A joint's stages, and what several statements ask of them.
+class Joint(Subject):
+    """A joint, and what several statements ask of it.
 
-    Attributes
-    ----------
-    stages : dict of str to xr.Dataset
-        ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``, ``domains``,
-        ``scaling``, ``domain_measures``, ``size_test``.
-    settings : dict
+    It has the stages ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``,
+    ``domains``, ``scaling``, ``domain_measures`` and ``size_test``.
     """
 
-    stages: dict
-    settings: dict
-
-    @cached_property
-    def direction(self) -> str:
-        """The direction judged."""
-        return str(self.stages["joints"]["contact_direction"].values[0])
-
-    @cached_property
+    @property
     def force(self) -> float:
-        """Load of the contact maps, N."""
-        specimen = self.stages["specimens"]
-        return float(forces_of([self.settings["map_load"]], nominal_area(specimen))[0])
+        """Reference load, N."""
+        return self.reported.force
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """Offsets solved, mm."""
+        return self["closure"]["offset"].values
 
     def at_load(self, stage: str, name: str, force: float | None = None) -> np.ndarray:
         """A variable over offsets, NaN below ten nodes in contact.
 
-        At the load of the maps, or another one, N.
+        At the reference load, or another one, N.
         """
+        at = self.force if force is None else force
         nodes, values = (
-            self._over_offsets(*of, force) for of in (("closure", "nodes"), (stage, name))
+            self.reported.curves(self[of][[what]])[what].sel(normal_force=at, method="nearest")
+            for of, what in (("closure", "nodes"), (stage, name))
         )
         return np.where(nodes >= RESOLVED_NODES, values, np.nan)
-
-    def _over_offsets(self, stage, name, force):
-        values = self.stages[stage][name].sel(direction=self.direction)
-        if "resolution" in values.dims:
-            values = values.sel(resolution=values["resolution"].min())
-        if "normal_force" in values.dims:
-            force = self.force if force is None else force
-            values = values.sel(normal_force=force, method="nearest")
-        return values.values
-
-    def map_states(self, stage: str) -> xr.Dataset:
-        """A stage at the offset of the contact maps (and the finest resolution), over loads."""
-        states = self.stages[stage].sel(direction=self.direction)
-        states = states.sel(offset=self.map_offset, method="nearest")
-        if "resolution" in states["delta_sigma"].dims:
-            states = states.sel(resolution=states["resolution"].min())
-        return states
-
-    def map_state(self, stage: str) -> xr.Dataset:
-        """A stage at the offset and load of the contact maps."""
-        return self.map_states(stage).sel(normal_force=self.force, method="nearest")
-
-    def map_windows(self) -> xr.Dataset:
-        """Parts of the window at the offset and nearest to the load of the contact maps."""
-        windows = self.stages["windows"].sel(offset=self.map_offset, method="nearest")
-        return windows.sel(normal_force=self.force, method="nearest")
-
-    @cached_property
-    def map_offset(self) -> float:
-        """Offset of the contact maps, mm."""
-        return chosen_offset(self.settings["map_offset"], self.offset)
-
-    @cached_property
-    def offset(self) -> np.ndarray:
-        """Offsets solved, mm."""
-        return self.stages["closure"]["offset"].values
 
     @cached_property
     def compliance(self) -> np.ndarray:
@@ -115,7 +69,7 @@ class Joint:
     def area_fraction(self) -> np.ndarray:
         """A_r/A_0 over offsets, corrected for the perimeter."""
         area = self.at_load("closure", "area_corrected")
-        return area / nominal_area(self.stages["specimens"])
+        return area / self.area
 
     @cached_property
     def yields_everywhere(self) -> bool:
@@ -124,7 +78,7 @@ class Joint:
         In every state at the scan's own resolution, and in most of the coarser ones.
         """
         hardness = self.settings["material"]["hardness"]
-        curves = self.stages["closure"]
+        curves = self["closure"]
         if not np.isfinite(hardness):
             return False
         share = curves["area_corrected"] * hardness / curves["normal_force"]
@@ -134,25 +88,25 @@ class Joint:
 
     def of_direction(self, name: str) -> np.ndarray:
         """A variable of the joint in the direction judged."""
-        return self.stages["joints"][name].sel(direction=self.direction).values
+        return self.along("joints")[name].values
 
     @cached_property
     def initial(self) -> np.ndarray:
         """Offsets of the first stage of sliding: up to the correlation length, if it is reached."""
         length = self.of_direction("correlation_length")
-        return (self.offset > 0) & (np.isnan(length) | (self.offset <= length))
+        return (self.offsets > 0) & (np.isnan(length) | (self.offsets <= length))
 
     @cached_property
     def between(self) -> np.ndarray:
         """Offsets beyond the correlation length at which the faces still correlate."""
         unrelated = self.of_direction("uncorrelated_offset")
-        beyond = self.offset > self.of_direction("correlation_length")
-        return beyond & (~np.isfinite(unrelated) | (self.offset < unrelated))
+        beyond = self.offsets > self.of_direction("correlation_length")
+        return beyond & (~np.isfinite(unrelated) | (self.offsets < unrelated))
 
     @cached_property
     def unrelated(self) -> np.ndarray:
         """Offsets at which the faces no longer correlate."""
-        return self.offset >= self.of_direction("uncorrelated_offset")
+        return self.offsets >= self.of_direction("uncorrelated_offset")
 
 
 def of_the_area(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]:
@@ -184,7 +138,7 @@ def trend(
 
 
 def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
-    """Finding of a rule at the load nearest to the maps' that decides, its verdict that of all.
+    """Finding of a rule at the load nearest to the reference that decides, its verdict that of all.
 
     What a rule with a fixed limit finds at one load may be otherwise at the next.
 
@@ -194,13 +148,13 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
     rule : callable
         From a load, N, to its finding.
     """
-    found = {force: rule(force) for force in joint.stages["closure"]["normal_force"].values}
+    found = {force: rule(force) for force in joint.forces}
     decided = {force: one for force, one in found.items() if one.verdict != UNDETERMINED}
     if not decided:
         return rule(joint.force)
     force = min(decided, key=lambda one: abs(np.log(one / joint.force)))
     verdicts = [one.verdict for one in decided.values()]
-    pressure = force / nominal_area(joint.stages["specimens"])
+    pressure = force / joint.area
     share_of = f"so at {verdicts.count(HOLDS)} of {len(decided)} loads"
     return decided[force]._replace(
         verdict=verdicts[0] if len(set(verdicts)) == 1 else PARTLY,

@@ -30,9 +30,9 @@ _NULLS = {"random": "random nodes", "cut": "bearing-area cut"}
 
 def closure_is_hyperbolic(joint: Joint) -> Finding:
     """The closure law that fits better, hyperbola or semi-logarithmic, at every offset."""
-    curves = joint.stages["closure"].sel(direction=joint.direction)
+    curves = joint.along("closure")
     curves = curves.sel(resolution=curves["resolution"].min())
-    slid = joint.offset > 0
+    slid = joint.offsets > 0
     laws = curves["closure_law"].values.astype(str)[slid]
     decided = ~np.isin(laws, ("", UNDECIDED))
     if not decided.any():
@@ -55,7 +55,7 @@ def domains_are_fractal(joint: Joint) -> Finding:
     A fractal set differs from random nodes, and has one slope over a decade of box sides or more.
     One that differs from the bearing-area cut as well is no mere cut at one height.
     """
-    state = joint.map_state("domains")
+    state = joint.state("domains")
     verdict = str(state["null_verdict"].item())
     if verdict == departure.UNDETERMINED:
         return Finding(UNDETERMINED, str(state["null_reason"].item()))
@@ -90,7 +90,7 @@ def domains_differ_from_cuts(joint: Joint) -> Finding:
     Not coincident where local slopes of the box counts differ; not related where the interval of
     the difference of the box-counting or correlation dimension lies beyond a quarter.
     """
-    states = joint.map_states("domains")
+    states = joint.states("domains")
     p = states["local_slope_cut_p"].values
     compared = np.isfinite(p)
     if not compared.any():
@@ -114,7 +114,7 @@ def domains_are_isotropic(joint: Joint) -> Finding:
 
     What scales alike along both axes has the same probability along both.
     """
-    measures = joint.stages["domain_measures"].sel(normal_force=joint.force, method="nearest")
+    measures = joint["domain_measures"].sel(normal_force=joint.force, method="nearest")
     along, across = (
         Estimate.read(measures, f"contact_at_lag_{way}") for way in ("along", "across")
     )

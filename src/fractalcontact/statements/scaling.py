@@ -30,7 +30,7 @@ ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 @of_the_area
 def area_is_lacunar(joint: Joint) -> Finding:
     """Exponent of A_r over the resolutions, at the load of the maps."""
-    state = joint.map_state("scaling")
+    state = joint.state("scaling")
     delta = Estimate.read(state, "delta_sigma")
     if not delta.known:
         return Finding(UNDETERMINED, f"{int(state['n'])} of {FEWEST_POINTS} resolutions needed")
@@ -50,13 +50,13 @@ def boxes_follow_one_law(joint: Joint) -> Finding:
 
     They show the curvature of the counts; how well one slope is known says nothing of it.
     """
-    return one_slope(joint.map_state("domains"))
+    return one_slope(joint.state("domains"))
 
 
 @of_the_area
 def estimates_agree(joint: Joint) -> Finding:
     """Whether A_r(s) and box counting have one Delta_sigma, over all loads."""
-    states = joint.map_states("scaling")
+    states = joint.states("scaling")
     width = Estimate.read(states, "difference").width
     known = width <= WIDEST
     if not known.any():
@@ -77,7 +77,7 @@ def estimates_agree(joint: Joint) -> Finding:
 @of_the_area
 def dimension_rises_by_area(joint: Joint) -> Finding:
     """Delta_sigma from A_r(s) against the logarithm of F, where it is determined."""
-    line = _over_load(joint.map_states("scaling")).line
+    line = _over_load(joint.states("scaling")).line
     if not line.slope.known:
         return Finding(UNDETERMINED, _too_few(line))
     return Finding(by_sign(line.slope, rising=True), _by_decade(line), f"{line.n} loads")
@@ -89,7 +89,7 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
     More nodes fill more boxes wherever they lie: a rise that random nodes have too is no change of
     geometry.
     """
-    states = joint.map_states("domains")
+    states = joint.states("domains")
     trend = _over_load(states, states["delta_sigma_random"].values)
     if not trend.line.slope.known:
         return Finding(UNDETERMINED, _too_few(trend.line))
@@ -107,10 +107,8 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
 
 def dimension_spans_all(joint: Joint) -> Finding:
     """Whether Delta_sigma by box counts begins near 0 and ends near 2, by their intervals."""
-    states = joint.map_states("domains")
-    nodes = joint.stages["closure"]["nodes"].sel(direction=joint.direction)
-    nodes = nodes.sel(offset=joint.map_offset, method="nearest")
-    nodes = nodes.sel(resolution=nodes["resolution"].min()).values
+    states = joint.states("domains")
+    nodes = joint.states("closure")["nodes"].values
     delta = Estimate.read(states, "delta_sigma")
     known = np.flatnonzero(delta.known)
     if not known.size:
@@ -141,7 +139,7 @@ def size_effect_follows(joint: Joint) -> Finding:
 
     They are of both forms together: A_r/A_0 over b at equal sigma_0 first, then eq. 6's own form.
     """
-    test = joint.stages["size_test"].sel(estimator=list(ESTIMATES))
+    test = joint["size_test"].sel(estimator=list(ESTIMATES))
     test = test.isel(normal_force=~test["beyond_study"].values.astype(bool))
     exponents = Estimate.read(test, "area_exponent")
     known = np.isfinite(exponents.width)
@@ -189,7 +187,7 @@ def _why_open(reasons):
 
 def larger_domains_are_less_dense(joint: Joint) -> Finding:
     """Exponent of corrected A_r/A_0 against window size at one nominal pressure."""
-    windows = joint.map_windows()
+    windows = joint.state("windows")
     exponent = Estimate.read(windows, "area_exponent")
     if not exponent.known:
         return Finding(UNDETERMINED, "fewer than two sizes of window with 30 nodes in contact")
@@ -208,11 +206,11 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     Where a sub-window's angle is held at its bound its strength is no result, and the size has no
     strength: what is left of the sizes decides, if three are.
     """
-    windows = joint.stages["windows"]
+    windows = joint["windows"]
     order = ("share", "normal_force")
     exponent = Estimate.read(windows.transpose(*order, ...), "similar_strength_exponent")
     value, low, high = exponent.ends
-    sizes = np.isfinite(windows["similar_strength"]).sum("part").transpose(*order).values
+    sizes = windows["similar_strength"].notnull().sum("part").transpose(*order).values
     held = (windows["similar_held"] > 0).any("part").transpose(*order).values
     cases = sizes >= FEWEST_POINTS
     if not cases.any():

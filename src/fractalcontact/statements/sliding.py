@@ -63,7 +63,7 @@ class Plateaus(NamedTuple):
 
 def dilatancy_flattens(joint: Joint) -> Finding:
     """Change of the rigid dilatancy over the second half of the offsets, in every direction."""
-    plateaus = Plateaus.of(joint.stages["joints"])
+    plateaus = Plateaus.of(joint["joints"])
     if not plateaus.change.size:
         return Finding(UNDETERMINED, no_offsets("three rigid"))
     return plateaus.finding(share(int(plateaus.flat.sum()), plateaus.flat.size))
@@ -71,7 +71,7 @@ def dilatancy_flattens(joint: Joint) -> Finding:
 
 def dilatancy_flattens_in_two(joint: Joint) -> Finding:
     """Whether two of four directions have a plateau and the others rise on."""
-    plateaus = Plateaus.of(joint.stages["joints"])
+    plateaus = Plateaus.of(joint["joints"])
     if plateaus.change.size < DIRECTIONS:
         return Finding(UNDETERMINED, f"{DIRECTIONS} directions needed")
     flat, rising = int(plateaus.flat.sum()), int(plateaus.rising.sum())
@@ -82,7 +82,7 @@ def dilatancy_flattens_in_two(joint: Joint) -> Finding:
 
 def dilatancy_is_anisotropic(joint: Joint) -> Finding:
     """Difference of the slopes of the rigid dilatancy among directions, second half of v."""
-    change = Plateaus.of(joint.stages["joints"]).change
+    change = Plateaus.of(joint["joints"]).change
     if change.size < 2:
         return Finding(UNDETERMINED, "fewer than two directions")
     spread = np.ptp(change)
@@ -97,15 +97,15 @@ def dilatancy_is_anisotropic(joint: Joint) -> Finding:
 def domains_cluster(joint: Joint) -> Finding:
     """Morisita's index of the contact domains against offset, as a power of v."""
     index = joint.at_load("domains", "morisita")
-    return trend(joint.offset, index, joint.offset > 0, "Morisita's index", rising=True)
+    return trend(joint.offsets, index, joint.offsets > 0, "Morisita's index", rising=True)
 
 
 def no_correlation_is_left(joint: Joint) -> Finding:
     """Correlation of the faces at the largest offset solved."""
-    limit = float(joint.stages["joints"]["correlation_limit"])
-    v = joint.stages["joints"]["rigid_offset"].values
-    correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offset[-1]))]
-    numbers, where = f"correlation {correlation:+.2f}", f"at v = {joint.offset[-1]:.3g} mm"
+    limit = float(joint["joints"]["correlation_limit"])
+    v = joint["joints"]["rigid_offset"].values
+    correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offsets[-1]))]
+    numbers, where = f"correlation {correlation:+.2f}", f"at v = {joint.offsets[-1]:.3g} mm"
     if not np.isfinite(limit):
         too_small = "the window is too small to separate it from chance"
         return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")

@@ -46,8 +46,8 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     flat = [joint for joint in joints.values() if joint.settings["opposite"] == "flat"]
     if len(flat) < 3:
         return Finding(UNDETERMINED, f"{len(flat)} surfaces against a plane, three needed")
-    dimension = np.array([best_dimension(j.stages["surface_dimension"]).value for j in flat])
-    effect = np.array([2 - float(j.map_state("scaling")["delta_sigma"]) for j in flat])
+    dimension = np.array([best_dimension(j["surface_dimension"]).value for j in flat])
+    effect = np.array([2 - float(j.state("scaling")["delta_sigma"]) for j in flat])
     order = np.argsort(dimension)
     line = fit_line(dimension, effect)
     if not line.slope.known:
@@ -81,8 +81,8 @@ def _by_material(joints, values_of):
         if joint.settings["opposite"] == "flat" or material in lines or not material:
             continue
         values = values_of(joint)
-        chosen = (joint.offset > 0) & (values > 0)
-        line = fit_line(np.log(joint.offset[chosen]), np.log(values[chosen]))
+        chosen = (joint.offsets > 0) & (values > 0)
+        line = fit_line(np.log(joint.offsets[chosen]), np.log(values[chosen]))
         if line.slope.known:
             lines[material] = line
     return lines

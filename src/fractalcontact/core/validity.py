@@ -1,0 +1,83 @@
+"""A verdict on the elastic model, as the stage ``elastic_model`` states it."""
+
+from typing import NamedTuple
+
+import xarray as xr
+
+from .verdicts import HARDNESS, IN_PART, USUAL
+
+
+class Limits(NamedTuple):
+    """Pressures that bound the elastic model of a material, and what they follow from.
+
+    Attributes
+    ----------
+    criterion : str
+        :data:`HARDNESS`, :data:`STRENGTH` or, where neither is stated, :data:`USUAL`.
+    strength_low, strength_high : float
+        Ends of that strength, MPa; one value where it is stated.
+    good_to, poor_from : float
+        Real mean pressures up to which the model is good, and from which it is poor, MPa.
+    """
+
+    criterion: str
+    strength_low: float
+    strength_high: float
+    good_to: float
+    poor_from: float
+
+    @property
+    def words(self) -> str:
+        """Criterion and its strength: "joint wall strength (80 MPa)"."""
+        if self.criterion != USUAL:
+            return f"{self.criterion} ({pressure_words(self.strength_low)})"
+        ends = f"{self.strength_low:.3g} to {self.strength_high:.3g}"
+        return f"{USUAL}, none being stated (E/1000 to E/200: {ends} MPa)"
+
+
+class Validity(NamedTuple):
+    """A verdict on the elastic model, and what decides it.
+
+    Attributes
+    ----------
+    verdict : str
+        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_ASKED`.
+    pressure : float
+        Real mean pressure that is judged, MPa; NaN where there is none.
+    reason : str
+        One line on pressure and slope.
+    limits : Limits
+    """
+
+    verdict: str
+    pressure: float
+    reason: str
+    limits: Limits
+
+    @classmethod
+    def of(cls, state: xr.Dataset) -> "Validity":
+        """The verdict on one state of the stage ``elastic_model``."""
+        limits = Limits(*(state[name].item() for name in Limits._fields))
+        verdict, pressure, reason = (state[name].item() for name in cls._fields[:-1])
+        return cls(verdict, pressure, reason, limits)
+
+    @property
+    def capped(self) -> bool:
+        """Whether a stated hardness caps the pressure, which then is no test of the model."""
+        return self.limits.criterion == HARDNESS
+
+    @property
+    def stated(self) -> bool:
+        """Whether a strength or a hardness was stated, and judges the pressure."""
+        return self.limits.criterion != USUAL
+
+    @property
+    def sentence(self) -> str:
+        """Reason and verdict, for a caption."""
+        verdict = "good in part" if self.verdict == IN_PART else self.verdict
+        return f"{self.reason}: elastic model {verdict}."
+
+
+def pressure_words(pressure: float) -> str:
+    """A pressure in MPa, so that it can be compared with the strength beside it."""
+    return f"{float(f'{pressure:.3g}'):g} MPa"
