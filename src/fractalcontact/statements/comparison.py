@@ -180,7 +180,7 @@ def with_common_pressure(comparison: xr.Dataset) -> xr.Dataset:
     common = float(pressures[np.argmax(values)]) if len(pressures) else np.nan
     words = {"units": "MPa", "long_name": "nominal pressure under which most specimens are loaded"}
     result = comparison.assign(common_pressure=((), common, words))
-    compared = compared_pressures(comparison["nominal_pressure"].values)
+    compared = comparison["compared_pressure"].transpose("specimen", "load").values
     for name, (unit, long_name) in UNDER_LOAD.items():
         estimate = Estimate.read(comparison.transpose("specimen", "load", ...), name)
         under = estimate.mapped(lambda ends: _at(np.array([common]), compared, ends)[:, 0])
