@@ -319,6 +319,6 @@ def at_twice(values: xr.DataArray) -> xr.DataArray:
     values : xr.DataArray
         Over ``resolution`` among others.
     """
-    resolutions = values["resolution"].values
-    twice = values.reindex(resolution=2 * resolutions).assign_coords(resolution=resolutions)
+    resolutions = values["resolution"]
+    twice = values.reindex(resolution=2 * resolutions.values).assign_coords(resolution=resolutions)
     return (twice / values - 1).transpose(*values.dims)
