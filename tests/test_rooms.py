@@ -80,32 +80,6 @@ def test_a_room_imports_nothing_but_what_is_asked_of_it(room):
 READERS = ("figures", "pages")
 TABLES = {("study", name) for name in ("atlas", "figure_list", "stages")}
 LABORATORY = ("accuracy", "experiments", "methods")
-#: What is left of other imports, by module: an entry goes when its import does, and none is added.
-LEFT = {
-    "figures.campaign.comparison": {"statements.comparison"},
-    "figures.campaign.comparison_loads": {"statements.comparison"},
-    "figures.experiments.area_slope": {"mechanics.theory"},
-    "figures.experiments.plateau": {"mechanics.plateau"},
-    "figures.experiments.resolution_law": {"mechanics.theory"},
-    "figures.joint._quality_panels": {"roughness.quality_words"},
-    "figures.joint.area_theories": {"mechanics.states"},
-    "figures.joint.quality": {"roughness.quality_words"},
-    "figures.joint.stated_errors": {"accuracy.refinement"},
-    "figures.joint.window_size": {"mechanics.states"},
-    "figures.kit.domains": {"domain.renormalisation", "mechanics.states"},
-    "figures.kit.drawing": {"mechanics.states"},
-    "figures.kit.measured": {"domain.map_series", "domain.pressure_trend"},
-    "figures.paper._size_effect": {"domain.renormalisation"},
-    "figures.paper._stiffness": {"mechanics.states"},
-    "figures.paper.fig02_relief": {"roughness.recommended"},
-    "figures.paper.fig03_composite": {"mechanics.joint"},
-    "figures.paper.fig08_prefractals": {"domain.renormalisation"},
-    "figures.paper.fig09_box_counting": {"domain.count_law"},
-    "figures.paper.fig10_scaling": {"domain.renormalisation"},
-    "pages.packed_states": {"domain.count_law"},
-    "pages.result_page": {"domain.map_series"},
-    "pages.summary": {"domain.map_series"},
-}
 
 
 def beyond_reading(module, others):
@@ -122,4 +96,4 @@ def test_figures_and_pages_import_only_what_reads_an_atlas():
         for module, others in MODULES.items()
         if module[0] in READERS
     }
-    assert {name: others for name, others in found.items() if others} == LEFT
+    assert {name: others for name, others in found.items() if others} == {}

@@ -8,10 +8,11 @@ import pytest
 import xarray as xr
 from cases import representative
 
+from fractalcontact.core.subject import Subject
 from fractalcontact.experiments.area_slope import area_slope
 from fractalcontact.figures.experiments import area_slope as slope_figure
 from fractalcontact.figures.joint import area_theories
-from fractalcontact.figures.kit.drawing import print_style, save, settings_of
+from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.mechanics.area import (
     FULL_CONTACT,
     add_area_offset,
@@ -38,8 +39,8 @@ def with_area(atlas):
         specimen, joint, curves = (
             atlas[f"{stage}/{name}"].to_dataset() for stage in ("specimens", "joints", "closure")
         )
-        e_star = settings_of(atlas, name)["material"]["e_star"]
-        offset = settings_of(atlas, name)["map_offset"]
+        e_star = Subject.of(atlas, name).settings["material"]["e_star"]
+        offset = Subject.of(atlas, name).settings["map_offset"]
         laws = area_laws(curves, joint_statistics(specimen, joint), e_star, 2.2, offset)
         whole[f"area/{name}"] = xr.DataTree(laws)
     whole["area_slope/surfaces"] = xr.DataTree(area_slope(RECIPE))
@@ -78,7 +79,7 @@ def test_labels_table_and_caption(with_area, name):
     drawing = drawn(with_area, name)
     drawing.figure.draw_without_rendering()
     axes_labels_have_units(drawing.figure)
-    assert settings_of(with_area, name)["label"] in drawing.figure.get_suptitle()
+    assert Subject.of(with_area, name).settings["label"] in drawing.figure.get_suptitle()
     assert "Fig. 5" in drawing.caption
     assert "nan" not in drawing.caption
     assert 0 < len(drawing.data) <= 20_000

@@ -98,7 +98,7 @@ def judged_anew(atlas, **material):
 
 def test_prefractals_balance_the_force(atlas):
     table = draw(atlas, "fig08_prefractals", "sliding").data
-    settings = common.settings_of(atlas, "sliding")
+    settings = Subject.of(atlas, "sliding").settings
     force = 75 * 4.8**2  # N: the study names no load for the maps, so its largest
     assert table["resolution"].tolist() == settings["resolutions"]
     np.testing.assert_allclose(table["sigma_n_MPa"] * table["area_corrected_mm2"], force)
@@ -236,7 +236,7 @@ def test_axes_and_captions_say_what_is_drawn(atlas, figure, specimen):
         assert axes.get_xlabel().endswith(UNITS)
         shares_y = len(axes.get_shared_y_axes().get_siblings(axes)) > 1
         assert axes.get_ylabel().endswith(UNITS) or shares_y
-    label = common.settings_of(atlas, specimen)["label"]
+    label = Subject.of(atlas, specimen).settings["label"]
     paper_number = int(figure[3:5])
     assert drawing.caption.startswith(f"After Fig. {paper_number} of ")
     assert label in drawing.figure.get_suptitle()

@@ -7,9 +7,10 @@ import pytest
 import xarray as xr
 from cases import representative
 
+from fractalcontact.core.subject import Subject
 from fractalcontact.figures.experiments import dimension_difference, dimension_test
 from fractalcontact.figures.joint import _size_test, size_prediction, size_slopes, size_test
-from fractalcontact.figures.kit.drawing import print_style, save, settings_of
+from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.figures.paper import fig11_slope_angle
 from fractalcontact.size_effect.strength_laws import slope_angle
 
@@ -58,7 +59,7 @@ def test_direct_test_labels_and_caption(atlas, name):
         drawing = drawn(module, atlas, name)
         drawing.figure.draw_without_rendering()
         axes_labels_have_units(drawing.figure)
-        assert settings_of(atlas, name)["label"] in drawing.figure.get_suptitle()
+        assert Subject.of(atlas, name).settings["label"] in drawing.figure.get_suptitle()
         assert "nan" not in drawing.caption
 
 

@@ -4,6 +4,7 @@ import base64
 import json
 import re
 import zlib
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -56,7 +57,8 @@ def atlas_file(tmp_path_factory):
             parts[stage][name] = dataset
     path = tmp_path_factory.mktemp("tiny") / "atlas.nc"
     parts["specimens"]["pair"].attrs["label"] = HOSTILE
-    write_atlas(parts, path, study="tiny", configuration={"settings": settings})
+    records = {name: asdict(stated) for name, stated in settings.items()}
+    write_atlas(parts, path, study="tiny", configuration={"settings": records})
     return path
 
 

@@ -11,6 +11,4 @@ def test_a_study_that_asks_for_all_states_is_compared_with_the_usual_error():
         return value
 
     assert error({"accuracy": {"closure": "5 %"}}) == 0.05
-    assert (
-        error({"accuracy": "full"}) == error({}) == solver_settings({}, "")["accuracy"]["closure"]
-    )
+    assert error({"accuracy": "full"}) == error({}) == solver_settings({}, "").accuracy["closure"]

@@ -30,6 +30,7 @@ MADE_OF_SPECIMEN = [
 ABSOLUTE = {
     *("step", "z2", "jrc", "jrc_used", "jrc_note", "barton_roughness", "barton_strength"),
     *("scaled_roughness", "scaled_wall_strength", "barton_scaled_strength", "line_level"),
+    *("barton_slope_angle", "peak_over_barton"),
     *("unit_area", "unit_area_low", "unit_area_high", "value"),
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
 }

@@ -46,7 +46,11 @@ def _grown(one, dataset):
         stated = dataset[_STATED_BY[units]]
         scale = stated.copy(data=[scale_of(unit) for unit in stated.values])
     elif fractal := re.fullmatch(_FRACTAL, units):
-        dimension = -dataset["delta_sigma"] if fractal[2] else dataset["delta_sigma"]
+        dimension = dataset["delta_sigma"]
+        if "estimator" in one.dims and "estimator" not in dimension.dims:
+            by = [dataset[f"delta_sigma_{name}"] for name in one["estimator"].values]
+            dimension = xr.concat(by, one["estimator"])
+        dimension = -dimension if fractal[2] else dimension
         scale = scale_of(fractal[1] or "1") * LENGTH**dimension
     else:
         scale = scale_of(units)

@@ -12,9 +12,9 @@ from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, Estimate
 from ..core.measured_maps import map_table
 from ..core.subject import Subject
+from ..core.validity import Validity
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import spacing_of, window_sides
-from ..mechanics.model_validity import Validity
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of

@@ -8,8 +8,9 @@ from xarray import DataTree
 
 from ...core.claims import claims_of
 from ...core.labels import printable
+from ...core.subject import configuration_of
 from ..joint.statements import DATA, SIGNS
-from ..kit.drawing import WIDTH, Drawing, group, settings_of
+from ..kit.drawing import WIDTH, Drawing, group
 from ..kit.line_breaks import in_lines, width_of
 from ..kit.tables import LINE_HEIGHT, draw_texts, wrap_rows
 from ..kit.words import PAPER
@@ -109,7 +110,10 @@ def _heads(atlas, names):
     """Labels of the specimens in lines, as many as a column is wide."""
     width = (LAST - FIRST) * WIDTH / len(names)
     most = max(1, min(LABEL_LINES, int(width / LABEL_LINE)))
-    return {name: _head(settings_of(atlas, name)["label"] or name, most) for name in names}
+    return {
+        name: _head(configuration_of(atlas)["settings"][name]["label"] or name, most)
+        for name in names
+    }
 
 
 def _head(label, most):

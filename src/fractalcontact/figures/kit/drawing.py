@@ -2,7 +2,6 @@
 
 import contextlib
 import gc
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,8 +27,6 @@ from xarray import DataTree
 from ...core.atomic import atomic_write
 from ...core.labels import printable
 from ...core.tables import write_table
-from ...core.window import nominal_area
-from ...mechanics.states import forces_of
 from .caption import Caption
 from .layout import lay_out
 from .line_breaks import in_lines
@@ -150,32 +147,9 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
     write_table(folder / f"{name}.csv", drawing.data)
 
 
-def settings_of(atlas: DataTree, specimen: str) -> dict:
-    """Settings of a specimen as the study stated them, numbers in mm, N and MPa."""
-    return json.loads(atlas.attrs["configuration"])["settings"][specimen]
-
-
 def group(atlas: DataTree, stage: str, specimen: str) -> xr.Dataset:
     """Dataset of one stage of a specimen, in memory."""
     return atlas[f"{stage}/{specimen}"].to_dataset().load()
-
-
-def finest_curves(atlas: DataTree, specimen: str) -> xr.Dataset:
-    """Closure curves in the first contact direction, at the finest resolution."""
-    closure = group(atlas, "closure", specimen)
-    direction = settings_of(atlas, specimen)["contact_directions"][0]
-    return closure.sel(direction=direction, resolution=closure["resolution"].min())
-
-
-def nearest_load(loads: np.ndarray, wanted: tuple, specimen: xr.Dataset) -> int:
-    """Index of the force in N nearest to a load of the settings, (value, kind)."""
-    (force,) = forces_of([wanted], nominal_area(specimen))
-    return int(np.argmin(np.abs(loads - force)))
-
-
-def dilatancy_loads(loads: np.ndarray, settings: dict, specimen: xr.Dataset) -> list[int]:
-    """Indices of the forces in N that a study's dilatancy is asked for, ascending."""
-    return sorted({nearest_load(loads, wanted, specimen) for wanted in settings["dilatancy_loads"]})
 
 
 def force_axis(axis: Axis, forces: ArrayLike) -> float:
