@@ -1,50 +1,10 @@
-"""Captions taken apart: sentences, headings, symbols."""
+"""Captions in their parts, and symbols as printed."""
 
 import pytest
 
 from fractalcontact.pages.captions import symbols, take_apart
-from fractalcontact.pages.sentences import without_opening
 
 LABEL = "Dr. Who's joint. 2.1 (A_r) <b>bold</b>"
-CAPTION = (
-    f"After Figs. 4 and 5 of Borri-Brunetto et al. (1999): {LABEL}, sliding towards West. "
-    "(a) Closure, eq. 6, h = 0.3 mm; (b) area. The paper's plateau: holds (2 of 4 directions "
-    "level; circular: the specimen was chosen for it). sigma_n reaches 18.2 GPa. "
-    "Delta_g is 2.23 [2.18, 2.33]."
-)
-
-
-def test_sentences_end_where_they_end():
-    """Neither at an abbreviation nor inside a label, whatever it holds."""
-    found = take_apart(CAPTION, LABEL)
-    assert found.text == [
-        f"After Figs. 4 and 5 of Borri-Brunetto et al. (1999): {LABEL}, sliding towards West.",
-        "(a) Closure, eq. 6, h = 0.3 mm; (b) area.",
-    ]
-    assert found.rest[1:] == ["sigma_n reaches 18.2 GPa.", "Delta_g is 2.23 [2.18, 2.33]."]
-
-
-def test_no_word_of_a_caption_is_lost():
-    found = take_apart(CAPTION, LABEL)
-    assert " ".join([*found.text, *found.rest]) == CAPTION
-
-
-def test_heading_has_no_brackets_of_numbers_and_stays_circular():
-    assert take_apart(CAPTION, LABEL).finding == "The paper's plateau: holds (circular)."
-    text = "After Fig. 2 of X (1999): a. Relief. Delta_g is 2.23 [2.18, 2.33] by A_r(s) (7 of 8)."
-    assert take_apart(text).finding == "Delta_g is 2.23 by A_r(s)."
-
-
-@pytest.mark.parametrize("joined", [True, False])
-def test_warnings_that_the_page_states_are_left_out(joined):
-    warnings = ["noise. At 2 mm", "load on spikes"]
-    said = [f"WARNING: {'; '.join(warnings)}."] if joined else [f"WARNING: {w}." for w in warnings]
-    assert take_apart(" ".join([CAPTION, *said]), LABEL, warnings) == take_apart(CAPTION, LABEL)
-
-
-def test_a_table_is_headed_by_its_count():
-    found = take_apart("After the statements of X (1999): a joint. Of 27 statements 12 hold. Ours.")
-    assert found.finding == "Of 27 statements 12 hold."
 
 
 def test_a_caption_in_parts_is_read_as_it_stands():
@@ -55,7 +15,7 @@ def test_a_caption_in_parts_is_read_as_it_stands():
         "One. Two.",
         "End.",
     )
-    parts = take_apart("\n".join([heading, "", shown, *found]) + "\n", LABEL)
+    parts = take_apart("\n".join([heading, "", shown, *found]) + "\n")
     assert (parts.finding, parts.text, parts.rest) == (heading, [shown], found)
     assert take_apart(f"\n\n{shown}\n").finding == ""
 
@@ -63,8 +23,9 @@ def test_a_caption_in_parts_is_read_as_it_stands():
 def test_nothing_found_is_no_heading():
     assert take_apart("Supplementary figure. Curves of a joint.").finding == ""
     assert take_apart("").text == []
-    assert without_opening("Supplementary figure: a joint.") == "A joint."
-    assert without_opening("w_int ~ b^e") == "w_int ~ b^e"
+    assert take_apart("Not drawn: a figure, because of an error.").text == [
+        "Not drawn: a figure, because of an error."
+    ]
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,9 @@
 """Captions of figures on the pages: their parts, and symbols as printed."""
 
 import re
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from markupsafe import Markup, escape
-
-from .sentences import of_sentences
 
 _GREEK = {
     "Delta": "Δ",
@@ -46,16 +43,13 @@ class Caption(NamedTuple):
     rest: list[str]
 
 
-def take_apart(caption: str, label: str = "", warnings: Sequence[str] = ()) -> Caption:
+def take_apart(caption: str) -> Caption:
     """A caption in the parts that its file has: a heading, an empty line, a line each.
 
     Parameters
     ----------
     caption : str
-        As a figure's text file holds it; in one line it is taken apart by
-        :func:`pages.sentences.of_sentences`, which goes with the last caption of that form.
-    label, warnings
-        As for that function.
+        As a figure's text file holds it; one without an empty line is what is drawn alone.
 
     Returns
     -------
@@ -63,7 +57,7 @@ def take_apart(caption: str, label: str = "", warnings: Sequence[str] = ()) -> C
     """
     heading, parts, lines = caption.rstrip("\n").partition("\n\n")
     if not parts:
-        return Caption(*of_sentences(caption, label, warnings))
+        return Caption("", [heading] if heading else [], [])
     shown, *found = lines.splitlines()
     return Caption(heading, [shown], found)
 

@@ -68,8 +68,6 @@ def cards_of(
     atlas: str,
     groups: Collection[str],
     specimen: str = "",
-    label: str = "",
-    warnings: Sequence[str] = (),
 ) -> list[Card]:
     """Cards of the figures that are there.
 
@@ -84,17 +82,15 @@ def cards_of(
         Path of the atlas, as a user would type it.
     groups : collection of str
         Names of the groups that it has.
-    specimen, label : str, optional
-        Of which they are; of a whole study neither.
-    warnings : sequence of str, optional
-        Those that the page states, so that no card does.
+    specimen : str, optional
+        Of which they are; empty of a whole study.
     """
     found = []
     for name in names:
         picture, caption = folder / f"{name}.png", folder / f"{name}.txt"
         if not (picture.is_file() and caption.is_file()):
             continue
-        parts = take_apart(caption.read_text(encoding="utf-8"), label, warnings)
+        parts = take_apart(caption.read_text(encoding="utf-8"))
         width, height = png_size(picture)
         title = all_figures()[name].title
         start = f"{quote(address)}/{quote(name)}"

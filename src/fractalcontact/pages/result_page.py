@@ -34,7 +34,6 @@ from .cards import SECTIONS, cards_of, section_of
 from .common_loads import common_loads, main_load
 from .curves import curves_table
 from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
-from .lights import warnings_of
 from .material import opposite_words
 from .matrix import Row, counted, matrix_of, of_study
 from .opening import opening_of
@@ -300,7 +299,6 @@ def _specimen_values(
 ) -> dict[str, Any]:
     figures = all_figures()
     names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
-    warnings = warnings_of(subject)
     cards = cards_of(
         names,
         place.figures / subject.name,
@@ -308,8 +306,6 @@ def _specimen_values(
         atlas=_as_typed(place.atlas),
         groups=groups,
         specimen=subject.name,
-        label=subject.label,
-        warnings=warnings,
     )
     sections = [
         (name, title, [card for card in cards if section_of(figures[card.name]) == name])

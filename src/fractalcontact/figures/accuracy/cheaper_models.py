@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...accuracy.speed import DEFAULT_RTOL, ERRORS, MODEL, MODELS, OURS
+from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, label_short_span, letter
-from ..kit.words import SUPPLEMENTARY, short
 from ._speed import AXES, OURS_STYLE, legend_of, scenes_of, styles, table_of, values_of
 
 TITLE = "Errors and wall time of models cheaper than elastic contact"
@@ -62,7 +62,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         name: scene.isel(point=np.flatnonzero(scene["kind"] == MODEL))
         for name, scene in scenes.items()
     }
-    return Drawing(figure, table_of(models), _caption(scenes))
+    return Drawing(figure, table_of(models), caption(__name__, **_numbers(scenes)))
 
 
 def _of(scene, model):
@@ -77,25 +77,16 @@ def _default(scene):
     return own.isel(point=int(own["tolerance"].values.argmin()))
 
 
-def _caption(scenes):
-    words = [f"{model}: {_model_words(scenes, model)}" for model in MODELS]
-    return (
-        f"{SUPPLEMENTARY} Errors and cost of models cheaper than elastic contact at full "
-        f"resolution, at the closure of the reference, on {len(scenes)} test problems. Force "
-        f"within {GOOD_ENOUGH['force_error']:g} on (and in the median as many times as fast as "
-        f"{OURS}): {'; '.join(words)}."
-    )
-
-
-def _model_words(scenes, model):
+def _numbers(scenes):
     """On how many test problems a model's force is good enough, and how much faster it is."""
-    values = np.array([_of(scene, model)["force_error"].item() for scene in scenes.values()])
-    ratio = np.median(
-        [
-            (_default(scene)["seconds"] / _of(scene, model)["seconds"]).item()
-            for scene in scenes.values()
-        ]
-    )
-    within = np.count_nonzero(values <= GOOD_ENOUGH["force_error"])
-    good = str(within) if np.isfinite(values).any() else "none defined"
-    return f"{good} ({short(ratio)})"
+    models = []
+    for model in MODELS:
+        of_model = [_of(scene, model) for scene in scenes.values()]
+        errors = np.array([one["force_error"].item() for one in of_model])
+        seconds = [_default(scene)["seconds"].item() for scene in scenes.values()]
+        ratios = np.array(seconds) / [one["seconds"].item() for one in of_model]
+        within = np.count_nonzero(errors <= GOOD_ENOUGH["force_error"])
+        good = within if np.isfinite(errors).any() else "none defined"
+        models.append((model, good, np.median(ratios)))
+    limit = f"{GOOD_ENOUGH['force_error']:g}"
+    return {"problems": len(scenes), "limit": limit, "ours": OURS, "models": models}

@@ -9,8 +9,8 @@ from xarray import DataTree
 
 from ...accuracy.convergence import QUANTITIES
 from ...core.estimate import EXPONENT, Estimate
+from ..kit.caption import caption
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
 SUBJECT = "accuracy"
@@ -37,7 +37,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for axes in panels:
         label_short_span(axes.xaxis, within=10)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
-    return Drawing(figure, _table(found, trials), _caption(found, trials))
+    return Drawing(figure, _table(found, trials), caption(__name__, **_numbers(found, trials)))
 
 
 def _draw_errors(axes, result, quantities):
@@ -100,25 +100,20 @@ def _table(found, trials):
     return pd.concat([pd.DataFrame(rows), tried], ignore_index=True)
 
 
-def _caption(found, trials):
+def _numbers(found, trials):
+    """Orders of the force, and how often Richardson's error bar holds the error."""
     orders = [
         f"{problem} {Estimate.read(result, 'force_order', scale=EXPONENT).text()}"
         for problem, result in found.items()
         if "force" in QUANTITIES[problem]
     ]
     cases = trials.sizes["case"]
-    within = ", ".join(
-        f"{name} {int(trials['within'].sel(quantity=name))}" for name in trials["quantity"].values
-    )
-    short_of = [
-        str(name)
-        for name in trials["quantity"].values
-        if trials["within"].sel(quantity=name) < 0.9 * cases
-    ]
-    verdict = f"fewer than 9 of 10 for {', '.join(short_of)}" if short_of else "9 of 10 or more"
-    of_force = f" (of the force: {', '.join(orders)})" if orders else ""
-    return (
-        f"{SUPPLEMENTARY} Relative errors against exact solutions as the spacing falls, with "
-        f"their orders{of_force}. (c) Richardson extrapolation from s, 2 s and 4 s lies within its "
-        f"own error bar, of {cases} trials, in: {within}; {verdict}."
-    )
+    within = {
+        str(name): int(trials["within"].sel(quantity=name)) for name in trials["quantity"].values
+    }
+    return {
+        "orders": orders,
+        "cases": cases,
+        "within": [f"{name} {count}" for name, count in within.items()],
+        "short_of": [name for name, count in within.items() if count < 0.9 * cases],
+    }

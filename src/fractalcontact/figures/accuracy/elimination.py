@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ..kit.caption import caption
 from ..kit.drawing import COLOURS, LINES, MARKERS, WIDTH, Drawing, entries, group, letter
-from ..kit.words import opening
 
 TITLE = "Whether dropping points in tension, as the paper does, reaches the contact set"
 SUBJECT = "accuracy"
@@ -30,7 +30,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     data = cases.reset_index().merge(
         tolerances.reset_index(), how="outer", left_index=True, right_index=True
     )
-    return Drawing(figure, data, _caption(elimination))
+    return Drawing(figure, data, caption(__name__, **_counts(elimination)))
 
 
 def _draw_signs(axes, elimination):
@@ -75,29 +75,19 @@ def _draw_tolerances(axes, elimination):
     axes.legend(loc="upper left")
 
 
-def _caption(elimination):
-    tried = int(elimination["tried"].values[0])
-    chance = "; ".join(
-        f"{count} of {tried} ({_cased(case)})"
-        for case, count in zip(elimination["case"].values, elimination["wrong"].values, strict=True)
-        if count
-    )
-    defeated = elimination["case"].values[elimination["counter_example"].values == 1]
-    readings = ""
-    if defeated.size:
-        readings = f", not with {_listed(defeated)}, readings of its rigid plate"
-    return (
-        f"{opening('section 4')} To drop points in tension for good, as the paper "
-        "does, is right where the inverse influence matrix has no positive entry off its diagonal "
-        f"(a): so with Love's kernel{readings}. Random surfaces end on a wrong set in "
-        f"{chance or f'none of {tried} per case'}. (b) Loose solves lose nodes."
-    )
-
-
 def _cased(case):
     """A kernel's name as it is written: Love's bears a name."""
     return case.replace("love", "Love")
 
 
-def _listed(names):
-    return " and ".join(name.split(",")[0] for name in names)
+def _counts(elimination):
+    """How often dropping points ends on a wrong set, and which readings a proof defeats."""
+    tried = int(elimination["tried"].values[0])
+    chance = [
+        f"{count} of {tried} ({_cased(case)})"
+        for case, count in zip(elimination["case"].values, elimination["wrong"].values, strict=True)
+        if count
+    ]
+    defeated = elimination["case"].values[elimination["counter_example"].values == 1]
+    readings = [name.split(",")[0] for name in defeated]
+    return {"tried": tried, "chance": chance, "defeated": readings}

@@ -1,14 +1,15 @@
 """Error of the force against time on the rough test problems, with the Pareto front."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...accuracy.speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
+from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, letter
-from ..kit.words import SUPPLEMENTARY, short
 from ._speed import (
     AXES,
     draw_points,
@@ -51,45 +52,29 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for axes in panels[-1]:
         axes.set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
-    words = (
-        f"{SUPPLEMENTARY} Error of the force against wall time on self-affine surfaces "
-        f"({_runs_words(scenes)}). {caption(scenes, 'force_error')}"
-    )
+    runs = int(max(scene["runs"].max() for scene in scenes.values()))
+    threads = next(iter(scenes.values())).attrs["threads"]
+    words = caption(__name__, runs=runs, threads=threads, **front(scenes, "force_error"))
     return Drawing(figure, table_of(scenes), words)
 
 
-def caption(scenes: dict[str, xr.Dataset], quantity: str) -> str:
-    """Whether ours is on the front at every error below `LEADS_BELOW`, and what counts as equal.
+def front(scenes: dict[str, xr.Dataset], quantity: str) -> dict[str, Any]:
+    """Where ours is on the front at every error below `LEADS_BELOW`, and what counts as equal.
 
     Parameters
     ----------
     scenes : dict
     quantity : str
         ``force_error`` or ``pressure_error``.
-
-    Returns
-    -------
-    str
     """
-    leads = sum(
-        not ahead_of_ours(scene, quantity=quantity, models=False).sizes["point"]
-        for scene in scenes.values()
-    )
-    models = sum(
-        bool((ahead_of_ours(scene, quantity=quantity)["kind"] == MODEL).any())
-        for scene in scenes.values()
-    )
-    alike = max(scene.attrs["told_apart_to"] for scene in scenes.values())
-    worst = max(scene.attrs["reference_error"] for scene in scenes.values())
-    return (
-        f"{OURS} is on the solvers' Pareto front at every error below {LEADS_BELOW:g} on {leads} "
-        f"of {len(scenes)} test problems, a cheaper model ahead on {models}. Errors below "
-        f"{short(alike)} count as equal; the references' own is at most {short(worst)}."
-    )
-
-
-def _runs_words(scenes):
-    """How the times were taken."""
-    runs = int(max(scene["runs"].max() for scene in scenes.values()))
-    threads = next(iter(scenes.values())).attrs["threads"]
-    return f"cold solves, medians of up to {runs} runs, threads: {threads}"
+    ahead = [ahead_of_ours(scene, quantity=quantity, models=False) for scene in scenes.values()]
+    with_models = [ahead_of_ours(scene, quantity=quantity) for scene in scenes.values()]
+    return {
+        "ours": OURS,
+        "below": f"{LEADS_BELOW:g}",
+        "problems": len(scenes),
+        "leads": sum(not found.sizes["point"] for found in ahead),
+        "models": sum(bool((found["kind"] == MODEL).any()) for found in with_models),
+        "alike": max(scene.attrs["told_apart_to"] for scene in scenes.values()),
+        "worst": max(scene.attrs["reference_error"] for scene in scenes.values()),
+    }

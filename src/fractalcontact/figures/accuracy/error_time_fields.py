@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, letter
-from ..kit.words import SUPPLEMENTARY
 from ._speed import (
     AXES,
     draw_points,
@@ -19,7 +19,7 @@ from ._speed import (
     table_of,
     values_of,
 )
-from .error_time import caption
+from .error_time import front
 
 TITLE = "Errors of contact area, Delta_sigma and pressure against wall time"
 SUBJECT = "accuracy"
@@ -49,9 +49,6 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
             panels[i, 0].set_ylabel(AXES[quantity])
         panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
-    words = (
-        f"{SUPPLEMENTARY} Errors of A_r, of Delta_sigma from boxes and of pressure against wall "
-        f"time, {size} x {size} nodes, {100 * contact:g} % in contact; zeros stand at the foot. "
-        f"For pressure {caption(scenes, 'pressure_error')}"
-    )
+    share = f"{100 * contact:g}"
+    words = caption(__name__, size=size, share=share, **front(scenes, "pressure_error"))
     return Drawing(figure, table_of(scenes), words)

@@ -13,8 +13,8 @@ from xarray import DataTree
 from ...accuracy.speed import OURS
 from ...accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
 from ...methods.registry import METHODS
+from ..kit.caption import caption
 from ..kit.drawing import COLOURS, WIDTH, Drawing, group
-from ..kit.words import SUPPLEMENTARY
 
 TITLE = "Verdicts on every solver by kind of test problem"
 SUBJECT = "accuracy"
@@ -65,7 +65,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         for verdict, style in _STYLE.items()
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
-    return Drawing(figure, _table(stability, counts), _caption(stability, counts))
+    return Drawing(
+        figure, _table(stability, counts), caption(__name__, **_numbers(stability, counts))
+    )
 
 
 def _wrapped(name):
@@ -113,23 +115,19 @@ def _unmeasured(said):
     return said.partition("; best residual")[0]
 
 
-def _caption(stability, counts):
-    totals = counts.sum(axis=1)
-    by_solver = ", ".join(
-        f"{solver} {row[RIGHT]}/{row[[RIGHT, HONEST, SILENT]].sum()} ({row[SILENT]})"
-        for solver, row in zip(stability["solver"].values, totals, strict=True)
-    )
-    return (
-        f"{SUPPLEMENTARY} Verdicts on {stability.sizes['draw']} draws of each of "
-        f"{stability.sizes['kind']} kinds of test problem. Right of those offered (silently "
-        f"wrong): {by_solver}. A state is right within {stability.attrs['margin']:g} times the "
-        f"tolerance {stability.attrs['rtol']:g} of the KKT conditions"
-        f"{_of_peers(stability)}; hard_problem(kind, draw) repeats any."
-    )
-
-
-def _of_peers(stability):
-    """How public codes are judged, where there are any."""
-    if set(stability["solver"].values) <= {OURS, *METHODS}:
-        return ""
-    return f", public codes at tolerances down to {stability.attrs['tightest']:g}"
+def _numbers(stability, counts):
+    """Verdicts on each solver, and how states are judged."""
+    names = stability["solver"].values
+    solvers = [
+        (solver, row[RIGHT], row[[RIGHT, HONEST, SILENT]].sum(), row[SILENT])
+        for solver, row in zip(names, counts.sum(axis=1), strict=True)
+    ]
+    public = not set(names) <= {OURS, *METHODS}
+    return {
+        "draws": stability.sizes["draw"],
+        "kinds": stability.sizes["kind"],
+        "solvers": solvers,
+        "margin": f"{stability.attrs['margin']:g}",
+        "rtol": f"{stability.attrs['rtol']:g}",
+        "tightest": f"{stability.attrs['tightest']:g}" if public else "",
+    }

@@ -9,8 +9,8 @@ from xarray import DataTree
 
 from ...accuracy.speed import OURS
 from ...core.estimate import EXPONENT, Estimate
+from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
-from ..kit.words import SUPPLEMENTARY, short
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles
 
 TITLE = "Wall time and memory against the size of the grid"
@@ -41,7 +41,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[i, 0].set_ylabel(label)
         label_short_span(panels[i, 0].yaxis)
     legend_of(figure, panels.flat, ncols=3)
-    return Drawing(figure, _table(growth), _caption(growth, columns))
+    return Drawing(figure, _table(growth), caption(__name__, **_numbers(growth, columns)))
 
 
 def _middle(scenes):
@@ -82,21 +82,17 @@ def _table(growth):
     return table.rename(columns=units)
 
 
-def _caption(growth, columns):
-    words = []
+def _numbers(growth, columns):
+    """How our time and memory grow on each surface, and the operator's share of the time."""
+    surfaces = []
     for surface in columns:
         ours = growth.sel(surface=surface, solver=OURS)
-        part = ours["bound"] / ours["seconds"]
-        words.append(
-            f"{surface}: {_exponent(ours, 'seconds')} (memory {_exponent(ours, 'memory')}), the "
-            f"operator alone {100 * float(part.min()):.0f} to {100 * float(part.max()):.0f} % of it"
+        part = 100 * (ours["bound"] / ours["seconds"])
+        time, memory = (
+            Estimate.read(ours, f"{name}_exponent", scale=EXPONENT)
+            for name in ("seconds", "memory")
         )
-    return (
-        f"{SUPPLEMENTARY} Wall time and peak memory of cold solves within "
-        f"{short(growth.attrs['error'])} of the reference force. Our time grows with the nodes to "
-        f"the power, {'; '.join(words)}."
-    )
-
-
-def _exponent(one, name):
-    return Estimate.read(one, f"{name}_exponent", scale=EXPONENT).text()
+        surfaces.append(
+            (surface, time, memory, f"{float(part.min()):.0f}", f"{float(part.max()):.0f}")
+        )
+    return {"error": growth.attrs["error"], "surfaces": surfaces}

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ..kit.caption import caption
 from ..kit.drawing import (
     MARKERS,
     WIDTH,
@@ -19,7 +20,7 @@ from ..kit.drawing import (
     letter,
 )
 from ..kit.kappa import kappa_lines
-from ..kit.words import SUPPLEMENTARY, number
+from ..kit.words import number
 
 TITLE = "Real contact area of synthetic surfaces at light load, with and without a roll-off"
 SUBJECT = "study"
@@ -61,7 +62,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         rf"synthetic surfaces of {nodes} $\times$ {nodes} nodes, $\Delta_g$ = {dimension:g}",
         fontsize=9,
     )
-    return Drawing(figure, _table(slopes), _caption(slopes))
+    return Drawing(
+        figure, _table(slopes), caption(__name__, kinds=list(_TITLES), **_counts(slopes))
+    )
 
 
 def _draw_surfaces(axes, chosen):
@@ -90,31 +93,19 @@ def _table(slopes):
     return table[["surface", "seed", "reduced_pressure", *columns]]
 
 
-def _caption(slopes):
-    with_one, without = (_range_words(slopes.sel(surface=kind)) for kind in _TITLES)
-    return (
-        f"{SUPPLEMENTARY} Corrected kappa of unresolved synthetic surfaces, rough down to two "
-        f"nodes: {with_one} with a roll-off, {without} without. "
-        f"{_band_words(slopes)}"
-    )
-
-
-def _range_words(chosen):
-    """Range of the corrected kappa, and how many values lie between the theories."""
-    low, high = (chosen.attrs[f"{name}_kappa"] for name in _THEORIES)
-    corrected = chosen["corrected_kappa"].values
-    within = int(np.sum((corrected >= low) & (corrected <= high)))
-    verdict = "all" if within == corrected.size else f"{within} of {corrected.size}"
-    return f"{number(corrected.min())} to {number(corrected.max())} ({verdict} between theories)"
-
-
-def _band_words(slopes):
-    """How many values lie beside those that others computed."""
-    low, high = slopes.attrs["computed_kappa"]
-    corrected = slopes["corrected_kappa"].values
+def _counts(slopes):
+    """Ranges of the corrected kappa, and how many values lie between the theories and others'."""
+    found = {"ranges": {}, "between": {}}
+    for kind in _TITLES:
+        chosen = slopes.sel(surface=kind)
+        low, high = (chosen.attrs[f"{name}_kappa"] for name in _THEORIES)
+        corrected = chosen["corrected_kappa"].values
+        found["ranges"][kind] = float(corrected.min()), float(corrected.max())
+        within, n = int(np.sum((corrected >= low) & (corrected <= high))), corrected.size
+        found["between"][kind] = "all" if within == n else f"{within} of {n}"
+    corrected, (low, high) = slopes["corrected_kappa"].values, slopes.attrs["computed_kappa"]
     below, above = int((corrected < low).sum()), int((corrected > high).sum())
     inside = corrected.size - below - above
-    counts = ((below, "below"), (inside, "within"), (above, "above"))
-    lie = [f"{n} {words}" for n, words in counts if n]
-    words = f"All {lie[0]}" if len(lie) == 1 else f"Of {corrected.size} values {', '.join(lie)}"
-    return f"{words} the literature's computed {low:g} to {high:g}."
+    counts = {"below": below, "within": inside, "above": above}
+    lie = [f"{n} {words}" for words, n in counts.items() if n]
+    return found | {"total": corrected.size, "lie": lie, "computed": (low, high)}

@@ -10,10 +10,10 @@ from ...core.claims import claims_of
 from ...core.labels import printable
 from ...core.subject import configuration_of
 from ..joint.statements import DATA, SIGNS
+from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, group
 from ..kit.line_breaks import in_lines, width_of
 from ..kit.tables import LINE_HEIGHT, draw_texts, wrap_rows
-from ..kit.words import PAPER
 
 TITLE = "Statements of the paper over the specimens of the study"
 SUBJECT = "study"
@@ -38,7 +38,11 @@ WHOLE = "study"
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """A sign for each verdict, specimen by specimen, and below what needs several specimens."""
     if not len(names):  # measured contact maps alone
-        return Drawing(Figure(figsize=(WIDTH, 1)), pd.DataFrame(), _caption({}, _whole(atlas)))
+        return Drawing(
+            Figure(figsize=(WIDTH, 1)),
+            pd.DataFrame(),
+            caption(__name__, **_counted({}, _whole(atlas))),
+        )
     tables = {name: _table(atlas, "statements", name) for name in names}
     rows = {
         name: {"figure": claim.figure, "claim": claim.claim}
@@ -82,7 +86,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     _draw_key(axes, height / LINE_HEIGHT - 2.7, _counts(tables, whole))
     everything = [table.assign(specimen=name) for name, table in tables.items()]
     data = pd.concat([*everything, whole.assign(specimen="")]).reset_index(names="statement")
-    return Drawing(figure, data, _caption(tables, whole))
+    return Drawing(figure, data, caption(__name__, **_counted(tables, whole)))
 
 
 def _table(atlas, stage, name):
@@ -144,12 +148,13 @@ def _draw_key(axes, y, counts):
     axes.text(0.43, y + 1.2, NOT_ASKED[1], **style)
 
 
-def _caption(tables, whole):
+def _counted(tables, whole):
+    """How often each verdict was given, and the last statement on all specimens together."""
     verdicts = pd.concat([*tables.values(), whole])
     counts = verdicts["verdict"].value_counts()
-    summary = ", ".join(f"{verdict} {counts[verdict]}" for verdict in SIGNS if verdict in counts)
-    pressed = "; ".join(f"{row['claim']}: {row['verdict']}" for _, row in whole[-1:].iterrows())
-    return (
-        f"After the statements of {PAPER}. Verdicts over {len(tables)} specimens: {summary}; "
-        f"{int(verdicts['circular'].astype(bool).sum())} circular (*). {pressed}"
-    ).rstrip() + ("." if pressed else "")
+    return {
+        "specimens": len(tables),
+        "counts": [f"{verdict} {counts[verdict]}" for verdict in SIGNS if verdict in counts],
+        "circular": int(verdicts["circular"].astype(bool).sum()),
+        "last": whole[-1:].to_dict("records"),
+    }
