@@ -119,16 +119,18 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     result = result.assign(
         labelled(_HELD, of_held) | labelled(_BARTON, _by_barton(states, material, roughness))
     )
-    return with_slope_angles(result.assign_coords(nominal_pressure=states["nominal_pressure"]))
+    return with_slope_angles(result, pressure)
 
 
-def with_slope_angles(laws: xr.Dataset) -> xr.Dataset:
+def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
     """Strengths at one v/b as limit slope angles, and over that of the whole window (Fig. 11).
 
     Parameters
     ----------
     laws : xr.Dataset
         ``similar_strength`` with its interval, ``similar_held`` and ``barton_scaled_strength``.
+    pressure : (n_load,) ndarray
+        sigma_0, MPa.
 
     Returns
     -------
@@ -136,7 +138,6 @@ def with_slope_angles(laws: xr.Dataset) -> xr.Dataset:
         With ``limit_slope_angle``, ``relative_strength`` and ``similar_strength_valid`` (share,
         part, normal_force), and ``barton_slope_angle`` (part, normal_force).
     """
-    pressure = laws["nominal_pressure"].values
     dims = ("share", *_DIMS[::2])
     strength = Estimate.read(laws.transpose(*dims, ...), "similar_strength")
     angle = strength.mapped(partial(slope_angle, pressure=pressure))
