@@ -55,9 +55,8 @@ def test_figures_of_a_study(atlas_file, atlas, tmp_path):
     specimens = ["flat", "pair", "sliding"]
     captions = draw_study_figures(atlas_file, specimens, tmp_path, ["area_slope"]).captions
     assert list(captions) == ["area_slope"]
-    assert (tmp_path / "area_slope.txt").read_text(encoding="utf-8") == captions[
-        "area_slope"
-    ] + "\n"
+    written = (tmp_path / "area_slope.txt").read_text(encoding="utf-8")
+    assert written == captions["area_slope"].text + "\n"
     with Image.open(tmp_path / "area_slope.png") as picture:
         assert np.ptp(np.asarray(picture.convert("L"))) > 100  # something is drawn
     assert "<svg" in (tmp_path / "area_slope.svg").read_text(encoding="utf-8")

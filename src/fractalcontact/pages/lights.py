@@ -50,12 +50,6 @@ def validity_at(subject: Subject, number: int) -> Validity:
     return Validity.of(subject.states("elastic_model").isel(normal_force=number))
 
 
-def warnings_of(subject: Subject) -> list[str]:
-    """What the stages warn of, each once: the scan, and the load on suspicious cells."""
-    found = (subject[stage].attrs.get("warning", "") for stage in ("quality", "closure"))
-    return [str(warning) for warning in found if warning]
-
-
 def _is_pair(subject):
     return int(subject["specimens"].attrs["faces"]) == 2
 

@@ -37,8 +37,6 @@ STAGES = {
     "curves_overlap": ("the same", f"limit {percent(NEARLY)}, in part {percent(LOOSELY)}"),
     "compliance_rises_again": ("rising again on average", f"limit {percent(NEARLY, '+')}"),
 }
-#: A bar this many times as high as its value leaves the frame.
-_UNBOUNDED = 1e4
 #: Letters of a line of the stages in the legend.
 _LINE = 50
 
@@ -119,11 +117,8 @@ def _draw_closures(closed, compliance, curves):
     labels = [f"$F$ = {force_label(force)}" for force in curves["normal_force"].values]
     style = {"hue": "normal_force", "first": 1, "filled": "resolved", "ls": "-"}
     high = curves["interface_compliance_high"]
-    # What is unbounded leaves the frame.
-    bounded = high.clip(max=_UNBOUNDED * curves["interface_compliance"])
-    framed = curves.assign(interface_compliance_high=bounded.assign_attrs(high.attrs))
     kept = ("interface_stiffness_reason",)
-    compliance.curves(framed, "offset", "interface_compliance", labels=labels, keep=kept, **style)
+    compliance.curves(curves, "offset", "interface_compliance", labels=labels, keep=kept, **style)
     closure = "closure_from_common_seat" if _seated(curves) else "interface_closure"
     kept = ("interface_closure", "closure_from_common_seat", "common_seating_pressure", "nodes")
     # Loads that seat the joint, or less, close it by nothing more.

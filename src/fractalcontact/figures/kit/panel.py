@@ -12,6 +12,9 @@ from ...core.estimate import Estimate, names_of
 from .drawing import MARKERS, colour_of, letter
 from .points import draw_points, reach
 
+#: A bar without an upper end is this many times as high as its value.
+_FAR = 1e4
+
 
 def column_of(data: xr.Dataset, name: Hashable) -> str:
     """A variable as a column of a table, named with its unit: "closure_mm"."""
@@ -106,7 +109,10 @@ class Panel:
         if names_of(y)[1] in data:
             along = Estimate.read(data, y).mapped(lambda value: value / unit[1])
             colour = style.get("color")
-            self.axes.errorbar(across, along.value, reach(*along.ends), fmt="none", ecolor=colour)
+            value, low, high = along.ends
+            # A bar without an upper end leaves the frame.
+            bars = reach(value, low, np.where(np.isposinf(high), _FAR * value, high))
+            self.axes.errorbar(across, value, bars, fmt="none", ecolor=colour)
         draw_points(self.axes, across, along.value, trusted, hollow, **style)
         named = [name for name in (x, y, filled, *keep) if name and name not in data.dims]
         self.keep(data, *dict.fromkeys(named))
