@@ -14,8 +14,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.determined import decided_by_scan
-from ..core.estimate import DIMENSION, Estimate
+from ..core.estimate import DIMENSION, Estimate, names_of
 from ..core.labels import cf_attrs
+from ..core.quantities import shown_quantities
 from ..core.subject import Subject
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import cell_side
@@ -31,29 +32,6 @@ ORDER = (
     "scale",
     "mean_scale",
 )
-#: Quantities of a state, by stage: the rows of the page's table, in their order.
-STATE = (
-    ("closure", "closure"),
-    ("closure", "interface_closure"),
-    ("closure", "seated_closure"),
-    ("closure", "separation"),
-    ("dilatancy", "elastic_dilatancy"),
-    ("closure", "area"),
-    ("closure", "area_share"),
-    ("closure", "area_corrected_share"),
-    ("scaling", "sigma_n"),
-    ("closure", "nodes"),
-    ("closure", "stiffness"),
-    ("closure", "interface_stiffness"),
-    ("domains", "delta_sigma"),
-    ("domains", "delta_sigma_ordinary"),
-    ("scaling", "delta_sigma_area"),
-    ("scaling", "sigma_star"),
-    ("domains", "clusters"),
-    ("domains", "largest_share"),
-    ("closure", "suspect_load_share"),
-    ("closure", "residual"),
-)
 #: What the curves need besides.
 CURVES = (
     ("closure", "solved"),
@@ -68,28 +46,8 @@ CURVES = (
     ("domains", "mean_side"),
     ("domains", "mean_count"),
 )
-#: Ends of intervals and error bounds, where a quantity has them. Those of `delta_sigma_area` have
-#: the names of the estimate by areas itself.
+#: Ends of intervals and error bounds, where a quantity has them.
 BOUNDS = ("_low", "_high", "_error")
-BOUNDS_OF_AREA = {"": "delta_sigma", "_low": "delta_sigma_low", "_high": "delta_sigma_high"}
-#: Rows whose total error is that of a quantity of the error budget. What w and w_int differ by,
-#: the bulk settlement, is exact.
-TOTALS = {
-    "closure/closure": "closure",
-    "closure/interface_closure": "closure",
-    "closure/separation": "separation",
-    "closure/area_corrected_share": "area_corrected",
-    "closure/interface_stiffness": "stiffness",
-    "domains/delta_sigma": "delta_sigma",
-}
-#: Rows of a number that the scan does not determine where its suspicious cells carry the load.
-OF_JOINT = (
-    *("closure/closure", "closure/interface_closure", "closure/seated_closure"),
-    *("closure/separation", "dilatancy/elastic_dilatancy", "closure/area", "closure/area_share"),
-    *("closure/area_corrected_share", "closure/stiffness", "closure/interface_stiffness"),
-)
-#: Rows of dimensions.
-DIMENSION_ROWS = ("domains/delta_sigma", "domains/delta_sigma_ordinary", "scaling/delta_sigma_area")
 #: Of the texts: 9 takes ten times as long, for a page smaller by a fortieth.
 COMPRESSION = 5
 #: Steps that the largest gap of a specimen has; the code after the last stands for a missing gap.
@@ -166,7 +124,8 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     )
     closure = stages["closure"]
     numbers = _Numbers([], {})
-    for stage, variable in (*STATE, *CURVES):
+    rows = shown_quantities()
+    for stage, variable in (*((one.stage, one.variable) for one in rows), *CURVES):
         _add_with_bounds(numbers, stages[stage], stage, variable)
     numbers.add("domains", "law_count", stages["domains"]["law_count"], key="law_count")
     _add_undetermined(numbers, stages)
@@ -179,8 +138,8 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
             key: stages["dilatancy"][key].values.tolist()
             for key in ("rigid_direction", "rigid_offset")
         },
-        "rows": [f"{stage}/{variable}" for stage, variable in STATE],
-        "of_joint": OF_JOINT,
+        "rows": [one.key for one in rows],
+        "of_joint": [one.key for one in rows if one.by_scan],
         "reasons": _reasons(stages),
         "totals": _totals(subject, numbers),
         "arrays": numbers.entries,
@@ -195,15 +154,9 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 def _add_with_bounds(numbers, dataset, stage, variable):
     numbers.add(stage, variable, dataset[variable])
     for ending in BOUNDS:
-        other = _bound_of(variable, ending)
+        other = f"{variable}{ending}"
         if other in dataset:
             numbers.add(stage, other, dataset[other], key=f"{stage}/{variable}{ending}")
-
-
-def _bound_of(variable, ending):
-    if variable == "delta_sigma_area":
-        return BOUNDS_OF_AREA.get(ending, "")
-    return f"{variable}{ending}"
 
 
 def _add_undetermined(numbers, stages):
@@ -211,16 +164,14 @@ def _add_undetermined(numbers, stages):
     by_scan = decided_by_scan(stages["closure"]["suspect_load_share"])
     attrs = cf_attrs("1", "whether suspicious cells of the scans decide what follows from contact")
     numbers.add("closure", "", by_scan.assign_attrs(attrs), key="undetermined/by_scan")
-    for key in DIMENSION_ROWS:
-        stage, variable = key.split("/")
-        names = [_bound_of(variable, ending) for ending in ("", "_low", "_high")]
+    for one in (one for one in shown_quantities() if one.dimension):
         says = xr.apply_ufunc(
             lambda *ends: Estimate(*ends, scale=DIMENSION).determined,
-            *(stages[stage][name] for name in names),
+            *(stages[one.stage][name] for name in names_of(one.variable)),
             vectorize=True,
         )
         attrs = cf_attrs("1", "whether its interval leaves nearly everything open")
-        numbers.add(stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{key}")
+        numbers.add(one.stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{one.key}")
 
 
 def _reasons(stages):
@@ -252,14 +203,14 @@ def _totals(subject, numbers):
     if "error_budget" not in subject.stages:
         return None
     budget = subject["error_budget"]
-    # Over the offsets delta = u + w_b: its error is that of the separation.
-    sliding = {"dilatancy/elastic_dilatancy": "separation"}
-    keys = TOTALS | (sliding if budget.attrs["direction"] != "none" else {})
-    for key, quantity in keys.items():
-        total = budget["total"].sel(quantity=quantity, drop=True)
-        total = total / subject.area if key.endswith("_share") else total
-        total.attrs = cf_attrs(numbers.entries[key]["units"], "error of all sources")
-        numbers.add("error_budget", "total", total, key=f"total/{key}")
+    slides = budget.attrs["direction"] != "none"
+    for one in shown_quantities():
+        if not one.budget or (one.stage == "dilatancy" and not slides):
+            continue
+        total = budget["total"].sel(quantity=one.budget, drop=True)
+        total = total / subject.area if one.key.endswith("_share") else total
+        total.attrs = cf_attrs(numbers.entries[one.key]["units"], "error of all sources")
+        numbers.add("error_budget", "total", total, key=f"total/{one.key}")
     return {
         "direction": str(budget.attrs["direction"]),
         "offset": float(budget.attrs["offset_mm"]),

@@ -11,6 +11,7 @@ import xarray as xr
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, Estimate
 from ..core.measured_maps import map_table
+from ..core.quantities import Value, shown_quantities
 from ..core.subject import Subject
 from ..core.validity import Validity
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
@@ -101,6 +102,8 @@ class AtLoad:
     ----------
     number : int
         Of the load among those of the study.
+    shown : dict of str to Value
+        Of the quantities of ``core/quantities.yaml`` that tables show, by "STAGE/VARIABLE".
     contact_share : float
         Corrected A_r/A_0.
     model : Validity
@@ -111,9 +114,8 @@ class AtLoad:
     normal_force: float
     nominal_pressure: float
     of_maps: bool
-    contact_nodes: float
+    shown: dict[str, Value]
     contact_share: float
-    suspect_share: float
     model: Validity
     quantities: dict[str, Quantity]
     delta_sigma_boxes: Estimate
@@ -128,6 +130,30 @@ class AtLoad:
     def no_real_pressure(self) -> str:
         """Why there is no real mean pressure; empty where there is one."""
         return "" if math.isfinite(self.real_pressure) else NO_PRESSURE
+
+    @property
+    def contact_nodes(self) -> float:
+        """Nodes in contact."""
+        return self.shown["closure/nodes"].estimate.value
+
+    @property
+    def suspect_share(self) -> float:
+        """Fraction of the load on suspicious cells of the scans."""
+        return self.shown["closure/suspect_load_share"].estimate.value
+
+    @property
+    def columns(self) -> dict[str, float]:
+        """Columns of the summary, with the ends of intervals."""
+        found: dict[str, float] = {}
+        for one in shown_quantities():
+            if one.summary:
+                found |= self.shown[one.key].columns(one.summary)
+        return found
+
+    @property
+    def rows(self) -> list[tuple[str, Value]]:
+        """Rows of the specimen's page: what they are called, and value."""
+        return [(one.page, self.shown[one.key]) for one in shown_quantities() if one.page]
 
     @property
     def decided_by_scan(self) -> bool:
@@ -239,9 +265,12 @@ def _at_load(subject, curve, number):
         normal_force=float(subject.forces[number]),
         nominal_pressure=float(curve["nominal_pressure"][number]),
         of_maps=number == subject.reported.reference,
-        contact_nodes=float(curve["nodes"].isel(state)),
+        shown={
+            one.key: one.at(subject, number)
+            for one in shown_quantities()
+            if one.summary or one.page
+        },
         contact_share=float(curve["area_corrected_share"].isel(state)),
-        suspect_share=float(curve["suspect_load_share"].isel(state)),
         model=validity_at(subject, number),
         quantities=quantities_at(subject, number),
         delta_sigma_boxes=_dimension(subject, "domains", state),
@@ -359,8 +388,7 @@ def _of_load(load):
         "normal_force_N": load.normal_force,
         "nominal_pressure_MPa": load.nominal_pressure,
         "load_of_maps": load.of_maps,
-        "contact_nodes": load.contact_nodes,
-        "suspect_load_share": load.suspect_share,
+        **load.columns,
         "real_pressure_MPa": load.real_pressure,
         "real_pressure_reason": load.no_real_pressure,
         "elastic_model": load.model.verdict,

@@ -1,0 +1,83 @@
+"""Quantities of a contact state that are shown, read from ``quantities.yaml``: each stands once."""
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+from .estimate import Estimate, names_of
+from .subject import Subject
+
+_FILE = Path(__file__).with_suffix(".yaml")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A quantity, and where it is shown.
+
+    Attributes
+    ----------
+    key : str
+        "STAGE/VARIABLE".
+    budget : str
+        Quantity of the error budget whose total error it has; empty without.
+    by_scan : bool
+        Whether suspicious cells of the scans leave it undetermined.
+    dimension : bool
+        Whether it is a dimension, which its interval determines.
+    summary : str
+        Its column in ``summary.csv``, without the unit; empty where it has none.
+    page : str
+        What the page of a specimen calls it; empty where it has no row of its own.
+    """
+
+    key: str
+    budget: str = ""
+    by_scan: bool = False
+    dimension: bool = False
+    summary: str = ""
+    page: str = ""
+
+    @property
+    def stage(self) -> str:
+        """Stage of the atlas."""
+        return self.key.partition("/")[0]
+
+    @property
+    def variable(self) -> str:
+        """Its name in that stage."""
+        return self.key.partition("/")[2]
+
+    def at(self, subject: Subject, load: int) -> "Value":
+        """Value at the reported state under the load of this number."""
+        states = subject.states(self.stage)
+        state = states.isel(normal_force=load) if "normal_force" in states.dims else states
+        unit = str(states[self.variable].attrs["units"])
+        has_interval = all(end in state for end in names_of(self.variable))
+        if has_interval:
+            found = Estimate.read(state, self.variable)
+        else:
+            found = Estimate(state[self.variable].item())
+        return Value(found, "" if unit == "1" else unit, has_interval)
+
+
+class Value(NamedTuple):
+    """A number with its unit, "" where it has none, and whether it has an interval."""
+
+    estimate: Estimate
+    unit: str
+    has_interval: bool
+
+    def columns(self, name: str) -> dict[str, float]:
+        """Columns of a table, which end in the unit."""
+        columns = self.estimate.columns(name, self.unit)
+        return columns if self.has_interval else dict([next(iter(columns.items()))])
+
+
+@cache
+def shown_quantities() -> tuple[Shown, ...]:
+    """All of them, in their order."""
+    stated = yaml.safe_load(_FILE.read_text(encoding="utf-8"))
+    return tuple(Shown(key, **entry) for key, entry in stated.items())
