@@ -166,8 +166,8 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
     }
     values |= {"domain_determined": determined, "domain_beyond_cut": beyond}
     result = result.assign(labelled(table, values))
-    words = cf_attrs("1", "what gives Delta_sigma: the areas A_r(s), or box counts")
-    return result.assign_coords(delta_estimator=("delta_estimator", list(_ESTIMATORS), words))
+    attrs = cf_attrs("1", "what gives Delta_sigma: the areas A_r(s), or box counts")
+    return result.assign_coords(delta_estimator=("delta_estimator", list(_ESTIMATORS), attrs))
 
 
 #: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
