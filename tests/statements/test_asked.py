@@ -6,6 +6,8 @@ import pytest
 import yaml
 
 from fractalcontact.core.claims import claims_of
+from fractalcontact.core.errors import InputError
+from fractalcontact.study.checks import check_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_settings
 from fractalcontact.study.selection import is_capped_variant
 
@@ -22,10 +24,13 @@ def chosen_for(study, name):
     return resolve_settings(study, name, {}, "paper").chosen_for
 
 
-def test_the_schema_knows_the_statements():
+def test_a_statement_that_there_is_not_is_refused_with_the_nearest(paper):
     schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
-    recipe = schema["$defs"]["embedded"]["properties"]
-    assert set(recipe["chosen_for"]["propertyNames"]["enum"]) == NAMES
+    check_study(paper, schema, "paper.yaml")
+    paper["embedded"]["joint_2.1"]["chosen_for"] = {"area_fall": "by hand"}
+    words = r"paper.yaml: embedded.joint_2.1.chosen_for: no statement 'area_fall'.*'area_falls'\?"
+    with pytest.raises(InputError, match=words):
+        check_study(paper, schema, "paper.yaml")
 
 
 def test_the_twins_were_chosen_for_their_plateaus(paper):

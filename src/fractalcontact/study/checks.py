@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ..core.claims import claims_of
 from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..core.settings import Settings, Solver
@@ -206,8 +207,17 @@ def check_study(config: Mapping, schema: Mapping, source: str) -> None:
         resolve_settings(config, None, {}, source)
     for name, recipe in config.get("embedded", {}).items():
         resolve_embedded(recipe, f"{source}: embedded.{name}")
+        _check_statements(recipe.get("chosen_for", {}), f"{source}: embedded.{name}")
     resolve_roll_off(config, source)
     _check_figures(config.get("figures", ()), source)
+
+
+def _check_statements(names, source: str) -> None:
+    """Refuse statements that no specimen is asked."""
+    known = claims_of("one")
+    for name in names:
+        if name not in known:
+            raise InputError(f"{source}.chosen_for: no statement {name!r}{nearest(name, known)}")
 
 
 def _check_figures(names, source: str) -> None:

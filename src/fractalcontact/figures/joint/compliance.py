@@ -73,7 +73,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, *columns, columnspacing=1.5)
     headline(figure, subject.label, place(subject.direction))
     decidable = np.isfinite(float(joint["correlation_limit"]))
-    words = {"ends": ends, "decidable": decidable, "stages": [text for text, *_ in stages]}
+    first = row_of(atlas, "statements", name, "compliance_rises_at_first")
+    rises = "" if first is None else str(first["verdict"].item())
+    words = {
+        "rises": rises,
+        "ends": ends,
+        "decidable": decidable,
+        "stages": [text for text, *_ in stages],
+    }
     return Drawing(figure, table_of(a, b, c), caption(__name__, force=force, **words))
 
 
