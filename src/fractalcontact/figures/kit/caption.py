@@ -76,9 +76,8 @@ def caption(module: str, **values: Any) -> Caption:
         return " ".join(_environment().from_string(template).render(values).split())
 
     finds = (filled(template) for template in entry.get("finds", ()))
-    return Caption(
-        filled(entry.get("heading", "")), filled(entry["shows"]), tuple(filter(None, finds))
-    )
+    heading = filled(entry.get("heading", "")).removesuffix(".")
+    return Caption(heading, filled(entry["shows"]), tuple(filter(None, finds)))
 
 
 @cache
