@@ -7,6 +7,7 @@ import xarray as xr
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.reported import Reported
 from fractalcontact.core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED, VERDICTS
+from fractalcontact.domain.cluster_laws import localisation
 from fractalcontact.mechanics.plateau import rigid_plateaus
 from fractalcontact.statements import closure, nulls, scaling
 from fractalcontact.statements.judge import Joint, judge, rule_of, statements_for
@@ -167,7 +168,7 @@ def stages(**changes):
         loads=[],
         reference=SETTINGS["map_load"][0],
     )
-    return {
+    made = {
         "specimens": specimen,
         "joints": slid,
         "closure": xr.Dataset(
@@ -253,6 +254,9 @@ def stages(**changes):
         ),
         "windows": xr.Dataset(windows, {"offset": V, "normal_force": [1000.0]}),
     }
+    nodes = made["closure"]["nodes"].values
+    made["domains"] = made["domains"].assign(localisation(made["domains"], nodes))
+    return made
 
 
 def found_by(name, settings=SETTINGS, **changes):

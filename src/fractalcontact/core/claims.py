@@ -1,4 +1,4 @@
-"""What the paper states, read from ``claims.yaml``; rules judge it, captions quote it."""
+"""Statements of the paper, read from ``claims.yaml``: rules judge them, captions quote them."""
 
 from dataclasses import dataclass
 from functools import cache

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.limits import CONFIDENCE
-from .limits import DECISIVE, LARGEST_DISTANCE, WIDEST
+from .limits import CONFIDENCE, DECISIVE, LARGEST_DISTANCE, WIDEST
 
 #: An interval whose ends are farther apart than this factor says not even the order of magnitude.
 DECADE = 10.0
@@ -60,7 +59,7 @@ def determined(
 
 
 def differs(p: float) -> bool:
-    """Whether a departure of this probability is a difference; not where it is not known.
+    """Significance of a departure of this probability; one that is not known has none.
 
     Parameters
     ----------
@@ -87,7 +86,7 @@ def decided_by_scan(share: float | np.ndarray | xr.DataArray) -> Any:
 
 
 def is_determined(low: float, high: float) -> bool:
-    """Whether an interval of a dimension says something: no wider than `WIDEST`.
+    """Determination of a dimension: its interval is no wider than `WIDEST`.
 
     Parameters
     ----------
@@ -98,7 +97,7 @@ def is_determined(low: float, high: float) -> bool:
 
 
 def follows_law(clusters: Any, distance: Any) -> Any:
-    """Whether sizes are as near to their power law as chance would have them.
+    """Agreement of cluster sizes with their power law, to the distance that chance allows.
 
     Parameters
     ----------

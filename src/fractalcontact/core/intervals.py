@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from ..core.limits import CONFIDENCE
 from .estimate import Estimate
+from .limits import CONFIDENCE
 
 
 def t_quantile(freedom: ArrayLike) -> Any:

@@ -1,4 +1,4 @@
-"""Settings of a study by who reads them: what a stage takes is the class its function names.
+"""Settings of a study, a class for each reader: the function of a stage names the one it takes.
 
 Fields have the names of the keys of config/schema/study.schema.yaml; lengths are in mm, forces in
 N, pressures in MPa, angles in degrees, and None stands for "auto".
@@ -17,7 +17,7 @@ S = TypeVar("S")
 
 @dataclass(frozen=True)
 class Elastic:
-    """What of a material decides its contact; infinite hardness where nothing yields."""
+    """Elastic constants and hardness of a material; the hardness is infinite if nothing yields."""
 
     e_star: float
     hardness: float
@@ -25,7 +25,7 @@ class Elastic:
 
 @dataclass(frozen=True)
 class Friction:
-    """What of a material decides its strength; NaN where not stated."""
+    """Friction angle and wall strength of a material; NaN if the study states none."""
 
     basic_friction_angle: float
     joint_wall_strength: float
@@ -42,7 +42,7 @@ class Material(Elastic, Friction):
 
 @dataclass(frozen=True)
 class SpecimenSettings:
-    """What is read before contact is solved."""
+    """Settings of the scan, the window and the offsets."""
 
     known_dimension: float
     opposite: str
@@ -59,7 +59,7 @@ class SpecimenSettings:
 
 @dataclass(frozen=True)
 class JointSettings:
-    """What every solve of a joint reads."""
+    """Settings of every contact solve of a joint."""
 
     material: Elastic
     loads: list[Load]
@@ -71,7 +71,7 @@ class JointSettings:
 
 @dataclass(frozen=True)
 class ContactSettings(JointSettings):
-    """What decides which states are solved."""
+    """Settings that choose the contact states."""
 
     map_load: Load
 
@@ -83,7 +83,7 @@ class ContactSettings(JointSettings):
 
 @dataclass(frozen=True)
 class WindowSettings(JointSettings):
-    """What is read to solve sub-windows."""
+    """Settings of the sub-windows."""
 
     box_range: Range
     scaling_range: Range
@@ -91,7 +91,7 @@ class WindowSettings(JointSettings):
 
 @dataclass(frozen=True)
 class StateSettings(ContactSettings):
-    """What is read to make curves, laws and domains of states."""
+    """Settings of the analysis of contact states: curves, laws, domains."""
 
     box_range: Range
     scaling_range: Range
@@ -101,7 +101,7 @@ class StateSettings(ContactSettings):
 
 @dataclass(frozen=True)
 class StrengthSettings:
-    """What is read once everything is solved."""
+    """Settings of strength and size laws."""
 
     material: Friction
     surface_range: Range
@@ -120,7 +120,7 @@ class Settings(SpecimenSettings, StateSettings, WindowSettings, StrengthSettings
 
 @dataclass(frozen=True)
 class Solver:
-    """How the contact solver is used; no accuracy where a study asks for everything."""
+    """Settings of the contact solver; no accuracy if a study asks for all states."""
 
     rtol: float
     kernel: str

@@ -63,12 +63,12 @@ class Validity(NamedTuple):
 
     @property
     def capped(self) -> bool:
-        """Whether a stated hardness caps the pressure, which then is no test of the model."""
+        """True if a stated hardness caps the pressure, which then is no test of the model."""
         return self.limits.criterion == HARDNESS
 
     @property
     def stated(self) -> bool:
-        """Whether a strength or a hardness was stated, and judges the pressure."""
+        """True if a stated strength or hardness judges the pressure."""
         return self.limits.criterion != USUAL
 
     @property

@@ -68,16 +68,6 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
     area = 2.0 ** domains["octave"] * cell
     # Summed from the largest.
     counts = domains["cluster_octaves"].transpose(..., "octave").values
-    offset, index = domains["offset"], domains["morisita"]
-    used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
-    exponent = xr.apply_ufunc(
-        _power,
-        offset,
-        index.where(used),
-        input_core_dims=[["offset"]] * 2,
-        output_core_dims=[[]] * 3,
-        vectorize=True,
-    )
     # Random nodes have an index of 1 in the mean.
     reach = special.ndtri((1 + CONFIDENCE) / 2) * domains["morisita_scatter"]
     values = {
@@ -89,14 +79,39 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
         ),
         "morisita_by_chance_low": 1 - reach,
         "morisita_by_chance_high": 1 + reach,
-        "morisita_used": used,
-        **Estimate(*exponent).columns("morisita_exponent"),
+        **localisation(domains, nodes),
     }
     ordered = {
         name: value.transpose(*_TABLE[name][0]).values if hasattr(value, "dims") else value
         for name, value in values.items()
     }
     return labelled_dataset(_TABLE, ordered)
+
+
+def localisation(domains: xr.Dataset, nodes: np.ndarray) -> dict[str, xr.DataArray]:
+    """Exponent of Morisita's index as a power of the offset, and the states that it is fitted to.
+
+    Parameters
+    ----------
+    domains, nodes
+        As of :func:`cluster_laws`; only ``morisita`` is read.
+
+    Returns
+    -------
+    dict of str to xr.DataArray
+        ``morisita_used``, and ``morisita_exponent`` with its interval.
+    """
+    offset, index = domains["offset"], domains["morisita"]
+    used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
+    exponent = xr.apply_ufunc(
+        _power,
+        offset,
+        index.where(used),
+        input_core_dims=[["offset"]] * 2,
+        output_core_dims=[[]] * 3,
+        vectorize=True,
+    )
+    return {"morisita_used": used, **Estimate(*exponent).columns("morisita_exponent")}
 
 
 def _law_count(domains, area):

@@ -307,7 +307,7 @@ def _why_not_compared(nodes, slopes):
 
 
 def _less_random(domain, bands) -> dict[str, Estimate]:
-    """What each quantity of a domain is less that of random nodes."""
+    """Differences of a domain's quantities from those of random nodes."""
     less = {}
     for name, error in errors_of([domain]).items():
         band, difference = bands[name], domain.values[name] - bands[name].value
@@ -317,7 +317,7 @@ def _less_random(domain, bands) -> dict[str, Estimate]:
 
 
 def _less_cut(domain, cut) -> dict[str, Estimate]:
-    """What each quantity of a domain is less that of the cut."""
+    """Differences of a domain's quantities from those of the cut."""
     less = {}
     same = np.array_equal(domain.nodes, cut.nodes)
     for name, error in errors_of([domain, cut]).items():

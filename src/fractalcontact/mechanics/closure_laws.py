@@ -312,7 +312,7 @@ def _softer(k_ni: np.ndarray, closure: np.ndarray, pressure: np.ndarray) -> np.n
 
 
 def at_twice(values: xr.DataArray) -> xr.DataArray:
-    """What twice the spacing makes of values, relative to them; NaN where it was not solved.
+    """Relative change of values at twice the spacing; NaN where that was not solved.
 
     Parameters
     ----------

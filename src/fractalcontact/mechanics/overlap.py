@@ -69,7 +69,7 @@ def overlapping_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.nd
 
 
 def node_marks(specimen: xr.Dataset, joint: xr.Dataset) -> dict[str, tuple]:
-    """What nodes of the composite topographies are made of, as ``xr.Dataset`` takes it.
+    """Marks of nodes that rest on overlapping or suspicious cells, as ``xr.Dataset`` takes them.
 
     Parameters
     ----------

@@ -247,8 +247,8 @@ _QUANTITIES = {
     "shear_strength": ("MPa", "shear strength tau"),
     "held_high": ("1", f"intervals whose angle was held at {LARGEST_FRICTION_ANGLE:g} degrees"),
     "held_low": ("1", "intervals whose angle was held at 0"),
-    "shear_strength_valid": ("1", "angle not held at its upper bound: the strength is a result"),
-    "peak_strength_valid": ("1", "angle of the peak not held at its upper bound"),
+    "shear_strength_valid": ("1", "angle below its upper bound, so that the strength is a result"),
+    "peak_strength_valid": ("1", "angle of the peak below its upper bound"),
     "peak_strength": ("MPa", "largest shear strength over the offsets"),
     "peak_offset": ("mm", "offset where it is first reached"),
     "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets"),
@@ -325,7 +325,7 @@ def _one_direction(
 
 
 def judged_strengths(values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
-    """Which strengths are results and no bounds, and how the peaks stand to Barton's.
+    """Validity of shear and peak strengths, and the peaks over Barton's.
 
     Parameters
     ----------

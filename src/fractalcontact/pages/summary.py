@@ -84,7 +84,7 @@ class Quantity:
 
     @property
     def known(self) -> bool:
-        """Whether there is a value."""
+        """True if there is a value."""
         return math.isfinite(self.value)
 
     def error_words(self, error: float) -> str:

@@ -18,7 +18,7 @@ from ..core.labels import cf_attrs
 from ..core.window import cell_side, spacing_of
 from .face_gap import REGIONS, gap_statistics
 from .fractal_range import FractalRange, find_fractal_range
-from .quality_words import AXES, file_warnings, interval_words, overlap_words, statements
+from .quality_words import AXES, file_warnings, interval_words, statements
 from .scan_lines import ALTERNATION, alternations, scan_line_warnings
 from .spectra import STRIPS, profile_spectra, radial_spectrum
 
@@ -93,7 +93,6 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     result.attrs = {"ended_by": end.reason}
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
     result.attrs["warning"] = "; ".join(filter(None, warnings))
-    result.attrs["overlap"] = overlap_words(specimen, result)
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result.assign_attrs(statements(specimen, result))
 

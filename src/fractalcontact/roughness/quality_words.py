@@ -173,7 +173,7 @@ def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
 
 
 def statements(specimen: xr.Dataset, quality: xr.Dataset) -> dict[str, str]:
-    """What is said of a scan, as attributes of the stage ``quality``.
+    """Clauses on a scan, as attributes of the stage ``quality``.
 
     Parameters
     ----------

@@ -151,7 +151,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
 
 
 def add_fitted(result: xr.Dataset) -> None:
-    """Which means an exponent goes through, into ``result``: ``NAME_fitted`` for each law.
+    """Means that each exponent is fitted to, marked in ``result`` as ``NAME_fitted``.
 
     Parameters
     ----------

@@ -13,6 +13,7 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate, rows_of
 from ..core.intervals import t_quantile
+from ..core.labels import cf_attrs
 from ..core.reported import Reported
 from ..core.window import nominal_area
 
@@ -178,8 +179,8 @@ def with_common_pressure(comparison: xr.Dataset) -> xr.Dataset:
     values = (counts["stiffness_n"] + counts["delta_sigma_n"]).values[::-1]
     pressures = comparison["pressure"].values[::-1]
     common = float(pressures[np.argmax(values)]) if len(pressures) else np.nan
-    words = {"units": "MPa", "long_name": "nominal pressure under which most specimens are loaded"}
-    result = comparison.assign(common_pressure=((), common, words))
+    attrs = cf_attrs("MPa", "nominal pressure under which most specimens are loaded")
+    result = comparison.assign(common_pressure=((), common, attrs))
     compared = comparison["compared_pressure"].transpose("specimen", "load").values
     for name, (unit, long_name) in UNDER_LOAD.items():
         estimate = Estimate.read(comparison.transpose("specimen", "load", ...), name)

@@ -58,7 +58,7 @@ class Joint(Subject):
 
     @cached_property
     def compliance(self) -> np.ndarray:
-        """Compliance of the interface over offsets at the load of the maps, mm/MPa."""
+        """Compliance of the interface over offsets at the reference load, mm/MPa."""
         return self.compliance_under(self.force)
 
     def compliance_under(self, force: float) -> np.ndarray:
@@ -70,6 +70,13 @@ class Joint(Subject):
         """A_r/A_0 over offsets, corrected for the perimeter."""
         area = self.at_load("closure", "area_corrected")
         return area / self.area
+
+    @cached_property
+    def localisation(self) -> tuple[Estimate, np.ndarray]:
+        """Exponent of Morisita's index over v at the reference load; offsets fitted, mm."""
+        domains = self.curves("domains").sel(normal_force=self.force, method="nearest")
+        exponent = Estimate.read(domains, "morisita_exponent")
+        return exponent, self.offsets[domains["morisita_used"].values.astype(bool)]
 
     @cached_property
     def yields_everywhere(self) -> bool:
@@ -124,15 +131,19 @@ def of_the_area(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]
 def trend(
     v: np.ndarray, values: np.ndarray, chosen: np.ndarray, symbol: str, *, rising: bool
 ) -> Finding:
-    """Whether values go with v as a power whose interval has the sign wanted."""
+    """Verdict on values that are to go with v as a power of the sign wanted."""
     chosen = chosen & (values > 0)
     line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
-    if not line.slope.known:
+    return power_of_offset(line.slope, v[chosen], symbol, rising=rising)
+
+
+def power_of_offset(exponent: Estimate, v: np.ndarray, symbol: str, *, rising: bool) -> Finding:
+    """Verdict on an exponent over the offsets v that it was fitted to, by the sign wanted."""
+    if not exponent.known:
         return Finding(UNDETERMINED, no_offsets("three"))
-    v = v[chosen]
     return Finding(
-        by_sign(line.slope, rising=rising),
-        f"x = {line.slope:z.2f}",
+        by_sign(exponent, rising=rising),
+        f"x = {exponent:z.2f}",
         f"{symbol} ~ v^x, v = {v[0]:.3g} to {v[-1]:.3g} mm",
     )
 

@@ -72,7 +72,7 @@ def domains_are_fractal(joint: Joint) -> Finding:
 
 
 def _departure_words(state, null, words):
-    """Where local slopes depart most from those of a null model, in words."""
+    """Box side of the largest departure from a null model, in words."""
     side, p = (float(state[f"local_slope_{null}_{name}"]) for name in ("side", "p"))
     if not np.isfinite(p):
         return f"{words}: not compared"

@@ -29,7 +29,7 @@ ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 
 @of_the_area
 def area_is_lacunar(joint: Joint) -> Finding:
-    """Exponent of A_r over the resolutions, at the load of the maps."""
+    """Exponent of A_r over the resolutions, at the reference load."""
     state = joint.state("scaling")
     delta = Estimate.read(state, "delta_sigma")
     if not delta.known:
@@ -46,7 +46,7 @@ def area_is_lacunar(joint: Joint) -> Finding:
 
 
 def boxes_follow_one_law(joint: Joint) -> Finding:
-    """Local slopes of the box counts at the load of the maps.
+    """Local slopes of the box counts at the reference load.
 
     They show the curvature of the counts; how well one slope is known says nothing of it.
     """

@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..core.limits import LEVEL_CHANGE, LOOSELY, NEARLY
 from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
-from .findings import Finding, Joint, no_offsets, share, trend
+from .findings import Finding, Joint, no_offsets, power_of_offset, share
 
 #: Directions in which the paper's concrete has a plateau, of those it slid in.
 PLATEAUS, DIRECTIONS = 2, 4
@@ -96,8 +96,8 @@ def dilatancy_is_anisotropic(joint: Joint) -> Finding:
 
 def domains_cluster(joint: Joint) -> Finding:
     """Morisita's index of the contact domains against offset, as a power of v."""
-    index = joint.at_load("domains", "morisita")
-    return trend(joint.offsets, index, joint.offsets > 0, "Morisita's index", rising=True)
+    exponent, fitted = joint.localisation
+    return power_of_offset(exponent, fitted, "Morisita's index", rising=True)
 
 
 def no_correlation_is_left(joint: Joint) -> Finding:

@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.claims import claims_of
-from ..core.fitting import LineFit, fit_line
+from ..core.estimate import Estimate
+from ..core.fitting import fit_line
 from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
 from ..roughness.recommended import best_dimension
 from .findings import Finding, Joint, by_sign
@@ -37,7 +38,7 @@ def judge_study(
 
 
 def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
-    """Exponent 2 - Delta_sigma by A_r(s) at the load of the maps, against Delta_g of the faces.
+    """Exponent 2 - Delta_sigma by A_r(s) at the reference load, against Delta_g of the faces.
 
     The paper says that the size effect is more pronounced for larger Delta_g, and means this
     exponent; no size is varied here. Of surfaces against a plane where there are three: their
@@ -63,41 +64,42 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
 
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
     """Exponents of A_r against v, concrete beside rock."""
-    lines = _by_material(joints, lambda joint: joint.area_fraction)
-    return _compared(lines, "A_r ~ v^x", steeper=-1)
+    exponents = _by_material(joints, _area_exponent)
+    return _compared(exponents, "A_r ~ v^x", steeper=-1)
 
 
 def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
     """Exponents of Morisita's index against v, concrete beside rock."""
-    lines = _by_material(joints, lambda joint: joint.at_load("domains", "morisita"))
-    return _compared(lines, "Morisita's index ~ v^x", steeper=1)
+    exponents = _by_material(joints, lambda joint: joint.localisation[0])
+    return _compared(exponents, "Morisita's index ~ v^x", steeper=1)
 
 
-def _by_material(joints, values_of):
-    """Line of log values over log v of the first joint of each material."""
-    lines: dict[str, LineFit] = {}
+def _area_exponent(joint):
+    """Exponent of A_r over v at the reference load."""
+    chosen = (joint.offsets > 0) & (joint.area_fraction > 0)
+    return fit_line(np.log(joint.offsets[chosen]), np.log(joint.area_fraction[chosen])).slope
+
+
+def _by_material(joints, exponent_of):
+    """Exponent of the first joint of each material that has one."""
+    found: dict[str, Estimate] = {}
     for joint in joints.values():
         material = material_of(joint.settings)
-        if joint.settings["opposite"] == "flat" or material in lines or not material:
+        if joint.settings["opposite"] == "flat" or material in found or not material:
             continue
-        values = values_of(joint)
-        chosen = (joint.offsets > 0) & (values > 0)
-        line = fit_line(np.log(joint.offsets[chosen]), np.log(values[chosen]))
-        if line.slope.known:
-            lines[material] = line
-    return lines
+        exponent = exponent_of(joint)
+        if exponent.known:
+            found[material] = exponent
+    return found
 
 
-def _compared(lines, law, steeper):
-    """Whether concrete's exponent exceeds rock's, with the sign of the paper's claim."""
-    if lines.keys() != {"rock", "concrete"}:
+def _compared(exponents, law, steeper):
+    """Verdict on concrete's exponent beside rock's, by the sign of the paper's claim."""
+    if exponents.keys() != {"rock", "concrete"}:
         return Finding(UNDETERMINED, "a joint of each material needed")
-    rock, concrete = lines["rock"], lines["concrete"]
-    words = ", ".join(
-        f"{name} {line.slope:.2f}" for name, line in (("concrete", concrete), ("rock", rock))
-    )
-    low = concrete.slope.low - rock.slope.high
-    high = concrete.slope.high - rock.slope.low
+    rock, concrete = exponents["rock"], exponents["concrete"]
+    words = f"concrete {concrete:.2f}, rock {rock:.2f}"
+    low, high = concrete.low - rock.high, concrete.high - rock.low
     sure, opposite = (low > 0, high < 0) if steeper > 0 else (high < 0, low > 0)
     verdict = HOLDS if sure else FAILS if opposite else UNDETERMINED
     return Finding(verdict, f"{law}, x = {words}")

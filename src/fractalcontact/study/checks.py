@@ -130,7 +130,7 @@ def read_scans(
 
 
 def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict], schema: Mapping) -> tuple[dict, dict]:
-    """What is said of one specimen; what its group says may have no meaning for some of it."""
+    """Keys stated of one specimen; those of its group may have no meaning for all its members."""
     of_file = read_sidecar(scan.sidecar, schema)
     of_row = _split(dict(scan.row), schema, scan.row_of) if scan.row else ({}, {})
     own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})

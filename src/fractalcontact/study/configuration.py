@@ -248,7 +248,7 @@ def resolve_roll_off(config: Mapping, source: str) -> dict | None:
 
 
 def solver_settings(config: Mapping, source: str) -> Solver:
-    """How the contact solver is used; ``rtol`` follows from the accuracy where it is not stated.
+    """Settings of the contact solver; ``rtol`` follows from the accuracy where it is not stated.
 
     Parameters
     ----------

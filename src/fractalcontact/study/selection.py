@@ -1,4 +1,4 @@
-"""Which embedded specimens of a study are one surface twice."""
+"""Embedded specimens of a study that are one surface twice."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -284,7 +284,7 @@ def sections_of(function: str) -> dict[str, type]:
 
 
 def read_by(function: str, stated: settings.Settings, solver: settings.Solver) -> dict[str, dict]:
-    """What a function reads of the settings of a specimen, by parameter, as plain data.
+    """Settings of a specimen that a function reads, by parameter, as plain data.
 
     Parameters
     ----------

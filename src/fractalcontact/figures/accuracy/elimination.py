@@ -81,7 +81,7 @@ def _cased(case):
 
 
 def _counts(elimination):
-    """How often dropping points ends on a wrong set, and which readings a proof defeats."""
+    """Counts of wrong contact sets, and the readings that a proof defeats."""
     tried = int(elimination["tried"].values[0])
     chance = [
         f"{count} of {tried} ({_cased(case)})"

@@ -59,7 +59,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
 
 def front(scenes: dict[str, xr.Dataset], quantity: str) -> dict[str, Any]:
-    """Where ours is on the front at every error below `LEADS_BELOW`, and what counts as equal.
+    """Counts of the problems on whose front ours is at every error below `LEADS_BELOW`.
 
     Parameters
     ----------

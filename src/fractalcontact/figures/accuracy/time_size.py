@@ -83,7 +83,7 @@ def _table(growth):
 
 
 def _numbers(growth, columns):
-    """How our time and memory grow on each surface, and the operator's share of the time."""
+    """Growth of our time and memory on each surface, and the operator's share of the time."""
     surfaces = []
     for surface in columns:
         ours = growth.sel(surface=surface, solver=OURS)

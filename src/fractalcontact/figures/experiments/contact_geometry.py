@@ -116,7 +116,7 @@ def _draw_curves(axes, one, curves, *, colours, of="") -> None:
 
 
 def _words(test) -> dict[str, Any]:
-    """How many states differ from the cut, and the dimensions under least and largest load."""
+    """Number of states that differ from the cut; dimensions under the least and largest load."""
     known = test["domain_determined"]
     domain = test["band_delta"]
     ends = [domain.isel(reduced_pressure=load).values for load in (0, -1)]

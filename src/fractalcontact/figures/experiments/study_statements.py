@@ -149,7 +149,7 @@ def _draw_key(axes, y, counts):
 
 
 def _counted(tables, whole):
-    """How often each verdict was given, and the last statement on all specimens together."""
+    """Number of each verdict, and the last statement on all specimens together."""
     verdicts = pd.concat([*tables.values(), whole])
     counts = verdicts["verdict"].value_counts()
     return {

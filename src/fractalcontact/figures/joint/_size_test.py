@@ -209,5 +209,5 @@ def rows_of_loads(test: xr.Dataset, *names: str, **constants: Any) -> pd.DataFra
 
 
 def rows_predicted(test: xr.Dataset) -> pd.DataFrame:
-    """What eq. 6 predicts under each load by every estimator, and the verdicts on it."""
+    """Predictions of eq. 6 under each load by every estimator, and the verdicts on them."""
     return rows_of_loads(test, "predicted_slope", *JUDGED, panel="b")

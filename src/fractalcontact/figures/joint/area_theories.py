@@ -182,7 +182,7 @@ def _mean(law, prefix):
 
 
 def _words(atlas, name, laws, law):
-    """What the caption says: the law of the area, kappa, and the paper's claim."""
+    """Values of the caption: law of the area, kappa, the paper's claim."""
     reason, no_kappa = (str(law[f"no_corrected_{of}"].values) for of in ("law", "mean_kappa"))
     many = "over all offsets" if laws.sizes["offset"] > 1 else ""
     return {

@@ -115,7 +115,7 @@ def _draw_correlation(panel, joint, solved, ends):
 
 
 def _seated(curves):
-    """Whether closures can be counted from the seat that all offsets have in common."""
+    """True if some closure lies above the seat that all offsets have in common."""
     return bool((curves["closure_from_common_seat"] > 0).any())
 
 

@@ -129,7 +129,7 @@ def _band_entry(shown, force):
 
 
 def _values(state, counts):
-    """What the caption says of the reference load."""
+    """Values of the caption, at the reference load."""
     slopes = counts.isel(null_octave=np.isfinite(counts["local_slope"]).values)
     complete = slopes.sizes["null_octave"] == counts.sizes["null_octave"] > 1
     spectrum = state["generalised_dimension"].sel(order=[0.0, 4.0]).values

@@ -204,12 +204,12 @@ def _totals_words(errors):
 
 
 def _apart(own, kind):
-    """Whether both totals are known, and their lines do not lie on each other."""
+    """True if both totals are known and their lines are apart."""
     return bool(np.isfinite([own, kind]).all() and kind >= _APART * own)
 
 
 def _words_of(here):
-    """What the caption says of each total, and in which panels both totals are apart."""
+    """Values of the caption: both totals, and the panels in which they are apart."""
     totals, letters, added = [], [], []
     for which, (quantity, (_, words)) in zip("abcde", QUANTITIES.items(), strict=True):
         errors = here.sel(quantity=quantity)

@@ -172,7 +172,7 @@ def _scan_words(strength):
 
 
 def _words(strength, shown):
-    """What the caption says of angles and strengths."""
+    """Values of the caption: angles and strengths."""
     valid = strength["peak_strength_valid"] & (strength["peak_strength"] > 0)
     return {
         "intervals": strength.sizes["interval"],

@@ -138,7 +138,7 @@ def _face(fitted):
 
 
 def _words(atlas, name, laws):
-    """What the caption says: H beside that of eq. 2, and whether larger windows close more."""
+    """Values of the caption: H, that of eq. 2, the claim on larger samples."""
     force = float(atlas[f"statements/{name}"].attrs["force"])
     judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
     fitted = np.isfinite(laws["compliance_exponent"]).any()

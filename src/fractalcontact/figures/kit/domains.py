@@ -38,7 +38,7 @@ class DeltaSigma(Estimate):
 
     @property
     def name(self) -> str:
-        """Of its variable in the stage ``scaling``."""
+        """Name of its variable in the stage ``scaling``."""
         return f"delta_sigma_{self.key}"
 
     def at(self, i: int) -> str:

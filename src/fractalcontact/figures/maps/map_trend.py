@@ -63,7 +63,7 @@ def _marks(series):
 
 
 def _trends(series):
-    """Of the longest series how the dimension goes with pressure."""
+    """Trend of the dimension with pressure, in the longest series."""
     longest = sorted(series, key=lambda each: -len(each.maps))[:_IN_WORDS]
     return [
         {

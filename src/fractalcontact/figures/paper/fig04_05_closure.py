@@ -253,7 +253,7 @@ def _keyed(head, axes, drawn, *lines):
 
 
 def _hollow(drawn, stiffness):
-    """What hollow markers are, if any is drawn."""
+    """Entry of the legend for hollow markers, if any is drawn."""
     flags = drawn["resolved"], drawn["area_corrected_resolved"], stiffness["resolved"]
     if all(flag.all() for flag in flags):
         return []
