@@ -90,11 +90,18 @@ class Subject:
 
     def states(self, stage: str) -> xr.Dataset:
         """A stage at the reported direction, offset and resolution, over loads."""
-        return self.reported.states(self[stage])
+        # A page asks for a few numbers of each load: a stage is selected from once.
+        if stage not in self._states:
+            self._states[stage] = self.reported.states(self[stage])
+        return self._states[stage]
 
     def state(self, stage: str) -> xr.Dataset:
         """A stage at the reported state under the reference load."""
-        return self.reported.state(self[stage])
+        return self.reported.state(self.states(stage))
+
+    @cached_property
+    def _states(self) -> dict[str, xr.Dataset]:
+        return {}
 
 
 def configuration_of(atlas: xr.DataTree) -> dict[str, Any]:
