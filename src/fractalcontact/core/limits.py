@@ -10,10 +10,10 @@ CORRECTED_NODES = 30
 #: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
 NEARLY, LOOSELY = 0.1, 0.25
 
-#: The one that JRC is taken from.
+#: Sampling step of the profiles that JRC is taken from.
 JRC_SAMPLING = "1.27 mm"
 
-#: Barton's profiles go from 0 to 20 and his law was measured on them.
+#: JRC of Barton's standard profiles, on which his law was measured.
 JRC_RANGE = (0.0, 20.0)
 
 #: Barton's total friction angle is not used above this, degrees (Barton & Choubey, Rock Mech. 10
@@ -28,7 +28,8 @@ MOSTLY_HELD = 0.5
 #: plane can have.
 WIDEST = 1.0
 
-#: Fewer nodes are not compared: whatever their pattern, one node more or less would change it.
+#: A contact domain of fewer nodes is compared with no null model: one node more or less would
+#: change its pattern.
 MIN_NODES = CORRECTED_NODES
 
 #: Above this fraction of the load on suspicious cells, errors of the scans decide a number.
@@ -41,7 +42,8 @@ LIGHT_LOAD = 0.02
 #: of the number fitted, of the law fitted to them in at least 95 of 100 draws.
 LARGEST_DISTANCE = 0.85
 
-#: Above this, subtracting the mean plane (a shear) departs from turning the specimen by 0.4 %.
+#: Tilt of a scan above which subtracting the mean plane (a shear) departs from turning
+#: the specimen by 0.4 %.
 STEEP_TILT = 5.0  # degrees
 
 #: Change over the second half of the offsets, a fraction of the mean there, that is called level.

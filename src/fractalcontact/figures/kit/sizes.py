@@ -14,7 +14,7 @@ from .drawing import MARKERS, colour_of
 from .points import draw_points
 from .words import length_unit, short
 
-#: What such a marker says.
+#: Legend of means whose friction angle is truncated in most sub-windows.
 HELD = f"hollow: friction angle of most held at {LARGEST_FRICTION_ANGLE:g}°, no result"
 #: What the legends of :func:`draw_over_size` declare.
 BARS = "bars: 95 % intervals; none of the whole window"
